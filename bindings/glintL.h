@@ -1,0 +1,123 @@
+/// What the files of the binding share. The engine has never heard of Lua; nothing here is seen below bindings/.
+///
+/// An object of the engine travels as a full userdata `glintL_box` holding one reference. Assigning a field copies
+/// the description, changes one member and hands it back to the engine, which checks it: the object is unchanged
+/// when the check fails. Errors raised to Lua read "material.shininess: number >= 0 expected, got -1".
+#ifndef GLINT_L_H
+#define GLINT_L_H
+
+#include <lauxlib.h>
+#include <lua.h>
+
+#include "engine/glint.h"
+
+// ---- check.c: arguments and tables in ----
+
+/// One field of a description struct, and how Lua spells it.
+typedef enum glintL_kind {
+    GLINTL_NUMBER,  ///< double
+    GLINTL_DEGREES, ///< double in radians; degrees in Lua
+    GLINTL_BOOLEAN, ///< bool
+    GLINTL_VECTOR,  ///< double[3], {x, y, z}
+    GLINTL_COLOR,   ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
+    GLINTL_ENUM,    ///< enum; `names` spells its values in order, ends with NULL
+    GLINTL_STRING,  ///< char[GLINT_NAME_SIZE]
+    GLINTL_OBJECT   ///< a glintL_box of the type `names[0]`
+} glintL_kind;
+
+typedef struct glintL_field {
+    const char *name;
+    glintL_kind kind;
+    size_t offset;            ///< in the description
+    size_t set_offset;        ///< of a bool that says the field was set (has_ambient ...); 0: none
+    const char *const *names; ///< GLINTL_ENUM, GLINTL_OBJECT
+    bool required;            ///< in the constructor's table
+} glintL_field;
+
+/// Raises `message` with the position of the Lua code that called.
+int glintL_error(lua_State *L, const char *format, ...);
+/// Raises "<path>.<message>" for an engine error; `path` may be "" (the message alone). Does nothing for GLINT_OK.
+void glintL_check_status(lua_State *L, const char *path, const glint_error *error, glint_status status);
+/// Reads the value at `index` into the field of `desc`; raises "<path>.<field>: ... expected, got ...".
+void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
+/// Pushes the field's value as Lua sees it.
+void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
+/// Reads every key of the table at `index`; raises on an unknown key (naming the nearest known one), a non-string key
+/// (unless allow_array, when integer keys are left to the caller) and a missing required field.
+void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
+                       bool allow_array);
+/// The nearest of `fields` to a misspelt name, or NULL when none is near.
+const char *glintL_nearest(const char *name, const glintL_field *fields);
+const glintL_field *glintL_find_field(const glintL_field *fields, const char *name);
+void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
+void glintL_read_color(lua_State *L, int index, const char *path, double out[3]);
+double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, NaN and infinity too
+
+// ---- vector.c: the immutable value of a vector or colour ----
+
+/// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.
+void glintL_push_vector(lua_State *L, const double v[3]);
+/// NULL when the value at index is not one.
+const double *glintL_to_vector(lua_State *L, int index);
+
+// ---- object.c: boxes ----
+
+#define GLINTL_MATERIAL "glint.material"
+#define GLINTL_LIGHT "glint.light"
+#define GLINTL_CAMERA "glint.camera"
+#define GLINTL_SHAPE "glint.shape"
+#define GLINTL_SCENE "glint.scene"
+#define GLINTL_IMAGE "glint.image"
+#define GLINTL_PARAMS "glint.params"
+#define GLINTL_ANIMATION "glint.animation" ///< job.c: animations and sweeps are one type
+
+typedef struct glintL_box {
+    void *object; ///< a reference; NULL before it is made and after close
+} glintL_box;
+
+/// Pushes the userdata with its metatable and a NULL object: handle first, resource second.
+glintL_box *glintL_new_box(lua_State *L, const char *type);
+/// The object; raises "<type> expected, got ..." or "<type> is closed".
+void *glintL_check_object(lua_State *L, int index, const char *type);
+/// Same without raising: NULL when the value is something else.
+void *glintL_test_object(lua_State *L, int index, const char *type);
+/// Remembers (weakly) that the userdata on top of the stack stands for its object; and pushes it again later, nil
+/// when it is gone.
+void glintL_remember(lua_State *L, void *object);
+void glintL_push_remembered(lua_State *L, const void *object);
+
+/// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
+void glintL_open_vector(lua_State *L);
+void glintL_open_material(lua_State *L);
+void glintL_open_light(lua_State *L);
+void glintL_open_camera(lua_State *L);
+void glintL_open_shape(lua_State *L);
+void glintL_open_scene(lua_State *L);
+void glintL_open_image(lua_State *L);
+void glintL_open_math(lua_State *L);
+void glintL_open_params(lua_State *L);
+void glintL_open_animation(lua_State *L); ///< animation and sweep
+int luaopen_glint(lua_State *L);
+
+/// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
+/// Works on anything with __newindex; raises as the assignment would.
+void glintL_set_field(lua_State *L, int object_index, const char *name);
+
+/// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
+typedef struct glintL_render {
+    glint_render_desc desc;
+    char output[4096];       ///< "" = none given
+    glint_encode encode;
+    uint32_t file_passes;    ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
+} glintL_render;
+
+// ---- run.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
+
+/// What the command line (or :run{}) asked. Strings are owned by the run.
+typedef struct glintL_run glintL_run;
+glintL_run *glintL_get_run(lua_State *L);
+/// scene:render{...}: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
+/// files. Pushes an image, or nil and "skipped". Returns the number of results.
+int glintL_render_call(lua_State *L, glint_scene *scene, int index);
+
+#endif

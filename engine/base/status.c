@@ -1,0 +1,70 @@
+#include "engine/base/status.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)
+{
+    if (error) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(error->message, sizeof error->message, format, args);
+        va_end(args);
+        error->status = status;
+    }
+    return status;
+}
+
+glint_status glint_fail_nomem(glint_error *error)
+{
+    return glint_fail(error, GLINT_ERR_NOMEM, "out of memory");
+}
+
+glint_status glint_check_finite(const char *name, double value, glint_error *error)
+{
+    if (isfinite(value))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: finite number expected, got %g", name, value);
+}
+
+glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
+                               glint_error *error)
+{
+    if (value >= min && value <= max)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: %s expected, got %.15g", name, allowed, value);
+}
+
+glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error)
+{
+    if (value >= min && value <= max && value == floor(value))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: whole number %.15g .. %.15g expected, got %.15g", name, min, max,
+                      value);
+}
+
+glint_status glint_check_vector(const char *name, const double v[3], glint_error *error)
+{
+    if (isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: finite numbers expected, got {%.15g, %.15g, %.15g}", name, v[0],
+                      v[1], v[2]);
+}
+
+glint_status glint_check_direction(const char *name, const double v[3], glint_error *error)
+{
+    glint_status status = glint_check_vector(name, v, error);
+    if (status || v[0] != 0 || v[1] != 0 || v[2] != 0)
+        return status;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: vector that is not zero expected, got {0, 0, 0}", name);
+}
+
+glint_status glint_check_color(const char *name, const double v[3], glint_error *error)
+{
+    glint_status status = glint_check_vector(name, v, error);
+    if (status || (v[0] >= 0 && v[1] >= 0 && v[2] >= 0))
+        return status;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: colour >= 0 expected, got {%.15g, %.15g, %.15g}", name, v[0],
+                      v[1], v[2]);
+}

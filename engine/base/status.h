@@ -1,0 +1,23 @@
+/// Filling a glint_error. Internal.
+#ifndef GLINT_BASE_STATUS_H
+#define GLINT_BASE_STATUS_H
+
+#include "engine/glint.h"
+
+/// Fills `error` (when not NULL) with a formatted message and returns `status`, for `return glint_fail(...)`.
+glint_status glint_fail(glint_error *error, glint_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/// "out of memory" with GLINT_ERR_NOMEM.
+glint_status glint_fail_nomem(glint_error *error);
+
+/// Checks of one field; on failure the message reads "<name>: <what is allowed> expected, got <value>".
+glint_status glint_check_finite(const char *name, double value, glint_error *error);
+glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
+                               glint_error *error);
+glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error);
+glint_status glint_check_vector(const char *name, const double v[3], glint_error *error); ///< finite
+glint_status glint_check_direction(const char *name, const double v[3], glint_error *error); ///< finite, not zero
+glint_status glint_check_color(const char *name, const double v[3], glint_error *error); ///< finite, >= 0
+
+#endif

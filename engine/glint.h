@@ -1,0 +1,427 @@
+/// glint: a ray-tracing render engine. This header is the whole public C API.
+///
+/// The order of use: describe (materials, lights, shapes, a camera, a scene), plan (glint_plan_create takes a
+/// snapshot of the scene and lists the stages a frame needs), render (glint_render runs the plan), write.
+///
+/// Units     lengths are in world units, angles in radians (`_rad`), colours linear RGB with 1.0 = display white.
+/// Vectors   `double v[3]` is x, y, z or red, green, blue. The world is right-handed.
+/// Errors    every function that can fail returns a glint_status and fills `error` (which may be NULL). Outputs and
+///           objects are then as they were. The message starts with the argument's name: "shininess: number >= 0
+///           expected, got -1".
+/// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
+///           `_release(NULL)` does nothing. What a description struct points to is borrowed for the call only.
+/// Threads   described objects (material, light, camera, shape, scene) belong to one thread at a time. A plan is
+///           immutable; images are, once rendered. A renderer renders one frame at a time.
+#ifndef GLINT_H
+#define GLINT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define GLINT_VERSION "0.1.0"
+
+#define GLINT_NAME_SIZE 64 ///< bytes of an object's name, with the ending NUL
+#define GLINT_SIDE_MAX 65535 ///< longest side of an image, in pixels
+
+typedef enum glint_status {
+    GLINT_OK = 0,
+    GLINT_ERR_INVALID, ///< an argument is out of its range
+    GLINT_ERR_NOMEM,
+    GLINT_ERR_IO, ///< the outside world: a file that will not open, a short write
+    GLINT_ERR_NO_SPACE, ///< disk or quota full: worth trying later
+    GLINT_ERR_FORMAT, ///< a file that is not what it should be
+    GLINT_ERR_CANCELLED, ///< glint_renderer_cancel was called
+    GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
+} glint_status;
+
+typedef struct glint_error {
+    glint_status status;
+    char message[512];
+} glint_error;
+
+// ---- Materials ----------------------------------------------------------------------------------------------------
+
+typedef struct glint_material glint_material;
+
+typedef enum glint_model {
+    GLINT_MODEL_PHONG, ///< S = max(0, r.v)^shininess, r = 2(n.l)n - l
+    GLINT_MODEL_BLINN_PHONG, ///< S = max(0, n.h)^shininess, h = (l + v)/|l + v|
+    GLINT_MODEL_LAMBERT ///< no specular term
+} glint_model;
+
+typedef struct glint_material_desc {
+    glint_model model;
+    bool has_ambient; ///< false: `ambient` follows `diffuse`
+    double ambient[3]; ///< reflectances: finite, >= 0; above 1 a surface gives more light than it gets
+    double diffuse[3]; ///< default 0.8
+    double specular[3]; ///< default 0
+    double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
+    char name[GLINT_NAME_SIZE];
+} glint_material_desc;
+
+glint_material_desc glint_material_desc_default(void);
+glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error);
+glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error);
+const glint_material_desc *glint_material_get(const glint_material *material);
+glint_material *glint_material_retain(glint_material *material);
+void glint_material_release(glint_material *material);
+
+/// The two terms of one light of strength 1, by the kernels a frame uses.
+typedef struct glint_reflection {
+    double diffuse[3]; ///< kd (n.l), 0 where n.l <= 0
+    double specular[3]; ///< ks S, 0 where n.l <= 0
+} glint_reflection;
+
+/// Evaluates a material at a point. The three vectors point away from it and need not be unit; finite, not zero.
+glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
+                                     const double to_eye[3], glint_reflection *out, glint_error *error);
+
+// ---- Lights -------------------------------------------------------------------------------------------------------
+
+typedef struct glint_light glint_light;
+
+typedef enum glint_light_kind { GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL } glint_light_kind;
+
+typedef struct glint_light_desc {
+    glint_light_kind kind;
+    double color[3]; ///< default 1; finite, >= 0
+    double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
+    bool has_diffuse, has_specular; ///< false: the term's colour is `color`
+    double ambient[3]; ///< default 0; neither attenuated nor shadowed
+    double diffuse[3], specular[3];
+    double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
+    bool shadows; ///< default true
+    bool visible; ///< rays may see the light's surface; point and directional lights have none
+    double position[3]; ///< point light
+    double direction[3]; ///< directional light: the direction of travel; not zero, need not be unit
+    char name[GLINT_NAME_SIZE];
+} glint_light_desc;
+
+glint_light_desc glint_light_desc_default(glint_light_kind kind);
+glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error);
+/// `desc->kind` must be the light's kind.
+glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error);
+const glint_light_desc *glint_light_get(const glint_light *light);
+glint_light *glint_light_retain(glint_light *light);
+void glint_light_release(glint_light *light);
+
+// ---- Camera -------------------------------------------------------------------------------------------------------
+
+typedef struct glint_camera glint_camera;
+
+typedef enum glint_projection { GLINT_PERSPECTIVE, GLINT_ORTHOGRAPHIC } glint_projection;
+
+typedef struct glint_camera_desc {
+    glint_projection projection;
+    double eye[3];
+    bool has_direction; ///< true: look along `direction`; false: look at the point `at`
+    double at[3], direction[3];
+    double up[3]; ///< default {0,1,0}; not zero. Parallel to the view: the world axis least aligned with it is taken
+    double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
+    double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
+    double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
+    char name[GLINT_NAME_SIZE];
+} glint_camera_desc;
+
+glint_camera_desc glint_camera_desc_default(void);
+glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error);
+glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error);
+const glint_camera_desc *glint_camera_get(const glint_camera *camera);
+glint_camera *glint_camera_retain(glint_camera *camera);
+void glint_camera_release(glint_camera *camera);
+
+// ---- Shapes -------------------------------------------------------------------------------------------------------
+
+typedef struct glint_shape glint_shape;
+
+typedef enum glint_shape_kind { GLINT_SHAPE_SPHERE, GLINT_SHAPE_PLANE, GLINT_SHAPE_SPHERES } glint_shape_kind;
+
+typedef struct glint_shape_desc {
+    glint_shape_kind kind; ///< GLINT_SHAPE_SPHERE or GLINT_SHAPE_PLANE
+    glint_material *material; ///< retained by the shape; NULL: a material with default fields
+    bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
+    double center[3], radius; ///< sphere: finite, radius > 0
+    double point[3], normal[3]; ///< plane: finite, normal not zero, need not be unit
+    char name[GLINT_NAME_SIZE];
+} glint_shape_desc;
+
+glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
+glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
+glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
+/// The description; of a GLINT_SHAPE_SPHERES shape only kind, two_sided, name and material (its first) mean anything.
+const glint_shape_desc *glint_shape_get(const glint_shape *shape);
+glint_shape *glint_shape_retain(glint_shape *shape);
+void glint_shape_release(glint_shape *shape);
+
+/// Many spheres in one shape, from one array.
+typedef struct glint_spheres_desc {
+    const void *data; ///< count times x, y, z, radius; any alignment; copied
+    size_t count; ///< 1 .. 2^30
+    bool is_float; ///< true: `data` is binary32, false: binary64; native byte order
+    glint_material *const *materials; ///< retained; NULL entries are not allowed
+    size_t material_count; ///< 0: one material with default fields
+    const uint32_t *material_index; ///< count numbers < material_count, copied; NULL: all are 0
+    bool two_sided;
+    char name[GLINT_NAME_SIZE];
+} glint_spheres_desc;
+
+/// A message names the sphere at fault, counted from 1: "data: sphere 12: radius > 0 expected, got -1".
+glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
+size_t glint_spheres_count(const glint_shape *shape); ///< 1 for other shapes
+
+// ---- Scene --------------------------------------------------------------------------------------------------------
+
+typedef struct glint_scene glint_scene;
+
+typedef struct glint_scene_desc {
+    glint_camera *camera; ///< retained; may be NULL until a frame is planned
+    double ambient[3]; ///< finite, >= 0; default 0
+    double background[3]; ///< finite, >= 0; default 0
+} glint_scene_desc;
+
+glint_status glint_scene_create(glint_scene **out, glint_error *error);
+glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error);
+const glint_scene_desc *glint_scene_get(const glint_scene *scene);
+glint_scene *glint_scene_retain(glint_scene *scene);
+void glint_scene_release(glint_scene *scene);
+/// Objects are numbered in the order they were added. The scene retains them; adding one twice is an error, and so
+/// is removing one that is not there. One object may be in several scenes.
+glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
+glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error);
+glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
+glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error);
+size_t glint_scene_shape_count(const glint_scene *scene);
+size_t glint_scene_light_count(const glint_scene *scene);
+
+typedef struct glint_hit {
+    double t; ///< point = origin + t direction; t > 0
+    double point[3];
+    double normal[3]; ///< unit, geometric, outward (a plane's own normal)
+    glint_shape *shape; ///< borrowed from the scene
+    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, from 0
+} glint_hit;
+
+/// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero.
+/// *hit tells whether there is one; *out is written only then.
+glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
+                              glint_hit *out, glint_error *error);
+
+// ---- What a frame is asked to be ----------------------------------------------------------------------------------
+
+typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
+
+typedef enum glint_pass {
+    GLINT_PASS_BEAUTY, ///< ((background + ambient) + diffuse) + specular, in float32 and in this order
+    GLINT_PASS_BACKGROUND,
+    GLINT_PASS_AMBIENT,
+    GLINT_PASS_DIFFUSE,
+    GLINT_PASS_SPECULAR,
+    GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
+    GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
+    GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
+    GLINT_PASS_COUNT
+} glint_pass;
+
+/// "beauty", "background", ...; NULL when out of range.
+const char *glint_pass_name(glint_pass pass);
+/// GLINT_PASS_COUNT when there is no such pass.
+glint_pass glint_pass_from_name(const char *name);
+int glint_pass_channels(glint_pass pass); ///< 1 or 3
+
+typedef enum glint_transfer { GLINT_TRANSFER_SRGB, GLINT_TRANSFER_LINEAR } glint_transfer;
+typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
+typedef enum glint_tone_curve { GLINT_TONE_CLAMP } glint_tone_curve;
+
+/// How linear light becomes integer codes: curve, transfer, rounding. NaN and negative become 0, above the range M.
+typedef struct glint_tone_desc {
+    glint_tone_curve curve;
+    glint_transfer transfer; ///< default sRGB, IEC 61966-2-1:1999
+    glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
+    int bits; ///< 8 (default) or 16: M = 255 or 65535
+} glint_tone_desc;
+
+glint_tone_desc glint_tone_desc_default(void);
+
+typedef struct glint_render_desc {
+    double width, height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
+    double samples; ///< a pixel; whole number, 1 .. 65536; default 1
+    glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
+    double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
+    uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out
+    bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
+    glint_tone_desc tone;
+} glint_render_desc;
+
+/// 1280 x 720, 1 sample, double, passes = beauty, codes = false.
+glint_render_desc glint_render_desc_default(void);
+
+// ---- Plan ---------------------------------------------------------------------------------------------------------
+
+typedef struct glint_plan glint_plan;
+
+typedef struct glint_effect {
+    const char *effect; ///< "hard shadow", "specular phong", ...
+    const char *caller; ///< which object called for it: "point_light 'lamp'"
+} glint_effect;
+
+typedef struct glint_stage_info {
+    const char *name; ///< "camera", "cast", "surface", "light", "occlude", "shade", "resolve", "tone"
+    char key[33]; ///< hex XXH3-128 of exactly what the stage reads
+    const char *why; ///< one line for people
+} glint_stage_info;
+
+typedef struct glint_ray_counts {
+    uint64_t primary, shadow, mirror, refraction, indirect;
+} glint_ray_counts;
+
+/// Takes a snapshot of the scene for one frame and lists what the frame needs. The scene may be edited at once.
+/// Fails when the scene has no camera, or a field of `desc` is out of range.
+glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
+                               glint_error *error);
+void glint_plan_destroy(glint_plan *plan);
+const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
+/// The lists belong to the plan.
+size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
+size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
+/// Primary rays exactly; shadow rays at most (every sample hits and faces every light that casts shadows).
+glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
+
+// ---- Render -------------------------------------------------------------------------------------------------------
+
+typedef struct glint_renderer glint_renderer;
+typedef struct glint_image glint_image;
+
+typedef struct glint_renderer_desc {
+    int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
+    const char *isa; ///< "ref", "sse2", "avx2", "avx512"; NULL (default): the environment's GLINT_ISA, else the best
+    bool time_stages; ///< measure each stage on each tile (costs a few per cent)
+} glint_renderer_desc;
+
+glint_renderer_desc glint_renderer_desc_default(void);
+/// GLINT_ERR_UNSUPPORTED when the machine lacks the instruction set asked for, GLINT_ERR_INVALID when there is none
+/// of that name.
+glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);
+void glint_renderer_destroy(glint_renderer *renderer);
+const char *glint_renderer_isa(const glint_renderer *renderer);
+int glint_renderer_threads(const glint_renderer *renderer);
+/// Makes the running or next glint_render return GLINT_ERR_CANCELLED within a tile. Async-signal-safe; sticks.
+void glint_renderer_cancel(glint_renderer *renderer);
+/// Share of the running frame that is done, 0 .. 1. Any thread.
+double glint_renderer_progress(const glint_renderer *renderer);
+
+#define GLINT_STAGE_MAX 16
+
+typedef struct glint_frame_stats {
+    double render_ms; ///< wall time of the stages up to the film
+    double tone_ms; ///< wall time of making codes
+    int stage_count; ///< the plan's stages, in its order
+    const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
+    double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
+    bool stage_reused[GLINT_STAGE_MAX]; ///< false: the stage ran
+    glint_ray_counts rays;
+    uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
+    uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
+} glint_frame_stats;
+
+/// Renders one frame. *out holds the passes and codes the plan's glint_render_desc asked for. `stats` may be NULL.
+glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                          glint_error *error);
+
+// ---- Images -------------------------------------------------------------------------------------------------------
+
+glint_image *glint_image_retain(glint_image *image);
+void glint_image_release(glint_image *image);
+int glint_image_width(const glint_image *image);
+int glint_image_height(const glint_image *image);
+/// Whether the pass was kept; beauty alone may exist as codes only.
+bool glint_image_has_pass(const glint_image *image, glint_pass pass);
+/// Reads one pixel of a kept pass; (0, 0) is the top left. One-channel passes give the same number three times.
+glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
+                               glint_error *error);
+
+// ---- Files --------------------------------------------------------------------------------------------------------
+
+typedef enum glint_encode { GLINT_ENCODE_FAST, GLINT_ENCODE_SMALL } glint_encode;
+
+/// Name and version of the deflate library behind a setting in this build: "isal 2.30.0".
+const char *glint_encoder_name(glint_encode encode);
+
+typedef struct glint_text {
+    const char *keyword; ///< PNG tEXt keyword: 1 .. 79 Latin-1 characters
+    const char *value; ///< any length up to 64 KiB; bytes outside Latin-1 are written as '?'
+} glint_text;
+
+typedef struct glint_write_desc {
+    const char *path; ///< ends in .png or .pfm
+    glint_pass pass;
+    glint_tone_desc tone; ///< .png; depth, normal and object_id are scaled for viewing, see README
+    glint_encode encode;
+    const glint_text *text; ///< .png
+    size_t text_count;
+} glint_write_desc;
+
+/// Writes one pass to a file that appears whole or not at all: temporary name beside it, fsync, rename. An existing
+/// file that is not a regular one (a pipe, /dev/full) is written in place. Missing folders are made.
+/// GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_IO otherwise; the message names the file.
+glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error);
+
+/// Identifies a finished frame: 32 hex digits over engine version, everything the plan reads, `desc`'s tone, encode,
+/// encoder version and pass. Threads, instruction set, shard and path are not in it.
+void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
+
+/// Whether `path` is a whole PNG (every chunk's CRC right, IEND at the end) whose tEXt "glint:key" equals key.
+bool glint_file_has_key(const char *path, const char *key);
+
+/// Writes images on a thread of its own, in the order submitted, so that encoding overlaps rendering.
+typedef struct glint_writer glint_writer;
+
+typedef struct glint_write_result {
+    glint_status status;
+    char message[512];
+    double encode_ms; ///< codes to bytes
+    double write_ms; ///< bytes to a synced, renamed file
+    void *user; ///< as submitted
+} glint_write_result;
+
+/// queue_depth  images that may wait, >= 1; a further submit blocks.
+glint_status glint_writer_create(int queue_depth, glint_writer **out, glint_error *error);
+/// Finishes what is queued, then frees. Results not collected are lost.
+void glint_writer_destroy(glint_writer *writer);
+/// Retains the image and copies `desc` with its strings. `user` comes back with the result.
+glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
+                                 glint_error *error);
+/// Takes the next result, in the order submitted; waits for it when `wait`. False: none (left).
+bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result);
+/// Drops what is queued and not begun (their results read GLINT_ERR_CANCELLED); a file being written is finished.
+void glint_writer_cancel(glint_writer *writer);
+
+typedef struct glint_compare_result {
+    int width, height, channels;
+    double mean_error, rms_error, peak_snr, max_error; ///< of values in 0 .. 1 (PNG) or linear (PFM)
+    int max_x, max_y, max_channel;
+    uint64_t failed, warned; ///< pixels off by more than the two thresholds
+    uint64_t pixels;
+} glint_compare_result;
+
+typedef struct glint_compare_desc {
+    double fail, warn; ///< thresholds, default 1e-6 as in idiff
+} glint_compare_desc;
+
+/// Compares two .png or .pfm files. GLINT_ERR_INVALID when the sizes or channels differ (out->width is then -1),
+/// GLINT_ERR_IO or GLINT_ERR_FORMAT when one cannot be read.
+glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
+                                 glint_compare_result *out, glint_error *error);
+
+// ---- Numbers that are the same on every machine -------------------------------------------------------------------
+
+double glint_sin(double radians);
+double glint_cos(double radians);
+double glint_tan(double radians);
+double glint_exp(double x);
+double glint_log(double x);
+double glint_pow(double x, double y);
+double glint_srgb_encode(double linear); ///< IEC 61966-2-1:1999; input clamped to 0 .. 1, NaN gives 0
+double glint_srgb_decode(double encoded); ///< the inverse; input clamped to 0 .. 1
+
+#endif

@@ -1,0 +1,30 @@
+/// Polynomials of the two elementary functions that shading needs. Chebyshev interpolation in exact arithmetic,
+/// rounded to float; relative error of each polynomial on its interval < 2e-8.
+#ifndef GLINT_COEFFICIENTS_H
+#define GLINT_COEFFICIENTS_H
+
+#define GLINT_SQRT2 0x1.6a09e667f3bcdp+0
+#define GLINT_EXP2_LOWEST (-40.0f) ///< below it a highlight is 0: it could not change a 16-bit code
+
+// log2(1 + f) / f for f in [sqrt(1/2) - 1, sqrt(2) - 1]
+#define GLINT_LOG2_C0 0x1.715476p+0f
+#define GLINT_LOG2_C1 -0x1.715470p-1f
+#define GLINT_LOG2_C2 0x1.ec70aap-2f
+#define GLINT_LOG2_C3 -0x1.715a70p-2f
+#define GLINT_LOG2_C4 0x1.277a52p-2f
+#define GLINT_LOG2_C5 -0x1.eab7aap-3f
+#define GLINT_LOG2_C6 0x1.a38c68p-3f
+#define GLINT_LOG2_C7 -0x1.87f6a2p-3f
+#define GLINT_LOG2_C8 0x1.7a63a0p-3f
+#define GLINT_LOG2_C9 -0x1.b84fb6p-4f
+
+// 2^f for f in [-1/2, 1/2]
+#define GLINT_EXP2_D0 0x1.000000p+0f
+#define GLINT_EXP2_D1 0x1.62e430p-1f
+#define GLINT_EXP2_D2 0x1.ebfbe0p-3f
+#define GLINT_EXP2_D3 0x1.c6aeccp-5f
+#define GLINT_EXP2_D4 0x1.3b2a1cp-7f
+#define GLINT_EXP2_D5 0x1.5f48c0p-10f
+#define GLINT_EXP2_D6 0x1.444000p-13f
+
+#endif

@@ -1,0 +1,307 @@
+/// The contract of every stage: what it reads, what it writes, and the exact order of its arithmetic.
+///
+/// A stage takes plain arrays in and gives plain arrays out; it has never heard of a scene. Each is written once in
+/// the vector vocabulary (simd_*.h) and compiled for every instruction set, and once more, on its own, as the scalar
+/// reference (ref.c). All of them give the same bits: + - * / sqrt, compares and selects in the order written here,
+/// no contraction, no reassociation. `min(a, b)` is `a < b ? a : b` and `max(a, b)` is `a > b ? a : b`, NaN included.
+/// dot(a, b) is (a.x b.x + a.y b.y) + a.z b.z.   length2(a) is dot(a, a).
+///
+/// Samples of a tile travel in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float by the
+/// frame's precision; arrays of real are `void *` here and every kernel of geometry exists for both. Where a table
+/// (which is double) meets float arithmetic, its numbers are first rounded to float.
+#ifndef GLINT_STAGES_H
+#define GLINT_STAGES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define GLINT_GROUP 16
+#define GLINT_TILE_WIDTH 32
+#define GLINT_TILE_HEIGHT 24
+#define GLINT_TILE_GROUPS (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT / GLINT_GROUP)
+#define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
+#define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
+#define GLINT_LIGHT_CHUNK 8    ///< lights one call of shade takes at most
+
+// ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
+
+typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE } glint_prim_kind;
+
+/// One surface, as far as no ray is concerned.
+typedef struct glint_prim {
+    uint32_t kind;
+    uint32_t material;   ///< index in the material table
+    uint32_t coincident; ///< the first primitive with bit-equal geometry: what a leaving ray skips
+    uint32_t two_sided;  ///< 0: seen from behind it gets ambient light only
+    double center[3];    ///< sphere: centre; plane: a point of it
+    double normal[3];    ///< plane: unit
+    double scale;        ///< sphere: a power of two, so that radius * scale is in [1, 2)
+    double radius;       ///< sphere, world units
+    double r2, r2_low;   ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+    float filter_center[3]; ///< sphere: (center - reference) * filter_scale
+    float filter_bound;  ///< sphere: >= radius (1 + 1e-6) + 8 * 2^-24 |filter_center|, in filter units; plane: +inf
+} glint_prim;
+
+/// The same, seen from an origin that many rays share.
+typedef struct glint_bundle_prim {
+    double f[3]; ///< sphere: (origin - center) * scale
+    double c;    ///< sphere: |f|^2 - (radius scale)^2, rounded once; plane: dot(normal, origin - point)
+    float filter_f[3]; ///< sphere: f rounded
+    float filter_limit2; ///< sphere: (radius scale (1 + 1e-6) + 8 * 2^-24 |f|)^2, rounded up; plane: +inf
+} glint_bundle_prim;
+
+/// Materials are sorted by what their highlight needs: Phong first, then Blinn-Phong, then those without one.
+typedef struct glint_shade_material {
+    double diffuse[3], specular[3];
+    double ambient[3]; ///< ka * Ia
+    float shininess;
+    uint32_t has_specular;
+} glint_shade_material;
+
+// ---- camera: rays of one sample of each pixel ----
+
+typedef struct glint_camera_args {
+    uint32_t group_count, groups_across; ///< group g is column g % groups_across, row g / groups_across
+    double x0, y0;         ///< the tile's first pixel
+    double offset[2];      ///< where in the pixel this sample lies, 0 .. 1
+    double width, height;  ///< of the image
+    bool orthographic;
+    double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
+    void *origin[3];       ///< out, real; written only when orthographic
+    void *direction[3];    ///< out, real
+    float *unit[3];        ///< out: direction rounded to float, then normalised
+} glint_camera_args;
+// lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
+// sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
+// perspective:  direction = (forward + sx right) + sy up            orthographic: direction = forward,
+//                                                                   origin = (eye + sx right) + sy up
+// unit: u = (float)direction, inv = 1 / sqrt(length2(u)), unit = u * inv
+
+// ---- cast: the nearest hit of each ray ----
+
+typedef struct glint_cast_args {
+    uint32_t group_count;
+    const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
+    const glint_prim *prims;
+    const glint_bundle_prim *bundle;            ///< cast_bundle only
+    const uint32_t *candidates; uint32_t candidate_count; ///< primitives that the rays may meet, in any order
+    const void *origin[3];                      ///< cast_rays only: real, one a ray
+    const void *direction[3]; const float *unit[3];
+    double reference[3]; double filter_scale;   ///< cast_rays only: frame of the filter
+    void *t;        ///< out, real: point = origin + t direction; +inf where nothing is hit
+    uint32_t *prim; ///< out: index in prims, or GLINT_MISS
+    uint16_t *hits; ///< out: a bit a lane
+} glint_cast_args;
+// The best hit starts as t = +inf, GLINT_MISS. A candidate replaces it where t > 0 and (t < best, or t == best and its
+// index is lower). The filter is free to reject what the decision below would miss, and no more.
+// sphere, real:   f, c from the bundle, or f = (origin - center) * scale and c = exact_c(f, prim)
+//                 a = length2(direction), b = -dot(f, direction)
+//                 near = b*b < a*r2
+//                 disc = near ? b*b - a*c : a*r2 - length2(cross(f, direction))
+//                        cross(f, d) = (f.y d.z - f.z d.y, f.z d.x - f.x d.z, f.x d.y - f.y d.x)
+//                 s = sqrt(max(disc, 0)), q = b >= 0 ? b + s : b - s
+//                 far_root = c <= 0 and b >= 0
+//                 t = (far_root ? q : c) / (far_root ? a * scale : q * scale)
+//                 a hit where disc >= 0 and t > 0
+// exact_c, double: p_i = f_i f_i with error e_i (two_prod); x = two_sum(p_0, p_1, x_e), y = two_sum(x, p_2, y_e),
+//                 z = two_sum(y, -r2, z_e); c = z + (((x_e + y_e) + z_e) + (((e_0 + e_1) + e_2) - r2_low))
+//          float: c = dot(f, f) - (float)r2
+// plane, real:    h = bundle c, or dot(normal, origin - center); nd = dot(normal, direction)
+//                 t = -h / nd; a hit where nd nd >= 1e-60 length2(direction) (float: 1e-30) and t > 0
+// two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
+// two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
+
+// ---- surface: point, normal and material of each hit ----
+
+#define GLINT_SIDE_BACK 1u  ///< seen from behind (from inside): the normal was turned to the viewer
+#define GLINT_SIDE_UNLIT 2u ///< and the surface is one-sided: ambient only
+
+typedef struct glint_surface_args {
+    uint32_t group_count;
+    const uint16_t *hits;
+    const uint32_t *prim;
+    const glint_prim *prims;
+    const glint_bundle_prim *bundle;  ///< NULL: each ray has its own origin
+    const void *origin[3];            ///< real; read only where bundle is NULL
+    double eye[3];                    ///< the shared origin; read only with a bundle
+    const void *direction[3], *t;
+    void *point[3], *normal[3];       ///< out, real; the normal is unit and turned to the viewer
+    uint32_t *material, *coincident;  ///< out
+    uint32_t *side;                   ///< out: GLINT_SIDE_ bits
+} glint_surface_args;
+// Groups without a hit are not written; of other groups, lanes without a hit get point = normal = 0 and
+// material = coincident = side = 0.
+// sphere: f from the bundle, or (origin - center) * scale; ts = t scale; r = radius scale
+//         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
+//         where length2(f) < 2^40: n = n (1.5 - 0.5 length2(n))
+//         elsewhere: a = length2(direction), b = -dot(f, direction), w = b / a, l = f + w direction,
+//                 h = sqrt(max(r2 - length2(l), 0) / a), n = b >= 0 and c >= 0 ? l - h direction : l + h direction
+//                 with c = length2(f) - r2;  m = length2(n); n = n / sqrt(m) (each component divided);
+//                 where not m > 0: n = -direction / sqrt(a)
+//         point = center + radius n
+// plane:  n = normal; with a bundle point = eye + t direction, else origin + t direction
+// then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
+
+// ---- light: what one light does at each point, before shadows and colours ----
+
+typedef struct glint_light_args {
+    uint32_t group_count;
+    const uint16_t *hits;
+    const void *point[3], *normal[3], *direction[3];
+    const uint32_t *material, *side;
+    bool directional;
+    double position[3];     ///< of the light; directional: the unit vector towards it
+    double scale;           ///< a power of two that brings distances to the light near 1
+    bool attenuated;        ///< false: attenuation is not written
+    double coefficients[3]; ///< c0, c1, c2
+    uint32_t phong_end, blinn_end; ///< materials < phong_end are Phong, < blinn_end Blinn-Phong; both 0: no highlight
+    uint16_t *lit;          ///< out: a bit a lane where the light is above the surface's horizon
+    float *cosine;          ///< out: n.l in 0 .. 1; 0 where unlit
+    float *attenuation;     ///< out: A, at most FLT_MAX; 0 where unlit
+    float *log2_specular;   ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none
+} glint_light_args;
+#define GLINT_NO_SPECULAR (-1e30f)
+// Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
+// l = position - point (directional: l = position); l2 = length2(l); nl = dot(normal, l)
+// lit = hit and nl > 0 and not side & GLINT_SIDE_UNLIT
+// cosine:      point light: q = (float)(l2 (scale scale)), m = (float)(nl scale), min(m / sqrt(q), 1) in float
+//              directional: min((float)nl, 1)
+// attenuation: d = sqrt(l2); min((float)(1 / (c0 + (c1 d + c2 l2))), FLT_MAX)
+// highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
+//   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
+//   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
+//              x = min(num / den, 1);  there is one where num > 0 and den > 0
+//   log2_specular = 0.5 log2(x), see elementary functions below; x <= 0 (after underflow): none
+// In --precision float all of this is float, l2 a included.
+
+// ---- occlude: which points a light reaches ----
+
+typedef struct glint_occlude_args {
+    uint32_t group_count;
+    const uint16_t *lit;
+    const void *point[3];
+    const uint32_t *coincident, *side;
+    bool directional;
+    double position[3]; ///< as in glint_light_args
+    double scale;       ///< as in glint_light_args
+    const glint_prim *prims;
+    const int8_t *light_side; ///< per primitive: sphere: the sign of |light - c|^2 - r^2 (directional: 1)
+                              ///< plane: the sign of dot(normal, light - point) (directional: of dot(normal, position))
+    const uint32_t *candidates; uint32_t candidate_count; ///< in any order
+    double reference[3]; double filter_scale;
+    float *visible;   ///< out: 1 or 0; written in groups with lit != 0
+    uint64_t *rays;   ///< added to: lit lanes
+} glint_occlude_args;
+// A lane is blocked where any candidate other than its own (candidate.coincident == coincident) blocks it:
+// sphere: d = position - point (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
+//         a = length2(d), b = -dot(f, d)
+//         light_side < 0: blocked = c > 0
+//         else c < 0:     blocked = light_side > 0
+//         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b < a scale_of_prim)
+// plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
+// The own sphere: blocked where side & GLINT_SIDE_BACK and light_side > 0. The own plane never blocks.
+
+// ---- shade: the terms of each sample ----
+
+typedef enum glint_term {
+    GLINT_TERM_BACKGROUND, GLINT_TERM_AMBIENT, GLINT_TERM_DIFFUSE, GLINT_TERM_SPECULAR, GLINT_TERM_COUNT
+} glint_term;
+
+typedef struct glint_shade_light {
+    const uint16_t *lit;
+    const float *cosine, *attenuation, *log2_specular, *visible; ///< attenuation, visible: NULL = 1 everywhere
+    double diffuse[3], specular[3]; ///< colour times intensity
+} glint_shade_light;
+
+typedef struct glint_shade_args {
+    uint32_t group_count;
+    const uint16_t *active, *hits;
+    const uint32_t *material;
+    const glint_shade_material *materials;
+    double background[3];
+    bool has_specular;     ///< false: the term is not computed
+    bool first;            ///< also the terms that no light makes: background and ambient
+    const glint_shade_light *lights; uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
+    double *sum[GLINT_TERM_COUNT][3];  ///< in and out: added to; NULL: the frame has one sample and these are all lights
+    float *film[GLINT_TERM_COUNT][3];  ///< out when sum is NULL: the terms; NULL where nobody asked for one
+    float *beauty[3];                  ///< out when sum is NULL
+} glint_shade_args;
+// For each lane, double unless said otherwise:
+//   background += background where active and not hit; ambient += materials[m].ambient where hit
+//   for each light where its lit bit is set, in order:
+//     w = attenuation visible (float; a factor that is NULL is left out; both NULL: 1)
+//     diffuse[c]  += (double)(w cosine)_float * (kd[c] diffuse[c])
+//     where the material has a specular term and log2_specular > GLINT_NO_SPECULAR:
+//     y = shininess log2_specular (float), S = y < -40 ? 0 : exp2(y)
+//     specular[c] += (double)(w S)_float * (ks[c] specular[c])
+// Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
+// beauty = ((background + ambient) + diffuse) + specular in float.
+
+// ---- resolve: the mean of several samples ----
+
+typedef struct glint_resolve_args {
+    uint32_t group_count;
+    double samples;
+    double *sum[GLINT_TERM_COUNT][3];
+    float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
+    float *beauty[3];                 ///< out
+} glint_resolve_args;
+// term = (float)(sum / samples); beauty as in shade
+
+// ---- tone: 8-bit codes ----
+
+/// Any rising map of 0 .. 1 to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the floats
+/// that agree in their upper 16 bits; its entry is code | threshold << 8: the code of its first float, and from which
+/// of the lower 16 bits on the code is one more (65536: never).
+#define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; floats below have code 0
+#define GLINT_TONE_LAST 0x3f80u  ///< upper bits of 1
+#define GLINT_TONE_ENTRIES (GLINT_TONE_LAST - GLINT_TONE_FIRST + 1)
+
+typedef struct glint_tone_args {
+    uint32_t group_count;
+    const uint16_t *active;
+    const float *beauty[3];
+    const uint32_t *table;
+    uint32_t *rgb;                 ///< out: red | green << 8 | blue << 16
+    uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > 1; with one that is not finite
+} glint_tone_args;
+// x = max(x, 0) (NaN gives 0), x = min(x, 1); bits of x below GLINT_TONE_FIRST << 16: code 0;
+// else entry = table[(bits >> 16) - GLINT_TONE_FIRST], code = (entry & 255) + ((bits & 0xffff) >= entry >> 8)
+
+// ---- elementary functions, elementary.h and ref.c ----
+// log2(x), x > 0 and at most 1, real; result float:
+//   x = m 2^e with m in [1, 2); m >= GLINT_SQRT2: m = 0.5 m, e = e + 1; f = (float)(m - 1) (m - 1 is exact)
+//   p = C9; p = p f + C8 ... p = p f + C0; log2 = (float)e + f p
+// exp2(y), float, -40 <= y <= 0: n = (y + 12582912) - 12582912, f = y - n,
+//   p = D6; p = p f + D5 ... p = p f + D0; exp2 = p 2^n
+// The coefficients stand in coefficients.h.
+
+/// One instruction set's stages. The object file defines this table and nothing else that can be seen.
+typedef struct glint_stages {
+    const char *name;
+    struct glint_geometry_stages {
+        void (*camera)(const glint_camera_args *args);
+        void (*cast_bundle)(const glint_cast_args *args);
+        void (*cast_rays)(const glint_cast_args *args);
+        void (*surface)(const glint_surface_args *args);
+        void (*light)(const glint_light_args *args);
+        void (*occlude)(const glint_occlude_args *args);
+    } geometry[2]; ///< by glint_precision: double, float
+    void (*shade)(const glint_shade_args *args);
+    void (*resolve)(const glint_resolve_args *args);
+    void (*tone)(const glint_tone_args *args);
+} glint_stages;
+
+extern const glint_stages glint_stages_ref;
+#if defined(__x86_64__)
+extern const glint_stages glint_stages_sse2, glint_stages_avx2, glint_stages_avx512;
+#endif
+
+/// The stages by name, NULL-terminated, best last.
+extern const glint_stages *const glint_stages_built[];
+bool glint_stages_usable(const glint_stages *stages);
+/// By name; NULL asks for the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
+/// the name is unknown (true) or the machine lacks it (false); *asked is the name that was asked for.
+const glint_stages *glint_stages_select(const char *name, const char **asked, bool *unknown);
+
+#endif
