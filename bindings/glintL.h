@@ -52,6 +52,12 @@ const glintL_field *glintL_find_field(const glintL_field *fields, const char *na
 void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
 void glintL_read_color(lua_State *L, int index, const char *path, double out[3]);
 double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, NaN and infinity too
+/// Pushes the value at `index` as messages spell it: 5, true, string "64", sphere, closed material.
+const char *glintL_push_spelling(lua_State *L, int index);
+/// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
+size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
+/// Prints "glint: warning: <position>: <message>" on stderr.
+void glintL_warn(lua_State *L, const char *message);
 
 // ---- vector.c: the immutable value of a vector or colour ----
 
@@ -85,6 +91,49 @@ void *glintL_test_object(lua_State *L, int index, const char *type);
 /// when it is gone.
 void glintL_remember(lua_State *L, void *object);
 void glintL_push_remembered(lua_State *L, const void *object);
+
+/// The userdata of an object: the remembered one, else a new one holding a reference. NULL gives nil. The caller
+/// keeps the object alive meanwhile.
+void glintL_push_object(lua_State *L, const char *type, void *object);
+/// Keeps the value at `value` alive as long as the userdata at `index`, under `key` (the name of a field).
+void glintL_keep(lua_State *L, int index, const char *key, int value);
+/// Tells the collector that the userdata just made stands for so many bytes it cannot see, so that a loop that drops
+/// images does not fill the memory. May run the collector.
+void glintL_charge(lua_State *L, size_t bytes);
+
+/// What one sort of object looks like to a script.
+typedef struct glintL_variant {
+    const char *name;           ///< "point_light": the path in messages
+    const glintL_field *fields; ///< ends with a NULL name
+    const char *place;          ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
+    const luaL_Reg *getters;    ///< fields that are only read: functions of the object; NULL: none
+} glintL_variant;
+
+/// How the objects of one type are read and written. `desc` is a copy of the description, of at most
+/// GLINTL_DESC_SIZE bytes.
+typedef struct glintL_class {
+    const char *type;
+    const glintL_variant *(*variant)(const void *object);
+    void (*get)(const void *object, void *desc);
+    glint_status (*set)(void *object, const void *desc, glint_error *error);
+    void *(*retain)(void *object);
+    void (*release)(void *object);
+    /// One field was read from a script: checks or adjusts the rest, before `set`. NULL: nothing to do.
+    void (*assigned)(lua_State *L, const glintL_field *field, void *desc);
+    /// Fills in fields that follow others, for reading. NULL: there are none.
+    void (*follow)(void *desc);
+    /// `field` was taken over by the object: the place for a warning. NULL: nothing to do.
+    void (*accepted)(lua_State *L, const glintL_field *field, const void *desc);
+    const luaL_Reg *methods; ///< besides close; NULL: none
+} glintL_class;
+
+#define GLINTL_DESC_SIZE 1024
+
+/// Makes the metatable of a class.
+void glintL_open_class(lua_State *L, const glintL_class *type);
+/// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
+/// `type` may be NULL; what has no fields of its own passes a list that ends at once.
+void glintL_list_variant(lua_State *L, const glintL_variant *variant, const glintL_class *type);
 
 /// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
 void glintL_open_vector(lua_State *L);
