@@ -1,0 +1,60 @@
+/// log2 and exp2 as stages.h writes them down, and the small vector algebra every stage uses.
+#ifndef GLINT_ELEMENTARY_H
+#define GLINT_ELEMENTARY_H
+
+#include "engine/stages/coefficients.h"
+
+static inline vf f_exponent(vf x)
+{
+    return f_from_bits(i_or(i_shr(f_bits(x), 23), i_set(0x4b000000))) - f_set(0x1p23f + 127);
+}
+
+static inline vf f_mantissa(vf x)
+{
+    return f_from_bits(i_or(i_and(f_bits(x), i_set(0x007fffff)), i_set(0x3f800000)));
+}
+
+/// log2 of m 2^e, m = 1 + f in [sqrt(1/2), sqrt(2)).
+static inline vf f_log2_of_parts(vf e, vf f)
+{
+    vf p = f_set(GLINT_LOG2_C9);
+    p = p * f + f_set(GLINT_LOG2_C8);
+    p = p * f + f_set(GLINT_LOG2_C7);
+    p = p * f + f_set(GLINT_LOG2_C6);
+    p = p * f + f_set(GLINT_LOG2_C5);
+    p = p * f + f_set(GLINT_LOG2_C4);
+    p = p * f + f_set(GLINT_LOG2_C3);
+    p = p * f + f_set(GLINT_LOG2_C2);
+    p = p * f + f_set(GLINT_LOG2_C1);
+    p = p * f + f_set(GLINT_LOG2_C0);
+    return e + f * p;
+}
+
+/// 2^y for y <= 0; 0 below GLINT_EXP2_LOWEST.
+static inline vf f_exp2(vf y)
+{
+    fm vanishes = f_lt(y, f_set(GLINT_EXP2_LOWEST));
+    vf n = (y + f_set(12582912.0f)) - f_set(12582912.0f);
+    vf f = y - n;
+    vf p = f_set(GLINT_EXP2_D6);
+    p = p * f + f_set(GLINT_EXP2_D5);
+    p = p * f + f_set(GLINT_EXP2_D4);
+    p = p * f + f_set(GLINT_EXP2_D3);
+    p = p * f + f_set(GLINT_EXP2_D2);
+    p = p * f + f_set(GLINT_EXP2_D1);
+    p = p * f + f_set(GLINT_EXP2_D0);
+    vf power = f_from_bits(i_shl(f_bits(n + f_set(0x1p23f + 127)), 23));
+    return f_select(vanishes, f_set(0), p * power);
+}
+
+/// a + b and its rounding error (Knuth, TAOCP 4.2.2).
+static inline vd d_two_sum(vd a, vd b, vd *error)
+{
+    vd s = a + b, v = s - a;
+    *error = (a - (s - v)) + (b - v);
+    return s;
+}
+
+#define DOT(a, b) (((a)[0] * (b)[0] + (a)[1] * (b)[1]) + (a)[2] * (b)[2])
+
+#endif

@@ -1,0 +1,41 @@
+// The stages in the order a frame runs them, compiled for one instruction set: what isa_*.c have in common. Everything
+// is static but the table, so that no function compiled for one processor is ever run on another.
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/stages/elementary.h"
+#include "engine/stages/stages.h"
+
+#define GLINT_REAL 64
+#include "engine/stages/real.h"
+#include "engine/stages/ray.h"
+#include "engine/stages/camera.h"
+#include "engine/stages/cast.h"
+#include "engine/stages/surface.h"
+#include "engine/stages/light.h"
+#include "engine/stages/occlude.h"
+
+#undef GLINT_REAL
+#define GLINT_REAL 32
+#include "engine/stages/real.h"
+#include "engine/stages/ray.h"
+#include "engine/stages/camera.h"
+#include "engine/stages/cast.h"
+#include "engine/stages/surface.h"
+#include "engine/stages/light.h"
+#include "engine/stages/occlude.h"
+
+#include "engine/stages/shade.h"
+#include "engine/stages/resolve.h"
+#include "engine/stages/tone.h"
+
+const glint_stages GLINT_STAGES_SYMBOL = {
+    .name = GLINT_STAGES_NAME,
+    .geometry = { { camera_f64, cast_bundle_f64, cast_rays_f64, surface_f64, light_f64, occlude_f64 },
+                  { camera_f32, cast_bundle_f32, cast_rays_f32, surface_f32, light_f32, occlude_f32 } },
+    .shade = shade,
+    .resolve = resolve,
+    .tone = tone,
+};

@@ -1,0 +1,122 @@
+// light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
+// float (square root, division, logarithm) follows in float over the whole group. Contract: stages.h.
+
+/// The argument of the highlight's logarithm as mantissa - 1 and exponent, and which lanes have a highlight.
+static inline rm R(highlight)(vr x, rm some, float *fraction, float *exponent)
+{
+    some = rm_and(some, r_le(r_set(sizeof(real) == 8 ? 0x1p-1022 : 0x1p-126), x));
+    x = r_select(some, x, r_set(1));
+    vr m = r_mantissa(x), e = r_exponent(x);
+    rm upper = r_le(r_set(GLINT_SQRT2), m);
+    r_store_f(fraction, r_select(upper, r_set(0.5) * m, m) - r_set(1));
+    r_store_f(exponent, r_select(upper, e + r_set(1), e));
+    return some;
+}
+
+typedef struct R(lit_group) {
+    _Alignas(64) float along[GLINT_GROUP]; ///< n.l, in the light's units
+    _Alignas(64) float distance2[GLINT_GROUP];
+    _Alignas(64) float fraction[GLINT_GROUP];
+    _Alignas(64) float exponent[GLINT_GROUP];
+    unsigned lit, shiny;
+} R(lit_group);
+
+static inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
+{
+    vr rv = (r_set(2) * nl) * nv - lv;
+    *x = r_min((rv * rv) / l2a, r_set(1));
+    return r_lt(r_set(0), rv);
+}
+
+static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
+{
+    vr w = r_sqrt(l2 * a);
+    vr num = ((nl * nl) * a + (nv * nv) * l2) + ((r_set(2) * nl) * nv) * w;
+    vr den = (r_set(2) * w) * (w + lv);
+    *x = r_min(num / den, r_set(1));
+    return rm_and(r_lt(r_set(0), num), r_lt(r_set(0), den));
+}
+
+/// The real part of one vector of lanes.
+static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned hits, R(lit_group) *group)
+{
+    const vr zero = r_set(0), scale = r_set(args->scale);
+    vr n[3], l[3];
+    for (int k = 0; k < 3; k++) {
+        n[k] = r_load((const real *)args->normal[k] + at + i);
+        l[k] = r_set(args->position[k]);
+        if (!args->directional)
+            l[k] = l[k] - r_load((const real *)args->point[k] + at + i);
+    }
+    vr l2 = DOT(l, l), nl = DOT(n, l);
+    rm lit = rm_and(rm_from_bits(hits >> i & ((1u << VR) - 1)), r_lt(zero, nl));
+    lit = rm_and(lit, r_index_lt(r_load_index(args->side + at + i), r_index(GLINT_SIDE_UNLIT)));
+    group->lit |= rm_bits(lit) << i;
+    if (!rm_bits(lit))
+        return;
+    if (args->directional) {
+        r_store_f(group->along + i, nl);
+    } else {
+        r_store_f(group->along + i, nl * scale);
+        r_store_f(group->distance2 + i, l2 * (scale * scale));
+    }
+    if (args->attenuated) {
+        const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
+        vr distance = r_sqrt(l2);
+        r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * l2)));
+    }
+    const vr material = r_load_index(args->material + at + i);
+    const rm phong = r_index_lt(material, r_index(args->phong_end));
+    const rm blinn = rm_andnot(r_index_lt(material, r_index(args->blinn_end)), phong);
+    if (!rm_bits(rm_and(lit, rm_or(phong, blinn))))
+        return;
+    vr d[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = r_load((const real *)args->direction[k] + at + i);
+    vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
+    rm some = rm_from_bits(0);
+    if (rm_bits(phong))
+        some = rm_and(phong, R(phong)(nl, nv, lv, l2 * a, &x));
+    if (rm_bits(blinn)) {
+        vr xb;
+        some = rm_or(some, rm_and(blinn, R(blinn)(nl, nv, lv, l2, a, &xb)));
+        x = r_select(blinn, xb, x);
+    }
+    some = R(highlight)(x, rm_and(some, lit), group->fraction + i, group->exponent + i);
+    group->shiny |= rm_bits(some) << i;
+}
+
+/// The float part of one group.
+static inline void R(finish_light)(const glint_light_args *args, size_t at, const R(lit_group) *group)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
+        vf cosine = f_load(group->along + i);
+        if (!args->directional)
+            cosine = cosine / f_sqrt(f_load(group->distance2 + i));
+        f_store(args->cosine + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
+        if (args->attenuated) {
+            vf attenuation = f_min(f_load(args->attenuation + at + i), f_set(FLT_MAX));
+            f_store(args->attenuation + at + i, f_select(lit, attenuation, f_set(0)));
+        }
+        if (args->blinn_end) {
+            const fm shiny = fm_from_bits(group->shiny >> i & ((1u << VF) - 1));
+            vf log2 = f_log2_of_parts(f_load(group->exponent + i), f_load(group->fraction + i));
+            f_store(args->log2_specular + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
+        }
+    }
+}
+
+static void R(light)(const glint_light_args *args)
+{
+    R(lit_group) group = { .lit = 0 };
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        group.lit = group.shiny = 0;
+        if (args->hits[g])
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                R(light_lanes)(args, (size_t)g * GLINT_GROUP, i, args->hits[g], &group);
+        args->lit[g] = (uint16_t)group.lit;
+        if (group.lit)
+            R(finish_light)(args, (size_t)g * GLINT_GROUP, &group);
+    }
+}

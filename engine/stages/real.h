@@ -1,0 +1,93 @@
+// The words of the vocabulary for `real`: double where GLINT_REAL is 64, float where it is 32. Included before each
+// of the two inclusions of a geometry stage, hence no guard. R(name) names a kernel or helper of this precision.
+#undef real
+#undef vr
+#undef rm
+#undef VR
+#undef R
+#undef r_set
+#undef r_load
+#undef r_store
+#undef r_sqrt
+#undef r_min
+#undef r_max
+#undef r_lt
+#undef r_le
+#undef r_eq
+#undef r_select
+#undef rm_and
+#undef rm_or
+#undef rm_andnot
+#undef rm_bits
+#undef rm_from_bits
+#undef r_store_f
+#undef r_exponent
+#undef r_mantissa
+#undef r_load_index
+#undef r_store_index
+#undef r_index
+#undef r_index_eq
+#undef r_index_lt
+#undef GLINT_PARALLEL
+
+#if GLINT_REAL == 64
+#define real double
+#define vr vd
+#define rm dm
+#define VR VD
+#define R(name) name##_f64
+#define r_set d_set
+#define r_load d_load
+#define r_store d_store
+#define r_sqrt d_sqrt
+#define r_min d_min
+#define r_max d_max
+#define r_lt d_lt
+#define r_le d_le
+#define r_eq d_eq
+#define r_select d_select
+#define rm_and dm_and
+#define rm_or dm_or
+#define rm_andnot dm_andnot
+#define rm_bits dm_bits
+#define rm_from_bits dm_from_bits
+#define r_store_f d_store_f
+#define r_exponent d_exponent
+#define r_mantissa d_mantissa
+#define r_load_index d_load_index
+#define r_store_index d_store_index
+#define r_index(i) d_set((double)(int32_t)(i))
+#define r_index_eq(a, b) d_eq(a, b)
+#define r_index_lt(a, b) d_lt(a, b)
+#define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
+#else
+#define real float
+#define vr vf
+#define rm fm
+#define VR VF
+#define R(name) name##_f32
+#define r_set(x) f_set((float)(x))
+#define r_load f_load
+#define r_store f_store
+#define r_sqrt f_sqrt
+#define r_min f_min
+#define r_max f_max
+#define r_lt f_lt
+#define r_le f_le
+#define r_eq f_eq
+#define r_select f_select
+#define rm_and fm_and
+#define rm_or fm_or
+#define rm_andnot fm_andnot
+#define rm_bits fm_bits
+#define rm_from_bits fm_from_bits
+#define r_store_f f_store
+#define r_exponent f_exponent
+#define r_mantissa f_mantissa
+#define r_load_index(p) f_from_bits(i_load(p))
+#define r_store_index(p, x) i_store(p, f_bits(x))
+#define r_index(i) f_from_bits(i_set(i))
+#define r_index_eq(a, b) i_eq(f_bits(a), f_bits(b))
+#define r_index_lt(a, b) i_lt(f_bits(a), f_bits(b))
+#define GLINT_PARALLEL 1e-30
+#endif

@@ -1,0 +1,363 @@
+// The reference of the geometry stages, for one type of real. ref.c includes this twice, with
+//   REAL      the type: double or float
+//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c, log2_of and PLANE_GRAZING for each type
+// Every function is one line of stages.h after the other, for one sample; the loops over samples come last.
+
+typedef struct NAME(vec3) { REAL x, y, z; } NAME(vec3);
+
+static NAME(vec3) NAME(vec)(REAL x, REAL y, REAL z) { return (NAME(vec3)){x, y, z}; }
+static NAME(vec3) NAME(rounded)(const double v[3]) { return NAME(vec)((REAL)v[0], (REAL)v[1], (REAL)v[2]); }
+
+static NAME(vec3) NAME(add)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x + b.x, a.y + b.y, a.z + b.z); }
+static NAME(vec3) NAME(sub)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x - b.x, a.y - b.y, a.z - b.z); }
+static NAME(vec3) NAME(times)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x * k, a.y * k, a.z * k); }
+static NAME(vec3) NAME(over)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x / k, a.y / k, a.z / k); }
+static NAME(vec3) NAME(negated)(NAME(vec3) a) { return NAME(vec)(-a.x, -a.y, -a.z); }
+static REAL NAME(dot)(NAME(vec3) a, NAME(vec3) b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
+static REAL NAME(length2)(NAME(vec3) a) { return NAME(dot)(a, a); }
+static REAL NAME(min)(REAL a, REAL b) { return a < b ? a : b; }
+static REAL NAME(max)(REAL a, REAL b) { return a > b ? a : b; }
+
+static NAME(vec3) NAME(cross)(NAME(vec3) f, NAME(vec3) d)
+{
+    return NAME(vec)(f.y * d.z - f.z * d.y, f.z * d.x - f.x * d.z, f.x * d.y - f.y * d.x);
+}
+
+static NAME(vec3) NAME(load)(const void *const array[3], uint32_t i)
+{
+    return NAME(vec)(((const REAL *)array[0])[i], ((const REAL *)array[1])[i], ((const REAL *)array[2])[i]);
+}
+
+static void NAME(store)(void *const array[3], uint32_t i, NAME(vec3) v)
+{
+    ((REAL *)array[0])[i] = v.x;
+    ((REAL *)array[1])[i] = v.y;
+    ((REAL *)array[2])[i] = v.z;
+}
+
+/// From a sphere's centre to a point, in units that bring the radius into [1, 2).
+static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
+{
+    return NAME(times)(NAME(sub)(point, NAME(rounded)(prim->center)), (REAL)prim->scale);
+}
+
+// ---- camera ------------------------------------------------------------------------------------------------------
+
+static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
+{
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    uint32_t column = 4 * (group % args->groups_across) + lane % 4;
+    uint32_t row = 4 * (group / args->groups_across) + lane / 4;
+    double px = (args->x0 + column) + args->offset[0];
+    double py = (args->y0 + row) + args->offset[1];
+    REAL sx = (REAL)(2 * px - args->width);
+    REAL sy = (REAL)(args->height - 2 * py);
+    NAME(vec3) across = NAME(times)(NAME(rounded)(args->right), sx);
+    NAME(vec3) upward = NAME(times)(NAME(rounded)(args->up), sy);
+    NAME(vec3) forward = NAME(rounded)(args->forward);
+    NAME(vec3) direction = forward;
+    if (args->orthographic)
+        NAME(store)(args->origin, i, NAME(add)(NAME(add)(NAME(rounded)(args->eye), across), upward));
+    else
+        direction = NAME(add)(NAME(add)(forward, across), upward);
+    NAME(store)(args->direction, i, direction);
+
+    vec3_float u = vec_float((float)direction.x, (float)direction.y, (float)direction.z);
+    u = times_float(u, 1.0f / sqrtf(length2_float(u)));
+    args->unit[0][i] = u.x;
+    args->unit[1][i] = u.y;
+    args->unit[2][i] = u.z;
+}
+
+static void NAME(camera)(const glint_camera_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        NAME(camera_sample)(args, i);
+}
+
+// ---- cast --------------------------------------------------------------------------------------------------------
+
+/// The hybrid discriminant: from afar by the distance of the line from the centre, close by as b^2 - a c.
+static REAL NAME(discriminant)(NAME(vec3) f, NAME(vec3) direction, REAL a, REAL b, REAL c, REAL r2)
+{
+    bool near = b * b < a * r2;
+    return near ? b * b - a * c : a * r2 - NAME(length2)(NAME(cross)(f, direction));
+}
+
+/// The distance at which a ray meets a sphere; 0 stands for a miss.
+static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const glint_prim *prim)
+{
+    REAL scale = (REAL)prim->scale;
+    REAL a = NAME(length2)(direction);
+    REAL b = -NAME(dot)(f, direction);
+    REAL disc = NAME(discriminant)(f, direction, a, b, c, (REAL)prim->r2);
+    REAL s = NAME(square_root)(NAME(max)(disc, 0));
+    REAL q = b >= 0 ? b + s : b - s;
+    bool far_root = c <= 0 && b >= 0;
+    REAL t = (far_root ? q : c) / (far_root ? a * scale : q * scale);
+    return disc >= 0 && t > 0 ? t : 0;
+}
+
+/// The distance at which a ray meets a plane, h being the height of its origin; 0 stands for a miss.
+static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
+{
+    REAL nd = NAME(dot)(NAME(rounded)(prim->normal), direction);
+    REAL t = -h / nd;
+    return nd * nd >= NAME(PLANE_GRAZING) * NAME(length2)(direction) && t > 0 ? t : 0;
+}
+
+/// Likewise for one ray and any primitive. The ray starts at the bundle's origin, or without a bundle at `origin`.
+static REAL NAME(prim_t)(const glint_cast_args *args, uint32_t index, const glint_bundle_prim *bundle,
+                         NAME(vec3) origin, NAME(vec3) direction)
+{
+    const glint_prim *prim = &args->prims[index];
+    if (prim->kind == GLINT_PRIM_PLANE) {
+        NAME(vec3) normal = NAME(rounded)(prim->normal), point = NAME(rounded)(prim->center);
+        REAL h = bundle ? (REAL)bundle[index].c : NAME(dot)(normal, NAME(sub)(origin, point));
+        return NAME(plane_t)(h, direction, prim);
+    }
+    NAME(vec3) f = bundle ? NAME(rounded)(bundle[index].f) : NAME(from_center)(origin, prim);
+    REAL c = bundle ? (REAL)bundle[index].c : NAME(exact_c)(f.x, f.y, f.z, prim);
+    return NAME(sphere_t)(f, c, direction, prim);
+}
+
+static void NAME(cast_sample)(const glint_cast_args *args, const glint_bundle_prim *bundle, uint32_t i)
+{
+    REAL best = INFINITY;
+    uint32_t best_prim = GLINT_MISS;
+    if (args->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) {
+        NAME(vec3) direction = NAME(load)(args->direction, i);
+        NAME(vec3) origin = bundle ? NAME(vec)(0, 0, 0) : NAME(load)(args->origin, i);
+        for (uint32_t k = 0; k < args->candidate_count; k++) {
+            uint32_t index = args->candidates[k];
+            REAL t = NAME(prim_t)(args, index, bundle, origin, direction);
+            if (t > 0 && (t < best || (t == best && index < best_prim))) {
+                best = t;
+                best_prim = index;
+            }
+        }
+    }
+    ((REAL *)args->t)[i] = best;
+    args->prim[i] = best_prim;
+    if (best_prim != GLINT_MISS)
+        args->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+}
+
+static void NAME(cast)(const glint_cast_args *args, const glint_bundle_prim *bundle)
+{
+    for (uint32_t group = 0; group < args->group_count; group++)
+        args->hits[group] = 0;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        NAME(cast_sample)(args, bundle, i);
+}
+
+static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->bundle); }
+static void NAME(cast_rays)(const glint_cast_args *args) { NAME(cast)(args, NULL); }
+
+// ---- surface -----------------------------------------------------------------------------------------------------
+
+/// The outward normal where f + ts direction cancels too much: from the point of the ray closest to the centre.
+static NAME(vec3) NAME(far_normal)(NAME(vec3) f, NAME(vec3) direction, REAL r2)
+{
+    REAL a = NAME(length2)(direction);
+    REAL b = -NAME(dot)(f, direction);
+    REAL w = b / a;
+    NAME(vec3) l = NAME(add)(f, NAME(times)(direction, w));
+    REAL h = NAME(square_root)(NAME(max)(r2 - NAME(length2)(l), 0) / a);
+    REAL c = NAME(length2)(f) - r2;
+    NAME(vec3) step = NAME(times)(direction, h);
+    NAME(vec3) n = b >= 0 && c >= 0 ? NAME(sub)(l, step) : NAME(add)(l, step);
+    REAL m = NAME(length2)(n);
+    if (!(m > 0))
+        return NAME(over)(NAME(negated)(direction), NAME(square_root)(a));
+    return NAME(over)(n, NAME(square_root)(m));
+}
+
+static NAME(vec3) NAME(sphere_normal)(NAME(vec3) f, NAME(vec3) direction, REAL t, const glint_prim *prim)
+{
+    if (!(NAME(length2)(f) < (REAL)0x1p40))
+        return NAME(far_normal)(f, direction, (REAL)prim->r2);
+    REAL ts = t * (REAL)prim->scale;
+    REAL r = (REAL)prim->radius * (REAL)prim->scale;
+    NAME(vec3) n = NAME(add)(f, NAME(times)(direction, ts));
+    n = NAME(times)(n, 1 / r);
+    return NAME(times)(n, (REAL)1.5 - (REAL)0.5 * NAME(length2)(n));
+}
+
+static void NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
+{
+    uint32_t index = args->prim[i];
+    const glint_prim *prim = &args->prims[index];
+    NAME(vec3) direction = NAME(load)(args->direction, i);
+    NAME(vec3) origin = args->bundle ? NAME(rounded)(args->eye) : NAME(load)(args->origin, i);
+    REAL t = ((const REAL *)args->t)[i];
+    NAME(vec3) n, point;
+    if (prim->kind == GLINT_PRIM_SPHERE) {
+        NAME(vec3) f = args->bundle ? NAME(rounded)(args->bundle[index].f) : NAME(from_center)(origin, prim);
+        n = NAME(sphere_normal)(f, direction, t, prim);
+        point = NAME(add)(NAME(rounded)(prim->center), NAME(times)(n, (REAL)prim->radius));
+    } else {
+        n = NAME(rounded)(prim->normal);
+        point = NAME(add)(origin, NAME(times)(direction, t));
+    }
+    bool back = NAME(dot)(n, direction) > 0;
+    NAME(store)(args->point, i, point);
+    NAME(store)(args->normal, i, back ? NAME(negated)(n) : n);
+    args->material[i] = prim->material;
+    args->coincident[i] = prim->coincident;
+    args->side[i] = (back ? GLINT_SIDE_BACK : 0) | (back && !prim->two_sided ? GLINT_SIDE_UNLIT : 0);
+}
+
+static void NAME(surface)(const glint_surface_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+        uint32_t hits = args->hits[i / GLINT_GROUP];
+        if (hits >> i % GLINT_GROUP & 1) {
+            NAME(surface_hit)(args, i);
+        } else if (hits) {
+            NAME(store)(args->point, i, NAME(vec)(0, 0, 0));
+            NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
+            args->material[i] = args->coincident[i] = args->side[i] = 0;
+        }
+    }
+}
+
+// ---- light -------------------------------------------------------------------------------------------------------
+
+/// log2 of r.v (Phong) or n.h (Blinn-Phong).
+static float NAME(highlight)(bool phong, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal, NAME(vec3) direction)
+{
+    REAL a = NAME(length2)(direction);
+    REAL nv = -NAME(dot)(normal, direction);
+    REAL lv = -NAME(dot)(l, direction);
+    REAL x;
+    if (phong) {
+        REAL rv = (2 * nl) * nv - lv;
+        x = rv > 0 ? NAME(min)((rv * rv) / (l2 * a), 1) : 0;
+    } else {
+        REAL w = NAME(square_root)(l2 * a);
+        REAL num = ((nl * nl) * a + (nv * nv) * l2) + ((2 * nl) * nv) * w;
+        REAL den = (2 * w) * (w + lv);
+        x = num > 0 && den > 0 ? NAME(min)(num / den, 1) : 0;
+    }
+    return x >= NAME(SMALLEST_NORMAL) ? 0.5f * NAME(log2_of)(x) : GLINT_NO_SPECULAR;
+}
+
+static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t i)
+{
+    NAME(vec3) position = NAME(rounded)(args->position);
+    return args->directional ? position : NAME(sub)(position, NAME(load)(args->point, i));
+}
+
+static bool NAME(is_lit)(const glint_light_args *args, uint32_t i)
+{
+    if (!(args->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) || args->side[i] & GLINT_SIDE_UNLIT)
+        return false;
+    return NAME(dot)(NAME(load)(args->normal, i), NAME(to_light)(args, i)) > 0;
+}
+
+static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
+{
+    NAME(vec3) normal = NAME(load)(args->normal, i);
+    NAME(vec3) l = NAME(to_light)(args, i);
+    REAL l2 = NAME(length2)(l), nl = NAME(dot)(normal, l);
+    REAL scale = (REAL)args->scale;
+    if (args->directional) {
+        args->cosine[i] = min_float((float)nl, 1);
+    } else {
+        float q = (float)(l2 * (scale * scale)), m = (float)(nl * scale);
+        args->cosine[i] = min_float(m / sqrtf(q), 1);
+    }
+    if (args->attenuated) {
+        NAME(vec3) k = NAME(rounded)(args->coefficients);
+        REAL d = NAME(square_root)(l2);
+        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * l2))), FLT_MAX);
+    }
+    if (args->blinn_end) {
+        uint32_t material = args->material[i];
+        NAME(vec3) direction = NAME(load)(args->direction, i);
+        args->log2_specular[i] = material < args->blinn_end
+            ? NAME(highlight)(material < args->phong_end, l2, nl, l, normal, direction)
+            : GLINT_NO_SPECULAR;
+    }
+}
+
+static void NAME(light_group)(const glint_light_args *args, uint32_t group)
+{
+    uint32_t first = group * GLINT_GROUP, lit = 0;
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+        lit |= (uint32_t)NAME(is_lit)(args, first + lane) << lane;
+    args->lit[group] = (uint16_t)lit;
+    for (uint32_t lane = 0; lit && lane < GLINT_GROUP; lane++) {
+        uint32_t i = first + lane;
+        if (lit >> lane & 1) {
+            NAME(light_sample)(args, i);
+            continue;
+        }
+        args->cosine[i] = 0;
+        if (args->attenuated)
+            args->attenuation[i] = 0;
+        if (args->blinn_end)
+            args->log2_specular[i] = GLINT_NO_SPECULAR;
+    }
+}
+
+static void NAME(light)(const glint_light_args *args)
+{
+    for (uint32_t group = 0; group < args->group_count; group++)
+        NAME(light_group)(args, group);
+}
+
+// ---- occlude -----------------------------------------------------------------------------------------------------
+
+static bool NAME(sphere_blocks)(const glint_occlude_args *args, uint32_t index, NAME(vec3) point)
+{
+    const glint_prim *prim = &args->prims[index];
+    int light_side = args->light_side[index];
+    NAME(vec3) position = NAME(rounded)(args->position);
+    NAME(vec3) d = args->directional ? position : NAME(sub)(position, point);
+    NAME(vec3) f = NAME(from_center)(point, prim);
+    REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
+    if (light_side < 0)
+        return c > 0;
+    if (c < 0)
+        return light_side > 0;
+    REAL a = NAME(length2)(d);
+    REAL b = -NAME(dot)(f, d);
+    REAL disc = NAME(discriminant)(f, d, a, b, c, (REAL)prim->r2);
+    return b > 0 && disc >= 0 && (args->directional || b < a * (REAL)prim->scale);
+}
+
+static bool NAME(plane_blocks)(const glint_occlude_args *args, uint32_t index, NAME(vec3) point)
+{
+    const glint_prim *prim = &args->prims[index];
+    int light_side = args->light_side[index];
+    REAL h = NAME(dot)(NAME(rounded)(prim->normal), NAME(sub)(point, NAME(rounded)(prim->center)));
+    return (light_side > 0 && h < 0) || (light_side < 0 && h > 0);
+}
+
+static bool NAME(prim_blocks)(const glint_occlude_args *args, uint32_t index, uint32_t i)
+{
+    bool sphere = args->prims[index].kind == GLINT_PRIM_SPHERE;
+    if (args->prims[index].coincident == args->coincident[i])
+        return sphere && args->side[i] & GLINT_SIDE_BACK && args->light_side[index] > 0;
+    NAME(vec3) point = NAME(load)(args->point, i);
+    return sphere ? NAME(sphere_blocks)(args, index, point) : NAME(plane_blocks)(args, index, point);
+}
+
+static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t i)
+{
+    bool blocked = !(args->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
+    if (!blocked)
+        ++*args->rays;
+    for (uint32_t k = 0; k < args->candidate_count && !blocked; k++)
+        blocked = NAME(prim_blocks)(args, args->candidates[k], i);
+    args->visible[i] = blocked ? 0 : 1;
+}
+
+static void NAME(occlude)(const glint_occlude_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        if (args->lit[i / GLINT_GROUP])
+            NAME(occlude_sample)(args, i);
+}

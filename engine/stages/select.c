@@ -1,0 +1,45 @@
+/// The only reader of the processor's flags.
+#include "engine/stages/stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const glint_stages *const glint_stages_built[] = {
+    &glint_stages_ref,
+#if defined(__x86_64__)
+    &glint_stages_sse2, &glint_stages_avx2, &glint_stages_avx512,
+#endif
+    NULL,
+};
+
+bool glint_stages_usable(const glint_stages *stages)
+{
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    if (stages == &glint_stages_avx2)
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    if (stages == &glint_stages_avx512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+               __builtin_cpu_supports("fma");
+#endif
+    return stages != NULL;
+}
+
+const glint_stages *glint_stages_select(const char *name, const char **asked, bool *unknown)
+{
+    const glint_stages *best = NULL;
+    if (!name || !*name)
+        name = getenv("GLINT_ISA");
+    *asked = name && *name ? name : NULL;
+    *unknown = *asked != NULL;
+    for (const glint_stages *const *isa = glint_stages_built; *isa; isa++) {
+        if (*asked && strcmp((*isa)->name, *asked) == 0) {
+            *unknown = false;
+            return glint_stages_usable(*isa) ? *isa : NULL;
+        }
+        if (!*asked && glint_stages_usable(*isa))
+            best = *isa;
+    }
+    return best;
+}

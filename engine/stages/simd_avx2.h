@@ -1,0 +1,95 @@
+/// The vector vocabulary, spelled for AVX2 and FMA. What the words mean: simd_avx512.h.
+#ifndef GLINT_SIMD_H
+#define GLINT_SIMD_H
+
+#include <immintrin.h>
+#include <stdint.h>
+
+#define VF 8
+#define VD 4
+typedef __m256 vf;
+typedef __m256d vd;
+typedef __m256i vi;
+typedef __m256 fm;
+typedef __m256d dm;
+
+static inline vf f_set(float x) { return _mm256_set1_ps(x); }
+static inline vf f_load(const float *p) { return _mm256_load_ps(p); }
+static inline void f_store(float *p, vf x) { _mm256_store_ps(p, x); }
+static inline vf f_sqrt(vf x) { return _mm256_sqrt_ps(x); }
+static inline vf f_min(vf a, vf b) { return _mm256_min_ps(a, b); }
+static inline vf f_max(vf a, vf b) { return _mm256_max_ps(a, b); }
+static inline vf f_abs(vf x) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), x); }
+static inline fm f_lt(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+static inline fm f_le(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
+static inline fm f_eq(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
+static inline vf f_select(fm m, vf a, vf b) { return _mm256_blendv_ps(b, a, m); }
+static inline fm fm_and(fm a, fm b) { return _mm256_and_ps(a, b); }
+static inline fm fm_or(fm a, fm b) { return _mm256_or_ps(a, b); }
+static inline fm fm_andnot(fm a, fm b) { return _mm256_andnot_ps(b, a); }
+static inline unsigned fm_bits(fm m) { return (unsigned)_mm256_movemask_ps(m); }
+static inline fm fm_from_bits(unsigned bits)
+{
+    const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    return _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32((int)bits), lane), lane));
+}
+
+static inline vi f_bits(vf x) { return _mm256_castps_si256(x); }
+static inline vf f_from_bits(vi x) { return _mm256_castsi256_ps(x); }
+static inline vi i_set(uint32_t x) { return _mm256_set1_epi32((int)x); }
+static inline vi i_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
+static inline vi i_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }
+static inline vi i_and(vi a, vi b) { return _mm256_and_si256(a, b); }
+static inline vi i_or(vi a, vi b) { return _mm256_or_si256(a, b); }
+#define i_shl(x, n) _mm256_slli_epi32(x, n)
+#define i_shr(x, n) _mm256_srli_epi32(x, n)
+static inline fm i_lt(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi32(b, a)); }
+static inline fm i_eq(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)); }
+static inline vi i_load(const uint32_t *p) { return _mm256_load_si256((const __m256i *)p); }
+static inline void i_store(uint32_t *p, vi x) { _mm256_store_si256((__m256i *)p, x); }
+static inline vi i_gather(const uint32_t *table, vi index) { return _mm256_i32gather_epi32((const int *)table, index, 4); }
+
+static inline vd d_set(double x) { return _mm256_set1_pd(x); }
+static inline vd d_load(const double *p) { return _mm256_load_pd(p); }
+static inline void d_store(double *p, vd x) { _mm256_store_pd(p, x); }
+static inline vd d_sqrt(vd x) { return _mm256_sqrt_pd(x); }
+static inline vd d_min(vd a, vd b) { return _mm256_min_pd(a, b); }
+static inline vd d_max(vd a, vd b) { return _mm256_max_pd(a, b); }
+static inline dm d_lt(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline dm d_le(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+static inline dm d_eq(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
+static inline vd d_select(dm m, vd a, vd b) { return _mm256_blendv_pd(b, a, m); }
+static inline dm dm_and(dm a, dm b) { return _mm256_and_pd(a, b); }
+static inline dm dm_or(dm a, dm b) { return _mm256_or_pd(a, b); }
+static inline dm dm_andnot(dm a, dm b) { return _mm256_andnot_pd(b, a); }
+static inline unsigned dm_bits(dm m) { return (unsigned)_mm256_movemask_pd(m); }
+static inline dm dm_from_bits(unsigned bits)
+{
+    const __m256i lane = _mm256_setr_epi64x(1, 2, 4, 8);
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x((int)bits), lane), lane));
+}
+
+static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
+static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
+static inline vd d_load_index(const uint32_t *p) { return _mm256_cvtepi32_pd(_mm_load_si128((const __m128i *)p)); }
+static inline void d_store_index(uint32_t *p, vd x) { _mm_store_si128((__m128i *)p, _mm256_cvttpd_epi32(x)); }
+
+static inline vd d_exponent(vd x)
+{
+    __m256i e = _mm256_srli_epi64(_mm256_castpd_si256(x), 52);
+    return _mm256_castsi256_pd(_mm256_or_si256(e, _mm256_set1_epi64x(0x4330000000000000))) - d_set(0x1p52 + 1023);
+}
+static inline vd d_mantissa(vd x)
+{
+    __m256i m = _mm256_and_si256(_mm256_castpd_si256(x), _mm256_set1_epi64x(0x000fffffffffffff));
+    return _mm256_castsi256_pd(_mm256_or_si256(m, _mm256_set1_epi64x(0x3ff0000000000000)));
+}
+
+static inline vd d_two_prod(vd a, vd b, vd *error)
+{
+    vd p = a * b;
+    *error = _mm256_fmsub_pd(a, b, p);
+    return p;
+}
+
+#endif

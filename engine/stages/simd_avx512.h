@@ -1,0 +1,92 @@
+/// The vector vocabulary, spelled for AVX-512 (F, DQ, VL, BW) and FMA.
+///
+/// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     fm, dm  masks of vf and vd
+/// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
+/// bits in vf. Arithmetic is written with operators. fma appears in two_prod alone.
+#ifndef GLINT_SIMD_H
+#define GLINT_SIMD_H
+
+#include <immintrin.h>
+#include <stdint.h>
+
+#define VF 16
+#define VD 8
+typedef __m512 vf;
+typedef __m512d vd;
+typedef __m512i vi;
+typedef __mmask16 fm;
+typedef __mmask8 dm;
+
+static inline vf f_set(float x) { return _mm512_set1_ps(x); }
+static inline vf f_load(const float *p) { return _mm512_load_ps(p); }
+static inline void f_store(float *p, vf x) { _mm512_store_ps(p, x); }
+static inline vf f_sqrt(vf x) { return _mm512_sqrt_ps(x); }
+static inline vf f_min(vf a, vf b) { return _mm512_min_ps(a, b); }
+static inline vf f_max(vf a, vf b) { return _mm512_max_ps(a, b); }
+static inline vf f_abs(vf x) { return _mm512_abs_ps(x); }
+static inline fm f_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+static inline fm f_le(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+static inline fm f_eq(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
+static inline vf f_select(fm m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
+static inline fm fm_and(fm a, fm b) { return a & b; }
+static inline fm fm_or(fm a, fm b) { return a | b; }
+static inline fm fm_andnot(fm a, fm b) { return a & (fm)~b; }
+static inline unsigned fm_bits(fm m) { return m; }
+static inline fm fm_from_bits(unsigned bits) { return (fm)bits; }
+
+static inline vi f_bits(vf x) { return _mm512_castps_si512(x); }
+static inline vf f_from_bits(vi x) { return _mm512_castsi512_ps(x); }
+static inline vi i_set(uint32_t x) { return _mm512_set1_epi32((int)x); }
+static inline vi i_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
+static inline vi i_sub(vi a, vi b) { return _mm512_sub_epi32(a, b); }
+static inline vi i_and(vi a, vi b) { return _mm512_and_si512(a, b); }
+static inline vi i_or(vi a, vi b) { return _mm512_or_si512(a, b); }
+#define i_shl(x, n) _mm512_slli_epi32(x, n)
+#define i_shr(x, n) _mm512_srli_epi32(x, n)
+static inline fm i_lt(vi a, vi b) { return _mm512_cmplt_epi32_mask(a, b); }
+static inline fm i_eq(vi a, vi b) { return _mm512_cmpeq_epi32_mask(a, b); }
+static inline vi i_load(const uint32_t *p) { return _mm512_load_si512(p); }
+static inline void i_store(uint32_t *p, vi x) { _mm512_store_si512(p, x); }
+static inline vi i_gather(const uint32_t *table, vi index) { return _mm512_i32gather_epi32(index, table, 4); }
+
+static inline vd d_set(double x) { return _mm512_set1_pd(x); }
+static inline vd d_load(const double *p) { return _mm512_load_pd(p); }
+static inline void d_store(double *p, vd x) { _mm512_store_pd(p, x); }
+static inline vd d_sqrt(vd x) { return _mm512_sqrt_pd(x); }
+static inline vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
+static inline vd d_max(vd a, vd b) { return _mm512_max_pd(a, b); }
+static inline dm d_lt(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+static inline dm d_le(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+static inline dm d_eq(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+static inline vd d_select(dm m, vd a, vd b) { return _mm512_mask_blend_pd(m, b, a); }
+static inline dm dm_and(dm a, dm b) { return a & b; }
+static inline dm dm_or(dm a, dm b) { return a | b; }
+static inline dm dm_andnot(dm a, dm b) { return a & (dm)~b; }
+static inline unsigned dm_bits(dm m) { return m; }
+static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
+
+static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
+static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
+static inline vd d_load_index(const uint32_t *p) { return _mm512_cvtepi32_pd(_mm256_load_si256((const __m256i *)p)); }
+static inline void d_store_index(uint32_t *p, vd x) { _mm256_store_si256((__m256i *)p, _mm512_cvttpd_epi32(x)); }
+
+/// The biased exponent, as a number; and the mantissa, in [1, 2). For normal numbers > 0.
+static inline vd d_exponent(vd x)
+{
+    __m512i e = _mm512_srli_epi64(_mm512_castpd_si512(x), 52);
+    return _mm512_castsi512_pd(_mm512_or_si512(e, _mm512_set1_epi64(0x4330000000000000))) - d_set(0x1p52 + 1023);
+}
+static inline vd d_mantissa(vd x)
+{
+    __m512i m = _mm512_and_si512(_mm512_castpd_si512(x), _mm512_set1_epi64(0x000fffffffffffff));
+    return _mm512_castsi512_pd(_mm512_or_si512(m, _mm512_set1_epi64(0x3ff0000000000000)));
+}
+
+static inline vd d_two_prod(vd a, vd b, vd *error)
+{
+    vd p = a * b;
+    *error = _mm512_fmsub_pd(a, b, p);
+    return p;
+}
+
+#endif

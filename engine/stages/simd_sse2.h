@@ -1,0 +1,104 @@
+/// The vector vocabulary, spelled for SSE2, which every x86-64 has. What the words mean: simd_avx512.h.
+#ifndef GLINT_SIMD_H
+#define GLINT_SIMD_H
+
+#include <emmintrin.h>
+#include <stdint.h>
+
+#define VF 4
+#define VD 2
+typedef __m128 vf;
+typedef __m128d vd;
+typedef __m128i vi;
+typedef __m128 fm;
+typedef __m128d dm;
+
+static inline vf f_set(float x) { return _mm_set1_ps(x); }
+static inline vf f_load(const float *p) { return _mm_load_ps(p); }
+static inline void f_store(float *p, vf x) { _mm_store_ps(p, x); }
+static inline vf f_sqrt(vf x) { return _mm_sqrt_ps(x); }
+static inline vf f_min(vf a, vf b) { return _mm_min_ps(a, b); }
+static inline vf f_max(vf a, vf b) { return _mm_max_ps(a, b); }
+static inline vf f_abs(vf x) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), x); }
+static inline fm f_lt(vf a, vf b) { return _mm_cmplt_ps(a, b); }
+static inline fm f_le(vf a, vf b) { return _mm_cmple_ps(a, b); }
+static inline fm f_eq(vf a, vf b) { return _mm_cmpeq_ps(a, b); }
+static inline vf f_select(fm m, vf a, vf b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
+static inline fm fm_and(fm a, fm b) { return _mm_and_ps(a, b); }
+static inline fm fm_or(fm a, fm b) { return _mm_or_ps(a, b); }
+static inline fm fm_andnot(fm a, fm b) { return _mm_andnot_ps(b, a); }
+static inline unsigned fm_bits(fm m) { return (unsigned)_mm_movemask_ps(m); }
+static inline fm fm_from_bits(unsigned bits)
+{
+    const __m128i lane = _mm_setr_epi32(1, 2, 4, 8);
+    return _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32((int)bits), lane), lane));
+}
+
+static inline vi f_bits(vf x) { return _mm_castps_si128(x); }
+static inline vf f_from_bits(vi x) { return _mm_castsi128_ps(x); }
+static inline vi i_set(uint32_t x) { return _mm_set1_epi32((int)x); }
+static inline vi i_add(vi a, vi b) { return _mm_add_epi32(a, b); }
+static inline vi i_sub(vi a, vi b) { return _mm_sub_epi32(a, b); }
+static inline vi i_and(vi a, vi b) { return _mm_and_si128(a, b); }
+static inline vi i_or(vi a, vi b) { return _mm_or_si128(a, b); }
+#define i_shl(x, n) _mm_slli_epi32(x, n)
+#define i_shr(x, n) _mm_srli_epi32(x, n)
+static inline fm i_lt(vi a, vi b) { return _mm_castsi128_ps(_mm_cmplt_epi32(a, b)); }
+static inline fm i_eq(vi a, vi b) { return _mm_castsi128_ps(_mm_cmpeq_epi32(a, b)); }
+static inline vi i_load(const uint32_t *p) { return _mm_load_si128((const __m128i *)p); }
+static inline void i_store(uint32_t *p, vi x) { _mm_store_si128((__m128i *)p, x); }
+static inline vi i_gather(const uint32_t *table, vi index)
+{
+    uint32_t i[4];
+    _mm_storeu_si128((__m128i *)i, index);
+    return _mm_setr_epi32((int)table[i[0]], (int)table[i[1]], (int)table[i[2]], (int)table[i[3]]);
+}
+
+static inline vd d_set(double x) { return _mm_set1_pd(x); }
+static inline vd d_load(const double *p) { return _mm_load_pd(p); }
+static inline void d_store(double *p, vd x) { _mm_store_pd(p, x); }
+static inline vd d_sqrt(vd x) { return _mm_sqrt_pd(x); }
+static inline vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
+static inline vd d_max(vd a, vd b) { return _mm_max_pd(a, b); }
+static inline dm d_lt(vd a, vd b) { return _mm_cmplt_pd(a, b); }
+static inline dm d_le(vd a, vd b) { return _mm_cmple_pd(a, b); }
+static inline dm d_eq(vd a, vd b) { return _mm_cmpeq_pd(a, b); }
+static inline vd d_select(dm m, vd a, vd b) { return _mm_or_pd(_mm_and_pd(m, a), _mm_andnot_pd(m, b)); }
+static inline dm dm_and(dm a, dm b) { return _mm_and_pd(a, b); }
+static inline dm dm_or(dm a, dm b) { return _mm_or_pd(a, b); }
+static inline dm dm_andnot(dm a, dm b) { return _mm_andnot_pd(b, a); }
+static inline unsigned dm_bits(dm m) { return (unsigned)_mm_movemask_pd(m); }
+static inline dm dm_from_bits(unsigned bits)
+{
+    return _mm_castsi128_pd(_mm_set_epi64x(-(long long)(bits >> 1 & 1), -(long long)(bits & 1)));
+}
+
+static inline vd d_load_f(const float *p) { return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)p))); }
+static inline void d_store_f(float *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_castps_si128(_mm_cvtpd_ps(x))); }
+static inline vd d_load_index(const uint32_t *p) { return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i *)p)); }
+static inline void d_store_index(uint32_t *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_cvttpd_epi32(x)); }
+
+static inline vd d_exponent(vd x)
+{
+    __m128i e = _mm_srli_epi64(_mm_castpd_si128(x), 52);
+    return _mm_castsi128_pd(_mm_or_si128(e, _mm_set1_epi64x(0x4330000000000000))) - d_set(0x1p52 + 1023);
+}
+static inline vd d_mantissa(vd x)
+{
+    __m128i m = _mm_and_si128(_mm_castpd_si128(x), _mm_set1_epi64x(0x000fffffffffffff));
+    return _mm_castsi128_pd(_mm_or_si128(m, _mm_set1_epi64x(0x3ff0000000000000)));
+}
+
+/// Dekker's product (1971), with Veltkamp's splitting: the same bits as the FMA, short of over- and underflow.
+static inline vd d_two_prod(vd a, vd b, vd *error)
+{
+    const vd splitter = d_set(0x1p27 + 1);
+    vd p = a * b;
+    vd wa = splitter * a, wb = splitter * b;
+    vd ah = wa - (wa - a), bh = wb - (wb - b);
+    vd al = a - ah, bl = b - bh;
+    *error = ((ah * bh - p) + ah * bl + al * bh) + al * bl;
+    return p;
+}
+
+#endif
