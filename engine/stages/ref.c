@@ -1,0 +1,281 @@
+/// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
+/// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
+#include "engine/stages/coefficients.h"
+#include "engine/stages/stages.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#if FLT_EVAL_METHOD != 0
+#error "float arithmetic must round to float and double arithmetic to double"
+#endif
+
+// ---- elementary functions ----------------------------------------------------------------------------------------
+
+/// log2 of m 2^e for m in [1, 2), f being m - 1; or of 2 m 2^(e-1) when f is m / 2 - 1.
+static float log2_of_parts(float f, int e)
+{
+    static const float c[10] = {GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
+                                GLINT_LOG2_C5, GLINT_LOG2_C6, GLINT_LOG2_C7, GLINT_LOG2_C8, GLINT_LOG2_C9};
+    float p = c[9];
+    for (int i = 8; i >= 0; i--)
+        p = p * f + c[i];
+    return (float)e + f * p;
+}
+
+/// log2(x) for x from the smallest normal number to 1.
+static float log2_of_double(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int e = (int)(bits >> 52) - 1023;
+    bits = (bits & 0x000fffffffffffffu) | 0x3ff0000000000000u;
+    double m;
+    memcpy(&m, &bits, sizeof m);
+    return m >= GLINT_SQRT2 ? log2_of_parts((float)(0.5 * m - 1), e + 1) : log2_of_parts((float)(m - 1), e);
+}
+
+static float log2_of_float(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int e = (int)(bits >> 23) - 127;
+    bits = (bits & 0x007fffffu) | 0x3f800000u;
+    float m;
+    memcpy(&m, &bits, sizeof m);
+    return m >= (float)GLINT_SQRT2 ? log2_of_parts(0.5f * m - 1, e + 1) : log2_of_parts(m - 1, e);
+}
+
+/// 2^y for y in [-40, 0].
+static float exp2_of(float y)
+{
+    static const float d[7] = {GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
+                               GLINT_EXP2_D4, GLINT_EXP2_D5, GLINT_EXP2_D6};
+    float n = (y + 12582912.0f) - 12582912.0f;
+    float f = y - n;
+    float p = d[6];
+    for (int i = 5; i >= 0; i--)
+        p = p * f + d[i];
+    uint32_t bits = (uint32_t)((int)n + 127) << 23;
+    float power;
+    memcpy(&power, &bits, sizeof power);
+    return p * power;
+}
+
+// ---- errors of sums and products ---------------------------------------------------------------------------------
+
+typedef struct exact_pair { double value, error; } exact_pair; ///< a number as value + error, value the rounded one
+
+static exact_pair two_sum(double a, double b)
+{
+    double s = a + b, v = s - a;
+    return (exact_pair){s, (a - (s - v)) + (b - v)};
+}
+
+/// Upper half of a number, Veltkamp's way: the lower half, x - upper, fits 26 bits as well.
+static double upper_half(double x)
+{
+    double y = 134217729.0 * x; // 2^27 + 1
+    return y - (y - x);
+}
+
+/// x^2 with its error, Dekker's way: the parts of the product are exact.
+static exact_pair two_square(double x)
+{
+    double p = x * x, upper = upper_half(x), lower = x - upper;
+    double error = ((upper * upper - p) + 2 * (upper * lower)) + lower * lower;
+    return (exact_pair){p, error};
+}
+
+/// |f|^2 - (radius scale)^2, rounded once.
+static double exact_c_double(double fx, double fy, double fz, const glint_prim *prim)
+{
+    exact_pair p0 = two_square(fx), p1 = two_square(fy), p2 = two_square(fz);
+    exact_pair x = two_sum(p0.value, p1.value);
+    exact_pair y = two_sum(x.value, p2.value);
+    exact_pair z = two_sum(y.value, -prim->r2);
+    double errors = (p0.error + p1.error) + p2.error;
+    return z.value + (((x.error + y.error) + z.error) + (errors - prim->r2_low));
+}
+
+static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
+{
+    return ((fx * fx + fy * fy) + fz * fz) - (float)prim->r2;
+}
+
+// ---- geometry, in float and in double ----------------------------------------------------------------------------
+
+static float square_root_float(float x) { return sqrtf(x); }
+static double square_root_double(double x) { return sqrt(x); }
+
+#define PLANE_GRAZING_float 1e-30f
+#define PLANE_GRAZING_double 1e-60
+#define SMALLEST_NORMAL_float FLT_MIN
+#define SMALLEST_NORMAL_double DBL_MIN
+
+#define REAL float
+#define NAME(x) x##_float
+#include "engine/stages/ref_real.h"
+#undef REAL
+#undef NAME
+
+#define REAL double
+#define NAME(x) x##_double
+#include "engine/stages/ref_real.h"
+#undef REAL
+#undef NAME
+
+// ---- shade -------------------------------------------------------------------------------------------------------
+
+typedef struct terms { double value[GLINT_TERM_COUNT][3]; } terms; ///< of one sample
+
+/// attenuation visible, as far as the light has them.
+static float light_weight(const glint_shade_light *light, uint32_t i)
+{
+    if (light->attenuation && light->visible)
+        return light->attenuation[i] * light->visible[i];
+    if (light->attenuation)
+        return light->attenuation[i];
+    return light->visible ? light->visible[i] : 1;
+}
+
+static float highlight_strength(float shininess, float log2_specular)
+{
+    float y = shininess * log2_specular;
+    return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
+}
+
+static void add_light(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, terms *sum)
+{
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    float w = light_weight(light, i);
+    float diffuse = w * light->cosine[i];
+    for (int c = 0; c < 3; c++)
+        sum->value[GLINT_TERM_DIFFUSE][c] += (double)diffuse * (material->diffuse[c] * light->diffuse[c]);
+
+    if (!args->has_specular || !material->has_specular || !(light->log2_specular[i] > GLINT_NO_SPECULAR))
+        return;
+    float specular = w * highlight_strength(material->shininess, light->log2_specular[i]);
+    for (int c = 0; c < 3; c++)
+        sum->value[GLINT_TERM_SPECULAR][c] += (double)specular * (material->specular[c] * light->specular[c]);
+}
+
+/// Rounds the terms into the film and adds them up into the beauty.
+static void write_film(const terms *sum, float *const film[GLINT_TERM_COUNT][3], float *const beauty[3], uint32_t i)
+{
+    for (int c = 0; c < 3; c++) {
+        float rounded[GLINT_TERM_COUNT];
+        for (int term = 0; term < GLINT_TERM_COUNT; term++) {
+            rounded[term] = (float)sum->value[term][c];
+            if (film[term][c])
+                film[term][c][i] = rounded[term];
+        }
+        beauty[c][i] = ((rounded[GLINT_TERM_BACKGROUND] + rounded[GLINT_TERM_AMBIENT]) + rounded[GLINT_TERM_DIFFUSE]) +
+                       rounded[GLINT_TERM_SPECULAR];
+    }
+}
+
+static terms load_sums(double *const sum[GLINT_TERM_COUNT][3], uint32_t i)
+{
+    terms loaded;
+    for (int term = 0; term < GLINT_TERM_COUNT; term++)
+        for (int c = 0; c < 3; c++)
+            loaded.value[term][c] = sum[term][c] ? sum[term][c][i] : 0;
+    return loaded;
+}
+
+static void store_sums(const terms *total, double *const sum[GLINT_TERM_COUNT][3], uint32_t i)
+{
+    for (int term = 0; term < GLINT_TERM_COUNT; term++)
+        for (int c = 0; c < 3; c++)
+            if (sum[term][c])
+                sum[term][c][i] = total->value[term][c];
+}
+
+static void shade_sample(const glint_shade_args *args, uint32_t i)
+{
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    bool active = args->active[group] >> lane & 1, hit = args->hits[group] >> lane & 1;
+    terms sum = load_sums(args->sum, i);
+    for (int c = 0; c < 3 && args->first; c++) {
+        if (active && !hit)
+            sum.value[GLINT_TERM_BACKGROUND][c] += args->background[c];
+        if (hit)
+            sum.value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
+    }
+    for (uint32_t k = 0; k < args->light_count; k++)
+        if (args->lights[k].lit[group] >> lane & 1)
+            add_light(args, &args->lights[k], i, &sum);
+
+    if (args->sum[GLINT_TERM_BACKGROUND][0])
+        store_sums(&sum, args->sum, i);
+    else
+        write_film(&sum, args->film, args->beauty, i);
+}
+
+static void shade(const glint_shade_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        shade_sample(args, i);
+}
+
+// ---- resolve -----------------------------------------------------------------------------------------------------
+
+static void resolve(const glint_resolve_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+        terms mean = load_sums(args->sum, i);
+        for (int term = 0; term < GLINT_TERM_COUNT; term++)
+            for (int c = 0; c < 3; c++)
+                mean.value[term][c] /= args->samples;
+        write_film(&mean, args->film, args->beauty, i);
+    }
+}
+
+// ---- tone --------------------------------------------------------------------------------------------------------
+
+static uint32_t tone_code(const uint32_t *table, float value)
+{
+    float x = min_float(max_float(value, 0), 1);
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    if (bits < GLINT_TONE_FIRST << 16)
+        return 0;
+    uint32_t entry = table[(bits >> 16) - GLINT_TONE_FIRST];
+    return (entry & 255) + ((bits & 0xffff) >= entry >> 8);
+}
+
+static void tone_sample(const glint_tone_args *args, uint32_t i)
+{
+    bool clipped = false, finite = true;
+    uint32_t rgb = 0;
+    for (int c = 0; c < 3; c++) {
+        float value = args->beauty[c][i];
+        clipped = clipped || value > 1;
+        finite = finite && isfinite(value);
+        rgb |= tone_code(args->table, value) << 8 * c;
+    }
+    args->rgb[i] = rgb;
+    if (args->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) {
+        *args->clipped += clipped;
+        *args->nonfinite += !finite;
+    }
+}
+
+static void tone(const glint_tone_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        tone_sample(args, i);
+}
+
+// ------------------------------------------------------------------------------------------------------------------
+
+const glint_stages glint_stages_ref = {
+    .name = "ref",
+    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, light_double, occlude_double},
+                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, light_float, occlude_float}},
+    .shade = shade,
+    .resolve = resolve,
+    .tone = tone,
+};
