@@ -1,0 +1,4 @@
+std = "lua54"
+max_line_length = 120
+files["bindings/meta/glint.lua"] = { ignore = { "1", "2", "6" } } -- declarations without bodies, for editors
+exclude_files = { "build/**", "build-*/**" }

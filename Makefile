@@ -1,0 +1,195 @@
+# glint: `make` builds the command and the Lua module, `make help` lists the rest. One file, every source by wildcard.
+
+BUILD    ?= build
+CC       ?= cc
+AR       ?= ar
+CFLAGS   ?= -O2 -g
+LUA      ?= lua5.4
+
+PREFIX   ?= /usr/local
+bindir   ?= $(PREFIX)/bin
+libdir   ?= $(PREFIX)/lib
+incdir   ?= $(PREFIX)/include
+datadir  ?= $(PREFIX)/share
+luadir   ?= $(libdir)/lua/5.4
+
+VERSION := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.h)
+
+# ---- Flags ----
+
+# Same bits everywhere: no contraction, and nothing of the user's that picks instructions or loosens arithmetic.
+UNWANTED := -march=% -mcpu=% -mavx% -msse% -mfma -Ofast -ffast-math -funsafe-math-optimizations -ffp-contract=% -flto%
+WARN := -Wall -Wextra -Wpedantic
+WARN += -Wshadow
+WARN += -Wstrict-prototypes
+STRICT := -std=c11 -D_GNU_SOURCE $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
+
+have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
+PACKAGES := libpng zlib libxxhash
+ifeq ($(call have,libisal),yes)
+  PACKAGES += libisal
+  DEFINES += -DGLINT_HAVE_ISAL
+endif
+ifeq ($(call have,libdeflate),yes)
+  PACKAGES += libdeflate
+  DEFINES += -DGLINT_HAVE_LIBDEFLATE
+endif
+
+# SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
+ifdef SANITIZE
+  SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
+endif
+
+COMPILE := -I. $(DEFINES) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null) $(CPPFLAGS) \
+           $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
+LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
+LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) -lm -pthread
+TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
+LINK       := $(SAN_FLAGS) $(LDFLAGS) -Wl,--as-needed
+
+# ---- Sources ----
+
+ENGINE_SRC   := $(sort $(wildcard engine/*.c engine/base/*.c engine/image/*.c engine/stages/*.c))
+BINDINGS_SRC := $(sort $(wildcard bindings/*.c))
+ifeq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+  ENGINE_SRC := $(filter-out engine/stages/isa_%.c,$(ENGINE_SRC))
+endif
+ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
+BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
+MAIN_OBJ     := $(BUILD)/bindings/main.o
+MODULE_OBJ   := $(filter-out $(MAIN_OBJ),$(BINDINGS_OBJ))
+TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/test_*.c)))
+TEST_TOOLS   := $(BUILD)/tests/compare16
+KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa_%.o,$(ENGINE_OBJ))
+
+# ---- Build ----
+
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+.PHONY: all need deps check check-run asan asan-run tsan bench demo demo-run install golden-update check-layers \
+        check-symbols check-headers lint format clean help tests FORCE
+
+all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
+
+# Only these files are compiled for an instruction set, each for its own; ref.c for none.
+$(BUILD)/engine/stages/isa_avx2.o:   ISA := -mavx2 -mfma
+$(BUILD)/engine/stages/isa_avx512.o: ISA := -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
+$(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
+
+$(BUILD)/%.o: %.c $(BUILD)/flags | need
+	@mkdir -p $(@D)
+	$(CC) $(COMPILE) $(ISA) -MMD -MP -c $< -o $@
+
+$(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
+	$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -ldl -o $@
+
+$(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
+	$(CC) $(LINK) -shared $(MODULE_OBJ) $(BUILD)/libglint.a $(LIBS) -o $@
+
+$(BUILD)/libglint.a: $(ENGINE_OBJ)
+	@rm -f $@
+	$(AR) rcs $@ $(ENGINE_OBJ)
+
+# Other flags or libraries than last time: everything is compiled again.
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(CC) $(COMPILE) $(LUA_CFLAGS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(LUA_CFLAGS)' > $@
+
+need:
+	@tests/deps.sh need
+
+-include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(BUILD)/tests/bench/bench.d
+
+# ---- Tests ----
+
+$(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
+
+tests: all $(TEST_BIN) $(TEST_TOOLS)
+
+SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/povray.sh tests/readme.sh)
+RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
+
+check: ## every test; T=name runs those whose name has it
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory check-run
+
+check-run: tests
+	@T="$(T)" $(RUNNER) $(TEST_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
+
+# What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
+SANITIZED := $(filter-out tests/povray.sh tests/readme.sh,$(SCRIPTED))
+
+asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" \
+	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so
+
+tsan: ## the tests under ThreadSanitizer, in build-tsan/
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread PRELOAD=libtsan.so
+
+.PHONY: san-run
+san-run: tests
+	@T="$(T)" PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(SANITIZED)
+
+golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
+	@BUILD=$(BUILD) tests/golden.sh update
+
+check-layers: ## the engine names no Lua, the stages no scene
+	@tests/layers.sh
+
+check-symbols: $(KERNEL_OBJ) $(BUILD)/glint.so ## an instruction set's object defines its table and nothing else
+	@tests/symbols.sh $(BUILD)/glint.so $(KERNEL_OBJ)
+
+check-headers: ## each header compiles alone
+	@CC="$(CC)" tests/headers.sh $(COMPILE) $(LUA_CFLAGS)
+
+lint: ## luacheck and cppcheck, where installed
+	@tests/lint.sh
+
+bench: ## times the workshop frame by threads, precision and instruction set, and a whole job
+	@tests/deps.sh build
+	@$(MAKE) --no-print-directory all $(BUILD)/tests/bench/bench
+	@$(BUILD)/tests/bench/bench '$(CC) $(shell $(CC) -dumpfullversion 2>/dev/null), $(filter-out $(UNWANTED),$(CFLAGS))'
+
+# ---- Use ----
+
+demo: ## renders scripts/moving_light.lua, 120 frames, into build/demo/
+	@tests/deps.sh build
+	@$(MAKE) --no-print-directory demo-run
+
+demo-run: all
+	@mkdir -p $(BUILD)/demo
+	$(BUILD)/glint scripts/moving_light.lua -o '$(BUILD)/demo/moving_light_%04d.png'
+	@echo
+	@echo "120 frames: $(abspath $(BUILD)/demo)/moving_light_0001.png ... moving_light_0120.png"
+	@echo "Look at one with any viewer, or at all of them as a film:"
+	@echo "  ffmpeg -framerate 24 -i $(BUILD)/demo/moving_light_%04d.png -pix_fmt yuv420p $(BUILD)/demo/moving_light.mp4"
+	@echo "Try:  $(BUILD)/glint scripts/moving_light.lua --help"
+
+install: all ## PREFIX=/usr/local, DESTDIR=
+	install -d $(addprefix $(DESTDIR),$(bindir) $(luadir) $(libdir)/pkgconfig $(incdir) $(datadir)/man/man1 $(datadir)/glint)
+	install -m 755 $(BUILD)/glint $(DESTDIR)$(bindir)/glint
+	install -m 755 $(BUILD)/glint.so $(DESTDIR)$(luadir)/glint.so
+	install -m 644 $(BUILD)/libglint.a $(DESTDIR)$(libdir)/libglint.a
+	install -m 644 engine/glint.h $(DESTDIR)$(incdir)/glint.h
+	install -m 644 bindings/glint.1 $(DESTDIR)$(datadir)/man/man1/glint.1
+	install -m 644 bindings/meta/glint.lua $(DESTDIR)$(datadir)/glint/glint.lua
+	sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' engine/glint.pc.in \
+	    > $(DESTDIR)$(libdir)/pkgconfig/glint.pc
+
+deps: ## installs what the build and the tests need, through apt
+	@tests/deps.sh build test
+
+format: ## clang-format over the C files
+	clang-format -i $(ENGINE_SRC) $(BINDINGS_SRC) $(wildcard engine/*.h engine/*/*.h bindings/*.h tests/*.c tests/*/*.c)
+
+clean: ## removes build/, build-asan/, build-tsan/
+	rm -rf $(BUILD) build-asan build-tsan
+
+help: ## this list
+	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

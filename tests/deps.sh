@@ -1,0 +1,110 @@
+#!/bin/sh
+# What glint needs on Debian, and how to get it.
+#   deps.sh need          says what the build lacks, and fails; installs nothing
+#   deps.sh build test    installs what is missing for building, for testing or for both, through apt
+set -eu
+
+# package  how to tell that it is there
+build_required='
+pkg-config      command:pkg-config
+liblua5.4-dev   module:lua5.4
+libpng-dev      module:libpng
+zlib1g-dev      module:zlib
+libxxhash-dev   module:libxxhash
+'
+build_optional='
+libisal-dev     module:libisal
+libdeflate-dev  module:libdeflate
+'
+test_required='
+libcmocka-dev   module:cmocka
+libmpfr-dev     module:mpfr
+lua5.4          command:lua5.4
+'
+test_optional='
+lua-check       command:luacheck
+cppcheck        command:cppcheck
+povray          command:povray
+'
+
+present() {
+    case $1 in
+    command:*) command -v "${1#command:}" >/dev/null 2>&1 ;;
+    module:*) pkg-config --exists "${1#module:}" 2>/dev/null ;;
+    esac
+}
+
+# Prints the packages of a list that are not there.
+missing() {
+    printf '%s' "$1" | while read -r package test; do
+        [ -z "$package" ] || present "$test" || printf ' %s' "$package"
+    done
+}
+
+# Installs packages; fails when apt does.
+install() {
+    if ! command -v apt-get >/dev/null 2>&1; then
+        echo "deps: no apt-get on this system; install the equivalents of:$*" >&2
+        return 1
+    fi
+    sudo=
+    if [ "$(id -u)" -ne 0 ]; then
+        if ! command -v sudo >/dev/null 2>&1; then
+            echo "deps: neither root nor sudo here; ask someone who may:  apt-get install$*" >&2
+            return 1
+        fi
+        sudo=sudo
+    fi
+    echo "deps: installing through apt:$*"
+    # shellcheck disable=SC2086,SC2048
+    $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends $* >&2 && return 0
+    echo "deps: once more, after apt-get update"
+    $sudo apt-get update -qq || true
+    # shellcheck disable=SC2086,SC2048
+    $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends $* >&2
+}
+
+require() {
+    lacking=$(missing "$1")
+    [ -n "$lacking" ] || return 0
+    install "$lacking" || {
+        echo "deps: cannot go on without:$lacking" >&2
+        exit 1
+    }
+    lacking=$(missing "$1")
+    [ -z "$lacking" ] || {
+        echo "deps: installed, and still not found:$lacking" >&2
+        exit 1
+    }
+}
+
+prefer() {
+    lacking=$(missing "$1")
+    [ -n "$lacking" ] || return 0
+    install "$lacking" || echo "deps: going on without:$lacking ($2)" >&2
+}
+
+for what in "$@"; do
+    case $what in
+    need)
+        lacking=$(missing "$build_required")
+        [ -z "$lacking" ] || {
+            echo "glint cannot be built without:$lacking" >&2
+            echo "Get it with:  make deps   (or: apt-get install$lacking)" >&2
+            exit 1
+        }
+        ;;
+    build)
+        require "$build_required"
+        prefer "$build_optional" "PNG files will be written with zlib"
+        ;;
+    test)
+        require "$test_required"
+        prefer "$test_optional" "the tests that need it will be skipped"
+        ;;
+    *)
+        echo "usage: deps.sh need | build | test ..." >&2
+        exit 2
+        ;;
+    esac
+done

@@ -1,0 +1,17 @@
+#!/bin/sh
+# luacheck over the Lua files, cppcheck over the C files; each is skipped, and says so, where it is not installed.
+set -u
+bad=0
+if command -v luacheck >/dev/null 2>&1; then
+    luacheck --quiet --no-color scripts tests bindings || bad=1
+else
+    echo "skip: luacheck is not installed"
+fi
+if command -v cppcheck >/dev/null 2>&1; then
+    cppcheck --quiet --std=c11 --language=c -j 2 -I. --enable=warning,portability --inline-suppr \
+        --suppress=missingIncludeSystem --suppress=unknownMacro --error-exitcode=1 -D__x86_64__ -U__cplusplus \
+        --template='{file}:{line}: {severity}: {message} [{id}]' engine/*.c engine/base engine/image bindings || bad=1
+else
+    echo "skip: cppcheck is not installed"
+fi
+exit $bad

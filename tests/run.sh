@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Runs tests and prints a line for each, then the totals: 'N passed, N failed, N skipped'.
+#   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, or make:TARGET
+# From the environment: BUILD (the build folder), T (run the items whose name has it), PRELOAD (a sanitizer's runtime,
+# for the Lua tests), LUA, MAKE. A test exits 0 when it passed and 77 when it cannot run here. What it prints goes to
+# BUILD/tests/log/NAME and is shown when it fails. Cases are counted from cmocka's lines and from TAP; a test that
+# prints neither counts as one.
+set -u
+
+BUILD=${BUILD:-build}
+export BUILD GLINT="$PWD/$BUILD/glint" LUA_CPATH="$PWD/$BUILD/?.so;;"
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+export LSAN_OPTIONS=${LSAN_OPTIONS:-print_suppressions=0}
+log_folder=$BUILD/tests/log
+limit_s=${TEST_LIMIT_S:-300}
+passed=0 failed=0 skipped=0
+
+run_item() {
+    case $1 in
+    make:*) ${MAKE:-make} --no-print-directory "${1#make:}" ;;
+    *.lua) LD_PRELOAD=${PRELOAD:-} timeout "$limit_s" "${LUA:-lua5.4}" "$1" ;;
+    *.sh) timeout "$limit_s" bash "$1" ;;
+    *) timeout "$limit_s" "$1" ;;
+    esac
+}
+
+count() { grep -cE "$1" "$2" || true; }
+
+# Adds the cases of one finished test to the totals and prints its line.
+tally() {
+    local name=$1 status=$2 log=$3 seconds=$4
+    local good bad skips
+    good=$(count '^(\[       OK \]|ok( |$))' "$log")
+    skips=$(count '^(\[  SKIPPED \] [a-zA-Z_]|ok .*# (skip|SKIP)|skip( |:))' "$log")
+    skips=$((skips)) bad=$(count '^(\[  FAILED  \] [a-zA-Z_]+$|not ok( |$))' "$log")
+    good=$((good - $(count '^ok .*# (skip|SKIP)' "$log")))
+    if [ "$status" -eq 77 ]; then
+        skipped=$((skipped + 1))
+        printf 'skip  %-24s %s\n' "$name" "$(tail -n 1 "$log")"
+        return
+    fi
+    skipped=$((skipped + skips))
+    if [ "$status" -eq 0 ] && [ "$bad" -eq 0 ]; then
+        [ "$good" -gt 0 ] || good=1
+        passed=$((passed + good))
+        printf 'ok    %-24s %5d case%s %6.1f s\n' "$name" "$good" "$([ "$good" -eq 1 ] && echo ' ' || echo s)" "$seconds"
+        grep -E '^(ok .*# (skip|SKIP)|skip( |:)|\[  SKIPPED \] [a-zA-Z_])' "$log" | sort -u | sed 's/^/        /'
+        return
+    fi
+    [ "$bad" -gt 0 ] || bad=1
+    passed=$((passed + good)) failed=$((failed + bad))
+    sed 's/^/    | /' "$log" | tail -n 60
+    [ "$status" -ne 124 ] || echo "    | stopped after $limit_s s"
+    printf 'FAIL  %-24s %5d failed, exit %d, all of it in %s\n' "$name" "$bad" "$status" "$log"
+}
+
+mkdir -p "$log_folder"
+for item in "$@"; do
+    name=$(basename "${item#make:}")
+    case $name in *"${T:-}"*) ;; *) continue ;; esac
+    start=$(date +%s%N)
+    run_item "$item" >"$log_folder/$name" 2>&1 </dev/null
+    status=$?
+    tally "$name" "$status" "$log_folder/$name" "$(awk "BEGIN { print ($(date +%s%N) - $start) / 1e9 }")"
+done
+
+if [ $((passed + failed + skipped)) -eq 0 ]; then
+    echo "no test has '${T:-}' in its name" >&2
+    exit 2
+fi
+echo
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ]

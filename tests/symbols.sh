@@ -1,0 +1,25 @@
+#!/bin/sh
+# symbols.sh MODULE OBJECT...: each kernel object defines one global, its table; the module exports one function.
+# A shared inline function compiled for AVX and picked by the linker would run on a processor without it.
+set -u
+module=$1
+shift
+bad=0
+for object in "$@"; do
+    name=$(basename "$object" .o)
+    symbols=$(nm -g --defined-only "$object" | awk '{ print $3 }')
+    if [ "$symbols" != "glint_stages_${name#isa_}" ]; then
+        echo "$object: one global, glint_stages_${name#isa_}, expected, got:" $symbols
+        bad=1
+    fi
+    if nm "$object" | grep -qE ' [wWuvV] [^_]'; then
+        echo "$object: weak symbols:" "$(nm "$object" | grep -E ' [wWuvV] ')"
+        bad=1
+    fi
+done
+exported=$(nm -D --defined-only "$module" | awk '{ print $3 }')
+if [ "$exported" != luaopen_glint ]; then
+    echo "$module: luaopen_glint alone expected, got:" $exported
+    bad=1
+fi
+exit $bad
