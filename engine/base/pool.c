@@ -1,0 +1,137 @@
+#include "engine/base/pool.h"
+#include "engine/base/status.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+struct worker {
+    glint_pool *pool;
+    pthread_t thread;
+    int number;
+};
+
+struct glint_pool {
+    pthread_mutex_t turn; ///< held by the caller whose items run
+    pthread_mutex_t mutex;
+    pthread_cond_t work, done;
+    unsigned long round; ///< counts the calls of glint_pool_run
+    int busy;            ///< workers that have not finished this round
+    bool stop;
+    size_t count;
+    glint_pool_item *item;
+    void *context;
+    atomic_size_t next;
+    int threads;
+    struct worker workers[];
+};
+
+static void *work(void *argument)
+{
+    struct worker *self = argument;
+    glint_pool *pool = self->pool;
+    unsigned long seen = 0;
+    pthread_mutex_lock(&pool->mutex);
+    for (;;) {
+        while (!pool->stop && pool->round == seen)
+            pthread_cond_wait(&pool->work, &pool->mutex);
+        if (pool->stop)
+            break;
+        seen = pool->round;
+        pthread_mutex_unlock(&pool->mutex);
+        size_t index;
+        while ((index = atomic_fetch_add(&pool->next, 1)) < pool->count)
+            pool->item(pool->context, index, self->number);
+        pthread_mutex_lock(&pool->mutex);
+        if (--pool->busy == 0)
+            pthread_cond_signal(&pool->done);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    return NULL;
+}
+
+/// Starts workers with every signal blocked: signals are the main thread's.
+static int start_workers(glint_pool *pool, int threads)
+{
+    sigset_t all, old;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    while (pool->threads < threads) {
+        struct worker *worker = &pool->workers[pool->threads];
+        *worker = (struct worker){ .pool = pool, .number = pool->threads };
+        if (pthread_create(&worker->thread, NULL, work, worker))
+            break;
+        pool->threads++;
+    }
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    return pool->threads;
+}
+
+glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error)
+{
+    if (threads < 1 || threads > 1024)
+        return glint_fail(error, GLINT_ERR_INVALID, "threads: whole number 1 .. 1024 expected, got %d", threads);
+    glint_pool *pool = calloc(1, sizeof *pool + (size_t)threads * sizeof *pool->workers);
+    if (!pool)
+        return glint_fail_nomem(error);
+    pthread_mutex_init(&pool->turn, NULL);
+    pthread_mutex_init(&pool->mutex, NULL);
+    pthread_cond_init(&pool->work, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    if (start_workers(pool, threads) < threads) {
+        glint_pool_destroy(pool);
+        return glint_fail(error, GLINT_ERR_NOMEM, "threads: %d threads could not be started", threads);
+    }
+    *out = pool;
+    return GLINT_OK;
+}
+
+void glint_pool_destroy(glint_pool *pool)
+{
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->mutex);
+    pool->stop = true;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+    for (int i = 0; i < pool->threads; i++)
+        pthread_join(pool->workers[i].thread, NULL);
+    pthread_cond_destroy(&pool->done);
+    pthread_cond_destroy(&pool->work);
+    pthread_mutex_destroy(&pool->mutex);
+    pthread_mutex_destroy(&pool->turn);
+    free(pool);
+}
+
+int glint_pool_threads(const glint_pool *pool)
+{
+    return pool->threads;
+}
+
+void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
+{
+    pthread_mutex_lock(&pool->turn);
+    pthread_mutex_lock(&pool->mutex);
+    pool->count = count;
+    pool->item = item;
+    pool->context = context;
+    atomic_store(&pool->next, 0);
+    pool->busy = pool->threads;
+    pool->round++;
+    pthread_cond_broadcast(&pool->work);
+    while (pool->busy)
+        pthread_cond_wait(&pool->done, &pool->mutex);
+    pthread_mutex_unlock(&pool->mutex);
+    pthread_mutex_unlock(&pool->turn);
+}
+
+int glint_pool_processors(void)
+{
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set))
+        return 1;
+    const int count = CPU_COUNT(&set);
+    return count < 1 ? 1 : count > 1024 ? 1024 : count;
+}

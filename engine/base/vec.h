@@ -1,0 +1,67 @@
+/// Three doubles. Internal; the arithmetic has one written order, like that of the stages.
+#ifndef GLINT_BASE_VEC_H
+#define GLINT_BASE_VEC_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+static inline double vec_dot(const double a[3], const double b[3])
+{
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+static inline void vec_copy(double out[3], const double v[3]) { memcpy(out, v, 3 * sizeof *out); }
+
+static inline void vec_sub(double out[3], const double a[3], const double b[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = a[c] - b[c];
+}
+
+static inline void vec_scale(double out[3], const double v[3], double s)
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = v[c] * s;
+}
+
+static inline void vec_cross(double out[3], const double a[3], const double b[3])
+{
+    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x, out[1] = y, out[2] = z;
+}
+
+static inline double vec_max_abs(const double v[3])
+{
+    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+}
+
+/// The power of two that brings x > 0 into [1, 2); kept within the normal numbers.
+static inline double power_of_two_scale(double x)
+{
+    int exponent;
+    frexp(x, &exponent);
+    exponent = 1 - exponent;
+    return ldexp(1, exponent < -1022 ? -1022 : exponent > 1022 ? 1022 : exponent);
+}
+
+/// Scales by a power of two so that the largest component is in [1, 2): nothing overflows or is lost in a square.
+/// Returns the factor.
+static inline double vec_rescale(double out[3], const double v[3])
+{
+    const double scale = power_of_two_scale(vec_max_abs(v));
+    vec_scale(out, v, scale);
+    return scale;
+}
+
+/// Unit vector of a finite vector that is not zero.
+static inline void vec_normalize(double out[3], const double v[3])
+{
+    vec_rescale(out, v);
+    vec_rescale(out, out); // a subnormal vector may need a second step
+    const double length = sqrt(vec_dot(out, out));
+    for (int c = 0; c < 3; c++)
+        out[c] /= length;
+}
+
+#endif

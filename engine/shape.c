@@ -1,0 +1,212 @@
+#include "engine/base/status.h"
+#include "engine/objects.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_SPHERES ((size_t)1 << 30)
+
+glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
+{
+    return (glint_shape_desc){ .kind = kind, .two_sided = true, .radius = 1, .normal = { 0, 1, 0 } };
+}
+
+static glint_status check(const glint_shape_desc *desc, glint_error *error)
+{
+    if (desc->kind == GLINT_SHAPE_SPHERE) {
+        glint_status status = glint_check_vector("center", desc->center, error);
+        if (!status && !(desc->radius > 0 && isfinite(desc->radius)))
+            status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
+        return status;
+    }
+    if (desc->kind == GLINT_SHAPE_PLANE) {
+        glint_status status = glint_check_vector("point", desc->point, error);
+        return status ? status : glint_check_direction("normal", desc->normal, error);
+    }
+    return GLINT_OK;
+}
+
+/// Takes a reference to `material`, or makes one with default fields.
+static glint_material *material_or_default(glint_material *material, glint_error *error)
+{
+    if (material)
+        return glint_material_retain(material);
+    const glint_material_desc desc = glint_material_desc_default();
+    glint_material_create(&desc, &material, error);
+    return material;
+}
+
+static glint_shape *shape_alloc(const glint_shape_desc *desc, size_t material_count)
+{
+    glint_shape *shape = calloc(1, sizeof *shape);
+    if (!shape)
+        return NULL;
+    shape->references = 1;
+    shape->desc = *desc;
+    shape->count = 1;
+    shape->materials = calloc(material_count, sizeof *shape->materials);
+    if (!shape->materials) {
+        free(shape);
+        return NULL;
+    }
+    return shape;
+}
+
+glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error)
+{
+    if (desc->kind > GLINT_SHAPE_PLANE)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: sphere or plane expected");
+    glint_status status = check(desc, error);
+    if (status)
+        return status;
+    glint_shape *shape = shape_alloc(desc, 1);
+    if (!shape)
+        return glint_fail_nomem(error);
+    shape->materials[0] = material_or_default(desc->material, error);
+    if (!shape->materials[0]) {
+        glint_shape_release(shape);
+        return GLINT_ERR_NOMEM;
+    }
+    shape->material_count = 1;
+    shape->desc.material = shape->materials[0];
+    *out = shape;
+    return GLINT_OK;
+}
+
+glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error)
+{
+    if (desc->kind != shape->desc.kind)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: a shape cannot become one of another kind");
+    glint_status status = check(desc, error);
+    if (status)
+        return status;
+    glint_material *material = material_or_default(desc->material, error);
+    if (!material)
+        return GLINT_ERR_NOMEM;
+    glint_material_release(shape->materials[0]);
+    shape->materials[0] = material;
+    shape->desc = *desc;
+    shape->desc.material = material;
+    return GLINT_OK;
+}
+
+const glint_shape_desc *glint_shape_get(const glint_shape *shape)
+{
+    return &shape->desc;
+}
+
+glint_shape *glint_shape_retain(glint_shape *shape)
+{
+    if (shape)
+        shape->references++;
+    return shape;
+}
+
+void glint_shape_release(glint_shape *shape)
+{
+    if (!shape || --shape->references > 0)
+        return;
+    for (size_t i = 0; i < shape->material_count; i++)
+        glint_material_release(shape->materials[i]);
+    free(shape->materials);
+    free(shape->spheres);
+    free(shape->index);
+    free(shape);
+}
+
+size_t glint_spheres_count(const glint_shape *shape)
+{
+    return shape->count;
+}
+
+static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
+{
+    if (!desc->is_float) {
+        memcpy(out, (const char *)desc->data + i * 4 * sizeof(double), 4 * sizeof(double));
+        return;
+    }
+    float f[4];
+    memcpy(f, (const char *)desc->data + i * sizeof f, sizeof f);
+    for (int c = 0; c < 4; c++)
+        out[c] = f[c];
+}
+
+static glint_status check_sphere(size_t i, const double s[4], glint_error *error)
+{
+    if (!isfinite(s[0]) || !isfinite(s[1]) || !isfinite(s[2]))
+        return glint_fail(error, GLINT_ERR_INVALID, "data: sphere %zu: finite centre expected, got {%.15g, %.15g, %.15g}",
+                          i + 1, s[0], s[1], s[2]);
+    if (!(s[3] > 0 && isfinite(s[3])))
+        return glint_fail(error, GLINT_ERR_INVALID, "data: sphere %zu: radius > 0 expected, got %.15g", i + 1, s[3]);
+    return GLINT_OK;
+}
+
+static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *desc, glint_error *error)
+{
+    shape->spheres = malloc(desc->count * sizeof *shape->spheres);
+    if (!shape->spheres)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < desc->count; i++) {
+        read_sphere(desc, i, shape->spheres[i]);
+        glint_status status = check_sphere(i, shape->spheres[i], error);
+        if (status)
+            return status;
+    }
+    shape->count = desc->count;
+    if (!desc->material_index)
+        return GLINT_OK;
+    shape->index = malloc(desc->count * sizeof *shape->index);
+    if (!shape->index)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < desc->count; i++) {
+        shape->index[i] = desc->material_index[i];
+        if (shape->index[i] >= shape->material_count)
+            return glint_fail(error, GLINT_ERR_INVALID, "index: sphere %zu: material 1 .. %zu expected, got %llu", i + 1,
+                              shape->material_count, (unsigned long long)shape->index[i] + 1);
+    }
+    return GLINT_OK;
+}
+
+glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error)
+{
+    if (desc->count < 1 || desc->count > MAX_SPHERES)
+        return glint_fail(error, GLINT_ERR_INVALID, "data: 1 .. %zu spheres expected, got %zu", MAX_SPHERES, desc->count);
+    for (size_t i = 0; i < desc->material_count; i++)
+        if (!desc->materials[i])
+            return glint_fail(error, GLINT_ERR_INVALID, "materials: entry %zu is missing", i + 1);
+    glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_SPHERES);
+    base.two_sided = desc->two_sided;
+    memcpy(base.name, desc->name, sizeof base.name);
+    const size_t materials = desc->material_count ? desc->material_count : 1;
+    glint_shape *shape = shape_alloc(&base, materials);
+    if (!shape)
+        return glint_fail_nomem(error);
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < materials && !status; i++) {
+        shape->materials[i] = material_or_default(desc->material_count ? desc->materials[i] : NULL, error);
+        if (shape->materials[i])
+            shape->material_count++;
+        else
+            status = GLINT_ERR_NOMEM;
+    }
+    if (!status)
+        status = fill_spheres(shape, desc, error);
+    if (status) {
+        glint_shape_release(shape);
+        return status;
+    }
+    shape->desc.material = shape->materials[0];
+    *out = shape;
+    return GLINT_OK;
+}
+
+void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
+{
+    static const char *const kinds[] = { "sphere", "plane", "spheres" };
+    if (desc->name[0])
+        snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
+    else
+        snprintf(out, size, "%s #%zu", kinds[desc->kind], number);
+}
