@@ -2,6 +2,7 @@
 #ifndef GLINT_OBJECTS_H
 #define GLINT_OBJECTS_H
 
+#include "engine/base/list.h"
 #include "engine/glint.h"
 
 struct glint_material {
@@ -28,14 +29,6 @@ struct glint_shape {
     glint_material **materials;
     size_t material_count;
 };
-
-/// Objects in the order they were added, and where each stands (open addressing on the pointer; index + 1, 0 = free).
-typedef struct glint_list {
-    void **items;
-    size_t count, capacity;
-    uint32_t *slots;
-    size_t slot_count; ///< a power of two, at least twice `capacity`
-} glint_list;
 
 struct glint_scene {
     size_t references;

@@ -2,7 +2,6 @@
 #include "engine/objects.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
 {
@@ -48,76 +47,24 @@ void glint_scene_release(glint_scene *scene)
     for (size_t i = 0; i < scene->lights.count; i++)
         glint_light_release(glint_scene_light(scene, i));
     glint_camera_release(scene->desc.camera);
-    free(scene->shapes.items);
-    free(scene->shapes.slots);
-    free(scene->lights.items);
-    free(scene->lights.slots);
+    glint_list_free(&scene->shapes);
+    glint_list_free(&scene->lights);
     free(scene);
-}
-
-static size_t hash_pointer(const void *object)
-{
-    return (size_t)(((uintptr_t)object >> 4) * UINT64_C(0x9e3779b97f4a7c15) >> 32);
-}
-
-/// The slot that holds `object`, or the free one where it would go.
-static size_t find_slot(const glint_list *list, const void *object)
-{
-    size_t slot = hash_pointer(object) & (list->slot_count - 1);
-    while (list->slots[slot] && list->items[list->slots[slot] - 1] != object)
-        slot = (slot + 1) & (list->slot_count - 1);
-    return slot;
-}
-
-static void fill_slots(glint_list *list)
-{
-    memset(list->slots, 0, list->slot_count * sizeof *list->slots);
-    for (size_t i = 0; i < list->count; i++)
-        list->slots[find_slot(list, list->items[i])] = (uint32_t)(i + 1);
-}
-
-/// Makes room for one more.
-static glint_status grow(glint_list *list, glint_error *error)
-{
-    if (list->count < list->capacity)
-        return GLINT_OK;
-    const size_t capacity = list->capacity ? 2 * list->capacity : 8;
-    void **items = realloc(list->items, capacity * sizeof *items);
-    if (!items)
-        return glint_fail_nomem(error);
-    list->items = items;
-    uint32_t *slots = malloc(2 * capacity * sizeof *slots);
-    if (!slots)
-        return glint_fail_nomem(error);
-    free(list->slots);
-    list->slots = slots;
-    list->slot_count = 2 * capacity;
-    list->capacity = capacity;
-    fill_slots(list);
-    return GLINT_OK;
 }
 
 static glint_status add(glint_list *list, void *object, const char *what, glint_error *error)
 {
-    glint_status status = grow(list, error);
-    if (status)
-        return status;
-    const size_t slot = find_slot(list, object);
-    if (list->slots[slot])
+    if (glint_list_find(list, object) < list->count)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: already in the scene", what);
-    list->items[list->count++] = object;
-    list->slots[slot] = (uint32_t)list->count;
-    return GLINT_OK;
+    return glint_list_add(list, object, error);
 }
 
 static glint_status drop(glint_list *list, const void *object, const char *what, glint_error *error)
 {
-    const size_t place = list->count ? list->slots[find_slot(list, object)] : 0;
-    if (!place)
+    const size_t index = glint_list_find(list, object);
+    if (index == list->count)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: not in the scene", what);
-    memmove(list->items + place - 1, list->items + place, (list->count - place) * sizeof *list->items);
-    list->count--;
-    fill_slots(list);
+    glint_list_remove(list, index);
     return GLINT_OK;
 }
 

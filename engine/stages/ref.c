@@ -273,8 +273,8 @@ static void tone(const glint_tone_args *args)
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, light_double, occlude_double},
-                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, light_float, occlude_float}},
+    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double, occlude_double},
+                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float, occlude_float}},
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

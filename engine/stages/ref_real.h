@@ -222,6 +222,23 @@ static void NAME(surface)(const glint_surface_args *args)
     }
 }
 
+// ---- bounds ----
+
+static void NAME(bounds)(glint_bounds_args *args)
+{
+    for (int c = 0; c < 3; c++) {
+        args->lower[c] = HUGE_VAL;
+        args->upper[c] = -HUGE_VAL;
+        for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+            if (!(args->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
+                continue;
+            double x = ((const REAL *)args->point[c])[i] + (REAL)0;
+            args->lower[c] = x < args->lower[c] ? x : args->lower[c];
+            args->upper[c] = x > args->upper[c] ? x : args->upper[c];
+        }
+    }
+}
+
 // ---- light -------------------------------------------------------------------------------------------------------
 
 /// log2 of r.v (Phong) or n.h (Blinn-Phong).

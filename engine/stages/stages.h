@@ -142,6 +142,16 @@ typedef struct glint_surface_args {
 // plane:  n = normal; with a bundle point = eye + t direction, else origin + t direction
 // then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
 
+// ---- bounds: the box around a tile's points, for culling ----
+
+typedef struct glint_bounds_args {
+    uint32_t group_count;
+    const uint16_t *hits;
+    const void *point[3];
+    double lower[3], upper[3]; ///< out; +inf and -inf when nothing is hit
+} glint_bounds_args;
+// Over the lanes hit: lower = min(x + 0.0, lower), upper = max(x + 0.0, upper), from lower = +inf, upper = -inf.
+
 // ---- light: what one light does at each point, before shadows and colours ----
 
 typedef struct glint_light_args {
@@ -284,6 +294,7 @@ typedef struct glint_stages {
         void (*cast_bundle)(const glint_cast_args *args);
         void (*cast_rays)(const glint_cast_args *args);
         void (*surface)(const glint_surface_args *args);
+        void (*bounds)(glint_bounds_args *args);
         void (*light)(const glint_light_args *args);
         void (*occlude)(const glint_occlude_args *args);
     } geometry[2]; ///< by glint_precision: double, float

@@ -1,0 +1,187 @@
+#include "engine/base/status.h"
+#include "engine/plan.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define CALLERS_MAX 8 ///< objects named for one effect; the rest are counted
+
+typedef struct explainer {
+    glint_plan *plan;
+    glint_error *error;
+    glint_status status;
+    const char *effect; ///< the one being collected
+    size_t callers;
+} explainer;
+
+static void add_line(explainer *e, const char *effect, const char *caller)
+{
+    glint_plan *plan = e->plan;
+    if (e->status)
+        return;
+    if (plan->effect_count == plan->effect_capacity) {
+        const size_t capacity = plan->effect_capacity ? 2 * plan->effect_capacity : 16;
+        glint_text_line *lines = realloc(plan->lines, capacity * sizeof *lines);
+        if (!lines) {
+            e->status = glint_fail_nomem(e->error);
+            return;
+        }
+        plan->lines = lines;
+        plan->effect_capacity = capacity;
+    }
+    glint_text_line *line = &plan->lines[plan->effect_count++];
+    snprintf(line->effect, sizeof line->effect, "%s", effect);
+    snprintf(line->caller, sizeof line->caller, "%s", caller);
+}
+
+static void begin(explainer *e, const char *effect)
+{
+    e->effect = effect;
+    e->callers = 0;
+}
+
+static void called_by(explainer *e, const char *caller)
+{
+    if (e->callers++ < CALLERS_MAX)
+        add_line(e, e->effect, caller);
+}
+
+static void end(explainer *e)
+{
+    if (e->callers <= CALLERS_MAX)
+        return;
+    char rest[64];
+    snprintf(rest, sizeof rest, "and %zu more", e->callers - CALLERS_MAX);
+    add_line(e, e->effect, rest);
+}
+
+typedef bool light_test(const glint_light_desc *desc);
+
+static bool gives(const glint_light_desc *d)
+{
+    const double *diffuse = d->has_diffuse ? d->diffuse : d->color, *specular = d->has_specular ? d->specular : d->color;
+    bool any = false;
+    for (int c = 0; c < 3; c++)
+        any = any || diffuse[c] > 0 || specular[c] > 0;
+    return any && d->intensity > 0;
+}
+static bool gives_ambient(const glint_light_desc *d)
+{
+    return d->intensity > 0 && (d->ambient[0] > 0 || d->ambient[1] > 0 || d->ambient[2] > 0);
+}
+static bool is_point(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_POINT; }
+static bool is_directional(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_DIRECTIONAL; }
+static bool casts_shadows(const glint_light_desc *d) { return gives(d) && d->shadows; }
+static bool falls_off(const glint_light_desc *d)
+{
+    const double *a = d->attenuation;
+    return is_point(d) && (a[0] != 1 || a[1] != 0 || a[2] != 0);
+}
+
+static void lights(explainer *e, const glint_scene *scene, const char *effect, light_test *test)
+{
+    char caller[2 * GLINT_NAME_SIZE];
+    begin(e, effect);
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        if (!test(desc))
+            continue;
+        glint_describe_light(desc, i + 1, caller, sizeof caller);
+        called_by(e, caller);
+    }
+    end(e);
+}
+
+static void highlights(explainer *e, const glint_scene *scene, const char *effect, glint_model model)
+{
+    glint_list seen = { 0 };
+    char owner[2 * GLINT_NAME_SIZE], caller[4 * GLINT_NAME_SIZE];
+    begin(e, effect);
+    for (size_t i = 0; i < scene->shapes.count && !e->status; i++) {
+        const glint_shape *shape = glint_scene_shape(scene, i);
+        for (size_t m = 0; m < shape->material_count && !e->status; m++) {
+            glint_material *material = shape->materials[m];
+            const double *ks = material->desc.specular;
+            if (material->desc.model != model || !(ks[0] > 0 || ks[1] > 0 || ks[2] > 0) ||
+                glint_list_find(&seen, material) < seen.count)
+                continue;
+            e->status = glint_list_add(&seen, material, e->error);
+            glint_describe_shape(&shape->desc, i + 1, owner, sizeof owner);
+            glint_describe_material(&material->desc, owner, caller, sizeof caller);
+            called_by(e, caller);
+        }
+    }
+    end(e);
+    glint_list_free(&seen);
+}
+
+static void one(explainer *e, bool called, const char *effect, const char *format, ...)
+{
+    if (!called)
+        return;
+    char caller[2 * GLINT_NAME_SIZE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(caller, sizeof caller, format, args);
+    va_end(args);
+    add_line(e, effect, caller);
+}
+
+static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
+
+static void list_effects(explainer *e, const glint_scene *scene)
+{
+    const glint_plan *plan = e->plan;
+    const bool surfaces = plan->prim_count > 0;
+    one(e, plan->camera.orthographic, "orthographic projection", "camera");
+    one(e, any(scene->desc.background), "background", "scene.background");
+    if (surfaces) {
+        one(e, any(scene->desc.ambient), "ambient light", "scene.ambient");
+        lights(e, scene, "ambient light", gives_ambient);
+        lights(e, scene, "point light", is_point);
+        lights(e, scene, "directional light", is_directional);
+        lights(e, scene, "distance fall-off", falls_off);
+        lights(e, scene, "hard shadow", casts_shadows);
+    }
+    if (plan->blinn_end) {
+        highlights(e, scene, "Phong highlight", GLINT_MODEL_PHONG);
+        highlights(e, scene, "Blinn-Phong highlight", GLINT_MODEL_BLINN_PHONG);
+    }
+    one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
+    one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
+    for (int pass = GLINT_PASS_BACKGROUND; pass < GLINT_PASS_COUNT; pass++)
+        one(e, plan->desc.passes >> pass & 1, "pass", "passes: %s", glint_pass_name((glint_pass)pass));
+}
+
+static void list_stages(glint_plan *plan)
+{
+    static const char *const why[GLINT_STAGE_COUNT] = {
+        "rays of each sample", "nearest object and distance of each ray", "point, normal and material of each hit",
+        "direction, distance and highlight angle of each light", "which points each shadow-casting light reaches",
+        "ambient, diffuse and specular terms", "mean of samples and lights", "light to 8 or 16-bit codes",
+    };
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (!plan->runs[id])
+            continue;
+        glint_stage_info *stage = &plan->stage_list[plan->stage_count++];
+        stage->name = glint_stage_names[id];
+        stage->why = why[id];
+        glint_key_hex(plan->keys[id], stage->key);
+    }
+}
+
+glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    explainer e = { .plan = plan, .error = error };
+    list_stages(plan);
+    list_effects(&e, scene);
+    if (e.status)
+        return e.status;
+    plan->effects = malloc((plan->effect_count + 1) * sizeof *plan->effects);
+    if (!plan->effects)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < plan->effect_count; i++)
+        plan->effects[i] = (glint_effect){ plan->lines[i].effect, plan->lines[i].caller };
+    return GLINT_OK;
+}

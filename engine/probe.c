@@ -1,0 +1,207 @@
+/// One ray, one reflection: the answers of the frame's own kernels for people who debug, and for tests.
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan.h"
+
+#include <stdlib.h>
+
+/// A group of which lane 0 alone is used.
+typedef struct lane_group {
+    _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP], normal[3][GLINT_GROUP];
+    _Alignas(64) double t[GLINT_GROUP];
+    _Alignas(64) float unit[3][GLINT_GROUP];
+    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP], coincident[GLINT_GROUP], side[GLINT_GROUP];
+    _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
+    _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
+    uint16_t active, hits, lit;
+} lane_group;
+
+static glint_status choose(const glint_stages **out, glint_error *error)
+{
+    const char *asked;
+    bool unknown;
+    *out = glint_stages_select(NULL, &asked, &unknown);
+    if (*out)
+        return GLINT_OK;
+    return glint_fail(error, unknown ? GLINT_ERR_INVALID : GLINT_ERR_UNSUPPORTED, "GLINT_ISA: '%s' cannot be used", asked);
+}
+
+static void cast_lane(const glint_stages *stages, const glint_plan *plan, const uint32_t *candidates, lane_group *g)
+{
+    glint_cast_args cast = { .group_count = 1,
+                             .active = &g->active,
+                             .prims = plan->prims,
+                             .bundle = plan->bundle,
+                             .candidates = candidates,
+                             .candidate_count = plan->prim_count,
+                             .t = g->t,
+                             .prim = g->prim,
+                             .hits = &g->hits };
+    glint_surface_args surface = { .group_count = 1,
+                                   .hits = &g->hits,
+                                   .prim = g->prim,
+                                   .prims = plan->prims,
+                                   .bundle = plan->bundle,
+                                   .t = g->t,
+                                   .material = g->material,
+                                   .coincident = g->coincident,
+                                   .side = g->side };
+    vec_copy(surface.eye, plan->camera.eye);
+    for (int c = 0; c < 3; c++) {
+        cast.origin[c] = surface.origin[c] = g->origin[c];
+        cast.direction[c] = surface.direction[c] = g->direction[c];
+        cast.unit[c] = g->unit[c];
+        surface.point[c] = g->point[c];
+        surface.normal[c] = g->normal[c];
+    }
+    stages->geometry[GLINT_DOUBLE].cast_bundle(&cast);
+    if (g->hits & 1)
+        stages->geometry[GLINT_DOUBLE].surface(&surface);
+}
+
+/// The parts of a plan that a ray needs, without a camera.
+static glint_status plan_for_ray(const glint_scene *scene, const double origin[3], glint_plan *plan, uint32_t **candidates,
+                                 glint_error *error)
+{
+    glint_list materials = { 0 };
+    vec_copy(plan->camera.eye, origin);
+    glint_status status = glint_plan_prims(plan, scene, &materials, error);
+    glint_list_free(&materials);
+    if (status)
+        return status;
+    plan->bundle = glint_alloc(plan->prim_count, sizeof *plan->bundle);
+    *candidates = glint_alloc(plan->prim_count, sizeof **candidates);
+    if (!plan->bundle || !*candidates)
+        return glint_fail_nomem(error);
+    glint_plan_bundle(plan, origin, plan->bundle, NULL);
+    for (uint32_t i = 0; i < plan->prim_count; i++)
+        (*candidates)[i] = i;
+    return GLINT_OK;
+}
+
+static void read_hit(const glint_scene *scene, const glint_plan *plan, const lane_group *g, double scale, glint_hit *out)
+{
+    const uint32_t id = g->prim[0], shape = plan->prim_shape[id];
+    uint32_t first = id;
+    while (first > 0 && plan->prim_shape[first - 1] == shape)
+        first--;
+    *out = (glint_hit){ .t = g->t[0] * scale, .shape = glint_scene_shape(scene, shape), .element = id - first };
+    const double turn = g->side[0] & GLINT_SIDE_BACK ? -1 : 1;
+    for (int c = 0; c < 3; c++) {
+        out->point[c] = g->point[c][0];
+        out->normal[c] = g->normal[c][0] * turn;
+    }
+}
+
+glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
+                              glint_hit *out, glint_error *error)
+{
+    const glint_stages *stages;
+    glint_status status = glint_check_vector("origin", origin, error);
+    if (!status)
+        status = glint_check_direction("direction", direction, error);
+    if (!status)
+        status = choose(&stages, error);
+    if (status)
+        return status;
+    double scaled[3], unit[3];
+    const double scale = vec_rescale(scaled, direction);
+    vec_normalize(unit, direction);
+    lane_group *g = glint_alloc(1, sizeof *g);
+    glint_plan *plan = calloc(1, sizeof *plan);
+    uint32_t *candidates = NULL;
+    status = g && plan ? plan_for_ray(scene, origin, plan, &candidates, error) : glint_fail_nomem(error);
+    if (!status) {
+        g->active = 1;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            for (int c = 0; c < 3; c++) {
+                g->origin[c][i] = origin[c];
+                g->direction[c][i] = scaled[c];
+                g->unit[c][i] = (float)unit[c];
+            }
+        cast_lane(stages, plan, candidates, g);
+        *hit = g->hits & 1;
+        if (*hit)
+            read_hit(scene, plan, g, scale, out);
+    }
+    free(candidates);
+    glint_plan_destroy(plan);
+    free(g);
+    return status;
+}
+
+static void evaluate_lane(const glint_stages *stages, const glint_material_desc *desc, const double to_light[3],
+                          lane_group *g)
+{
+    static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
+    glint_shade_material material;
+    glint_shade_material_init(&material, desc, black);
+    glint_light_args light = { .group_count = 1,
+                               .hits = &g->hits,
+                               .material = g->material,
+                               .side = g->side,
+                               .directional = true,
+                               .scale = 1,
+                               .phong_end = material.has_specular && desc->model == GLINT_MODEL_PHONG,
+                               .blinn_end = material.has_specular,
+                               .lit = &g->lit,
+                               .cosine = g->cosine,
+                               .log2_specular = g->log2_specular };
+    vec_copy(light.position, to_light);
+    glint_shade_light strength = { .lit = &g->lit, .cosine = g->cosine, .log2_specular = g->log2_specular };
+    vec_copy(strength.diffuse, white);
+    vec_copy(strength.specular, white);
+    glint_shade_args shade = { .group_count = 1,
+                               .active = &g->active,
+                               .hits = &g->hits,
+                               .material = g->material,
+                               .materials = &material,
+                               .has_specular = material.has_specular,
+                               .first = true,
+                               .lights = &strength,
+                               .light_count = 1 };
+    for (int c = 0; c < 3; c++) {
+        light.point[c] = g->point[c];
+        light.normal[c] = g->normal[c];
+        light.direction[c] = g->direction[c];
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            shade.sum[k][c] = g->sum[k][c];
+    }
+    stages->geometry[GLINT_DOUBLE].light(&light);
+    stages->shade(&shade);
+}
+
+glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
+                                     const double to_eye[3], glint_reflection *out, glint_error *error)
+{
+    const glint_stages *stages;
+    glint_status status = glint_check_direction("normal", normal, error);
+    if (!status)
+        status = glint_check_direction("to_light", to_light, error);
+    if (!status)
+        status = glint_check_direction("to_eye", to_eye, error);
+    if (!status)
+        status = choose(&stages, error);
+    if (status)
+        return status;
+    double n[3], l[3], v[3];
+    vec_normalize(n, normal);
+    vec_normalize(l, to_light);
+    vec_normalize(v, to_eye);
+    const double turn = vec_dot(n, v) < 0 ? -1 : 1;
+    lane_group *g = glint_alloc(1, sizeof *g);
+    if (!g)
+        return glint_fail_nomem(error);
+    g->active = g->hits = 1;
+    for (int c = 0; c < 3; c++) {
+        g->normal[c][0] = n[c] * turn;
+        g->direction[c][0] = -v[c];
+    }
+    evaluate_lane(stages, &material->desc, l, g);
+    for (int c = 0; c < 3; c++) {
+        out->diffuse[c] = g->sum[GLINT_TERM_DIFFUSE][c][0];
+        out->specular[c] = g->sum[GLINT_TERM_SPECULAR][c][0];
+    }
+    free(g);
+    return GLINT_OK;
+}

@@ -1,0 +1,211 @@
+/// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
+#include "engine/base/pool.h"
+#include "engine/base/status.h"
+#include "engine/image/image.h"
+#include "engine/image/tone.h"
+#include "engine/tile.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <time.h>
+
+struct glint_renderer {
+    glint_pool *pool;
+    const glint_stages *stages;
+    bool time_stages;
+    atomic_bool cancelled;
+    atomic_size_t tiles_done;
+    atomic_size_t tile_count;
+    glint_tile **tiles; ///< a tile's working memory for each worker
+};
+
+/// One call of glint_render.
+typedef struct frame {
+    glint_renderer *renderer;
+    glint_tile_frame shared;
+    uint32_t across;
+} frame;
+
+glint_renderer_desc glint_renderer_desc_default(void)
+{
+    return (glint_renderer_desc){ 0 };
+}
+
+static glint_status choose_stages(const char *isa, const glint_stages **out, glint_error *error)
+{
+    const char *asked;
+    bool unknown;
+    *out = glint_stages_select(isa, &asked, &unknown);
+    if (*out)
+        return GLINT_OK;
+    if (unknown)
+        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_ISA: one of ref, sse2, avx2, avx512 expected, got '%s'", asked);
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_ISA: this machine lacks '%s'", asked);
+}
+
+glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
+{
+    glint_renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer)
+        return glint_fail_nomem(error);
+    renderer->time_stages = desc->time_stages;
+    glint_status status = choose_stages(desc->isa, &renderer->stages, error);
+    const int threads = desc->threads ? desc->threads : glint_pool_processors();
+    if (!status)
+        status = glint_pool_create(threads, &renderer->pool, error);
+    if (!status && !(renderer->tiles = calloc((size_t)threads, sizeof *renderer->tiles)))
+        status = glint_fail_nomem(error);
+    for (int i = 0; i < threads && !status; i++)
+        if (!(renderer->tiles[i] = glint_alloc(1, sizeof **renderer->tiles)))
+            status = glint_fail_nomem(error);
+    if (status) {
+        glint_renderer_destroy(renderer);
+        return status;
+    }
+    *out = renderer;
+    return GLINT_OK;
+}
+
+void glint_renderer_destroy(glint_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++) {
+        if (renderer->tiles[i])
+            free(renderer->tiles[i]->candidates);
+        free(renderer->tiles[i]);
+    }
+    free(renderer->tiles);
+    glint_pool_destroy(renderer->pool);
+    free(renderer);
+}
+
+const char *glint_renderer_isa(const glint_renderer *renderer)
+{
+    return renderer->stages->name;
+}
+
+int glint_renderer_threads(const glint_renderer *renderer)
+{
+    return glint_pool_threads(renderer->pool);
+}
+
+void glint_renderer_cancel(glint_renderer *renderer)
+{
+    atomic_store(&renderer->cancelled, true);
+}
+
+double glint_renderer_progress(const glint_renderer *renderer)
+{
+    const size_t count = atomic_load(&renderer->tile_count);
+    return count ? (double)atomic_load(&renderer->tiles_done) / (double)count : 0;
+}
+
+static void render_item(void *context, size_t index, int worker)
+{
+    frame *f = context;
+    glint_renderer *renderer = f->renderer;
+    if (!atomic_load_explicit(&renderer->cancelled, memory_order_relaxed))
+        glint_tile_render(renderer->tiles[worker], &f->shared, (uint32_t)(index % f->across),
+                          (uint32_t)(index / f->across));
+    atomic_fetch_add(&renderer->tiles_done, 1);
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+/// Gives every worker candidate lists long enough for this plan, and clears its counts.
+static glint_status prepare_tiles(glint_renderer *renderer, const glint_plan *plan, glint_error *error)
+{
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
+        glint_tile *tile = renderer->tiles[i];
+        tile->counts = (glint_tile_counts){ 0 };
+        if (tile->candidate_capacity >= plan->prim_count)
+            continue;
+        free(tile->candidates);
+        tile->candidate_capacity = 0;
+        tile->candidates = glint_alloc(plan->prim_count, sizeof *tile->candidates);
+        if (!tile->candidates)
+            return glint_fail_nomem(error);
+        tile->candidate_capacity = plan->prim_count;
+    }
+    return GLINT_OK;
+}
+
+static void collect_stats(glint_renderer *renderer, const glint_plan *plan, double wall_ms, glint_frame_stats *stats)
+{
+    glint_tile_counts sum = { 0 };
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
+        const glint_tile_counts *part = &renderer->tiles[i]->counts;
+        for (int k = 0; k < GLINT_STAGE_COUNT; k++)
+            sum.ns[k] += part->ns[k];
+        sum.tile_ns += part->tile_ns;
+        sum.primary += part->primary;
+        sum.shadow += part->shadow;
+        sum.clipped += part->clipped;
+        sum.nonfinite += part->nonfinite;
+    }
+    const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
+    *stats = (glint_frame_stats){ .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
+    stats->rays = (glint_ray_counts){ .primary = sum.primary, .shadow = sum.shadow };
+    stats->clipped = sum.clipped;
+    stats->nonfinite = sum.nonfinite;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (!plan->runs[id])
+            continue;
+        stats->stage_name[stats->stage_count] = glint_stage_names[id];
+        if (renderer->time_stages)
+            stats->stage_ms[stats->stage_count] = (double)sum.ns[id] * 1e-6;
+        stats->stage_count++;
+    }
+}
+
+static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, glint_tone_table *table,
+                        glint_frame_stats *stats, glint_error *error)
+{
+    glint_status status = prepare_tiles(renderer, plan, error);
+    if (status)
+        return status;
+    frame f = { .renderer = renderer,
+                .shared = { .plan = plan,
+                            .stages = renderer->stages,
+                            .image = image,
+                            .tone_table = table,
+                            .time_stages = renderer->time_stages } };
+    f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+    atomic_store(&renderer->tiles_done, 0);
+    atomic_store(&renderer->tile_count, (size_t)f.across * down);
+    const double start = now_ms();
+    glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
+    if (stats)
+        collect_stats(renderer, plan, now_ms() - start, stats);
+    if (atomic_load(&renderer->cancelled))
+        return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
+    return GLINT_OK;
+}
+
+glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                          glint_error *error)
+{
+    const glint_render_desc *desc = &plan->desc;
+    glint_image *image = NULL;
+    glint_tone_table *table = NULL;
+    glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
+                                             desc->codes ? &desc->tone : NULL, &image, error);
+    if (!status && desc->codes)
+        status = glint_tone_table_create(&desc->tone, &table, error);
+    if (!status)
+        status = run(renderer, plan, image, table, stats, error);
+    glint_tone_table_destroy(table);
+    if (status) {
+        glint_image_release(image);
+        return status;
+    }
+    *out = image;
+    return GLINT_OK;
+}

@@ -1,0 +1,69 @@
+/// One tile's walk through the stages of a plan. Internal.
+#ifndef GLINT_TILE_H
+#define GLINT_TILE_H
+
+#include "engine/image/image.h"
+#include "engine/image/tone.h"
+#include "engine/plan.h"
+
+/// What one worker counted in one frame.
+typedef struct glint_tile_counts {
+    uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
+    uint64_t primary, shadow, clipped, nonfinite;
+} glint_tile_counts;
+
+/// What all tiles of a frame share.
+typedef struct glint_tile_frame {
+    const glint_plan *plan;
+    const glint_stages *stages;
+    glint_image *image;
+    const glint_tone_table *tone_table; ///< NULL: no codes
+    bool time_stages;
+} glint_tile_frame;
+
+/// What one light left in a tile.
+typedef struct glint_tile_light {
+    _Alignas(64) float cosine[GLINT_TILE_SAMPLES];
+    _Alignas(64) float attenuation[GLINT_TILE_SAMPLES];
+    _Alignas(64) float log2_specular[GLINT_TILE_SAMPLES];
+    _Alignas(64) float visible[GLINT_TILE_SAMPLES];
+    uint16_t lit[GLINT_TILE_GROUPS];
+} glint_tile_light;
+
+/// A worker's memory for one tile. Arrays of real are as long as doubles need.
+typedef struct glint_tile {
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double t[GLINT_TILE_SAMPLES];
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float unit[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t coincident[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t side[GLINT_TILE_SAMPLES];
+    _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t rgb[GLINT_TILE_SAMPLES];
+    glint_tile_light lights[GLINT_LIGHT_CHUNK];
+    uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS];
+    double lower[3], upper[3]; ///< box around the points
+
+    uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
+    uint32_t group_count, groups_across;
+    uint32_t *candidates;
+    uint32_t candidate_count, candidate_capacity;
+    uint64_t clock; ///< end of the last timed stage, ns
+    glint_tile_counts counts;
+} glint_tile;
+
+/// Renders tile (column, row) into the frame's image, and adds to tile->counts.
+void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
+
+/// tile_output.c: puts the finished tile into the image's planes and codes. `first`: of sample 0, before shading.
+void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
+
+#endif

@@ -1,0 +1,116 @@
+#include "engine/tile.h"
+#include "engine/base/vec.h"
+
+#include <string.h>
+
+/// Copies a group-ordered array of a tile into an image plane.
+static void store_plane(const glint_tile *tile, const float *groups, float *plane, int stride)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
+        const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
+        const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
+        for (uint32_t r = 0; r < rows; r++) {
+            float *to = plane + (size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x;
+            memcpy(to, groups + g * GLINT_GROUP + 4 * r, columns * sizeof *to);
+        }
+    }
+}
+
+/// `groups`: the channels one after the other.
+static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass,
+                       const float *groups)
+{
+    if (!(frame->plan->desc.passes >> pass & 1))
+        return;
+    for (int c = 0; c < glint_pass_channels(pass); c++)
+        store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
+}
+
+static double real_at(const void *array, glint_precision precision, uint32_t i)
+{
+    return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
+
+void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const uint32_t wanted = plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
+    if (!wanted)
+        return;
+    const glint_precision precision = plan->desc.precision;
+    float depth[GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES], id[GLINT_TILE_SAMPLES];
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = tile->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+        depth[i] = HUGE_VALF;
+        id[i] = hit ? (float)(tile->prim[i] + 1) : 0;
+        double d[3] = { 0 };
+        for (int c = 0; c < 3; c++) {
+            normal[c][i] = hit ? (float)real_at(tile->normal[c], precision, i) : 0;
+            if (hit)
+                d[c] = real_at(tile->direction[c], precision, i);
+        }
+        if (hit)
+            depth[i] = (float)(real_at(tile->t, precision, i) * sqrt(vec_dot(d, d)));
+    }
+    store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
+    store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
+    store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
+}
+
+void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
+{
+    store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);
+}
+
+/// Three bytes a pixel from the kernel's four.
+static void store_codes8(const glint_tile *tile, uint8_t *codes, int stride)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
+        const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
+        const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
+        for (uint32_t r = 0; r < rows; r++) {
+            const uint32_t *p = tile->rgb + g * GLINT_GROUP + 4 * r;
+            uint8_t packed[12] = { 0 };
+            for (int i = 0; i < 4; i++)
+                for (int c = 0; c < 3; c++)
+                    packed[3 * i + c] = (uint8_t)(p[i] >> 8 * c);
+            memcpy(codes + 3 * ((size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x), packed, 3 * columns);
+        }
+    }
+}
+
+static void tone16(glint_tile *tile, const glint_tile_frame *frame)
+{
+    float row[3][GLINT_TILE_WIDTH];
+    uint16_t *codes = frame->image->codes;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        for (uint32_t x = 0; x < tile->width; x++)
+            for (int c = 0; c < 3; c++)
+                row[c][x] = tile->beauty[c][((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4];
+        uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
+        glint_tone_row16(frame->tone_table, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
+                         &tile->counts.nonfinite);
+    }
+}
+
+void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (frame->plan->desc.tone.bits == 16) {
+        tone16(tile, frame);
+        return;
+    }
+    glint_tone_args args = { .group_count = tile->group_count,
+                             .active = tile->active,
+                             .table = frame->tone_table->lut,
+                             .rgb = tile->rgb,
+                             .clipped = &tile->counts.clipped,
+                             .nonfinite = &tile->counts.nonfinite };
+    for (int c = 0; c < 3; c++)
+        args.beauty[c] = tile->beauty[c];
+    frame->stages->tone(&args);
+    store_codes8(tile, frame->image->codes, frame->image->width);
+}
