@@ -22,7 +22,8 @@ typedef enum glintL_kind {
     GLINTL_COLOR,   ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
     GLINTL_ENUM,    ///< enum; `names` spells its values in order, ends with NULL
     GLINTL_STRING,  ///< char[GLINT_NAME_SIZE]
-    GLINTL_OBJECT   ///< a glintL_box of the type `names[0]`
+    GLINTL_OBJECT,  ///< a glintL_box of the type `names[0]`
+    GLINTL_OTHER    ///< known by name only; the caller reads it
 } glintL_kind;
 
 typedef struct glintL_field {
@@ -52,6 +53,16 @@ const glintL_field *glintL_find_field(const glintL_field *fields, const char *na
 void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
 void glintL_read_color(lua_State *L, int index, const char *path, double out[3]);
 double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, NaN and infinity too
+/// Three finite numbers: a vector or an array of exactly three; `expected` says so in the message.
+void glintL_read_three(lua_State *L, int index, const char *path, const char *expected, double out[3]);
+/// Which of `best` (NULL: none yet) and `candidate` the misspelt `name` is nearer to; NULL when neither is near.
+const char *glintL_nearer(const char *name, const char *best, const char *candidate);
+/// Raises "<path>.<name>: no such field", with "; did you mean '...'?" unless `near` is NULL.
+int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near);
+/// The value at `index` for messages when it is where a field's name should be: raises.
+int glintL_bad_key(lua_State *L, const char *path, int index);
+/// Raises "<path>: <expected> expected, got <the value at index>".
+int glintL_refuse(lua_State *L, int index, const char *path, const char *expected);
 /// Pushes the value at `index` as messages spell it: 5, true, string "64", sphere, closed material.
 const char *glintL_push_spelling(lua_State *L, int index);
 /// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
@@ -129,11 +140,25 @@ typedef struct glintL_class {
 
 #define GLINTL_DESC_SIZE 1024
 
+/// The class of a type, by the metatable glintL_open_class made.
+const glintL_class *glintL_class_of(lua_State *L, const char *type);
+/// Pushes the table of the registry at `key`, an address; made when it is not there.
+void glintL_push_table(lua_State *L, const void *key);
+
+// ---- class.c: fields and metatables of boxes ----
+
 /// Makes the metatable of a class.
 void glintL_open_class(lua_State *L, const glintL_class *type);
 /// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
-/// `type` may be NULL; what has no fields of its own passes a list that ends at once.
-void glintL_list_variant(lua_State *L, const glintL_variant *variant, const glintL_class *type);
+/// `methods` may be NULL.
+void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
+/// The same for a variant of a class, with what every object has.
+void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
+/// What glint._fields() returns: variant -> name -> "field" or "method".
+void glintL_push_listed(lua_State *L);
+/// Pushes what messages call the object at `index` ("plane", "closed shape"); false, and nothing pushed, when it is
+/// not of a class.
+bool glintL_push_object_name(lua_State *L, int index);
 
 /// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
 void glintL_open_vector(lua_State *L);
@@ -147,6 +172,9 @@ void glintL_open_math(lua_State *L);
 void glintL_open_params(lua_State *L);
 void glintL_open_animation(lua_State *L); ///< animation and sweep
 int luaopen_glint(lua_State *L);
+
+/// The constructor glint.spheres, of spheres.c.
+int glintL_new_spheres(lua_State *L);
 
 /// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
 /// Works on anything with __newindex; raises as the assignment would.

@@ -1,0 +1,130 @@
+// glint.material
+#include <stdatomic.h>
+#include <string.h>
+
+#include "bindings/glintL.h"
+
+typedef glint_material_desc desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, member)
+
+static const char *const MODELS[] = {"phong", "blinn_phong", "lambert", NULL};
+
+static const glintL_field FIELDS[] = {
+    {.name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS},
+    {.name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient)},
+    {.name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse)},
+    {.name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular)},
+    {.name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess)},
+    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)},
+    {.name = NULL},
+};
+
+static const glintL_variant MATERIAL = {.name = "material", .fields = FIELDS};
+
+static const glintL_variant *variant(const void *object)
+{
+    (void)object;
+    return &MATERIAL;
+}
+
+static void get(const void *object, void *desc)
+{
+    memcpy(desc, glint_material_get(object), sizeof(desc_type));
+}
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    return glint_material_set(object, desc, error);
+}
+
+static void *retain(void *object)
+{
+    return glint_material_retain(object);
+}
+
+static void release(void *object)
+{
+    glint_material_release(object);
+}
+
+static void follow(void *desc)
+{
+    desc_type *d = desc;
+    if (!d->has_ambient)
+        memcpy(d->ambient, d->diffuse, sizeof d->ambient);
+    d->has_ambient = true;
+}
+
+// kd ranges over 0 .. 1; more is allowed, and warned about once.
+static void accepted(lua_State *L, const glintL_field *field, const void *desc)
+{
+    static atomic_flag warned = ATOMIC_FLAG_INIT;
+    const double *kd = ((const desc_type *)desc)->diffuse;
+    if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && !atomic_flag_test_and_set(&warned))
+        glintL_warn(L, "material.diffuse above 1: the surface gives off more light than it gets");
+}
+
+static int evaluate(lua_State *L)
+{
+    typedef struct geometry {
+        double normal[3], to_light[3], to_eye[3];
+    } geometry;
+    static const glintL_field fields[] = {
+        {.name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true},
+        {.name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true},
+        {.name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true},
+        {.name = NULL},
+    };
+    geometry at;
+    glint_reflection out;
+    glint_error error;
+    glintL_check_object(L, 1, GLINTL_MATERIAL);
+    glintL_read_table(L, 2, "evaluate", fields, &at, false);
+    const glint_material *material = glintL_check_object(L, 1, GLINTL_MATERIAL); // again: reading may run finalizers
+    glintL_check_status(L, "evaluate", &error,
+                        glint_material_evaluate(material, at.normal, at.to_light, at.to_eye, &out, &error));
+    lua_createtable(L, 0, 2);
+    glintL_push_vector(L, out.diffuse);
+    lua_setfield(L, -2, "diffuse");
+    glintL_push_vector(L, out.specular);
+    lua_setfield(L, -2, "specular");
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = {{"evaluate", evaluate}, {NULL, NULL}};
+
+static const glintL_class CLASS = {
+    .type = GLINTL_MATERIAL,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .follow = follow,
+    .accepted = accepted,
+    .methods = METHODS,
+};
+
+static int new_material(lua_State *L)
+{
+    desc_type desc = glint_material_desc_default();
+    glint_material *material = NULL;
+    glint_error error;
+    glintL_box *box = glintL_new_box(L, GLINTL_MATERIAL);
+    glintL_read_table(L, 1, "material", FIELDS, &desc, false);
+    glintL_check_status(L, "material", &error, glint_material_create(&desc, &material, &error));
+    box->object = material;
+    glintL_remember(L, material);
+    accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
+    return 1;
+}
+
+void glintL_open_material(lua_State *L)
+{
+    glintL_open_class(L, &CLASS);
+    glintL_list_object(L, &MATERIAL, &CLASS);
+    lua_pushcfunction(L, new_material);
+    lua_setfield(L, -2, "material");
+}
