@@ -9,7 +9,7 @@
 typedef struct lane_group {
     _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP], normal[3][GLINT_GROUP];
     _Alignas(64) double t[GLINT_GROUP];
-    _Alignas(64) float unit[3][GLINT_GROUP];
+    _Alignas(64) float direction_f[3][GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP], coincident[GLINT_GROUP], side[GLINT_GROUP];
     _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
@@ -50,7 +50,7 @@ static void cast_lane(const glint_stages *stages, const glint_plan *plan, const 
     for (int c = 0; c < 3; c++) {
         cast.origin[c] = surface.origin[c] = g->origin[c];
         cast.direction[c] = surface.direction[c] = g->direction[c];
-        cast.unit[c] = g->unit[c];
+        cast.direction_f[c] = g->direction_f[c];
         surface.point[c] = g->point[c];
         surface.normal[c] = g->normal[c];
     }
@@ -104,9 +104,8 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
         status = choose(&stages, error);
     if (status)
         return status;
-    double scaled[3], unit[3];
+    double scaled[3];
     const double scale = vec_rescale(scaled, direction);
-    vec_normalize(unit, direction);
     lane_group *g = glint_alloc(1, sizeof *g);
     glint_plan *plan = calloc(1, sizeof *plan);
     uint32_t *candidates = NULL;
@@ -117,7 +116,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
             for (int c = 0; c < 3; c++) {
                 g->origin[c][i] = origin[c];
                 g->direction[c][i] = scaled[c];
-                g->unit[c][i] = (float)unit[c];
+                g->direction_f[c][i] = (float)scaled[c];
             }
         cast_lane(stages, plan, candidates, g);
         *hit = g->hits & 1;

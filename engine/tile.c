@@ -32,12 +32,11 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
     tile->groups_across = (tile->width + 3) / 4;
     tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->active[g] = 0;
-        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-            const bool inside = 4 * (g % tile->groups_across) + i % 4 < tile->width &&
-                                4 * (g / tile->groups_across) + i / 4 < tile->height;
-            tile->active[g] |= (uint16_t)(inside << i);
-        }
+        const uint32_t columns = tile->width - 4 * (g % tile->groups_across);
+        const uint32_t rows = tile->height - 4 * (g / tile->groups_across);
+        const uint32_t in_row = columns < 4 ? (1u << columns) - 1 : 15;
+        const uint32_t in_rows = rows < 4 ? (1u << 4 * rows) - 1 : 0xffff;
+        tile->active[g] = (uint16_t)(in_row * 0x1111 & in_rows);
     }
 }
 
@@ -94,7 +93,7 @@ static void make_rays(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
-        args.unit[c] = tile->unit[c];
+        args.direction_f[c] = tile->direction_f[c];
     }
     frame->stages->geometry[plan->desc.precision].camera(&args);
     lap(tile, frame, GLINT_STAGE_CAMERA);
@@ -119,7 +118,7 @@ static bool cast(glint_tile *tile, const glint_tile_frame *frame)
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
-        args.unit[c] = tile->unit[c];
+        args.direction_f[c] = tile->direction_f[c];
     }
     if (plan->bundle)
         stages->cast_bundle(&args);

@@ -37,7 +37,7 @@ typedef struct glint_tile {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) float unit[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float direction_f[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t coincident[GLINT_TILE_SAMPLES];

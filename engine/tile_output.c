@@ -1,6 +1,7 @@
 #include "engine/tile.h"
 #include "engine/base/vec.h"
 
+#include <endian.h>
 #include <string.h>
 
 /// Copies a group-ordered array of a tile into an image plane.
@@ -74,11 +75,17 @@ static void store_codes8(const glint_tile *tile, uint8_t *codes, int stride)
         const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
         for (uint32_t r = 0; r < rows; r++) {
             const uint32_t *p = tile->rgb + g * GLINT_GROUP + 4 * r;
-            uint8_t packed[12] = { 0 };
-            for (int i = 0; i < 4; i++)
-                for (int c = 0; c < 3; c++)
-                    packed[3 * i + c] = (uint8_t)(p[i] >> 8 * c);
-            memcpy(codes + 3 * ((size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x), packed, 3 * columns);
+            uint8_t *to = codes + 3 * ((size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x);
+            const uint64_t first = htole64(p[0] | (uint64_t)p[1] << 24 | (uint64_t)p[2] << 48);
+            const uint32_t last = htole32(p[2] >> 16 | p[3] << 8);
+            if (columns == 4) {
+                memcpy(to, &first, 8);
+                memcpy(to + 8, &last, 4);
+            } else {
+                memcpy(to, &first, columns == 1 ? 3 : columns == 2 ? 6 : 8);
+                if (columns == 3)
+                    memcpy(to + 8, &last, 1);
+            }
         }
     }
 }

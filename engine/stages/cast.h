@@ -44,14 +44,13 @@ static inline rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim
     return rm_and(r_le(r_set(GLINT_PARALLEL) * a, nd * nd), r_lt(r_set(0), *t));
 }
 
-/// Which lanes of a group come near the sphere: `f` from its centre to the ray's origin, |l| the ray's distance.
-/// Written so that NaN keeps the lane.
-static inline unsigned R(near_lanes)(const vf f[3], const float *unit[3], size_t at, vf limit2)
+/// Which lanes of a group come near the sphere, `f` from its centre to the ray's origin: the distance of the ray is
+/// |f x d| / |d|. Written so that NaN and infinity keep the lane.
+static inline unsigned R(near_lanes)(const vf f[3], const float *const direction_f[3], size_t at, vf limit2)
 {
-    vf u[3] = { f_load(unit[0] + at), f_load(unit[1] + at), f_load(unit[2] + at) };
-    vf b = DOT(f, u);
-    vf l[3] = { f[0] - b * u[0], f[1] - b * u[1], f[2] - b * u[2] };
-    return ~fm_bits(f_lt(limit2, DOT(l, l))) & ((1u << VF) - 1);
+    vf d[3] = { f_load(direction_f[0] + at), f_load(direction_f[1] + at), f_load(direction_f[2] + at) };
+    vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
+    return ~fm_bits(f_lt(limit2 * DOT(d, d), DOT(x, x))) & ((1u << VF) - 1);
 }
 
 static unsigned R(near_bundle)(const glint_cast_args *args, const glint_bundle_prim *seen, size_t at)
@@ -60,13 +59,13 @@ static unsigned R(near_bundle)(const glint_cast_args *args, const glint_bundle_p
     const vf limit2 = f_set(seen->filter_limit2);
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF)
-        near |= R(near_lanes)(f, (const float **)args->unit, at + i, limit2) << i;
+        near |= R(near_lanes)(f, args->direction_f, at + i, limit2) << i;
     return near;
 }
 
 /// The filter of rays that have their own origins; `local` holds the group's origins in filter units and, last, the
 /// bound 8 * 2^-24 |origin| (by the sum of its components, which is larger).
-static unsigned R(near_rays)(const float *unit[3], size_t at, const float (*local)[GLINT_GROUP],
+static unsigned R(near_rays)(const float *const direction_f[3], size_t at, const float (*local)[GLINT_GROUP],
                              const glint_prim *prim)
 {
     unsigned near = 0;
@@ -75,7 +74,7 @@ static unsigned R(near_rays)(const float *unit[3], size_t at, const float (*loca
                           f_load(local[1] + i) - f_set(prim->filter_center[1]),
                           f_load(local[2] + i) - f_set(prim->filter_center[2]) };
         vf limit = f_set(prim->filter_bound) + f_load(local[3] + i);
-        near |= R(near_lanes)(f, unit, at + i, limit * limit) << i;
+        near |= R(near_lanes)(f, direction_f, at + i, limit * limit) << i;
     }
     return near;
 }
@@ -135,6 +134,22 @@ static inline void R(decide)(const glint_cast_args *args, size_t at, uint32_t id
     }
 }
 
+/// Makes lanes outside the image misses and writes the group's hit mask.
+static inline void R(collect_hits)(const glint_cast_args *args, uint32_t g)
+{
+    real *t = (real *)args->t + (size_t)g * GLINT_GROUP;
+    uint32_t *prim = args->prim + (size_t)g * GLINT_GROUP;
+    unsigned misses = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        misses |= rm_bits(r_index_eq(r_load_index(prim + i), r_index(GLINT_MISS))) << i;
+    for (unsigned outside = ~misses & ~(unsigned)args->active[g] & 0xffff; outside; outside &= outside - 1) {
+        int i = __builtin_ctz(outside);
+        t[i] = (real)HUGE_VAL;
+        prim[i] = GLINT_MISS;
+    }
+    args->hits[g] = (uint16_t)(~misses & args->active[g]);
+}
+
 static inline void R(cast)(const glint_cast_args *args, bool bundle)
 {
     for (uint32_t g = 0; g < args->group_count; g++) {
@@ -150,7 +165,7 @@ static inline void R(cast)(const glint_cast_args *args, bool bundle)
         for (uint32_t k = 0; k < args->candidate_count; k++) {
             const uint32_t id = args->candidates[k];
             unsigned near = active & (bundle ? R(near_bundle)(args, &args->bundle[id], at)
-                                             : R(near_rays)((const float **)args->unit, at,
+                                             : R(near_rays)(args->direction_f, at,
                                                             (const float(*)[GLINT_GROUP])local, &args->prims[id]));
             if (near)
                 R(decide)(args, at, id, near, bundle);

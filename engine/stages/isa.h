@@ -10,7 +10,6 @@
 
 #define GLINT_REAL 64
 #include "engine/stages/real.h"
-#include "engine/stages/ray.h"
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
@@ -21,7 +20,6 @@
 #undef GLINT_REAL
 #define GLINT_REAL 32
 #include "engine/stages/real.h"
-#include "engine/stages/ray.h"
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"

@@ -5,7 +5,7 @@
 /// A group's shadow rays.
 typedef struct R(shadow_group) {
     _Alignas(64) real to_light[3][GLINT_GROUP];
-    _Alignas(64) float unit[3][GLINT_GROUP];
+    _Alignas(64) float to_light_f[3][GLINT_GROUP]; ///< in the light's units, for the filter
     _Alignas(64) float local[4][GLINT_GROUP]; ///< origins for the filter, and its bound
 } R(shadow_group);
 
@@ -17,14 +17,8 @@ static inline void R(shadow_rays)(const glint_occlude_args *args, size_t at, R(s
             if (!args->directional)
                 d = d - r_load((const real *)args->point[k] + at + i);
             r_store(rays->to_light[k] + i, d);
-            r_store_f(rays->unit[k] + i, d * r_set(args->scale));
+            r_store_f(rays->to_light_f[k] + i, d * r_set(args->scale));
         }
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf u[3] = { f_load(rays->unit[0] + i), f_load(rays->unit[1] + i), f_load(rays->unit[2] + i) };
-        vf inverse = f_set(1) / f_sqrt(DOT(u, u));
-        for (int k = 0; k < 3; k++)
-            f_store(rays->unit[k] + i, u[k] * inverse);
-    }
     R(filter_origins)(args->point, at, args->reference, args->filter_scale, rays->local);
 }
 
@@ -79,8 +73,8 @@ static inline unsigned R(blocked_by)(const glint_occlude_args *args, uint32_t id
     wanted &= ~own;
     if (!wanted)
         return blocked;
-    const float *unit[3] = { rays->unit[0], rays->unit[1], rays->unit[2] };
-    wanted &= R(near_rays)(unit, 0, rays->local, prim);
+    const float *const way[3] = { rays->to_light_f[0], rays->to_light_f[1], rays->to_light_f[2] };
+    wanted &= R(near_rays)(way, 0, rays->local, prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         if (!lanes)

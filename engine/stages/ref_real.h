@@ -62,11 +62,9 @@ static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
         direction = NAME(add)(NAME(add)(forward, across), upward);
     NAME(store)(args->direction, i, direction);
 
-    vec3_float u = vec_float((float)direction.x, (float)direction.y, (float)direction.z);
-    u = times_float(u, 1.0f / sqrtf(length2_float(u)));
-    args->unit[0][i] = u.x;
-    args->unit[1][i] = u.y;
-    args->unit[2][i] = u.z;
+    args->direction_f[0][i] = (float)direction.x;
+    args->direction_f[1][i] = (float)direction.y;
+    args->direction_f[2][i] = (float)direction.z;
 }
 
 static void NAME(camera)(const glint_camera_args *args)

@@ -1,128 +1,181 @@
 // shade: the terms of each sample. A group is worked off material by material, so that colours and exponents are the
 // same in every lane. Lights are added in their order, in double. Contract: stages.h.
 
-typedef struct shade_group {
-    _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
-    _Alignas(64) float diffuse[GLINT_GROUP], specular[GLINT_GROUP]; ///< of one light, without colours
-} shade_group;
+/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material's exponent. Lanes that a
+/// light does not reach have 0.
+typedef struct light_factors {
+    _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
+    const glint_shade_light *light[GLINT_LIGHT_CHUNK];
+    uint32_t count;
+} light_factors;
+
+static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                                uint32_t g, light_factors *factors)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    factors->count = 0;
+    for (uint32_t k = 0; k < args->light_count; k++) {
+        const glint_shade_light *light = &args->lights[k];
+        if (!light->lit[g])
+            continue;
+        float *diffuse = factors->diffuse[factors->count], *highlight = factors->specular[factors->count];
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vf w = f_set(1);
+            if (light->attenuation)
+                w = w * f_load(light->attenuation + at + i);
+            if (light->visible)
+                w = w * f_load(light->visible + at + i);
+            f_store(diffuse + i, w * f_load(light->cosine + at + i));
+            if (specular) {
+                vf log2 = f_load(light->log2_specular + at + i);
+                vf s = w * f_exp2(f_set(material->shininess) * log2);
+                f_store(highlight + i, f_select(f_lt(f_set(GLINT_NO_SPECULAR), log2), s, f_set(0)));
+            }
+        }
+        factors->light[factors->count++] = light;
+    }
+}
+
+/// Adds the lights to one vector of lanes.
+static inline void add_lights(const light_factors *factors, const glint_shade_material *material, bool specular, int i,
+                              vd diffuse[3], vd highlight[3])
+{
+    for (uint32_t k = 0; k < factors->count; k++) {
+        const glint_shade_light *light = factors->light[k];
+        const vd fd = d_load_f(factors->diffuse[k] + i);
+        for (int c = 0; c < 3; c++)
+            diffuse[c] = diffuse[c] + fd * d_set(material->diffuse[c] * light->diffuse[c]);
+        if (!specular)
+            continue;
+        const vd fs = d_load_f(factors->specular[k] + i);
+        for (int c = 0; c < 3; c++)
+            highlight[c] = highlight[c] + fs * d_set(material->specular[c] * light->specular[c]);
+    }
+}
+
+/// A group's terms in float, before they are added up.
+typedef struct group_terms {
+    _Alignas(64) float term[GLINT_TERM_COUNT][3][GLINT_GROUP];
+} group_terms;
+
+/// Writes `x` where the mask is set.
+static inline void put_float(float *to, fm mask, vf x)
+{
+    f_store(to, f_select(mask, x, f_load(to)));
+}
+
+/// One material's lanes of a group whose terms are final: no sums in memory.
+static inline void shade_direct(const glint_shade_material *material, bool specular, const light_factors *factors,
+                                unsigned lanes, group_terms *terms)
+{
+    _Alignas(64) float light[2][3][GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        vd diffuse[3] = { d_set(0), d_set(0), d_set(0) }, highlight[3] = { d_set(0), d_set(0), d_set(0) };
+        add_lights(factors, material, specular, i, diffuse, highlight);
+        for (int c = 0; c < 3; c++) {
+            d_store_f(light[0][c] + i, diffuse[c]);
+            d_store_f(light[1][c] + i, highlight[c]);
+        }
+    }
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
+        for (int c = 0; c < 3; c++) {
+            put_float(terms->term[GLINT_TERM_AMBIENT][c] + i, mask, f_set((float)material->ambient[c]));
+            put_float(terms->term[GLINT_TERM_DIFFUSE][c] + i, mask, f_load(light[0][c] + i));
+            put_float(terms->term[GLINT_TERM_SPECULAR][c] + i, mask, f_load(light[1][c] + i));
+        }
+    }
+}
 
 static inline dm lane_mask(unsigned lanes, int i) { return dm_from_bits(lanes >> i & ((1u << VD) - 1)); }
 
-/// sum += value in the lanes given.
-static inline void add_constant(double sum[3][GLINT_GROUP], const double value[3], unsigned lanes)
+static inline void add_where(double *to, dm mask, vd x)
 {
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i += VD) {
-            vd old = d_load(sum[c] + i);
-            d_store(sum[c] + i, d_select(lane_mask(lanes, i), old + d_set(value[c]), old));
-        }
+    vd old = d_load(to);
+    d_store(to, d_select(mask, old + x, old));
 }
 
-/// sum += factor * (reflectance strength) in the lanes given.
-static inline void add_light(double sum[3][GLINT_GROUP], const float *factor, const double reflectance[3],
-                             const double strength[3], unsigned lanes)
+/// One material's lanes of a group, added to sums over samples and lights.
+static inline void shade_sums(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                              const light_factors *factors, size_t at, unsigned lanes)
 {
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const dm mask = lane_mask(lanes, i);
-        const vd f = d_load_f(factor + i);
+        vd old[2][3], sum[2][3];
         for (int c = 0; c < 3; c++) {
-            vd old = d_load(sum[c] + i);
-            d_store(sum[c] + i, d_select(mask, old + f * d_set(reflectance[c] * strength[c]), old));
+            if (args->first)
+                add_where(args->sum[GLINT_TERM_AMBIENT][c] + at + i, mask, d_set(material->ambient[c]));
+            for (int k = 0; k < 2; k++)
+                old[k][c] = sum[k][c] = d_load(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i);
         }
+        add_lights(factors, material, specular, i, sum[0], sum[1]);
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < 2; k++)
+                d_store(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i, d_select(mask, sum[k][c], old[k][c]));
     }
 }
 
-/// One light's geometric factors for a group: w (n.l), and w S for a material with a highlight.
-static inline void light_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
-                                 size_t at, shade_group *group)
+/// Keeps the terms asked for and adds them up.
+static inline void finish_terms(const group_terms *terms, float *const film[][3], float *const beauty[3], size_t at)
 {
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf w = f_set(1);
-        if (light->attenuation)
-            w = w * f_load(light->attenuation + at + i);
-        if (light->visible)
-            w = w * f_load(light->visible + at + i);
-        f_store(group->diffuse + i, w * f_load(light->cosine + at + i));
-        if (specular) {
-            vf log2 = f_load(light->log2_specular + at + i);
-            vf s = w * f_exp2(f_set(material->shininess) * log2);
-            f_store(group->specular + i, f_select(f_lt(f_set(GLINT_NO_SPECULAR), log2), s, f_set(0)));
-        }
-    }
-}
-
-static inline void shade_material(const glint_shade_args *args, uint32_t g, uint32_t index, unsigned lanes,
-                                  shade_group *group)
-{
-    const size_t at = (size_t)g * GLINT_GROUP;
-    const glint_shade_material *material = &args->materials[index];
-    const bool specular = args->has_specular && material->has_specular;
-    if (args->first)
-        add_constant(group->sum[GLINT_TERM_AMBIENT], material->ambient, lanes);
-    for (uint32_t k = 0; k < args->light_count; k++) {
-        const glint_shade_light *light = &args->lights[k];
-        const unsigned lit = lanes & light->lit[g];
-        if (!lit)
-            continue;
-        light_factors(light, material, specular, at, group);
-        add_light(group->sum[GLINT_TERM_DIFFUSE], group->diffuse, material->diffuse, light->diffuse, lit);
-        if (specular)
-            add_light(group->sum[GLINT_TERM_SPECULAR], group->specular, material->specular, light->specular, lit);
-    }
-}
-
-/// Rounds a group's terms to float, keeps those asked for, and adds them up.
-static inline void resolve_group(double *sum[][3], vd samples, float *const film[][3],
-                                 float *const beauty[3], size_t at)
-{
-    _Alignas(64) float term[GLINT_TERM_COUNT][GLINT_GROUP];
-    for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < GLINT_TERM_COUNT; k++)
-            for (int i = 0; i < GLINT_GROUP; i += VD)
-                d_store_f(term[k] + i, d_load(sum[k][c] + i) / samples);
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             vf t[GLINT_TERM_COUNT];
             for (int k = 0; k < GLINT_TERM_COUNT; k++) {
-                t[k] = f_load(term[k] + i);
+                t[k] = f_load(terms->term[k][c] + i);
                 if (film[k][c])
                     f_store(film[k][c] + at + i, t[k]);
             }
             f_store(beauty[c] + at + i, ((t[0] + t[1]) + t[2]) + t[3]);
+        }
+}
+
+/// What no surface makes: the background where nothing is hit, and 0 for the rest.
+static inline void start_direct(const glint_shade_args *args, uint32_t g, group_terms *terms)
+{
+    const unsigned empty = args->active[g] & ~(unsigned)args->hits[g];
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(empty >> i & ((1u << VF) - 1));
+        for (int c = 0; c < 3; c++) {
+            f_store(terms->term[GLINT_TERM_BACKGROUND][c] + i,
+                    f_select(mask, f_set((float)args->background[c]), f_set(0)));
+            for (int k = GLINT_TERM_AMBIENT; k < GLINT_TERM_COUNT; k++)
+                f_store(terms->term[k][c] + i, f_set(0));
         }
     }
 }
 
 static void shade(const glint_shade_args *args)
 {
-    shade_group group;
+    light_factors factors;
+    group_terms terms;
     const bool direct = !args->sum[0][0];
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
-        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        unsigned left = args->hits[g];
+        if (direct)
+            start_direct(args, g, &terms);
+        else if (args->first)
             for (int c = 0; c < 3; c++)
                 for (int i = 0; i < GLINT_GROUP; i += VD)
-                    d_store(group.sum[k][c] + i, direct ? d_set(0) : d_load(args->sum[k][c] + at + i));
-        unsigned left = args->hits[g];
-        if (args->first)
-            add_constant(group.sum[GLINT_TERM_BACKGROUND], args->background, args->active[g] & ~left);
+                    add_where(args->sum[GLINT_TERM_BACKGROUND][c] + at + i, lane_mask(args->active[g] & ~left, i),
+                              d_set(args->background[c]));
         while (left) {
             const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
+            const glint_shade_material *material = &args->materials[index];
+            const bool specular = args->has_specular && material->has_specular;
             unsigned lanes = 0;
             for (int i = 0; i < GLINT_GROUP; i += VF)
                 lanes |= fm_bits(i_eq(i_load(args->material + at + i), i_set(index))) << i;
             lanes &= left;
             left &= ~lanes;
-            shade_material(args, g, index, lanes, &group);
+            find_factors(args, material, specular, g, &factors);
+            if (direct)
+                shade_direct(material, specular, &factors, lanes, &terms);
+            else
+                shade_sums(args, material, specular, &factors, at, lanes);
         }
-        double *sum[GLINT_TERM_COUNT][3];
-        for (int k = 0; k < GLINT_TERM_COUNT; k++)
-            for (int c = 0; c < 3; c++) {
-                sum[k][c] = group.sum[k][c];
-                if (!direct)
-                    for (int i = 0; i < GLINT_GROUP; i += VD)
-                        d_store(args->sum[k][c] + at + i, d_load(sum[k][c] + i));
-            }
         if (direct)
-            resolve_group(sum, d_set(1), args->film, args->beauty, at);
+            finish_terms(&terms, args->film, args->beauty, at);
     }
 }

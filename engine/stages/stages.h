@@ -69,13 +69,12 @@ typedef struct glint_camera_args {
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
     void *origin[3];       ///< out, real; written only when orthographic
     void *direction[3];    ///< out, real
-    float *unit[3];        ///< out: direction rounded to float, then normalised
+    float *direction_f[3]; ///< out: direction rounded to float, for the filter of cast
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 // sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
 // perspective:  direction = (forward + sx right) + sy up            orthographic: direction = forward,
 //                                                                   origin = (eye + sx right) + sy up
-// unit: u = (float)direction, inv = 1 / sqrt(length2(u)), unit = u * inv
 
 // ---- cast: the nearest hit of each ray ----
 
@@ -86,7 +85,7 @@ typedef struct glint_cast_args {
     const glint_bundle_prim *bundle;            ///< cast_bundle only
     const uint32_t *candidates; uint32_t candidate_count; ///< primitives that the rays may meet, in any order
     const void *origin[3];                      ///< cast_rays only: real, one a ray
-    const void *direction[3]; const float *unit[3];
+    const void *direction[3]; const float *direction_f[3];
     double reference[3]; double filter_scale;   ///< cast_rays only: frame of the filter
     void *t;        ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS

@@ -21,7 +21,7 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, vr n[3], vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
-    vr ts = t * scale, inverse = r_set(1) / (radius * scale);
+    vr ts = t * scale, inverse = r_set((real)1 / ((real)prim->radius * (real)prim->scale));
     for (int k = 0; k < 3; k++)
         n[k] = (f[k] + ts * d[k]) * inverse;
     vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
@@ -38,22 +38,39 @@ static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const g
         p[k] = r_set(prim->center[k]) + radius * n[k];
 }
 
+/// Keeps `old` where the mask is not set; `whole` says that it is set everywhere.
+static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
+{
+    real *to = (real *)array + at;
+    r_store(to, whole ? x : r_select(mask, x, r_load(to)));
+}
+
+static inline void R(put_index)(uint32_t *to, bool whole, rm mask, vr x)
+{
+    r_store_index(to, whole ? x : r_select(mask, x, r_load_index(to)));
+}
+
 /// Works out one primitive in the lanes of `mask` (a vector's worth of them) and leaves the others as they are.
 static inline void R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, rm mask)
 {
     const glint_prim *prim = &args->prims[id];
+    const bool whole = rm_bits(mask) == (1u << VR) - 1;
     vr d[3], n[3], p[3], from[3];
     for (int k = 0; k < 3; k++) {
         d[k] = r_load((const real *)args->direction[k] + at);
-        from[k] = args->bundle ? r_set(args->eye[k]) : r_load((const real *)args->origin[k] + at);
+        if (args->bundle)
+            from[k] = r_set(args->eye[k]);
+        else
+            from[k] = r_load((const real *)args->origin[k] + at);
     }
     const vr t = r_load((const real *)args->t + at);
     if (prim->kind == GLINT_PRIM_SPHERE) {
         vr f[3];
         for (int k = 0; k < 3; k++) {
-            f[k] = (from[k] - r_set(prim->center[k])) * r_set(prim->scale);
             if (args->bundle)
                 f[k] = r_set(args->bundle[id].f[k]);
+            else
+                f[k] = (from[k] - r_set(prim->center[k])) * r_set(prim->scale);
         }
         R(sphere_surface)(f, d, t, prim, n, p);
     } else {
@@ -64,15 +81,27 @@ static inline void R(surface_lanes)(const glint_surface_args *args, uint32_t id,
     }
     rm back = r_lt(r_set(0), DOT(n, d));
     for (int k = 0; k < 3; k++) {
-        real *point = (real *)args->point[k] + at, *normal = (real *)args->normal[k] + at;
-        r_store(point, r_select(mask, p[k], r_load(point)));
-        r_store(normal, r_select(mask, r_select(back, -n[k], n[k]), r_load(normal)));
+        R(put)(args->point[k], at, whole, mask, p[k]);
+        R(put)(args->normal[k], at, whole, mask, r_select(back, -n[k], n[k]));
     }
     const vr behind = r_index(prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
-    r_store_index(args->side + at, r_select(mask, r_select(back, behind, r_index(0)), r_load_index(args->side + at)));
-    r_store_index(args->material + at, r_select(mask, r_index(prim->material), r_load_index(args->material + at)));
-    r_store_index(args->coincident + at,
-                  r_select(mask, r_index(prim->coincident), r_load_index(args->coincident + at)));
+    R(put_index)(args->side + at, whole, mask, r_select(back, behind, r_index(0)));
+    R(put_index)(args->material + at, whole, mask, r_index(prim->material));
+    R(put_index)(args->coincident + at, whole, mask, r_index(prim->coincident));
+}
+
+/// Zeroes the lanes of a group that is hit in part.
+static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        for (int k = 0; k < 3; k++) {
+            r_store((real *)args->point[k] + at + i, r_set(0));
+            r_store((real *)args->normal[k] + at + i, r_set(0));
+        }
+        r_store_index(args->side + at + i, r_index(0));
+        r_store_index(args->material + at + i, r_index(0));
+        r_store_index(args->coincident + at + i, r_index(0));
+    }
 }
 
 static void R(surface)(const glint_surface_args *args)
@@ -81,15 +110,7 @@ static void R(surface)(const glint_surface_args *args)
         const size_t at = (size_t)g * GLINT_GROUP;
         unsigned left = args->hits[g];
         if (left && left != 0xffff)
-            for (int i = 0; i < GLINT_GROUP; i += VR) {
-                for (int k = 0; k < 3; k++) {
-                    r_store((real *)args->point[k] + at + i, r_set(0));
-                    r_store((real *)args->normal[k] + at + i, r_set(0));
-                }
-                r_store_index(args->side + at + i, r_index(0));
-                r_store_index(args->material + at + i, r_index(0));
-                r_store_index(args->coincident + at + i, r_index(0));
-            }
+            R(clear_surface)(args, at);
         while (left) {
             const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
             for (int i = 0; i < GLINT_GROUP; i += VR) {
