@@ -3,6 +3,7 @@
 #define GLINT_ELEMENTARY_H
 
 #include "engine/stages/coefficients.h"
+#include "engine/stages/stages.h"
 
 static inline vf f_exponent(vf x)
 {
@@ -53,6 +54,33 @@ static inline vd d_two_sum(vd a, vd b, vd *error)
     vd s = a + b, v = s - a;
     *error = (a - (s - v)) + (b - v);
     return s;
+}
+
+// Masks of a whole group, as bits.
+
+static inline unsigned lanes_equal(const uint32_t *index, uint32_t value)
+{
+    unsigned bits = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        bits |= fm_bits(i_eq(i_load(index + i), i_set(value))) << i;
+    return bits;
+}
+
+static inline unsigned lanes_below(const uint32_t *index, uint32_t bound)
+{
+    unsigned bits = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        bits |= fm_bits(i_lt(i_load(index + i), i_set(bound))) << i;
+    return bits;
+}
+
+/// to = value where the bit is set.
+static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(bits >> i & ((1u << VF) - 1));
+        i_store(to + i, f_bits(f_select(mask, f_from_bits(i_set(value)), f_from_bits(i_load(to + i)))));
+    }
 }
 
 #define DOT(a, b) (((a)[0] * (b)[0] + (a)[1] * (b)[1]) + (a)[2] * (b)[2])

@@ -18,7 +18,8 @@ typedef struct R(lit_group) {
     _Alignas(64) float distance2[GLINT_GROUP];
     _Alignas(64) float fraction[GLINT_GROUP];
     _Alignas(64) float exponent[GLINT_GROUP];
-    unsigned lit, shiny;
+    unsigned phong, blinn; ///< lanes by the highlight of their material
+    unsigned lit, shiny;   ///< out
 } R(lit_group);
 
 static inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
@@ -38,7 +39,7 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 }
 
 /// The real part of one vector of lanes.
-static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned hits, R(lit_group) *group)
+static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned open, R(lit_group) *group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr n[3], l[3];
@@ -49,10 +50,9 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
             l[k] = l[k] - r_load((const real *)args->point[k] + at + i);
     }
     vr l2 = DOT(l, l), nl = DOT(n, l);
-    rm lit = rm_and(rm_from_bits(hits >> i & ((1u << VR) - 1)), r_lt(zero, nl));
-    lit = rm_and(lit, r_index_lt(r_load_index(args->side + at + i), r_index(GLINT_SIDE_UNLIT)));
-    group->lit |= rm_bits(lit) << i;
-    if (!rm_bits(lit))
+    const unsigned lit = rm_bits(r_lt(zero, nl)) & open >> i & ((1u << VR) - 1);
+    group->lit |= lit << i;
+    if (!lit)
         return;
     if (args->directional) {
         r_store_f(group->along + i, nl);
@@ -65,24 +65,22 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
         vr distance = r_sqrt(l2);
         r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * l2)));
     }
-    const vr material = r_load_index(args->material + at + i);
-    const rm phong = r_index_lt(material, r_index(args->phong_end));
-    const rm blinn = rm_andnot(r_index_lt(material, r_index(args->blinn_end)), phong);
-    if (!rm_bits(rm_and(lit, rm_or(phong, blinn))))
+    const unsigned phong = group->phong >> i & lit, blinn = group->blinn >> i & lit;
+    if (!(phong | blinn))
         return;
     vr d[3];
     for (int k = 0; k < 3; k++)
         d[k] = r_load((const real *)args->direction[k] + at + i);
     vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
     rm some = rm_from_bits(0);
-    if (rm_bits(phong))
-        some = rm_and(phong, R(phong)(nl, nv, lv, l2 * a, &x));
-    if (rm_bits(blinn)) {
+    if (phong)
+        some = rm_and(rm_from_bits(phong), R(phong)(nl, nv, lv, l2 * a, &x));
+    if (blinn) {
         vr xb;
-        some = rm_or(some, rm_and(blinn, R(blinn)(nl, nv, lv, l2, a, &xb)));
-        x = r_select(blinn, xb, x);
+        some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn)(nl, nv, lv, l2, a, &xb)));
+        x = r_select(rm_from_bits(blinn), xb, x);
     }
-    some = R(highlight)(x, rm_and(some, lit), group->fraction + i, group->exponent + i);
+    some = R(highlight)(x, some, group->fraction + i, group->exponent + i);
     group->shiny |= rm_bits(some) << i;
 }
 
@@ -111,12 +109,17 @@ static void R(light)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
     for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
         group.lit = group.shiny = 0;
-        if (args->hits[g])
+        if (args->hits[g]) {
+            const unsigned open = args->hits[g] & lanes_below(args->side + at, GLINT_SIDE_UNLIT);
+            group.phong = lanes_below(args->material + at, args->phong_end);
+            group.blinn = lanes_below(args->material + at, args->blinn_end) & ~group.phong;
             for (int i = 0; i < GLINT_GROUP; i += VR)
-                R(light_lanes)(args, (size_t)g * GLINT_GROUP, i, args->hits[g], &group);
+                R(light_lanes)(args, at, i, open, &group);
+        }
         args->lit[g] = (uint16_t)group.lit;
         if (group.lit)
-            R(finish_light)(args, (size_t)g * GLINT_GROUP, &group);
+            R(finish_light)(args, at, &group);
     }
 }

@@ -63,13 +63,10 @@ static inline unsigned R(blocked_by)(const glint_occlude_args *args, uint32_t id
     const glint_prim *prim = &args->prims[id];
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     const int light_side = args->light_side[id];
-    unsigned own = 0, turned = 0, blocked = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        own |= fm_bits(i_eq(i_load(args->coincident + at + i), i_set(prim->coincident))) << i;
-        turned |= fm_bits(i_eq(i_load(args->side + at + i), i_set(GLINT_SIDE_BACK))) << i;
-    }
-    if (sphere && light_side > 0)
-        blocked = own & turned;
+    const unsigned own = lanes_equal(args->coincident + at, prim->coincident);
+    unsigned blocked = 0;
+    if (own && sphere && light_side > 0)
+        blocked = own & lanes_equal(args->side + at, GLINT_SIDE_BACK);
     wanted &= ~own;
     if (!wanted)
         return blocked;

@@ -145,11 +145,10 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
-static void shade(const glint_shade_args *args)
+static inline void shade_groups(const glint_shade_args *args, bool direct)
 {
     light_factors factors;
     group_terms terms;
-    const bool direct = !args->sum[0][0];
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         unsigned left = args->hits[g];
@@ -164,10 +163,7 @@ static void shade(const glint_shade_args *args)
             const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
             const glint_shade_material *material = &args->materials[index];
             const bool specular = args->has_specular && material->has_specular;
-            unsigned lanes = 0;
-            for (int i = 0; i < GLINT_GROUP; i += VF)
-                lanes |= fm_bits(i_eq(i_load(args->material + at + i), i_set(index))) << i;
-            lanes &= left;
+            const unsigned lanes = lanes_equal(args->material + at, index) & left;
             left &= ~lanes;
             find_factors(args, material, specular, g, &factors);
             if (direct)
@@ -178,4 +174,12 @@ static void shade(const glint_shade_args *args)
         if (direct)
             finish_terms(&terms, args->film, args->beauty, at);
     }
+}
+
+static void shade(const glint_shade_args *args)
+{
+    if (args->sum[0][0])
+        shade_groups(args, false);
+    else
+        shade_groups(args, true);
 }

@@ -38,23 +38,22 @@ static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const g
         p[k] = r_set(prim->center[k]) + radius * n[k];
 }
 
-/// Keeps `old` where the mask is not set; `whole` says that it is set everywhere.
+/// Writes `x` in the lanes of `mask`; `whole` says that these are all.
 static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 {
     real *to = (real *)array + at;
-    r_store(to, whole ? x : r_select(mask, x, r_load(to)));
+    if (!whole)
+        x = r_select(mask, x, r_load(to));
+    r_store(to, x);
 }
 
-static inline void R(put_index)(uint32_t *to, bool whole, rm mask, vr x)
-{
-    r_store_index(to, whole ? x : r_select(mask, x, r_load_index(to)));
-}
-
-/// Works out one primitive in the lanes of `mask` (a vector's worth of them) and leaves the others as they are.
-static inline void R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, rm mask)
+/// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
+/// is seen from behind.
+static inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, unsigned lanes)
 {
     const glint_prim *prim = &args->prims[id];
-    const bool whole = rm_bits(mask) == (1u << VR) - 1;
+    const bool whole = lanes == (1u << VR) - 1;
+    const rm mask = rm_from_bits(lanes);
     vr d[3], n[3], p[3], from[3];
     for (int k = 0; k < 3; k++) {
         d[k] = r_load((const real *)args->direction[k] + at);
@@ -84,24 +83,20 @@ static inline void R(surface_lanes)(const glint_surface_args *args, uint32_t id,
         R(put)(args->point[k], at, whole, mask, p[k]);
         R(put)(args->normal[k], at, whole, mask, r_select(back, -n[k], n[k]));
     }
-    const vr behind = r_index(prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
-    R(put_index)(args->side + at, whole, mask, r_select(back, behind, r_index(0)));
-    R(put_index)(args->material + at, whole, mask, r_index(prim->material));
-    R(put_index)(args->coincident + at, whole, mask, r_index(prim->coincident));
+    return rm_bits(back) & lanes;
 }
 
 /// Zeroes the lanes of a group that is hit in part.
 static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 {
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
             r_store((real *)args->point[k] + at + i, r_set(0));
             r_store((real *)args->normal[k] + at + i, r_set(0));
         }
-        r_store_index(args->side + at + i, r_index(0));
-        r_store_index(args->material + at + i, r_index(0));
-        r_store_index(args->coincident + at + i, r_index(0));
-    }
+    lanes_put(args->material + at, 0xffff, 0);
+    lanes_put(args->coincident + at, 0xffff, 0);
+    lanes_put(args->side + at, 0xffff, 0);
 }
 
 static void R(surface)(const glint_surface_args *args)
@@ -113,13 +108,18 @@ static void R(surface)(const glint_surface_args *args)
             R(clear_surface)(args, at);
         while (left) {
             const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-            for (int i = 0; i < GLINT_GROUP; i += VR) {
-                rm mask = r_index_eq(r_load_index(args->prim + at + i), r_index(id));
-                if (!rm_bits(mask))
-                    continue;
-                left &= ~(rm_bits(mask) << i);
-                R(surface_lanes)(args, id, at + i, mask);
-            }
+            const glint_prim *prim = &args->prims[id];
+            const unsigned lanes = lanes_equal(args->prim + at, id);
+            unsigned back = 0;
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                if (lanes >> i & ((1u << VR) - 1))
+                    back |= R(surface_lanes)(args, id, at + i, lanes >> i & ((1u << VR) - 1)) << i;
+            lanes_put(args->material + at, lanes, prim->material);
+            lanes_put(args->coincident + at, lanes, prim->coincident);
+            lanes_put(args->side + at, lanes, 0);
+            if (back)
+                lanes_put(args->side + at, back, prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
+            left &= ~lanes;
         }
     }
 }
