@@ -18,7 +18,9 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
         n[k] = r_select(defined, n[k] / length, -d[k] / ray);
 }
 
-static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, vr n[3], vr p[3])
+/// `near`: the origin is known to be within 2^20 radii in every lane.
+static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, bool near, vr n[3],
+                                     vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
     vr ts = t * scale, inverse = r_set((real)1 / ((real)prim->radius * (real)prim->scale));
@@ -27,12 +29,12 @@ static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const g
     vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
     for (int k = 0; k < 3; k++)
         n[k] = n[k] * newton;
-    rm near = r_lt(DOT(f, f), r_set(0x1p40));
-    if (rm_bits(near) != (1u << VR) - 1) {
+    if (!near) {
+        const rm close = r_lt(DOT(f, f), r_set(0x1p40));
         vr far[3];
         R(far_normal)(f, d, r_set(prim->r2), far);
         for (int k = 0; k < 3; k++)
-            n[k] = r_select(near, n[k], far[k]);
+            n[k] = r_select(close, n[k], far[k]);
     }
     for (int k = 0; k < 3; k++)
         p[k] = r_set(prim->center[k]) + radius * n[k];
@@ -49,7 +51,7 @@ static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 
 /// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
 /// is seen from behind.
-static inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, unsigned lanes)
+static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, unsigned lanes)
 {
     const glint_prim *prim = &args->prims[id];
     const bool whole = lanes == (1u << VR) - 1;
@@ -65,13 +67,19 @@ static inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t
     const vr t = r_load((const real *)args->t + at);
     if (prim->kind == GLINT_PRIM_SPHERE) {
         vr f[3];
+        bool near = false;
+        if (args->bundle) {
+            const double *e = args->bundle[id].f;
+            const real x = (real)e[0], y = (real)e[1], z = (real)e[2];
+            near = (x * x + y * y) + z * z < (real)0x1p40;
+        }
         for (int k = 0; k < 3; k++) {
             if (args->bundle)
                 f[k] = r_set(args->bundle[id].f[k]);
             else
                 f[k] = (from[k] - r_set(prim->center[k])) * r_set(prim->scale);
         }
-        R(sphere_surface)(f, d, t, prim, n, p);
+        R(sphere_surface)(f, d, t, prim, near, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
             n[k] = r_set(prim->normal[k]);
