@@ -109,7 +109,7 @@ $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 
 tests: all $(TEST_BIN) $(TEST_TOOLS)
 
-SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/povray.sh tests/readme.sh)
+SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/golden.sh tests/povray.sh tests/readme.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

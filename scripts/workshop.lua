@@ -1,0 +1,55 @@
+-- The workshop: five spheres, one lamp, and the lighting equation one term at a time.
+--
+-- Every pixel is the sum of three terms:
+--     ambient    what a surface shows where no lamp reaches it:  ka * Ia
+--     diffuse    matt light, by the angle between normal n and the direction to the lamp l:  kd * Id * (n.l)
+--     specular   the highlight, by the angle between the mirrored light r and the eye v:  ks * Is * (r.v)^shininess
+-- Look at one term alone, then at their sum:
+--     glint scripts/workshop.lua --set step=ambient
+--     glint scripts/workshop.lua --set step=diffuse
+--     glint scripts/workshop.lua --set step=specular
+--     glint scripts/workshop.lua
+-- A term is switched off by black reflectances, and the engine then does not compute it at all: see `glint explain`.
+local glint = require "glint"
+
+local P = glint.params {
+  step = { "all", choices = { "ambient", "diffuse", "specular", "all" }, doc = "which term of the lighting to show" },
+  shininess = { 128, min = 0, max = 2000, doc = "exponent of the highlight: higher is smaller and sharper" },
+  shadows = { true, doc = "does the lamp cast shadows?" },
+}
+
+-- 1 when the term is part of the chosen step, else 0.
+local function shown(term)
+  return (P.step == "all" or P.step == term) and 1 or 0
+end
+
+local function paint(r, g, b, gloss)
+  local diffuse, specular = shown "diffuse", shown "specular" * gloss
+  local ambient = shown "ambient"
+  return glint.material {
+    ambient = { r * ambient, g * ambient, b * ambient },
+    diffuse = { r * diffuse, g * diffuse, b * diffuse },
+    specular = { specular, specular, specular },
+    shininess = P.shininess,
+  }
+end
+
+-- A ball that rests on the ground, at (x, z).
+local function ball(x, z, radius, material)
+  return glint.sphere { center = { x, radius, z }, radius = radius, material = material }
+end
+
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 6.5, 19.5 }, at = { 0, 3.6, 0 }, fov = 42 },
+  ambient = { 0.16, 0.17, 0.20 },
+  background = P.step == "all" and "#8fb3d9" or 0, -- a term is easier to judge on black
+  glint.point_light { position = { 0, 20, 0 }, intensity = 1, shadows = P.shadows, name = "lamp" },
+
+  glint.sphere { center = { 0, -10000, 0 }, radius = 10000, material = paint(0.42, 0.40, 0.37, 0), name = "ground" },
+  ball(-1.0, -4.5, 4.0, paint(0.70, 0.10, 0.08, 0.7)),
+  ball(5.8, -1.0, 3.0, paint(0.85, 0.55, 0.10, 0.7)),
+  ball(-6.6, 0.5, 2.5, paint(0.10, 0.35, 0.62, 0.7)),
+  ball(0.6, 4.2, 2.0, paint(0.16, 0.48, 0.20, 0.7)),
+}
+
+return glint.animation { scene = scene, frames = 1, width = 1920, height = 1080 }

@@ -1,0 +1,102 @@
+/// compare16 A.png B.png [MAX_SHARE]: compares two 16-bit RGB PNGs code by code. Prints every pixel with a channel that
+/// is off by more than one code, then a line of totals. Exit 0 when their share is at most MAX_SHARE (default 0.0001),
+/// 1 when it is more, 2 when the files cannot be compared.
+#include <png.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHANNELS 3
+#define PRINTED_MAX 200 ///< pixels printed; all are counted
+
+typedef struct picture {
+    png_structp png;
+    png_infop info;
+    png_bytepp rows;
+    png_uint_32 width, height;
+} picture;
+
+static void fail(const char *path, const char *what)
+{
+    fprintf(stderr, "compare16: %s: %s\n", path, what);
+    exit(2);
+}
+
+static picture read_picture(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail(path, "cannot be opened");
+    picture p = {.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL)};
+    p.info = p.png ? png_create_info_struct(p.png) : NULL;
+    if (!p.info)
+        fail(path, "out of memory");
+    if (setjmp(png_jmpbuf(p.png)))
+        fail(path, "cannot be read");
+    png_init_io(p.png, file);
+    png_read_png(p.png, p.info, PNG_TRANSFORM_STRIP_ALPHA, NULL);
+    fclose(file);
+    if (png_get_bit_depth(p.png, p.info) != 16 || png_get_channels(p.png, p.info) != CHANNELS)
+        fail(path, "16-bit RGB expected");
+    p.rows = png_get_rows(p.png, p.info);
+    p.width = png_get_image_width(p.png, p.info);
+    p.height = png_get_image_height(p.png, p.info);
+    return p;
+}
+
+static int code(const png_byte *pixel, int channel)
+{
+    return pixel[2 * channel] << 8 | pixel[2 * channel + 1];
+}
+
+/// The largest difference of a pixel's channels, in codes.
+static int pixel_difference(const png_byte *a, const png_byte *b)
+{
+    int largest = 0;
+    for (int c = 0; c < CHANNELS; c++) {
+        int difference = abs(code(a, c) - code(b, c));
+        largest = difference > largest ? difference : largest;
+    }
+    return largest;
+}
+
+typedef struct totals {
+    unsigned long pixels, same, one_off, off;
+    int largest;
+} totals;
+
+static totals compare(const picture *a, const picture *b)
+{
+    totals t = {.pixels = (unsigned long)a->width * a->height};
+    for (png_uint_32 y = 0; y < a->height; y++) {
+        for (png_uint_32 x = 0; x < a->width; x++) {
+            const png_byte *p = a->rows[y] + 2 * CHANNELS * x, *q = b->rows[y] + 2 * CHANNELS * x;
+            int difference = pixel_difference(p, q);
+            t.same += difference == 0;
+            t.one_off += difference == 1;
+            t.largest = difference > t.largest ? difference : t.largest;
+            if (difference > 1 && t.off++ < PRINTED_MAX)
+                printf("  pixel %u,%u: %d %d %d against %d %d %d\n", (unsigned)x, (unsigned)y, code(p, 0), code(p, 1),
+                       code(p, 2), code(q, 0), code(q, 1), code(q, 2));
+        }
+    }
+    return t;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3 || argc > 4)
+        return fprintf(stderr, "usage: compare16 A.png B.png [MAX_SHARE]\n"), 2;
+    double max_share = argc == 4 ? atof(argv[3]) : 1e-4;
+    picture a = read_picture(argv[1]), b = read_picture(argv[2]);
+    if (a.width != b.width || a.height != b.height)
+        fail(argv[2], "another size");
+    totals t = compare(&a, &b);
+    double share = (double)t.off / (double)t.pixels;
+    printf("  %lu pixels: %lu equal, %lu off by one code, %lu by more (%.5f %%), largest %d codes\n", t.pixels, t.same,
+           t.one_off, t.off, 100 * share, t.largest);
+    png_destroy_read_struct(&a.png, &a.info, NULL);
+    png_destroy_read_struct(&b.png, &b.info, NULL);
+    return share > max_share;
+}

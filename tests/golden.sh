@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# golden.sh [check|update]: small pictures of the scripts against those in tests/golden/, as decoded pixels, tolerance
+# 0: the engine promises the same pixels on every machine. A failure leaves got and golden side by side in the build
+# folder. `update` writes them anew and prints what moved; the commit says why.
+set -u
+build=${BUILD:-build}
+glint=${GLINT:-$build/glint}
+out=$build/tests/golden
+mode=${1:-check}
+bad=0
+
+# picture NAME SCRIPT OPTION...
+picture() {
+    local name=$1
+    shift
+    "$glint" "$@" --size 64x48 --quiet --force -o "$out/$name.png" || {
+        echo "not ok - $name: no picture"
+        bad=1
+        return
+    }
+    local golden=tests/golden/$name.png report status
+    report=$("$glint" compare "$golden" "$out/$name.png" 2>&1)
+    status=$?
+    if [ "$mode" = update ]; then
+        [ $status -eq 0 ] || printf '%s: %s\n' "$name" "${report:-new}"
+        [ $status -eq 0 ] || cp "$out/$name.png" "$golden"
+    elif [ $status -eq 0 ]; then
+        echo "ok - $name"
+    else
+        printf 'not ok - %s: got %s, golden %s\n%s\n' "$name" "$out/$name.png" "$golden" "$report"
+        bad=1
+    fi
+}
+
+mkdir -p "$out" tests/golden
+for step in ambient diffuse specular all; do
+    picture "workshop_$step" scripts/workshop.lua --set step=$step
+done
+picture workshop_16 scripts/workshop.lua --samples 16
+picture workshop_linear_16bit scripts/workshop.lua --bits 16 --transfer linear
+picture moving_light_031 scripts/moving_light.lua -f 31
+picture shininess_sweep_005 scripts/shininess_sweep.lua -f 5
+picture phong_and_blinn_004 scripts/phong_and_blinn.lua -f 4
+exit $bad

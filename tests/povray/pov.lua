@@ -1,0 +1,45 @@
+-- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT
+--
+-- How our formulas read in POV-Ray's language (16-bit linear output: +FN16 File_Gamma=1.0, and no +A):
+--   assumed_gamma 1.0, pigment { rgb C }, ambient_light rgb 1
+--     pixel = ka C + sum over lights with n.l > 0 that nothing hides of  Lc (kd C (n.l) + ks S);
+--     the highlight is not multiplied by C, and nothing is divided by pi.
+--   Phong        finish { phong ks phong_size n specular 0 }        S = (r.v)^n
+--   Blinn-Phong  finish { specular ks roughness 1/n phong 0 }       S = (n.h)^n
+--   camera       location E, direction f, right and up scaled to the view's width and height at distance 1, and neither
+--                `angle` nor `look_at`; a pixel's ray goes through its centre. With f, r, u given, handedness is ours.
+--   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
+-- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
+local model, light, projection, width, height = table.unpack(arg)
+local w = dofile "tests/povray/workshop.lua"
+
+local function sub(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
+local function scaled(a, s) return { a[1] * s, a[2] * s, a[3] * s } end
+local function unit(a) return scaled(a, 1 / math.sqrt(a[1] ^ 2 + a[2] ^ 2 + a[3] ^ 2)) end
+local function cross(a, b)
+  return { a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1] }
+end
+local function vector(a) return ("<%.17g, %.17g, %.17g>"):format(a[1], a[2], a[3]) end
+local function line(format, ...) print(format:format(...)) end
+
+local forward = unit(sub(w.at, w.eye))
+local right = unit(cross(forward, { 0, 1, 0 }))
+local up = cross(right, forward)
+local extent = projection == "perspective" and 2 * math.tan(math.rad(w.fov) / 2) or w.height
+
+line "#version 3.7;"
+line "global_settings { assumed_gamma 1.0 ambient_light rgb 1 }"
+line("background { rgb %s }", vector(w.background))
+line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
+  vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
+if light == "point" then
+  line("light_source { %s rgb %s }", vector(w.light.position), vector(w.light.color))
+else
+  line("light_source { %s rgb %s parallel point_at 0 }", vector(scaled(w.light.direction, -1e6)), vector(w.light.color))
+end
+local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0"):format(w.specular, w.shininess)
+  or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
+for _, sphere in ipairs(w.spheres) do
+  line("sphere { %s, %.17g pigment { rgb %s } finish { ambient %.17g diffuse %.17g %s } }", vector(sphere[1]), sphere[2],
+    vector(sphere[3]), w.ambient, w.diffuse, highlight)
+end

@@ -1,0 +1,18 @@
+-- The workshop scene as plain numbers, for both renderers: scene.lua hands it to glint, pov.lua writes it for POV-Ray.
+-- All values stay below 1, since POV-Ray clips.
+return {
+  eye = { 0, 6.5, 19.5 },
+  at = { 0, 3.6, 0 },
+  fov = 42, -- degrees, vertical
+  height = 15, -- world units, of the orthographic view
+  background = { 0.2, 0.3, 0.5 },
+  light = { color = { 0.8, 0.75, 0.7 }, position = { 0, 20, 0 }, direction = { -3, -5, -2 } },
+  ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
+  spheres = { -- center, radius, colour
+    { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
+    { { -1.0, 4.0, -4.5 }, 4.0, { 0.70, 0.12, 0.10 } },
+    { { 5.8, 3.0, -1.0 }, 3.0, { 0.85, 0.55, 0.10 } },
+    { { -6.6, 2.5, 0.5 }, 2.5, { 0.10, 0.35, 0.62 } },
+    { { 0.6, 2.0, 4.2 }, 2.0, { 0.16, 0.48, 0.20 } },
+  },
+}
