@@ -274,8 +274,13 @@ static sum2 log_to_sum(double x)
     sum2 f = two_prod(m, log_table[j][0]);
     f = fast_two_sum(f.high - 1, f.low);
     double h = f.high, p = 1.0 / 11;
-    for (int n = 10; n >= 4; n--)
-        p = (n & 1 ? 1.0 / n : -1.0 / n) + h * p;
+    p = p * h - 1.0 / 10;
+    p = p * h + 1.0 / 9;
+    p = p * h - 1.0 / 8;
+    p = p * h + 1.0 / 7;
+    p = p * h - 1.0 / 6;
+    p = p * h + 1.0 / 5;
+    p = p * h - 1.0 / 4;
     sum2 square = mul2(f, f), cube = mul2(square, f);
     sum2 y = mul2(cube, (sum2){0x1.5555555555555p-2, 0x1.5555555555555p-56});
     y = add2(y, (sum2){square.high * square.high * p, 0});

@@ -1,0 +1,26 @@
+/// The rendered picture: float planes of the passes that were asked for, and integer codes. Internal.
+#ifndef GLINT_IMAGE_IMAGE_H
+#define GLINT_IMAGE_IMAGE_H
+
+#include "engine/glint.h"
+
+#include <stdatomic.h>
+
+struct glint_image {
+    atomic_int references;
+    int width, height;
+    float *plane[GLINT_PASS_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
+                                       ///< One-channel passes have [0] only
+    void *codes; ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
+    glint_tone_desc code_tone; ///< how the codes were made
+};
+
+/// Makes an image with one reference; its planes and codes are not initialised.
+///
+/// width, height  1 .. GLINT_SIDE_MAX, else GLINT_ERR_INVALID, before anything is allocated.
+/// passes         bits 1u << GLINT_PASS_...
+/// codes_tone     NULL: no codes.
+glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
+                                glint_image **out, glint_error *error);
+
+#endif

@@ -1,0 +1,258 @@
+#include "engine/image/tone.h"
+
+#include "engine/base/status.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GUESS_SHIFT 15 // a bucket of `guess` holds the floats that agree in their upper 17 bits
+
+glint_tone_desc glint_tone_desc_default(void)
+{
+    return (glint_tone_desc){GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUND_NEAREST, 8};
+}
+
+glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
+{
+    if (desc->curve != GLINT_TONE_CLAMP)
+        return glint_fail(error, GLINT_ERR_INVALID, "tone: clamp expected, got %d", (int)desc->curve);
+    if (desc->transfer != GLINT_TRANSFER_SRGB && desc->transfer != GLINT_TRANSFER_LINEAR)
+        return glint_fail(error, GLINT_ERR_INVALID, "transfer: srgb or linear expected, got %d", (int)desc->transfer);
+    if (desc->rounding != GLINT_ROUND_NEAREST && desc->rounding != GLINT_ROUND_TRUNCATE)
+        return glint_fail(error, GLINT_ERR_INVALID, "rounding: nearest or truncate expected, got %d",
+                          (int)desc->rounding);
+    if (desc->bits != 8 && desc->bits != 16)
+        return glint_fail(error, GLINT_ERR_INVALID, "bits: 8 or 16 expected, got %d", desc->bits);
+    return GLINT_OK;
+}
+
+// ---- By definition ------------------------------------------------------------------------------------------------
+
+static double clamp_to_unit(double x)
+{
+    return x > 0 ? x < 1 ? x : 1 : 0; // NaN gives 0
+}
+
+double glint_srgb_encode(double linear)
+{
+    double x = clamp_to_unit(linear);
+    if (x <= 0.0031308)
+        return 12.92 * x;
+    return x < 1 ? 1.055 * glint_pow(x, 1 / 2.4) - 0.055 : 1; // 1.055 - 0.055 is not 1 in double
+}
+
+double glint_srgb_decode(double encoded)
+{
+    double x = clamp_to_unit(encoded);
+    return x <= 0.04045 ? x / 12.92 : glint_pow((x + 0.055) / 1.055, 2.4);
+}
+
+double glint_tone_value(const glint_tone_desc *desc, double linear)
+{
+    double x = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_encode(linear) : clamp_to_unit(linear);
+    double code = x * (desc->bits == 16 ? 65535 : 255);
+    return floor(desc->rounding == GLINT_ROUND_NEAREST ? code + 0.5 : code);
+}
+
+// ---- Tables -------------------------------------------------------------------------------------------------------
+
+static uint32_t bits_of(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static float float_of(uint32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/// The first float whose code is at least k, 1 <= k <= M: a guess by the inverse, then single steps.
+static float first_of_code(const glint_tone_desc *desc, int k)
+{
+    double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
+    double encoded = code / (desc->bits == 16 ? 65535 : 255);
+    double linear = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded;
+    uint32_t bits = bits_of((float)linear);
+    while (glint_tone_value(desc, float_of(bits)) < k)
+        bits++;
+    while (glint_tone_value(desc, float_of(bits - 1)) >= k)
+        bits--;
+    return float_of(bits);
+}
+
+static void fill_lut(glint_tone_table *table)
+{
+    uint32_t first = GLINT_TONE_FIRST << 16, code = 0, next = bits_of(first_of_code(&table->desc, 1));
+    for (uint32_t i = 0; i < GLINT_TONE_ENTRIES; i++, first += 0x10000) {
+        while (code < 255 && next <= first) {
+            code++;
+            next = code < 255 ? bits_of(first_of_code(&table->desc, (int)code + 1)) : UINT32_MAX;
+        }
+        uint32_t offset = next - first;
+        table->lut[i] = code | (offset < 0x10000 ? offset : 0x10000) << 8;
+    }
+}
+
+static uint32_t code_by_search(const float *threshold, float x)
+{
+    uint32_t low = 0, high = 65536; // threshold[low] <= x < threshold[high]
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (threshold[middle] <= x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/// Where x lies between the codes around it, so that a line through two such numbers is a good guess in between.
+static float fractional_code(const float *threshold, float x)
+{
+    uint32_t code = code_by_search(threshold, x);
+    if (code == 65535)
+        return 65535;
+    return (float)code + (x - threshold[code]) / (threshold[code + 1] - threshold[code]);
+}
+
+static bool fill_thresholds(glint_tone_table *table)
+{
+    table->threshold = malloc(65537 * sizeof *table->threshold);
+    if (!table->threshold)
+        return false;
+    table->threshold[0] = 0;
+    for (int k = 1; k <= 65535; k++)
+        table->threshold[k] = first_of_code(&table->desc, k);
+    table->threshold[65536] = INFINITY;
+    uint32_t bits = GLINT_TONE16_FIRST << 16;
+    float value = fractional_code(table->threshold, float_of(bits));
+    for (uint32_t i = 0; i < GLINT_TONE16_ENTRIES; i++) {
+        bits += 1u << GUESS_SHIFT;
+        float next = fractional_code(table->threshold, float_of(bits));
+        table->guess[i][0] = value;
+        table->guess[i][1] = (next - value) / (1 << GUESS_SHIFT);
+        value = next;
+    }
+    return true;
+}
+
+glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_table **out, glint_error *error)
+{
+    glint_status status = glint_tone_check(desc, error);
+    if (status)
+        return status;
+    glint_tone_table *table = calloc(1, sizeof *table);
+    if (!table)
+        return glint_fail_nomem(error);
+    table->desc = *desc;
+    if (desc->bits == 8) {
+        fill_lut(table);
+    } else if (!fill_thresholds(table)) {
+        glint_tone_table_destroy(table);
+        return glint_fail_nomem(error);
+    }
+    *out = table;
+    return GLINT_OK;
+}
+
+void glint_tone_table_destroy(glint_tone_table *table)
+{
+    if (!table)
+        return;
+    free(table->threshold);
+    free(table);
+}
+
+glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error)
+{
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    static glint_tone_table *made[2][2][2];
+    glint_status status = glint_tone_check(desc, error);
+    if (status)
+        return status;
+    glint_tone_table **slot =
+        &made[desc->transfer == GLINT_TRANSFER_SRGB][desc->rounding == GLINT_ROUND_NEAREST][desc->bits == 16];
+    pthread_mutex_lock(&lock);
+    if (!*slot)
+        status = glint_tone_table_create(desc, slot, error);
+    if (!status)
+        *out = *slot;
+    pthread_mutex_unlock(&lock);
+    return status;
+}
+
+// ---- Rows ---------------------------------------------------------------------------------------------------------
+
+static inline float clamp_float(float x)
+{
+    x = x > 0 ? x : 0;
+    return x < 1 ? x : 1;
+}
+
+static inline uint8_t code8(const glint_tone_table *table, float linear)
+{
+    uint32_t bits = bits_of(clamp_float(linear));
+    if (bits < GLINT_TONE_FIRST << 16)
+        return 0;
+    uint32_t entry = table->lut[(bits >> 16) - GLINT_TONE_FIRST];
+    return (uint8_t)((entry & 255) + ((bits & 0xffff) >= entry >> 8));
+}
+
+static inline uint16_t code16(const glint_tone_table *table, float linear)
+{
+    float x = clamp_float(linear);
+    uint32_t bits = bits_of(x);
+    if (bits < GLINT_TONE16_FIRST << 16)
+        return 0;
+    const float *line = table->guess[(bits >> GUESS_SHIFT) - (GLINT_TONE16_FIRST << (16 - GUESS_SHIFT))];
+    uint32_t code = (uint32_t)(line[0] + (float)(bits & ((1u << GUESS_SHIFT) - 1)) * line[1]);
+    while (x < table->threshold[code]) // the guess is within one: threshold[0] = 0, threshold[65536] = inf
+        code--;
+    while (x >= table->threshold[code + 1])
+        code++;
+    return (uint16_t)code;
+}
+
+static inline void count_pixel(float r, float g, float b, uint64_t *clipped, uint64_t *nonfinite)
+{
+    *clipped += r > 1 || g > 1 || b > 1;
+    *nonfinite += !isfinite(r) || !isfinite(g) || !isfinite(b);
+}
+
+void glint_tone_row8(const glint_tone_table *table, const float *r, const float *g, const float *b, size_t count,
+                     uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    for (size_t i = 0; i < count; i++) {
+        rgb[3 * i] = code8(table, r[i]);
+        rgb[3 * i + 1] = code8(table, g[i]);
+        rgb[3 * i + 2] = code8(table, b[i]);
+        count_pixel(r[i], g[i], b[i], &above, &odd);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}
+
+void glint_tone_row16(const glint_tone_table *table, const float *r, const float *g, const float *b, size_t count,
+                      uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    for (size_t i = 0; i < count; i++) {
+        rgb[3 * i] = code16(table, r[i]);
+        rgb[3 * i + 1] = code16(table, g[i]);
+        rgb[3 * i + 2] = code16(table, b[i]);
+        count_pixel(r[i], g[i], b[i], &above, &odd);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}
