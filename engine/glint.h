@@ -296,6 +296,8 @@ typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
     const char *isa; ///< "ref", "sse2", "avx2", "avx512"; NULL (default): the environment's GLINT_ISA, else the best
     bool time_stages; ///< measure each stage on each tile (costs a few per cent)
+    bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same
+    size_t reuse_memory; ///< bytes that may be kept between frames; 0 (default): a quarter of the machine's memory
 } glint_renderer_desc;
 
 glint_renderer_desc glint_renderer_desc_default(void);
@@ -318,7 +320,7 @@ typedef struct glint_frame_stats {
     int stage_count; ///< the plan's stages, in its order
     const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
-    bool stage_reused[GLINT_STAGE_MAX]; ///< false: the stage ran
+    double stage_reused[GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     glint_ray_counts rays;
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes

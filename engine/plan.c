@@ -33,6 +33,9 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     glint_status status = glint_check_whole("width", desc->width, 1, GLINT_SIDE_MAX, error);
     if (!status)
         status = glint_check_whole("height", desc->height, 1, GLINT_SIDE_MAX, error);
+    if (!status && desc->width * desc->height > INT32_MAX)
+        status = glint_fail(error, GLINT_ERR_INVALID, "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f",
+                            desc->width, desc->height);
     if (!status)
         status = glint_check_whole("samples", desc->samples, 1, 65536, error);
     if (!status)
@@ -90,17 +93,25 @@ static void geometry_keys(const glint_plan *plan, glint_key *where, glint_key *l
     }
 }
 
-static glint_key light_key(const glint_plan *plan, glint_key key)
+/// Keys of each light's own results, and of all of them together.
+static void light_keys(glint_plan *plan)
 {
+    glint_key base = plan->keys[GLINT_STAGE_SURFACE];
     const uint32_t highlights[] = { plan->phong_end, plan->blinn_end };
-    ADD(key, highlights);
+    ADD(base, highlights);
+    glint_key all = base;
     for (uint32_t i = 0; i < plan->light_count; i++) {
-        const glint_plan_light *l = &plan->lights[i];
+        glint_plan_light *l = &plan->lights[i];
         const double numbers[] = { l->directional, l->position[0], l->position[1], l->position[2],
                                    l->coefficients[0], l->coefficients[1], l->coefficients[2] };
-        ADD(key, numbers);
+        l->key = glint_key_add(base, numbers, sizeof numbers);
+        l->occlude_key = l->key; // it reads the primitives, too, whose key is in the surface's
+        ADD(all, l->key);
     }
-    return key;
+    plan->keys[GLINT_STAGE_LIGHT] = all;
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        ADD(all, plan->lights[i].shadows);
+    plan->keys[GLINT_STAGE_OCCLUDE] = all;
 }
 
 static glint_key shade_key(const glint_plan *plan, glint_key key)
@@ -128,10 +139,7 @@ static void make_keys(glint_plan *plan)
     keys[GLINT_STAGE_CAMERA] = camera_key(plan);
     keys[GLINT_STAGE_CAST] = glint_key_add(keys[GLINT_STAGE_CAMERA], &where, sizeof where);
     keys[GLINT_STAGE_SURFACE] = glint_key_add(keys[GLINT_STAGE_CAST], &look, sizeof look);
-    keys[GLINT_STAGE_LIGHT] = light_key(plan, keys[GLINT_STAGE_SURFACE]);
-    keys[GLINT_STAGE_OCCLUDE] = keys[GLINT_STAGE_LIGHT];
-    for (uint32_t i = 0; i < plan->light_count; i++)
-        ADD(keys[GLINT_STAGE_OCCLUDE], plan->lights[i].shadows);
+    light_keys(plan);
     keys[GLINT_STAGE_SHADE] = shade_key(plan, keys[GLINT_STAGE_OCCLUDE]);
     keys[GLINT_STAGE_RESOLVE] = keys[GLINT_STAGE_SHADE];
     ADD(keys[GLINT_STAGE_RESOLVE], plan->desc.passes);

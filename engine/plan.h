@@ -41,6 +41,7 @@ typedef struct glint_plan_light {
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
     int8_t *light_side;             ///< per primitive, when it casts shadows; owned
+    glint_key key, occlude_key;     ///< of what `light` and `occlude` read for this light
 } glint_plan_light;
 
 /// The cone of directions in which a sphere is seen from an origin; for culling.

@@ -3,6 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
+#include "engine/reuse.h"
 #include "engine/tile.h"
 
 #include <stdatomic.h>
@@ -17,6 +18,10 @@ struct glint_renderer {
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
     glint_tile **tiles; ///< a tile's working memory for each worker
+    glint_reuse reuse;
+    glint_image *last; ///< the last frame, given again when nothing it reads changed
+    glint_key last_key;
+    glint_frame_stats last_stats;
 };
 
 /// One call of glint_render.
@@ -49,6 +54,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     if (!renderer)
         return glint_fail_nomem(error);
     renderer->time_stages = desc->time_stages;
+    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
     glint_status status = choose_stages(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
     if (!status)
@@ -76,6 +82,8 @@ void glint_renderer_destroy(glint_renderer *renderer)
         free(renderer->tiles[i]);
     }
     free(renderer->tiles);
+    glint_reuse_clear(&renderer->reuse);
+    glint_image_release(renderer->last);
     glint_pool_destroy(renderer->pool);
     free(renderer);
 }
@@ -141,8 +149,11 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
     glint_tile_counts sum = { 0 };
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
         const glint_tile_counts *part = &renderer->tiles[i]->counts;
-        for (int k = 0; k < GLINT_STAGE_COUNT; k++)
+        for (int k = 0; k < GLINT_STAGE_COUNT; k++) {
             sum.ns[k] += part->ns[k];
+            sum.runs[k] += part->runs[k];
+            sum.reuses[k] += part->reuses[k];
+        }
         sum.tile_ns += part->tile_ns;
         sum.primary += part->primary;
         sum.shadow += part->shadow;
@@ -160,7 +171,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         stats->stage_name[stats->stage_count] = glint_stage_names[id];
         if (renderer->time_stages)
             stats->stage_ms[stats->stage_count] = (double)sum.ns[id] * 1e-6;
-        stats->stage_count++;
+        const uint64_t calls = sum.runs[id] + sum.reuses[id];
+        stats->stage_reused[stats->stage_count++] = calls ? (double)sum.reuses[id] / (double)calls : 0;
     }
 }
 
@@ -175,18 +187,54 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .stages = renderer->stages,
                             .image = image,
                             .tone_table = table,
+                            .reuse = &renderer->reuse,
                             .time_stages = renderer->time_stages } };
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+    glint_reuse_begin(&renderer->reuse, plan, (size_t)f.across * down);
     atomic_store(&renderer->tiles_done, 0);
     atomic_store(&renderer->tile_count, (size_t)f.across * down);
     const double start = now_ms();
     glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
-    if (stats)
-        collect_stats(renderer, plan, now_ms() - start, stats);
+    collect_stats(renderer, plan, now_ms() - start, stats);
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     return GLINT_OK;
+}
+
+/// The key of the whole picture.
+static glint_key picture_key(const glint_plan *plan)
+{
+    return plan->keys[plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE];
+}
+
+/// Gives the last picture again when this frame's would be the same.
+static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats)
+{
+    const glint_image *last = renderer->last;
+    if (!last || !last->codes != !plan->desc.codes || !glint_key_equal(renderer->last_key, picture_key(plan)))
+        return false;
+    *out = glint_image_retain(renderer->last);
+    if (stats) {
+        *stats = (glint_frame_stats){ .stage_count = renderer->last_stats.stage_count };
+        stats->clipped = renderer->last_stats.clipped;
+        stats->nonfinite = renderer->last_stats.nonfinite;
+        for (int i = 0; i < stats->stage_count; i++) {
+            stats->stage_name[i] = renderer->last_stats.stage_name[i];
+            stats->stage_reused[i] = 1;
+        }
+    }
+    return true;
+}
+
+static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats)
+{
+    if (!renderer->reuse.on)
+        return;
+    glint_image_release(renderer->last);
+    renderer->last = glint_image_retain(image);
+    renderer->last_key = picture_key(plan);
+    renderer->last_stats = *stats;
 }
 
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
@@ -195,17 +243,23 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     const glint_render_desc *desc = &plan->desc;
     glint_image *image = NULL;
     glint_tone_table *table = NULL;
+    glint_frame_stats counted;
+    if (unchanged(renderer, plan, out, stats))
+        return GLINT_OK;
     glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
                                              desc->codes ? &desc->tone : NULL, &image, error);
     if (!status && desc->codes)
         status = glint_tone_table_create(&desc->tone, &table, error);
     if (!status)
-        status = run(renderer, plan, image, table, stats, error);
+        status = run(renderer, plan, image, table, &counted, error);
     glint_tone_table_destroy(table);
     if (status) {
         glint_image_release(image);
         return status;
     }
+    remember(renderer, plan, image, &counted);
+    if (stats)
+        *stats = counted;
     *out = image;
     return GLINT_OK;
 }

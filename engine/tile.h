@@ -5,11 +5,13 @@
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
 #include "engine/plan.h"
+#include "engine/reuse.h"
 
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, clipped, nonfinite;
+    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
 
 /// What all tiles of a frame share.
@@ -18,17 +20,28 @@ typedef struct glint_tile_frame {
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no codes
+    glint_reuse *reuse;
     bool time_stages;
 } glint_tile_frame;
 
-/// What one light left in a tile.
+/// One light's results for one sample of each pixel, when they are not kept.
 typedef struct glint_tile_light {
     _Alignas(64) float cosine[GLINT_TILE_SAMPLES];
     _Alignas(64) float attenuation[GLINT_TILE_SAMPLES];
     _Alignas(64) float log2_specular[GLINT_TILE_SAMPLES];
-    _Alignas(64) float visible[GLINT_TILE_SAMPLES];
-    uint16_t lit[GLINT_TILE_GROUPS];
+    uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
 } glint_tile_light;
+
+/// Where the results of the current sample are: in the tile's own memory or in what is kept between frames.
+typedef struct glint_tile_sample {
+    void *t;
+    uint32_t *prim, *material;
+    uint16_t *hits;
+    struct {
+        float *cosine, *attenuation, *log2_specular;
+        uint16_t *lit, *open;
+    } light[GLINT_LIGHT_CHUNK];
+} glint_tile_sample;
 
 /// A worker's memory for one tile. Arrays of real are as long as doubles need.
 typedef struct glint_tile {
@@ -49,6 +62,8 @@ typedef struct glint_tile {
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS];
     double lower[3], upper[3]; ///< box around the points
+    glint_tile_sample at;
+    glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -62,6 +77,7 @@ typedef struct glint_tile {
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes. `first`: of sample 0, before shading.
+bool glint_tile_wants_geometry(const glint_plan *plan);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);

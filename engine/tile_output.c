@@ -33,18 +33,20 @@ static double real_at(const void *array, glint_precision precision, uint32_t i)
     return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
 }
 
+bool glint_tile_wants_geometry(const glint_plan *plan)
+{
+    return plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
+}
+
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const uint32_t wanted = plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
-    if (!wanted)
-        return;
     const glint_precision precision = plan->desc.precision;
     float depth[GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES], id[GLINT_TILE_SAMPLES];
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool hit = tile->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+        const bool hit = tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
         depth[i] = HUGE_VALF;
-        id[i] = hit ? (float)(tile->prim[i] + 1) : 0;
+        id[i] = hit ? (float)(tile->at.prim[i] + 1) : 0;
         double d[3] = { 0 };
         for (int c = 0; c < 3; c++) {
             normal[c][i] = hit ? (float)real_at(tile->normal[c], precision, i) : 0;
@@ -52,7 +54,7 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
                 d[c] = real_at(tile->direction[c], precision, i);
         }
         if (hit)
-            depth[i] = (float)(real_at(tile->t, precision, i) * sqrt(vec_dot(d, d)));
+            depth[i] = (float)(real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
     }
     store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
     store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);

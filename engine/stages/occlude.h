@@ -89,6 +89,7 @@ static void R(occlude)(const glint_occlude_args *args)
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         unsigned open = args->lit[g];
+        args->open[g] = 0;
         if (!open)
             continue;
         *args->rays += (unsigned)__builtin_popcount(open);
@@ -96,8 +97,6 @@ static void R(occlude)(const glint_occlude_args *args)
             R(shadow_rays)(args, at, &rays);
         for (uint32_t k = 0; k < args->candidate_count && open; k++)
             open &= ~R(blocked_by)(args, args->candidates[k], at, &rays, open);
-        for (int i = 0; i < GLINT_GROUP; i += VF)
-            f_store(args->visible + at + i,
-                    f_select(fm_from_bits(open >> i & ((1u << VF) - 1)), f_set(1), f_set(0)));
+        args->open[g] = (uint16_t)open;
     }
 }

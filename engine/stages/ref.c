@@ -130,16 +130,6 @@ static double square_root_double(double x) { return sqrt(x); }
 
 typedef struct terms { double value[GLINT_TERM_COUNT][3]; } terms; ///< of one sample
 
-/// attenuation visible, as far as the light has them.
-static float light_weight(const glint_shade_light *light, uint32_t i)
-{
-    if (light->attenuation && light->visible)
-        return light->attenuation[i] * light->visible[i];
-    if (light->attenuation)
-        return light->attenuation[i];
-    return light->visible ? light->visible[i] : 1;
-}
-
 static float highlight_strength(float shininess, float log2_specular)
 {
     float y = shininess * log2_specular;
@@ -149,7 +139,7 @@ static float highlight_strength(float shininess, float log2_specular)
 static void add_light(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, terms *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
-    float w = light_weight(light, i);
+    float w = light->attenuation ? light->attenuation[i] : 1;
     float diffuse = w * light->cosine[i];
     for (int c = 0; c < 3; c++)
         sum->value[GLINT_TERM_DIFFUSE][c] += (double)diffuse * (material->diffuse[c] * light->diffuse[c]);

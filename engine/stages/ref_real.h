@@ -367,12 +367,14 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t i)
         ++*args->rays;
     for (uint32_t k = 0; k < args->candidate_count && !blocked; k++)
         blocked = NAME(prim_blocks)(args, args->candidates[k], i);
-    args->visible[i] = blocked ? 0 : 1;
+    if (!blocked)
+        args->open[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
 static void NAME(occlude)(const glint_occlude_args *args)
 {
+    for (uint32_t g = 0; g < args->group_count; g++)
+        args->open[g] = 0;
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
-        if (args->lit[i / GLINT_GROUP])
-            NAME(occlude_sample)(args, i);
+        NAME(occlude_sample)(args, i);
 }

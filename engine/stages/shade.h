@@ -16,20 +16,21 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
     factors->count = 0;
     for (uint32_t k = 0; k < args->light_count; k++) {
         const glint_shade_light *light = &args->lights[k];
-        if (!light->lit[g])
+        const unsigned lit = light->lit[g];
+        if (!lit)
             continue;
         float *diffuse = factors->diffuse[factors->count], *highlight = factors->specular[factors->count];
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             vf w = f_set(1);
             if (light->attenuation)
                 w = w * f_load(light->attenuation + at + i);
-            if (light->visible)
-                w = w * f_load(light->visible + at + i);
-            f_store(diffuse + i, w * f_load(light->cosine + at + i));
+            const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
+            f_store(diffuse + i, f_select(mask, w * f_load(light->cosine + at + i), f_set(0)));
             if (specular) {
                 vf log2 = f_load(light->log2_specular + at + i);
                 vf s = w * f_exp2(f_set(material->shininess) * log2);
-                f_store(highlight + i, f_select(f_lt(f_set(GLINT_NO_SPECULAR), log2), s, f_set(0)));
+                const fm shiny = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
+                f_store(highlight + i, f_select(shiny, s, f_set(0)));
             }
         }
         factors->light[factors->count++] = light;

@@ -198,7 +198,7 @@ typedef struct glint_occlude_args {
                               ///< plane: the sign of dot(normal, light - point) (directional: of dot(normal, position))
     const uint32_t *candidates; uint32_t candidate_count; ///< in any order
     double reference[3]; double filter_scale;
-    float *visible;   ///< out: 1 or 0; written in groups with lit != 0
+    uint16_t *open;   ///< out: the lit lanes that nothing blocks
     uint64_t *rays;   ///< added to: lit lanes
 } glint_occlude_args;
 // A lane is blocked where any candidate other than its own (candidate.coincident == coincident) blocks it:
@@ -217,8 +217,8 @@ typedef enum glint_term {
 } glint_term;
 
 typedef struct glint_shade_light {
-    const uint16_t *lit;
-    const float *cosine, *attenuation, *log2_specular, *visible; ///< attenuation, visible: NULL = 1 everywhere
+    const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `open` where it casts shadows
+    const float *cosine, *attenuation, *log2_specular; ///< attenuation: NULL = 1 everywhere
     double diffuse[3], specular[3]; ///< colour times intensity
 } glint_shade_light;
 
@@ -238,7 +238,7 @@ typedef struct glint_shade_args {
 // For each lane, double unless said otherwise:
 //   background += background where active and not hit; ambient += materials[m].ambient where hit
 //   for each light where its lit bit is set, in order:
-//     w = attenuation visible (float; a factor that is NULL is left out; both NULL: 1)
+//     w = attenuation (float; NULL: 1)
 //     diffuse[c]  += (double)(w cosine)_float * (kd[c] diffuse[c])
 //     where the material has a specular term and log2_specular > GLINT_NO_SPECULAR:
 //     y = shininess log2_specular (float), S = y < -40 ? 0 : exp2(y)

@@ -1,0 +1,133 @@
+#include "engine/reuse.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget)
+{
+    memset(reuse, 0, sizeof *reuse);
+    reuse->on = on;
+    reuse->budget = budget ? budget : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+void glint_reuse_clear(glint_reuse *reuse)
+{
+    for (size_t i = 0; i < reuse->tile_count; i++) {
+        glint_kept_tile *tile = &reuse->tiles[i];
+        free(tile->t);
+        free(tile->material);
+        for (uint32_t k = 0; k < reuse->light_count; k++) {
+            free(tile->lights[k].cosine);
+            free(tile->lights[k].open);
+        }
+        free(tile->lights);
+    }
+    free(reuse->tiles);
+    const size_t budget = reuse->budget;
+    const bool on = reuse->on;
+    memset(reuse, 0, sizeof *reuse);
+    reuse->on = on;
+    reuse->budget = budget;
+}
+
+/// The slots of every tile, or none at all.
+static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_count, uint32_t light_count)
+{
+    reuse->width = (uint32_t)plan->desc.width;
+    reuse->height = (uint32_t)plan->desc.height;
+    reuse->samples = (uint32_t)plan->desc.samples;
+    reuse->real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    const size_t bytes = tile_count * (sizeof *reuse->tiles + light_count * sizeof *reuse->tiles->lights);
+    if (bytes > reuse->budget || !(reuse->tiles = calloc(tile_count, sizeof *reuse->tiles)))
+        return;
+    reuse->light_count = light_count;
+    for (reuse->tile_count = 0; reuse->tile_count < tile_count; reuse->tile_count++) {
+        glint_kept_tile *tile = &reuse->tiles[reuse->tile_count];
+        tile->lights = calloc(light_count ? light_count : 1, sizeof *tile->lights);
+        if (!tile->lights) {
+            glint_reuse_clear(reuse);
+            return;
+        }
+    }
+    atomic_store(&reuse->used, bytes);
+}
+
+void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count)
+{
+    if (!reuse->on)
+        return;
+    const uint32_t lights = plan->light_count < GLINT_KEPT_LIGHTS ? plan->light_count : GLINT_KEPT_LIGHTS;
+    const size_t real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    if (reuse->tile_count != tile_count || reuse->width != plan->desc.width || reuse->height != plan->desc.height ||
+        reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights) {
+        glint_reuse_clear(reuse);
+        make_slots(reuse, plan, tile_count, lights);
+    }
+    reuse->keep_cast = glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
+    reuse->keep_surface = glint_key_equal(reuse->surface, plan->keys[GLINT_STAGE_SURFACE]);
+    reuse->cast = plan->keys[GLINT_STAGE_CAST];
+    reuse->surface = plan->keys[GLINT_STAGE_SURFACE];
+    for (uint32_t i = 0; i < lights; i++) {
+        const glint_plan_light *light = &plan->lights[i];
+        reuse->keep_light[i] = glint_key_equal(reuse->light[i], light->key);
+        reuse->keep_occlude[i] = light->shadows && glint_key_equal(reuse->occlude[i], light->occlude_key);
+        reuse->light[i] = light->key;
+        reuse->occlude[i] = light->occlude_key;
+    }
+}
+
+/// A block of memory within the budget, or NULL.
+static void *hold(glint_reuse *reuse, size_t bytes)
+{
+    if (atomic_fetch_add(&reuse->used, bytes) + bytes <= reuse->budget) {
+        void *block = glint_alloc(1, bytes);
+        if (block)
+            return block;
+    }
+    atomic_fetch_sub(&reuse->used, bytes);
+    return NULL;
+}
+
+bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile)
+{
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
+    if (!tile->t) {
+        char *block = hold(reuse, samples * (reuse->real_size + sizeof(uint32_t)) + samples / 8);
+        if (!block)
+            return false;
+        tile->t = block;
+        tile->prim = (uint32_t *)(block + samples * reuse->real_size);
+        tile->hits = (uint16_t *)(tile->prim + samples);
+    }
+    return true;
+}
+
+bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile)
+{
+    if (!tile->material)
+        tile->material = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES * sizeof *tile->material);
+    return tile->material != NULL;
+}
+
+bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light)
+{
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
+    if (!light->cosine) {
+        float *block = hold(reuse, 3 * samples * sizeof *block + samples / 8);
+        if (!block)
+            return false;
+        light->cosine = block;
+        light->attenuation = block + samples;
+        light->log2_specular = block + 2 * samples;
+        light->lit = (uint16_t *)(block + 3 * samples);
+    }
+    return true;
+}
+
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light)
+{
+    if (!light->open)
+        light->open = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES / 8);
+    return light->open != NULL;
+}

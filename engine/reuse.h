@@ -1,0 +1,63 @@
+/// What is kept of a frame, so that the next one runs only the stages whose inputs changed. Internal.
+///
+/// Every stage has a key of exactly what it reads (plan.c). A result is kept per tile from the second frame on that
+/// has its key: a stage that differs in every frame is not worth the memory it would write. A kept result is used
+/// where its key equals the plan's, so the reused frame has the fresh frame's bits.
+#ifndef GLINT_REUSE_H
+#define GLINT_REUSE_H
+
+#include "engine/plan.h"
+
+#include <stdatomic.h>
+
+#define GLINT_KEPT_LIGHTS 64 ///< lights of a frame whose results may be kept
+
+/// What one light left in a tile, all its samples one after the other. NULL: not kept.
+typedef struct glint_kept_light {
+    glint_key light, occlude; ///< of what is in the arrays; all zero: nothing yet
+    float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
+    uint16_t *lit;
+    uint16_t *open; ///< its own block: lit lanes that the light reaches
+} glint_kept_light;
+
+typedef struct glint_kept_tile {
+    glint_key cast, surface;
+    void *t; ///< doubles or floats; in one block with prim and hits
+    uint32_t *prim;
+    uint16_t *hits;
+    uint32_t *material; ///< its own block
+    glint_kept_light *lights;
+} glint_kept_tile;
+
+typedef struct glint_reuse {
+    bool on;
+    size_t budget;
+    atomic_size_t used;
+    uint32_t width, height, samples; ///< the layout of what is kept
+    size_t real_size;
+    glint_kept_tile *tiles;
+    size_t tile_count;
+    uint32_t light_count; ///< slots in each tile
+    glint_key cast, surface, light[GLINT_KEPT_LIGHTS], occlude[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    // which results this frame has in common with the last, and therefore keeps
+    bool keep_cast, keep_surface, keep_light[GLINT_KEPT_LIGHTS], keep_occlude[GLINT_KEPT_LIGHTS];
+} glint_reuse;
+
+/// budget  bytes; 0: a quarter of the machine's memory.
+void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget);
+void glint_reuse_clear(glint_reuse *reuse);
+/// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory nothing is kept.
+void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
+
+/// Blocks for a tile, made at first use within the budget. False: do without. Any worker, one at a time for a tile.
+bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
+bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile);
+bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
+
+static inline bool glint_key_equal(glint_key a, glint_key b)
+{
+    return a.high == b.high && a.low == b.low;
+}
+
+#endif
