@@ -21,6 +21,7 @@ typedef struct glint_tile_frame {
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no codes
     glint_reuse *reuse;
+    const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages;
 } glint_tile_frame;
 
@@ -73,8 +74,26 @@ typedef struct glint_tile {
     glint_tile_counts counts;
 } glint_tile;
 
+static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
+{
+    return atomic_load_explicit(frame->cancelled, memory_order_relaxed);
+}
+
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
+
+/// tile_stages.c: each calls one stage for the current sample, and books it.
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
+/// slot: where in the chunk the light's results go.
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot);
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot);
+void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
+/// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
+void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
+uint64_t glint_tile_now_ns(void);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes. `first`: of sample 0, before shading.
 bool glint_tile_wants_geometry(const glint_plan *plan);

@@ -1,0 +1,252 @@
+/// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
+#include "engine/tile.h"
+#include "engine/base/vec.h"
+#include "engine/cull.h"
+
+#include <time.h>
+
+uint64_t glint_tile_now_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
+}
+
+/// Books the time since the last call on a stage, when stages are timed.
+static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage)
+{
+    if (!frame->time_stages)
+        return;
+    const uint64_t now = glint_tile_now_ns();
+    tile->counts.ns[stage] += now - tile->clock;
+    tile->clock = now;
+}
+
+/// Counts a stage's call; `reused`: its result was at hand.
+void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused)
+{
+    if (reused)
+        tile->counts.reuses[stage]++;
+    else
+        tile->counts.runs[stage]++;
+    lap(tile, frame, stage);
+}
+
+/// Reverses the lower `bits` bits.
+static uint32_t reverse(uint32_t k, int bits)
+{
+    uint32_t r = 0;
+    for (int i = 0; i < bits; i++)
+        r |= (k >> i & 1) << (bits - 1 - i);
+    return r;
+}
+
+/// Where sample k of a pixel lies: Sobol's (0,2) sequence, so that any power-of-two number of first samples is
+/// stratified in every way; centred in its cells, and shifted around the torus by the seed.
+static void sample_offset(const glint_plan *plan, uint32_t k, double out[2])
+{
+    const uint32_t samples = (uint32_t)plan->desc.samples;
+    int bits = 0;
+    while (1u << bits < samples)
+        bits++;
+    uint32_t second = 0;
+    for (uint32_t i = k, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
+        if (i & 1)
+            second ^= v;
+    const double cells = (double)(1u << bits), seed = plan->desc.seed;
+    out[0] = (reverse(k, bits) + 0.5) / cells;
+    out[1] = ((bits ? second >> (32 - bits) : 0) + 0.5) / cells;
+    if (seed > 0) { // golden-ratio steps: neighbouring seeds fall far apart
+        out[0] += fmod(seed * 0x1.3c6ef372fe95p-1, 1);
+        out[1] += fmod(seed * 0x1.83b2b3de7cfacp-1, 1);
+        out[0] -= floor(out[0]);
+        out[1] -= floor(out[1]);
+    }
+    for (int i = 0; i < 2; i++)
+        out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
+}
+
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_camera *camera = &plan->camera;
+    glint_camera_args args = { .group_count = tile->group_count,
+                               .groups_across = tile->groups_across,
+                               .x0 = tile->x0,
+                               .y0 = tile->y0,
+                               .width = plan->desc.width,
+                               .height = plan->desc.height,
+                               .orthographic = camera->orthographic };
+    sample_offset(plan, k, args.offset);
+    vec_copy(args.eye, camera->eye);
+    vec_copy(args.forward, camera->forward);
+    vec_copy(args.right, camera->right);
+    vec_copy(args.up, camera->up);
+    for (int c = 0; c < 3; c++) {
+        args.origin[c] = tile->origin[c];
+        args.direction[c] = tile->direction[c];
+        args.direction_f[c] = tile->direction_f[c];
+    }
+    frame->stages->geometry[plan->desc.precision].camera(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_CAMERA, false);
+}
+
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const struct glint_geometry_stages *stages = &frame->stages->geometry[plan->desc.precision];
+    glint_cast_args args = { .group_count = tile->group_count,
+                             .active = tile->active,
+                             .prims = plan->prims,
+                             .bundle = plan->bundle,
+                             .candidates = tile->candidates,
+                             .candidate_count = tile->candidate_count,
+                             .filter_scale = plan->filter_scale,
+                             .t = tile->at.t,
+                             .prim = tile->at.prim,
+                             .hits = tile->at.hits };
+    vec_copy(args.reference, plan->reference);
+    for (int c = 0; c < 3; c++) {
+        args.origin[c] = tile->origin[c];
+        args.direction[c] = tile->direction[c];
+        args.direction_f[c] = tile->direction_f[c];
+    }
+    if (plan->bundle)
+        stages->cast_bundle(&args);
+    else
+        stages->cast_rays(&args);
+    tile->counts.primary += (uint64_t)tile->width * tile->height;
+    glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
+}
+
+void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const struct glint_geometry_stages *stages = &frame->stages->geometry[plan->desc.precision];
+    glint_surface_args args = { .group_count = tile->group_count,
+                                .hits = tile->at.hits,
+                                .prim = tile->at.prim,
+                                .prims = plan->prims,
+                                .bundle = plan->bundle,
+                                .t = tile->at.t,
+                                .material = tile->at.material,
+                                .coincident = tile->coincident,
+                                .side = tile->side };
+    vec_copy(args.eye, plan->camera.eye);
+    for (int c = 0; c < 3; c++) {
+        args.origin[c] = tile->origin[c];
+        args.direction[c] = tile->direction[c];
+        args.point[c] = tile->point[c];
+        args.normal[c] = tile->normal[c];
+    }
+    stages->surface(&args);
+    if (plan->runs[GLINT_STAGE_OCCLUDE]) {
+        glint_bounds_args box = { .group_count = tile->group_count, .hits = tile->at.hits };
+        for (int c = 0; c < 3; c++)
+            box.point[c] = tile->point[c];
+        stages->bounds(&box);
+        vec_copy(tile->lower, box.lower);
+        vec_copy(tile->upper, box.upper);
+    }
+    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+}
+
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+{
+    const glint_plan *plan = frame->plan;
+    glint_light_args args = { .group_count = tile->group_count,
+                              .hits = tile->at.hits,
+                              .material = tile->at.material,
+                              .side = tile->side,
+                              .directional = light->directional,
+                              .scale = light->scale,
+                              .attenuated = light->attenuated,
+                              .phong_end = plan->phong_end,
+                              .blinn_end = plan->blinn_end,
+                              .lit = tile->at.light[slot].lit,
+                              .cosine = tile->at.light[slot].cosine,
+                              .attenuation = tile->at.light[slot].attenuation,
+                              .log2_specular = tile->at.light[slot].log2_specular };
+    vec_copy(args.position, light->position);
+    vec_copy(args.coefficients, light->coefficients);
+    for (int c = 0; c < 3; c++) {
+        args.point[c] = tile->point[c];
+        args.normal[c] = tile->normal[c];
+        args.direction[c] = tile->direction[c];
+    }
+    frame->stages->geometry[plan->desc.precision].light(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+}
+
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+{
+    const glint_plan *plan = frame->plan;
+    glint_occlude_args args = { .group_count = tile->group_count,
+                                .lit = tile->at.light[slot].lit,
+                                .coincident = tile->coincident,
+                                .side = tile->side,
+                                .directional = light->directional,
+                                .scale = light->scale,
+                                .prims = plan->prims,
+                                .light_side = light->light_side,
+                                .candidates = tile->candidates,
+                                .filter_scale = plan->filter_scale,
+                                .open = tile->at.light[slot].open,
+                                .rays = &tile->counts.shadow };
+    args.candidate_count = glint_cull_shadow(plan, light, tile->lower, tile->upper, tile->candidates);
+    vec_copy(args.position, light->position);
+    vec_copy(args.reference, plan->reference);
+    for (int c = 0; c < 3; c++)
+        args.point[c] = tile->point[c];
+    frame->stages->geometry[plan->desc.precision].occlude(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
+}
+
+void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_plan_light *light = &plan->lights[from + i];
+        lights[i] = (glint_shade_light){ .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
+                                         .cosine = tile->at.light[i].cosine,
+                                         .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
+                                         .log2_specular = tile->at.light[i].log2_specular };
+        vec_copy(lights[i].diffuse, light->diffuse);
+        vec_copy(lights[i].specular, light->specular);
+    }
+    glint_shade_args args = { .group_count = tile->group_count,
+                              .active = tile->active,
+                              .hits = tile->at.hits,
+                              .material = tile->at.material,
+                              .materials = plan->materials,
+                              .has_specular = plan->blinn_end > 0,
+                              .first = from == 0,
+                              .lights = lights,
+                              .light_count = count };
+    vec_copy(args.background, plan->background);
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < GLINT_TERM_COUNT; k++) {
+            args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
+            args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
+        }
+        args.beauty[c] = tile->beauty[c];
+    }
+    frame->stages->shade(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
+}
+
+void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < GLINT_TERM_COUNT; k++) {
+            args.sum[k][c] = tile->sum[k][c];
+            args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
+        }
+        args.beauty[c] = tile->beauty[c];
+    }
+    frame->stages->resolve(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
+}
