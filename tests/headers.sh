@@ -12,7 +12,7 @@ for header in engine/*.h engine/*/*.h bindings/*.h; do
     engine/stages/*.h) continue ;;
     esac
     # Twice: the guard holds.
-    if ! printf '#include "%s"\n' "$header" "$header" |
+    if ! printf '#include "%s"\n#include "%s"\nextern int not_empty;\n' "$header" "$header" |
         ${CC:-cc} "$@" "${flags[@]}" -Wno-unused-function -Wno-unused-const-variable -Werror -fsyntax-only -x c -; then
         echo "$header does not compile alone"
         bad=1

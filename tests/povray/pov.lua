@@ -35,7 +35,8 @@ line("camera { %s location %s direction %s right %s up %s }", projection, vector
 if light == "point" then
   line("light_source { %s rgb %s }", vector(w.light.position), vector(w.light.color))
 else
-  line("light_source { %s rgb %s parallel point_at 0 }", vector(scaled(w.light.direction, -1e6)), vector(w.light.color))
+  local far = scaled(w.light.direction, -1e6)
+  line("light_source { %s rgb %s parallel point_at 0 }", vector(far), vector(w.light.color))
 end
 local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0"):format(w.specular, w.shininess)
   or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
