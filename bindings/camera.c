@@ -84,6 +84,7 @@ static int new_camera(lua_State *L)
     desc_type desc = {.camera = glint_camera_desc_default(), .has_at = false};
     glint_camera *camera = NULL;
     glint_error error;
+    lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_CAMERA);
     desc.camera.has_direction = false;
     glintL_read_table(L, 1, "camera", FIELDS, &desc, false);

@@ -88,6 +88,7 @@ static int new_light(lua_State *L, glint_light_kind kind)
     desc_type desc = glint_light_desc_default(kind);
     glint_light *light = NULL;
     glint_error error;
+    lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_LIGHT);
     glintL_read_table(L, 1, VARIANTS[kind].name, VARIANTS[kind].fields, &desc, false);
     glintL_check_status(L, VARIANTS[kind].name, &error, glint_light_create(&desc, &light, &error));

@@ -112,6 +112,7 @@ static int new_material(lua_State *L)
     desc_type desc = glint_material_desc_default();
     glint_material *material = NULL;
     glint_error error;
+    lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_MATERIAL);
     glintL_read_table(L, 1, "material", FIELDS, &desc, false);
     glintL_check_status(L, "material", &error, glint_material_create(&desc, &material, &error));

@@ -196,8 +196,10 @@ static void read_materials(lua_State *L, const arguments *a, glint_material **po
         pointers[i] = glintL_test_object(L, -1, GLINTL_MATERIAL);
         if (!pointers[i] && !lua_isnil(L, MATERIAL))
             glintL_refuse(L, -1, "spheres.material", "material");
-        if (!pointers[i])
-            glintL_refuse(L, -1, lua_pushfstring(L, "spheres.materials[%I]", (LUAI_UACINT)i + 1), "material");
+        if (!pointers[i]) {
+            const char *got = glintL_push_spelling(L, -1);
+            glintL_error(L, "spheres.materials[%I]: material expected, got %s", (LUAI_UACINT)i + 1, got);
+        }
         lua_pop(L, 1);
     }
 }

@@ -1,4 +1,5 @@
 // glint.vector: three numbers that do not change, read by x, y, z, by r, g, b and by 1, 2, 3.
+#include <stdio.h>
 #include <string.h>
 
 #include "bindings/glintL.h"
@@ -102,8 +103,10 @@ static int unpack(lua_State *L)
 
 static int to_string(lua_State *L)
 {
+    char text[96];
     const double *v = check_self(L);
-    lua_pushfstring(L, "{%f, %f, %f}", v[0], v[1], v[2]);
+    snprintf(text, sizeof text, "{%.14g, %.14g, %.14g}", v[0], v[1], v[2]);
+    lua_pushstring(L, text);
     return 1;
 }
 

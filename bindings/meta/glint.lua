@@ -1,0 +1,397 @@
+---@meta glint
+
+-- The whole API of glint for editors (LuaLS). tests/check_meta.lua holds it equal to what the module registers.
+--
+-- Lengths are in world units, the world is right-handed, angles are in degrees. Colours are linear, 1 = display white.
+-- A wrong name, type or value raises an error such as
+--     scene.lua:7: material.shininess: number >= 0 expected, got -1
+-- Strings are not taken for numbers; NaN and infinity are refused wherever a quantity is expected.
+
+---@class glint
+---@field version string  "major.minor.patch"
+local glint = {}
+
+-- ---- Values ----
+
+--- Three numbers that do not change. To change an object's vector, assign a whole one (`lamp.position = {0, 20, 0}`),
+--- or one component where the object has a place (`lamp.x = 3`).
+--- `a + b`, `a - b`, `-a`, `a * b`, `a / b` work component by component; in `*` and `/` either side may be a number.
+--- An array `{x, y, z}` may stand for a vector. `#v` is 3, `==` compares the numbers.
+---@class glint.vector
+---@field x number  also v[1]
+---@field y number  also v[2]
+---@field z number  also v[3]
+---@field r number  the same as x
+---@field g number  the same as y
+---@field b number  the same as z
+---@field [integer] number
+---@operator add(glint.vec3): glint.vector
+---@operator sub(glint.vec3): glint.vector
+---@operator mul(glint.vec3|number): glint.vector
+---@operator div(glint.vec3|number): glint.vector
+---@operator unm: glint.vector
+local vector = {}
+
+---@return number x
+---@return number y
+---@return number z
+function vector:unpack() end
+
+--- A vector, or an array of exactly three numbers. Read from an object it is always a vector.
+---@alias glint.vec3 glint.vector|number[]
+
+--- {r, g, b} or one number, linear; "#rgb", "#rrggbb" or one of the 148 CSS names, sRGB, converted to linear.
+--- Read from an object it is always a vector.
+---@alias glint.color glint.vector|number[]|number|string
+
+-- ---- Materials ----
+
+---@class glint.material_fields
+---@field model? "phong"|"blinn_phong"|"lambert"  how the highlight falls off; "lambert" has none. Default "phong"
+---@field ambient? glint.color  reflectance >= 0 of ambient light. Follows `diffuse` until set; nil: follows again
+---@field diffuse? glint.color  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
+---@field specular? glint.color  strength >= 0 of the highlight. Default 0
+---@field shininess? number  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
+---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+
+---@class glint.material: glint.material_fields
+local material = {}
+
+---@class glint.geometry
+---@field normal glint.vec3  of the surface, towards the side the eye is on
+---@field to_light glint.vec3  from the point to the light
+---@field to_eye glint.vec3  from the point to the eye
+
+---@class glint.reflection
+---@field diffuse glint.vector  kd (n.l); 0 where n.l <= 0
+---@field specular glint.vector  ks (r.v)^shininess, or its kin by `model`; 0 where n.l <= 0
+
+--- The two terms of one light of strength 1, by the kernels a frame uses. The vectors need not be unit.
+---@param geometry glint.geometry
+---@return glint.reflection
+function material:evaluate(geometry) end
+
+--- Gives the object back at once instead of when it is collected. What holds it (a shape, a scene) goes on using it.
+function material:close() end
+
+---@param fields glint.material_fields
+---@return glint.material
+function glint.material(fields) end
+
+-- ---- Lights ----
+
+--- Each light adds A * V * (kd * diffuse * (n.l) + ks * specular * S) where n.l > 0, with V = 0 in shadow.
+---@class glint.light_fields
+---@field color? glint.color  >= 0. Default 1
+---@field intensity? number  >= 0, multiplies each of the three terms. Default 1
+---@field ambient? glint.color  >= 0, adds to the scene's ambient light; neither attenuated nor shadowed. Default 0
+---@field diffuse? glint.color  >= 0; follows `color` until set; nil: follows again
+---@field specular? glint.color  >= 0; follows `color` until set; nil: follows again
+---@field attenuation? glint.vec3  {c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0. Default {1, 0, 0}
+---@field shadows? boolean  whether it casts shadows. Default true
+---@field visible? boolean  whether rays see its surface; point and directional lights have none. Default false
+---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+
+---@class glint.point_light_fields: glint.light_fields
+---@field position glint.vec3  world units
+
+---@class glint.point_light: glint.point_light_fields
+---@field x number  of position
+---@field y number  of position
+---@field z number  of position
+local point_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function point_light:close() end
+
+---@param fields glint.point_light_fields
+---@return glint.point_light
+function glint.point_light(fields) end
+
+---@class glint.directional_light_fields: glint.light_fields
+---@field direction glint.vec3  in which the light travels; not zero, need not be unit
+
+---@class glint.directional_light: glint.directional_light_fields
+local directional_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function directional_light:close() end
+
+---@param fields glint.directional_light_fields
+---@return glint.directional_light
+function glint.directional_light(fields) end
+
+-- ---- Camera ----
+
+---@class glint.camera_fields
+---@field eye glint.vec3  world units
+---@field at? glint.vec3  a point to look at; other than `eye`. Give either this or `direction`; the last set counts
+---@field direction? glint.vec3  a direction to look in; not zero. nil while `at` is used
+---@field up? glint.vec3  not zero; when parallel to the view, the world axis least aligned is taken. Default {0, 1, 0}
+---@field fov? number  vertical field of view of a perspective camera, degrees, between 0 and 180. Default 40
+---@field projection? "perspective"|"orthographic"  Default "perspective"
+---@field height? number  vertical extent of an orthographic camera, world units, > 0. Default 10
+---@field pixel_offset? number  where in its pixel a single sample lies, 0 .. 1. Default 0.5, the centre
+---@field name? string  for messages, at most 63 bytes. Default ""
+
+---@class glint.camera: glint.camera_fields
+local camera = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function camera:close() end
+
+---@param fields glint.camera_fields
+---@return glint.camera
+function glint.camera(fields) end
+
+-- ---- Shapes ----
+
+---@class glint.shape_fields
+---@field material? glint.material  Default: a material of its own with default fields
+---@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
+---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
+
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres
+---@alias glint.light glint.point_light|glint.directional_light
+
+---@class glint.sphere_fields: glint.shape_fields
+---@field center glint.vec3  world units
+---@field radius number  world units, > 0
+
+---@class glint.sphere: glint.sphere_fields
+---@field x number  of center
+---@field y number  of center
+---@field z number  of center
+local sphere = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function sphere:close() end
+
+---@param fields glint.sphere_fields
+---@return glint.sphere
+function glint.sphere(fields) end
+
+---@class glint.plane_fields: glint.shape_fields
+---@field point glint.vec3  any point of it, world units
+---@field normal glint.vec3  not zero, need not be unit
+
+---@class glint.plane: glint.plane_fields
+local plane = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function plane:close() end
+
+---@param fields glint.plane_fields
+---@return glint.plane
+function glint.plane(fields) end
+
+--- Many spheres in one shape, copied once from one array.
+---@class glint.spheres_fields: glint.shape_fields
+---@field data number[]|string  x, y, z, radius of each sphere: a flat table, or packed numbers in native byte order
+---@field format? "f32"|"f64"  of packed data; required there and refused otherwise
+---@field materials? glint.material[]  in place of `material`, with `index`
+---@field index? integer[]|string  which of `materials` each sphere has, from 1: a table, or packed u32 numbers
+
+---@class glint.spheres: glint.shape_fields
+---@field count integer  how many spheres; only read
+---@field materials glint.material[]  a new list of them; only read
+local spheres = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function spheres:close() end
+
+---@param fields glint.spheres_fields
+---@return glint.spheres
+function glint.spheres(fields) end
+
+-- ---- Scene ----
+
+---@class glint.scene_fields
+---@field camera? glint.camera  needed for a frame; nil: none
+---@field ambient? glint.color  light from everywhere, >= 0. Default 0
+---@field background? glint.color  what a ray sees that hits nothing, >= 0. Default 0
+
+---@class glint.scene_table: glint.scene_fields
+---@field [integer] glint.shape|glint.light  the objects, numbered in this order, without holes
+
+---@class glint.scene: glint.scene_fields
+local scene = {}
+
+--- Adds a shape or light, numbered after those that are there. Raises when it is there already.
+---@generic T: glint.shape|glint.light
+---@param object T
+---@return T object  the same
+function scene:add(object) end
+
+--- Takes a shape or light out. Raises when it is not there.
+---@param object glint.shape|glint.light
+function scene:remove(object) end
+
+---@class glint.hit
+---@field t number  the point is origin + t * direction; > 0
+---@field point glint.vector  world units
+---@field normal glint.vector  unit, geometric, outward (a plane's own)
+---@field object glint.shape
+---@field element? integer  which of a glint.spheres, from 1; nil for other shapes
+
+--- The nearest hit of one ray, in doubles, by the kernels a frame uses.
+---@param origin glint.vec3  world units
+---@param direction glint.vec3  not zero, need not be unit
+---@return glint.hit? hit  nil when nothing is hit
+function scene:cast(origin, direction) end
+
+--- Renders one frame. In a plain loop the calls are numbered from 1: a call that --frames or --shard leaves out returns
+--- nil and "skipped". Nothing is written without `output`.
+---@param options? glint.render
+---@return glint.image? image
+---@return "skipped"? reason
+function scene:render(options) end
+
+--- Gives the scene and what only it holds back at once.
+function scene:close() end
+
+---@param fields glint.scene_table
+---@return glint.scene
+function glint.scene(fields) end
+
+-- ---- Frames ----
+
+---@alias glint.pass
+---| "beauty"  # ((background + ambient) + diffuse) + specular, exactly
+---| "background"
+---| "ambient"
+---| "diffuse"
+---| "specular"
+---| "depth"  # distance from the eye, one number; inf where nothing is hit
+---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
+---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
+
+--- What a frame and its file are to be. What the command line says beats it.
+---@class glint.render
+---@field width? integer  pixels, 1 .. 65535. Default 1280
+---@field height? integer  pixels, 1 .. 65535. Default 720
+---@field samples? integer  a pixel, 1 .. 65536. Default 1
+---@field seed? integer  0 .. 2^53: another seed, another sample pattern as good. Default 0
+---@field max_depth? integer  longest chain of mirrors and refractions, >= 0
+---@field precision? "double"|"float"  what decides hits and shadows. Default "double"
+---@field bits? 8|16  a channel of a .png. Default 8
+---@field transfer? "srgb"|"linear"  how light becomes codes. Default "srgb"
+---@field rounding? "nearest"|"truncate"  Default "nearest"
+---@field tone? "clamp"  what becomes of light above 1. Default "clamp"
+---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
+---@field output? string  file name, .png or .pfm; %04d or #### takes the frame number
+---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
+
+---@class glint.save_options
+---@field bits? 8|16  a channel of a .png. Default 8
+---@field transfer? "srgb"|"linear"  Default "srgb"
+---@field rounding? "nearest"|"truncate"  Default "nearest"
+---@field tone? "clamp"  Default "clamp"
+---@field encode? "fast"|"small"  Default "fast"
+---@field pass? glint.pass  Default "beauty"
+
+---@class glint.image
+---@field width integer  pixels; only read
+---@field height integer  pixels; only read
+---@field passes glint.pass[]  those that can be read; only read
+local image = {}
+
+--- One pixel, linear. (0, 0) is the top left.
+---@param x integer  0 .. width - 1
+---@param y integer  0 .. height - 1
+---@param pass? glint.pass  Default "beauty"
+---@return number r  the only one of "depth" and "object_id"
+---@return number g
+---@return number b
+function image:pixel(x, y, pass) end
+
+--- Writes a .png or .pfm, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be written
+--- gives nil and a message.
+---@param path string
+---@param options? glint.save_options
+---@return true? done
+---@return string? message
+function image:save(path, options) end
+
+--- Gives the picture's memory back at once instead of when it is collected.
+function image:close() end
+
+-- ---- Jobs ----
+
+--- Parameters that `--set name=value` changes. Each is its default, or a table of it with limits.
+--- They are read as `P.name`; the type is the default's.
+---@class glint.param
+---@field [1] number|boolean|string  the default
+---@field min? number  smallest value allowed
+---@field max? number  largest value allowed
+---@field choices? (number|string)[]  the only values allowed
+---@field doc? string  one line for `--help`
+
+---@param list table<string, glint.param|number|boolean|string>
+---@return table<string, any>
+function glint.params(list) end
+
+---@class glint.animation_fields: glint.render
+---@field scene glint.scene
+---@field frames integer  >= 1, numbered from 1
+---@field fps? number  frames a second, > 0. Default 24
+---@field cyclic? boolean  t = (n-1)/frames, so that the last frame leads to the first; else (n-1)/(frames-1)
+---@field frame? fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n alone
+
+---@class glint.animation: glint.animation_fields
+local animation = {}
+
+--- Renders the frames. For plain Lua; the command runs what a script returns.
+---@param options? table
+function animation:run(options) end
+
+---@param fields glint.animation_fields
+---@return glint.animation
+function glint.animation(fields) end
+
+---@class glint.sweep_fields: glint.render
+---@field scene glint.scene
+---@field over table[]  the axes, each {object, "field", {values}}; every combination is a frame, the first axis across
+---@field size? integer[]  {width, height} in place of `width` and `height`
+---@field sheet? table  a contact sheet of the frames
+
+---@class glint.sweep: glint.sweep_fields
+local sweep = {}
+
+--- Renders the frames. For plain Lua; the command runs what a script returns.
+---@param options? table
+function sweep:run(options) end
+
+---@param fields glint.sweep_fields
+---@return glint.sweep
+function glint.sweep(fields) end
+
+-- ---- Numbers that are the same on every machine ----
+
+---@param radians number
+---@return number
+function glint.sin(radians) end
+
+---@param radians number
+---@return number
+function glint.cos(radians) end
+
+---@param radians number
+---@return number
+function glint.tan(radians) end
+
+---@param x number
+---@return number
+function glint.exp(x) end
+
+--- The natural logarithm.
+---@param x number
+---@return number
+function glint.log(x) end
+
+---@param x number
+---@param y number
+---@return number
+function glint.pow(x, y) end
+
+return glint

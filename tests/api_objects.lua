@@ -1,0 +1,298 @@
+-- The second half of test_api.lua, which loads it: shapes, scenes, rays, images, lifetimes.
+local glint, tools, tests = ...
+local check, raises, is, with = tools.check, tools.raises, tools.is, tools.with
+local SPHERE, LAMP, CAMERA = tools.SPHERE, tools.LAMP, tools.CAMERA
+
+function tests.sphere_and_plane()
+  local red = glint.material { diffuse = "red", name = "red" }
+  local s = glint.sphere(with(SPHERE, "material", red))
+  check(is(s.center, 0, 0, 0) and s.radius == 1 and s.two_sided == true and s.name == "", "defaults")
+  check(rawequal(s.material, red), "the material is the same userdata")
+  s.x, s.y, s.z, s.radius, s.two_sided, s.name = 1, 2, 3, 4, false, "ball"
+  check(is(s.center, 1, 2, 3) and s.x == 1 and s.radius == 4 and not s.two_sided and tostring(s) == "sphere 'ball'", "set")
+  local blue = glint.material { diffuse = "blue" }
+  s.material = blue
+  check(s.material == blue and s.material ~= red, "another material")
+  s.material = nil
+  check(s.material ~= blue and s.material.shininess == 32, "nil: one with default fields")
+  s.material.shininess = 7
+  check(s.material.shininess == 7, "which can be changed")
+  raises("sphere.raduis: no such field; did you mean 'radius'?", function() glint.sphere(with(SPHERE, "raduis", 2)) end)
+  raises("sphere.radius: number expected, got nil", function() glint.sphere { center = { 0, 0, 0 } } end)
+  raises("sphere.center: {x, y, z} expected, got nil", function() glint.sphere { radius = 1 } end)
+  for _, radius in ipairs { 0, -1 } do
+    raises("sphere.radius: number > 0 expected, got " .. radius, function() s.radius = radius end)
+    raises("sphere.radius: number > 0 expected, got " .. radius, function() glint.sphere(with(SPHERE, "radius", radius)) end)
+  end
+  raises("sphere.radius: finite number expected, got nan", function() s.radius = 0 / 0 end)
+  raises("sphere.radius: finite number expected, got inf", function() s.radius = 1 / 0 end)
+  raises("sphere.material: material expected, got 5", function() s.material = 5 end)
+  raises("sphere.material: material expected, got sphere", function() s.material = s end)
+  raises("sphere.two_sided: boolean expected, got string \"no\"", function() s.two_sided = "no" end)
+  raises("sphere.centre: no such field; did you mean 'center'?", function() return s.centre end)
+  check(s.radius == 4, "the sphere is as it was")
+  local p = glint.plane { point = { 0, -1, 0 }, normal = { 0, 2, 0 }, material = red, name = "floor" }
+  check(is(p.point, 0, -1, 0) and is(p.normal, 0, 2, 0) and p.material == red and tostring(p) == "plane 'floor'", "plane")
+  raises("plane.normal: vector that is not zero expected, got {0, 0, 0}", function() p.normal = { 0, 0, 0 } end)
+  raises("plane.point: {x, y, z} expected, got nil", function() glint.plane { normal = { 0, 1, 0 } } end)
+  raises("plane.x: no such field", function() p.x = 1 end)
+  raises("plane.radius: no such field", function() p.radius = 1 end)
+end
+
+function tests.spheres()
+  local red, blue = glint.material { name = "red" }, glint.material { name = "blue" }
+  local rows = { 0, 0, 0, 1, 5, 0, 0, 1 }
+  local function packed(format) return string.pack("=" .. format:rep(8), table.unpack(rows)) end
+  local s = glint.spheres { data = rows, material = red, name = "two", two_sided = false }
+  check(s.count == 2 and s.material == red and not s.two_sided and tostring(s) == "spheres 'two'", "from a table")
+  check(#s.materials == 1 and rawequal(s.materials[1], red), "a list of one material")
+  s.material = blue
+  check(s.material == blue and s.materials[1] == blue, "another material")
+  check(glint.spheres { data = packed "f", format = "f32" }.count == 2, "f32")
+  check(glint.spheres { data = packed "d", format = "f64" }.count == 2, "f64")
+  local function hit(t) return glint.scene { glint.spheres(t) }:cast({ 5, 0, 9 }, { 0, 0, -1 }) end
+  for _, t in ipairs { { data = rows }, { data = packed "f", format = "f32" }, { data = packed "d", format = "f64" } } do
+    local h = hit(t)
+    check(h and h.t == 8 and h.element == 2, "the second is hit")
+  end
+  for _, index in ipairs { { 2, 1 }, { 2.0, 1 }, string.pack("=I4I4", 2, 1) } do
+    s = glint.spheres { data = rows, materials = { red, blue }, index = index }
+    check(s.material == red and #s.materials == 2 and s.materials[2] == blue, "several materials")
+  end
+  check(glint.spheres { data = rows, materials = { blue } }.material == blue, "one in a list needs no index")
+  raises("spheres.material: these spheres have a list of materials; change the fields of those",
+    function() s.material = red end)
+  raises("spheres.count: this field is only read", function() s.count = 5 end)
+  raises("spheres.data: no such field", function() return s.data end)
+  local function wrong(expected, t) raises("spheres" .. expected, function() glint.spheres(t) end) end
+  wrong(".data: flat table or packed string of x, y, z, radius expected, got nil", {})
+  wrong(".data: flat table or packed string of x, y, z, radius expected, got 5", { data = 5 })
+  wrong(".data: 4 numbers a sphere (x, y, z, radius) expected, got 0 numbers", { data = {} })
+  wrong(".data: 4 numbers a sphere (x, y, z, radius) expected, got 3 numbers", { data = { 1, 2, 3 } })
+  wrong(".data[2]: a list without holes expected, got nil", { data = { 0, nil, 0, 1 } })
+  wrong(".data[4]: number expected, got string \"1\"", { data = { 0, 0, 0, "1" } })
+  wrong(".data: a list expected, got a table with the key string \"n\"", { data = { 0, 0, 0, 1, n = 4 } })
+  wrong(".data: sphere 2: radius > 0 expected, got -1", { data = { 0, 0, 0, 1, 0, 0, 0, -1 } })
+  wrong(".data: sphere 1: finite centre expected, got {inf, 0, 0}", { data = { 1 / 0, 0, 0, 1 } })
+  wrong(".format: \"f32\" or \"f64\" expected, got nil", { data = packed "f" })
+  wrong(".format: \"f32\" or \"f64\" expected, got string \"f16\"", { data = packed "f", format = "f16" })
+  wrong(".format: only packed data has a format", { data = rows, format = "f32" })
+  wrong(".data: 16 bytes a sphere (x, y, z, radius in f32) expected, got 33 bytes",
+    { data = packed "f" .. "x", format = "f32" })
+  wrong(".data: 32 bytes a sphere (x, y, z, radius in f64) expected, got 0 bytes", { data = "", format = "f64" })
+  wrong(": material or materials expected, got both", { data = rows, material = red, materials = { red } })
+  wrong(".material: material expected, got 5", { data = rows, material = 5 })
+  wrong(".materials: list of materials expected, got material", { data = rows, materials = red })
+  wrong(".materials: list of materials expected, got an empty table", { data = rows, materials = {} })
+  wrong(".materials[2]: material expected, got 5", { data = rows, materials = { red, 5 }, index = { 1, 1 } })
+  wrong(".index: table or packed string of numbers expected, got nil", { data = rows, materials = { red, blue } })
+  wrong(".index: materials expected with an index", { data = rows, index = { 1, 1 } })
+  wrong(".index[2]: number 1 .. 2 expected, got 3", { data = rows, materials = { red, blue }, index = { 1, 3 } })
+  wrong(".index[1]: number 1 .. 2 expected, got 0",
+    { data = rows, materials = { red, blue }, index = string.pack("=I4I4", 0, 1) })
+  wrong(".index[1]: whole number expected, got 1.5", { data = rows, materials = { red, blue }, index = { 1.5, 1 } })
+  wrong(".index: 2 numbers (one a sphere) expected, got 1", { data = rows, materials = { red, blue }, index = { 1 } })
+  wrong(".index: 8 bytes (a u32 a sphere) expected, got 7 bytes",
+    { data = rows, materials = { red, blue }, index = "1234567" })
+  wrong(".centre: no such field", { data = rows, centre = 1 })
+end
+
+function tests.scene()
+  local red = glint.material {}
+  local camera, lamp = glint.camera(CAMERA), glint.point_light(LAMP)
+  local near = glint.sphere { center = { 0, 0, 2 }, radius = 1, material = red }
+  local far = glint.sphere(SPHERE)
+  local scene = glint.scene { camera = camera, ambient = 0.1, background = "white", lamp, far }
+  check(rawequal(scene.camera, camera) and is(scene.ambient, 0.1, 0.1, 0.1) and is(scene.background, 1, 1, 1), "fields")
+  check(rawequal(scene:add(near), near), "add returns the object")
+  local h = scene:cast({ 0, 0, 9 }, { 0, 0, -2 })
+  check(h.t == 3 and is(h.point, 0, 0, 3) and is(h.normal, 0, 0, 1) and rawequal(h.object, near) and h.element == nil, "cast")
+  check(rawequal(h.object.material, red), "from the hit to the material")
+  check(scene:remove(near) == nil and scene:cast({ 0, 0, 9 }, { 0, 0, -1 }).object == far, "remove")
+  far.z = 1
+  check(scene:cast({ 0, 0, 9 }, { 0, 0, -1 }).t == 7, "a changed object")
+  scene:remove(far)
+  scene:remove(lamp)
+  check(scene:cast({ 0, 0, 9 }, { 0, 0, -1 }) == nil, "nothing left")
+  local other = glint.scene { far, lamp }
+  scene:add(far)
+  check(other:cast({ 0, 0, 9 }, { 0, 0, -1 }).object == scene:cast({ 0, 0, 9 }, { 0, 0, -1 }).object, "in two scenes")
+  scene.camera, scene.ambient, scene.background = nil, { 0, 0, 1 }, 0
+  check(scene.camera == nil and is(scene.ambient, 0, 0, 1), "fields set")
+  scene.camera = camera
+  raises("scene.shape: already in the scene", function() scene:add(far) end)
+  raises("scene.light: not in the scene", function() scene:remove(lamp) end)
+  raises("scene.shape: already in the scene", function() glint.scene { far, far } end)
+  raises("scene.add: shape or light expected, got nil", function() scene:add() end)
+  raises("scene.add: shape or light expected, got material", function() scene:add(red) end)
+  raises("scene.remove: shape or light expected, got 1", function() scene:remove(1) end)
+  raises("scene[2]: shape or light expected, got camera", function() glint.scene { lamp, camera } end)
+  raises("scene[1]: shape or light expected, got table", function() glint.scene { { lamp } } end)
+  raises("scene[2]: a list without holes expected, got nil", function() glint.scene { lamp, nil, far } end)
+  raises("scene[1]: a list without holes expected, got nil", function() glint.scene { nil, far } end)
+  raises("scene: a list expected, got a table with the key 0", function() glint.scene { [0] = lamp } end)
+  raises("scene: name of a field expected, got 1.5", function() glint.scene { [1.5] = lamp } end)
+  raises("scene.cam: no such field; did you mean 'camera'?", function() glint.scene { cam = camera } end)
+  raises("scene.camera: camera expected, got point_light", function() scene.camera = lamp end)
+  raises("scene.background: colour >= 0 expected, got {-1, -1, -1}", function() scene.background = -1 end)
+  raises("scene.rendr: no such field; did you mean 'render'?", function() scene:rendr {} end)
+  raises("cast.origin: {x, y, z} expected, got no value", function() scene:cast() end)
+  raises("cast.direction: vector that is not zero expected, got {0, 0, 0}",
+    function() scene:cast({ 0, 0, 0 }, { 0, 0, 0 }) end)
+  raises("cast.direction[1]: finite number expected, got nan", function() scene:cast({ 0, 0, 0 }, { 0 / 0, 0, 0 }) end)
+  raises("scene expected, got sphere", function() scene.cast(far, { 0, 0, 0 }, { 0, 0, 1 }) end)
+end
+
+function tests.image()
+  local scene = glint.scene {
+    camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 }, fov = 40 },
+    ambient = 0.25, background = { 0, 0, 1 },
+    glint.sphere { center = { 0, 0, 0 }, radius = 1, material = glint.material { diffuse = { 1, 0.5, 0 } } },
+  }
+  local image = scene:render { width = 64, height = 48, passes = { "depth", "object_id", "normal" } }
+  check(image.width == 64 and image.height == 48, "size")
+  local r, g, b = image:pixel(32, 24)
+  check(r == 0.25 and g == 0.125 and b == 0, "the sphere: %g %g %g", r, g, b)
+  r, g, b = image:pixel(0, 0)
+  check(r == 0 and g == 0 and b == 1, "the background: %g %g %g", r, g, b)
+  local depth = table.pack(image:pixel(0, 0, "depth"))
+  check(depth.n == 1 and depth[1] == math.huge and math.abs(image:pixel(32, 24, "depth") - 4) < 1e-2, "depth")
+  check(image:pixel(0, 0, "object_id") == 0 and image:pixel(31, 24, "object_id") == 1, "object_id")
+  check(select(3, image:pixel(32, 24, "normal")) > 0.99, "normal")
+  local there = {}
+  for _, pass in ipairs(image.passes) do there[pass] = true end
+  check(there.beauty and there.depth and there.object_id and there.normal, "passes")
+  raises("pixel.x: whole number 0 .. 63 expected, got 64", function() image:pixel(64, 0) end)
+  raises("pixel.x: whole number 0 .. 63 expected, got -1", function() image:pixel(-1, 0) end)
+  raises("pixel.y: whole number 0 .. 47 expected, got 1.5", function() image:pixel(0, 1.5) end)
+  raises("pixel.y: whole number 0 .. 47 expected, got nan", function() image:pixel(0, 0 / 0) end)
+  raises("pixel.y: number expected, got no value", function() image:pixel(0) end)
+  raises('pixel.pass: name of a pass expected, got string "depht"', function() image:pixel(0, 0, "depht") end)
+  raises("image.width: this field is only read", function() image.width = 5 end)
+  raises("image.with: no such field; did you mean 'width'?", function() return image.with end)
+  raises("image.pixel: a method is not assigned to", function() image.pixel = print end)
+  raises("save.path: file name expected, got nil", function() image:save(nil) end)
+  raises('save.path: file name without zero bytes expected, got string ""', function() image:save "" end)
+  raises("save.bits: 8 or 16 expected, got 9.0", function() image:save("x.png", { bits = 9 }) end)
+  raises("save.bit: no such field; did you mean 'bits'?", function() image:save("x.png", { bit = 8 }) end)
+  raises('save.transfer: "srgb" or "linear" expected, got string "gamma"',
+    function() image:save("x.png", { transfer = "gamma" }) end)
+  raises('save.pass: name of a pass expected, got string "shadow"', function() image:save("x.png", { pass = "shadow" }) end)
+  local done, message = image:save "/proc/no such folder/x.png"
+  check(done == nil and type(message) == "string", "a file that cannot be written: nil and a message")
+  local path = os.tmpname()
+  for _, ending in ipairs { ".png", ".pfm" } do
+    local name = path .. ending
+    done, message = image:save(name, { pass = "depth", bits = 16, encode = "small", transfer = "linear" })
+    check(done == true, "saved %s: %s", name, tostring(message))
+    local file = io.open(name, "rb")
+    local start = file and file:read(4) or ""
+    if file then file:close() end
+    check(start == (ending == ".png" and "\137PNG" or "Pf\n6"), "%s starts with %q", name, start)
+    os.remove(name)
+  end
+  os.remove(path)
+  image:close()
+  raises("image is closed", function() image:pixel(0, 0) end)
+end
+
+function tests.lifetimes()
+  local m = glint.material { shininess = 5 }
+  local s = glint.sphere(with(SPHERE, "material", m))
+  local scene = glint.scene { camera = glint.camera(CAMERA), s }
+  m:close()
+  m:close()
+  raises("material is closed", function() m.shininess = 1 end)
+  raises("material is closed", function() return m.shininess end)
+  raises("material is closed", function() m:evaluate {} end)
+  raises("sphere.material: material expected, got closed material", function() s.material = m end)
+  check(tostring(m) == "closed material" and m == m and m ~= s.material, "closed")
+  check(s.material.shininess == 5 and s.material == s.material, "the sphere keeps its material")
+  do
+    local made <close> = glint.sphere(SPHERE)
+    check(made.radius == 1, "to be closed")
+  end
+  s:close()
+  raises("shape is closed", function() s.x = 1 end)
+  raises("scene.add: shape or light expected, got closed shape", function() scene:add(s) end)
+  collectgarbage()
+  local h = scene:cast({ 0, 0, 9 }, { 0, 0, -1 })
+  check(h and h.object.material.shininess == 5, "the scene keeps its shapes")
+  check(scene.camera.fov == 40, "and its camera")
+  scene:close()
+  raises("scene is closed", function() scene:cast({ 0, 0, 9 }, { 0, 0, -1 }) end)
+  raises("scene is closed", function() scene:render {} end)
+  -- Userdata stay the same as long as anything holds them.
+  local marks = setmetatable({}, { __mode = "k" })
+  local held = glint.scene {}
+  for i = 1, 50 do
+    local ball = glint.sphere { center = { 3 * i, 0, 0 }, radius = 1, material = glint.material {} }
+    marks[ball], marks[ball.material] = i, -i
+    held:add(ball)
+  end
+  collectgarbage()
+  for i = 1, 50 do
+    local object = held:cast({ 3 * i, 0, 9 }, { 0, 0, -1 }).object
+    check(marks[object] == i and marks[object.material] == -i, "object %d is the same userdata", i)
+  end
+  for _ = 1, 200 do -- what is dropped is freed; addresses are used again
+    glint.scene { glint.sphere(with(SPHERE, "material", glint.material {})), glint.point_light(LAMP) }
+  end
+  collectgarbage()
+  check(getmetatable(held) == false and not pcall(setmetatable, held, {}), "the metatable is out of reach")
+end
+
+-- A finalizer that closes objects while they are used.
+function tests.hostile_finalizers()
+  local function later(f) setmetatable({}, { __gc = f }) end
+  local at = { normal = { 0, 0, 1 }, to_light = { 0, 0, 1 }, to_eye = { 0, 0, 1 } }
+  for _ = 1, 300 do
+    local m = glint.material {}
+    local t = with(SPHERE, "material", m)
+    later(function() m:close() end)
+    local ok, ball = pcall(glint.sphere, t)
+    check(ok or tostring(ball):find "closed", "sphere: %s", tostring(ball))
+    local material = ok and ball.material or glint.material {}
+    later(function() material:close() end)
+    pcall(material.evaluate, material, at)
+    local scene = glint.scene { glint.sphere(SPHERE) }
+    scene:cast({ 0, 0, 9 }, { 0, 0, -1 }).object:close()
+    later(function() scene:close() end)
+    pcall(scene.cast, scene, { 0, 0, 9 }, { 0, 0, -1 })
+    pcall(scene.add, scene, glint.sphere(SPHERE))
+  end
+end
+
+function tests.functions()
+  check(glint.version:find "^%d+%.%d+%.%d+$", "version")
+  for _, name in ipairs { "sin", "cos", "tan", "exp" } do
+    check(math.abs(glint[name](0.5) - math[name](0.5)) < 1e-15, name)
+    raises(name .. ': number expected, got string "1"', function() glint[name] "1" end)
+  end
+  check(math.abs(glint.log(10) - math.log(10)) < 1e-15 and glint.pow(2, 10) == 1024 and glint.sin(0) == 0, "log, pow")
+  check(glint.log(0) == -math.huge and glint.exp(math.huge) == math.huge, "the ends")
+  raises("pow: number expected, got no value", function() glint.pow(2) end)
+  raises("log: one number expected; for another base divide by glint.log(base)", function() glint.log(8, 2) end)
+end
+
+-- diffuse above 1 is allowed, and warned about once a process.
+function tests.warning()
+  local interpreter = arg[-1] or "lua5.4"
+  local script = [[package.cpath = %q
+    local glint = require 'glint'
+    local m = glint.material {diffuse = 1}
+    m.specular = 3
+    m.diffuse = {0.5, 1.5, 0}
+    m.diffuse = 2
+    glint.material {diffuse = 7}]]
+  local path = os.tmpname()
+  local file = assert(io.open(path, "w"))
+  file:write(script:format(package.cpath))
+  file:close()
+  local pipe = assert(io.popen(("%s %s 2>&1"):format(interpreter, path)))
+  local got = pipe:read "a"
+  pipe:close()
+  os.remove(path)
+  local expected = "glint: warning: " .. path .. ":5: material.diffuse above 1: the surface gives off more light than it gets\n"
+  check(got == expected, "one warning expected, got <%s>", got)
+end
