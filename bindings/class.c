@@ -120,7 +120,9 @@ static int read_member(lua_State *L)
 static void read_component(lua_State *L, const glintL_variant *variant, int part, description *desc)
 {
     static const glintL_field parts[] = {
-        {.name = "x", .kind = GLINTL_NUMBER}, {.name = "y", .kind = GLINTL_NUMBER}, {.name = "z", .kind = GLINTL_NUMBER},
+        {.name = "x", .kind = GLINTL_NUMBER},
+        {.name = "y", .kind = GLINTL_NUMBER},
+        {.name = "z", .kind = GLINTL_NUMBER},
     };
     double value;
     glintL_read_field(L, 3, variant->name, &parts[part], &value);
@@ -228,21 +230,24 @@ static int to_string(lua_State *L)
 void glintL_open_class(lua_State *L, const glintL_class *class)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_member}, {"__newindex", write_member}, {"__eq", same_object},
-        {"__tostring", to_string}, {NULL, NULL},
+        {"__index", read_member},
+        {"__newindex", write_member},
+        {"__eq", same_object},
+        {"__tostring", to_string},
+        {NULL, NULL},
     };
     luaL_newmetatable(L, class->type);
-    lua_pushlightuserdata(L, (void *)(uintptr_t)class);
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_setfield(L, -2, "class");
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
-    lua_pushlightuserdata(L, (void *)(uintptr_t)class);
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_pushcclosure(L, close_object, 1);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "__gc");
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "__close");
-    lua_pushlightuserdata(L, (void *)(uintptr_t)class);
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_insert(L, -2);
     luaL_setfuncs(L, meta, 2); // upvalues: class, close
     lua_pop(L, 1);

@@ -31,7 +31,10 @@ static int get_passes(lua_State *L)
 }
 
 static const luaL_Reg GETTERS[] = {
-    {"width", get_width}, {"height", get_height}, {"passes", get_passes}, {NULL, NULL},
+    {"width", get_width},
+    {"height", get_height},
+    {"passes", get_passes},
+    {NULL, NULL},
 };
 
 static const glintL_variant IMAGE = {.name = "image", .fields = NO_FIELDS, .getters = GETTERS};

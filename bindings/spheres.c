@@ -39,7 +39,10 @@ static void fetch(lua_State *L, const char *name, int place)
 static void read_format(lua_State *L, arguments *a)
 {
     static const glintL_field field = {
-        .name = "format", .kind = GLINTL_ENUM, .offset = offsetof(arguments, format), .names = FORMATS + 1,
+        .name = "format",
+        .kind = GLINTL_ENUM,
+        .offset = offsetof(arguments, format),
+        .names = FORMATS + 1,
     };
     fetch(L, "format", FORMAT);
     if (lua_isstring(L, DATA)) {

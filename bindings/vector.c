@@ -138,16 +138,26 @@ static int read_field(lua_State *L)
 static int write_field(lua_State *L)
 {
     const char *name = luaL_tolstring(L, 2, NULL);
-    return glintL_error(L, "vector.%s: a vector does not change; assign a whole one to the object's field: "
-                           "object.field = {x, y, z}", name);
+    return glintL_error(L,
+                        "vector.%s: a vector does not change; assign a whole one to the object's field: "
+                        "object.field = {x, y, z}",
+                        name);
 }
 
 void glintL_open_vector(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__add", add},           {"__sub", subtract},       {"__mul", multiply},       {"__div", divide},
-        {"__unm", negate},        {"__eq", equal},           {"__len", length},         {"__tostring", to_string},
-        {"__index", read_field},  {"__newindex", write_field}, {NULL, NULL},
+        {"__add", add},
+        {"__sub", subtract},
+        {"__mul", multiply},
+        {"__div", divide},
+        {"__unm", negate},
+        {"__eq", equal},
+        {"__len", length},
+        {"__tostring", to_string},
+        {"__index", read_field},
+        {"__newindex", write_field},
+        {NULL, NULL},
     };
     static const luaL_Reg methods[] = {{"unpack", unpack}, {NULL, NULL}};
     static const glintL_field fields[] = {
