@@ -305,8 +305,8 @@ local image = {}
 ---@return number b
 function image:pixel(x, y, pass) end
 
---- Writes a .png or .pfm, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be written
---- gives nil and a message.
+--- Writes a .png or .pfm, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be
+--- written gives nil and a message.
 ---@param path string
 ---@param options? glint.save_options
 ---@return true? done
@@ -333,10 +333,10 @@ function glint.params(list) end
 
 ---@class glint.animation_fields: glint.render
 ---@field scene glint.scene
----@field frames integer  >= 1, numbered from 1
+---@field frames? integer  >= 1, numbered from 1. Default 1
 ---@field fps? number  frames a second, > 0. Default 24
----@field cyclic? boolean  t = (n-1)/frames, so that the last frame leads to the first; else (n-1)/(frames-1)
----@field frame? fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n alone
+---@field cyclic? boolean  t = (n-1)/frames, the last frame leads to the first; else (n-1)/(frames-1). Default false
+---@field frame fun(t: number, n: integer)  sets the scene to frame n; may depend on t and n alone
 
 ---@class glint.animation: glint.animation_fields
 local animation = {}
@@ -349,11 +349,15 @@ function animation:run(options) end
 ---@return glint.animation
 function glint.animation(fields) end
 
+---@class glint.sheet
+---@field label? boolean|string|function  what stands under each picture
+---@field output? string  file name
+
 ---@class glint.sweep_fields: glint.render
 ---@field scene glint.scene
 ---@field over table[]  the axes, each {object, "field", {values}}; every combination is a frame, the first axis across
----@field size? integer[]  {width, height} in place of `width` and `height`
----@field sheet? table  a contact sheet of the frames
+---@field size? integer[]  {width, height} in place of those two
+---@field sheet? glint.sheet  a contact sheet of the frames
 
 ---@class glint.sweep: glint.sweep_fields
 local sweep = {}
