@@ -4,6 +4,7 @@ BUILD    ?= build
 CC       ?= cc
 AR       ?= ar
 CFLAGS   ?= -O2 -g
+KERNEL_CFLAGS ?= -O3
 LUA      ?= lua5.4
 
 PREFIX   ?= /usr/local
@@ -72,9 +73,10 @@ KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
-# Only these files are compiled for an instruction set, each for its own; ref.c for none.
-$(BUILD)/engine/stages/isa_avx2.o:   ISA := -mavx2 -mfma
-$(BUILD)/engine/stages/isa_avx512.o: ISA := -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
+# Only these files are compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in them alone.
+$(BUILD)/engine/stages/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
+$(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) -mavx2 -mfma
+$(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
