@@ -1,0 +1,40 @@
+/// PNG in memory: libpng is the container, filter and deflate are ours to choose. Internal.
+#ifndef GLINT_IMAGE_PNG_H
+#define GLINT_IMAGE_PNG_H
+
+#include "engine/glint.h"
+#include "engine/image/bytes.h"
+
+#define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value
+#define GLINT_PNG_KEY "glint:key" ///< tEXt keyword of a frame's key
+
+/// Where the codes of an RGB picture come from, a row at a time.
+typedef struct glint_png_source {
+    int width, height; ///< 1 .. GLINT_SIDE_MAX
+    int bits; ///< 8 or 16
+    glint_transfer transfer; ///< sRGB: an sRGB chunk; linear: gAMA 1.0
+    /// The 3 * width codes (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
+    /// large enough, or where they already are. Rows may be asked for in any order.
+    const void *(*row)(const void *user, int y, void *scratch);
+    const void *user;
+} glint_png_source;
+
+/// Appends a whole PNG to `out`. The bytes depend on the arguments and the deflate library alone; no dates.
+/// GLINT_ERR_INVALID for a bad keyword or a value that is too long; GLINT_ERR_NOMEM. `out` may have grown on failure.
+glint_status glint_png_encode(const glint_png_source *source, glint_encode encode, const glint_text *text,
+                              size_t text_count, glint_bytes *out, glint_error *error);
+
+typedef struct glint_png {
+    int width, height;
+    int channels; ///< 1 .. 4: grey, grey and alpha, RGB, RGB and alpha
+    int bits; ///< 8 or 16; fewer are widened to 8, palettes become RGB
+    void *codes; ///< uint8_t or uint16_t (native order), interleaved; the owner calls free
+} glint_png;
+
+/// Decodes a PNG; every CRC must be right and IEND there. GLINT_ERR_FORMAT otherwise; *out is written on success.
+glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, glint_error *error);
+
+/// Whether the bytes are a whole PNG (chunks from IHDR to IEND with right CRCs, nothing after) that has this text.
+bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value);
+
+#endif

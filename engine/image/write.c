@@ -1,0 +1,219 @@
+#include "engine/image/write.h"
+
+#include "engine/base/status.h"
+#include "engine/image/file.h"
+#include "engine/image/image.h"
+#include "engine/image/pfm.h"
+#include "engine/image/png.h"
+#include "engine/image/tone.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+#define DEPTH_NEAR 1.0 // what the nearest and the farthest depth look like; the background is 0
+#define DEPTH_FAR 0.1
+#define KEY_FILE_LIMIT ((size_t)1 << 34)
+
+/// What a row of codes is made from.
+typedef struct picture {
+    const glint_image *image;
+    float *const *plane;
+    glint_tone_desc tone; ///< of the file
+    const glint_tone_table *table; ///< colour passes
+    double nearest, depth_scale; ///< depth
+} picture;
+
+glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error)
+{
+    const char *ending = path ? strrchr(path, '.') : NULL;
+    if (ending && strcasecmp(ending, ".png") == 0)
+        *kind = GLINT_FILE_PNG;
+    else if (ending && strcasecmp(ending, ".pfm") == 0)
+        *kind = GLINT_FILE_PFM;
+    else
+        return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png or .pfm expected, got '%.400s'",
+                          path ? path : "");
+    return GLINT_OK;
+}
+
+// ---- Rows of codes ------------------------------------------------------------------------------------------------
+
+static const void *row_of_codes(const void *user, int y, void *scratch)
+{
+    (void)scratch;
+    const picture *p = user;
+    size_t bytes = (size_t)p->image->width * 3 * (p->tone.bits == 16 ? 2 : 1);
+    return (const uint8_t *)p->image->codes + (size_t)y * bytes;
+}
+
+static const void *row_of_color(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    const float *r = p->plane[0] + at, *g = p->plane[1] + at, *b = p->plane[2] + at;
+    if (p->tone.bits == 16)
+        glint_tone_row16(p->table, r, g, b, width, scratch, NULL, NULL);
+    else
+        glint_tone_row8(p->table, r, g, b, width, scratch, NULL, NULL);
+    return scratch;
+}
+
+/// Stores `value` (of 0 .. 1) as the linear code number `at` of a row.
+static void put_linear(const picture *p, void *codes, size_t at, double value)
+{
+    double x = value > 0 ? value < 1 ? value : 1 : 0;
+    if (p->tone.bits == 16)
+        ((uint16_t *)codes)[at] = (uint16_t)(x * 65535 + 0.5);
+    else
+        ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
+}
+
+static const void *row_of_depth(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *depth = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        double value = isfinite(depth[x]) ? DEPTH_NEAR - (depth[x] - p->nearest) * p->depth_scale : 0;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, value);
+    }
+    return scratch;
+}
+
+static const void *row_of_normals(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        bool background = p->plane[0][at + x] == 0 && p->plane[1][at + x] == 0 && p->plane[2][at + x] == 0;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, background ? 0 : p->plane[c][at + x] * 0.5 + 0.5);
+    }
+    return scratch;
+}
+
+/// One to one on 24 bits, 0 to 0: odd multipliers and shifts that can be undone.
+static uint32_t color_of_id(uint32_t id)
+{
+    uint32_t h = id & 0xffffff;
+    h = h * 0x9e3779b1u & 0xffffff;
+    h ^= h >> 12;
+    h = h * 0x85ebcbu & 0xffffff;
+    return h ^ h >> 13;
+}
+
+static const void *row_of_ids(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *id = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        uint32_t color = id[x] >= 0 && id[x] < 0x1p32f ? color_of_id((uint32_t)id[x]) : 0;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, (double)(color >> (8 * c) & 255) / 255);
+    }
+    return scratch;
+}
+
+// ---- Which rows ---------------------------------------------------------------------------------------------------
+
+static void find_depths(picture *p)
+{
+    size_t count = (size_t)p->image->width * (size_t)p->image->height;
+    double nearest = INFINITY, farthest = -INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        float depth = p->plane[0][i];
+        if (!isfinite(depth))
+            continue;
+        nearest = depth < nearest ? depth : nearest;
+        farthest = depth > farthest ? depth : farthest;
+    }
+    p->nearest = nearest;
+    p->depth_scale = farthest > nearest ? (DEPTH_NEAR - DEPTH_FAR) / (farthest - nearest) : 0;
+}
+
+static bool same_tone(const glint_tone_desc *a, const glint_tone_desc *b)
+{
+    return a->curve == b->curve && a->transfer == b->transfer && a->rounding == b->rounding && a->bits == b->bits;
+}
+
+static bool is_color(glint_pass pass)
+{
+    return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID;
+}
+
+static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
+{
+    if (pass == GLINT_PASS_BEAUTY && image->codes)
+        return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds codes of another tone and no 'beauty' pass");
+    return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
+}
+
+static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
+                               glint_error *error)
+{
+    picture p = {.image = image, .plane = image->plane[desc->pass], .tone = desc->tone};
+    glint_status status = glint_tone_check(&desc->tone, error);
+    if (status)
+        return status;
+    glint_png_source source = {image->width, image->height, desc->tone.bits, desc->tone.transfer, NULL, &p};
+    if (!is_color(desc->pass))
+        source.transfer = GLINT_TRANSFER_LINEAR;
+    if (desc->pass == GLINT_PASS_BEAUTY && image->codes && same_tone(&image->code_tone, &desc->tone)) {
+        source.row = row_of_codes;
+    } else if (!p.plane[0]) {
+        return fail_not_kept(image, desc->pass, error);
+    } else if (is_color(desc->pass)) {
+        status = glint_tone_table_shared(&desc->tone, &p.table, error);
+        source.row = row_of_color;
+    } else if (desc->pass == GLINT_PASS_DEPTH) {
+        find_depths(&p);
+        source.row = row_of_depth;
+    } else {
+        source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
+    }
+    return status ? status : glint_png_encode(&source, desc->encode, desc->text, desc->text_count, out, error);
+}
+
+glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
+                                glint_error *error)
+{
+    glint_file_kind kind;
+    glint_status status = glint_file_kind_of(desc->path, &kind, error);
+    if (status)
+        return status;
+    int channels = glint_pass_channels(desc->pass);
+    if (!channels)
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
+                          (int)desc->pass);
+    if (desc->encode != GLINT_ENCODE_FAST && desc->encode != GLINT_ENCODE_SMALL)
+        return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
+    if (kind == GLINT_FILE_PNG)
+        return encode_png(image, desc, out, error);
+    float *const *plane = image->plane[desc->pass];
+    if (!plane[0])
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(desc->pass));
+    return glint_pfm_encode(image->width, image->height, channels, plane, out) ? GLINT_OK : glint_fail_nomem(error);
+}
+
+glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
+{
+    glint_bytes bytes = {0};
+    glint_status status = glint_image_encode(image, desc, &bytes, error);
+    if (!status)
+        status = glint_file_write(desc->path, bytes.data, bytes.size, error);
+    free(bytes.data);
+    return status;
+}
+
+bool glint_file_has_key(const char *path, const char *key)
+{
+    struct glint_bytes bytes = {0};
+    if (glint_file_read(path, KEY_FILE_LIMIT, &bytes, NULL))
+        return false;
+    bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);
+    free(bytes.data);
+    return has;
+}

@@ -1,0 +1,226 @@
+/// glint_writer: one thread that encodes and writes, and one list of jobs in the order they were submitted.
+#include "engine/base/status.h"
+#include "engine/image/file.h"
+#include "engine/image/write.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef enum job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE } job_state;
+
+typedef struct job {
+    struct job *next;
+    job_state state;
+    glint_image *image; ///< owned until the job is done
+    glint_write_desc desc; ///< its strings follow the job in memory
+    glint_write_result result;
+} job;
+
+struct glint_writer {
+    pthread_t thread;
+    pthread_mutex_t lock; ///< over all below; a running job's desc, image and result are the thread's meanwhile
+    pthread_cond_t changed;
+    job *first, **end; ///< submitted and not collected
+    int queued, queue_depth;
+    bool closing;
+};
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+// ---- The thread ---------------------------------------------------------------------------------------------------
+
+static void do_job(job *j)
+{
+    glint_error error = {0};
+    glint_bytes bytes = {0};
+    double start = now_ms();
+    glint_status status = glint_image_encode(j->image, &j->desc, &bytes, &error);
+    double encoded = now_ms();
+    j->result.encode_ms = encoded - start;
+    if (!status) {
+        status = glint_file_write(j->desc.path, bytes.data, bytes.size, &error);
+        j->result.write_ms = now_ms() - encoded;
+    }
+    free(bytes.data);
+    j->result.status = status;
+    memcpy(j->result.message, error.message, sizeof j->result.message);
+}
+
+static job *first_queued(glint_writer *writer)
+{
+    job *j = writer->first;
+    while (j && j->state != JOB_QUEUED)
+        j = j->next;
+    return j;
+}
+
+static void *run_writer(void *user)
+{
+    glint_writer *writer = user;
+    pthread_mutex_lock(&writer->lock);
+    for (;;) {
+        job *j = first_queued(writer);
+        if (!j && writer->closing)
+            break;
+        if (!j) {
+            pthread_cond_wait(&writer->changed, &writer->lock);
+            continue;
+        }
+        j->state = JOB_RUNNING;
+        writer->queued--;
+        pthread_cond_broadcast(&writer->changed);
+        pthread_mutex_unlock(&writer->lock);
+        do_job(j);
+        glint_image_release(j->image);
+        pthread_mutex_lock(&writer->lock);
+        j->image = NULL;
+        j->state = JOB_DONE;
+        pthread_cond_broadcast(&writer->changed);
+    }
+    pthread_mutex_unlock(&writer->lock);
+    return NULL;
+}
+
+// ---- Making and ending --------------------------------------------------------------------------------------------
+
+glint_status glint_writer_create(int queue_depth, glint_writer **out, glint_error *error)
+{
+    glint_status status = glint_check_range("queue_depth", queue_depth, 1, 1 << 20, "number 1 .. 1048576", error);
+    if (status)
+        return status;
+    glint_writer *writer = calloc(1, sizeof *writer);
+    if (!writer)
+        return glint_fail_nomem(error);
+    writer->queue_depth = queue_depth;
+    writer->end = &writer->first;
+    pthread_mutex_init(&writer->lock, NULL);
+    pthread_cond_init(&writer->changed, NULL);
+    if (pthread_create(&writer->thread, NULL, run_writer, writer) != 0) {
+        pthread_cond_destroy(&writer->changed);
+        pthread_mutex_destroy(&writer->lock);
+        free(writer);
+        return glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer");
+    }
+    *out = writer;
+    return GLINT_OK;
+}
+
+void glint_writer_destroy(glint_writer *writer)
+{
+    if (!writer)
+        return;
+    pthread_mutex_lock(&writer->lock);
+    writer->closing = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    pthread_join(writer->thread, NULL);
+    for (job *j = writer->first; j;) {
+        job *next = j->next;
+        free(j);
+        j = next;
+    }
+    pthread_cond_destroy(&writer->changed);
+    pthread_mutex_destroy(&writer->lock);
+    free(writer);
+}
+
+// ---- Jobs ---------------------------------------------------------------------------------------------------------
+
+/// Copies a string to *at, which moves past it.
+static const char *keep_string(char **at, const char *string)
+{
+    if (!string)
+        return NULL;
+    size_t size = strlen(string) + 1;
+    char *copy = memcpy(*at, string, size);
+    *at += size;
+    return copy;
+}
+
+static size_t room_of(const char *string)
+{
+    return string ? strlen(string) + 1 : 0;
+}
+
+static job *make_job(const glint_write_desc *desc)
+{
+    size_t text_bytes = desc->text_count * sizeof(glint_text);
+    size_t room = sizeof(job) + text_bytes + room_of(desc->path);
+    for (size_t i = 0; i < desc->text_count; i++)
+        room += room_of(desc->text[i].keyword) + room_of(desc->text[i].value);
+    job *j = malloc(room);
+    if (!j)
+        return NULL;
+    *j = (job){.state = JOB_QUEUED, .desc = *desc};
+    glint_text *text = (glint_text *)(j + 1);
+    char *at = (char *)(text + desc->text_count);
+    j->desc.path = keep_string(&at, desc->path);
+    j->desc.text = text;
+    for (size_t i = 0; i < desc->text_count; i++) {
+        text[i].keyword = keep_string(&at, desc->text[i].keyword);
+        text[i].value = keep_string(&at, desc->text[i].value);
+    }
+    return j;
+}
+
+glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
+                                 glint_error *error)
+{
+    job *j = make_job(desc);
+    if (!j)
+        return glint_fail_nomem(error);
+    j->image = glint_image_retain(image);
+    j->result.user = user;
+    pthread_mutex_lock(&writer->lock);
+    while (writer->queued >= writer->queue_depth)
+        pthread_cond_wait(&writer->changed, &writer->lock);
+    *writer->end = j;
+    writer->end = &j->next;
+    writer->queued++;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    return GLINT_OK;
+}
+
+bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result)
+{
+    pthread_mutex_lock(&writer->lock);
+    while (wait && writer->first && writer->first->state != JOB_DONE)
+        pthread_cond_wait(&writer->changed, &writer->lock);
+    job *j = writer->first && writer->first->state == JOB_DONE ? writer->first : NULL;
+    if (j) {
+        writer->first = j->next;
+        if (!writer->first)
+            writer->end = &writer->first;
+    }
+    pthread_mutex_unlock(&writer->lock);
+    if (j)
+        *result = j->result;
+    free(j);
+    return j != NULL;
+}
+
+void glint_writer_cancel(glint_writer *writer)
+{
+    pthread_mutex_lock(&writer->lock);
+    for (job *j = writer->first; j; j = j->next) {
+        if (j->state != JOB_QUEUED)
+            continue;
+        glint_image_release(j->image);
+        j->image = NULL;
+        j->result.status = GLINT_ERR_CANCELLED;
+        snprintf(j->result.message, sizeof j->result.message, "cancelled");
+        j->state = JOB_DONE;
+    }
+    writer->queued = 0;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+}
