@@ -1,5 +1,5 @@
 -- The hard cases that need a picture: scale and offset, ties, coverage, lights in awkward places, odd cameras and
--- sizes. Each is named by its id. The cases of one ray or one reflection are in test_api.lua.
+-- sizes. Each is named by its id. The cases of one ray or one reflection are in test_rays.lua.
 local glint = require "glint"
 
 local count = 0
@@ -176,9 +176,9 @@ end
 local finite = function(r) return r == r and math.abs(r) < math.huge end
 local up = view(glint.camera { eye = { 0, 5, 0 }, at = origin, up = { 0, 1, 0 } })
 check(all(up, finite) and up:pixel(4, 4) == 0.5, "C1: up along the view falls back to another axis")
-refused("C1: up = 0 is refused", "camera%.up", function() glint.camera { up = { 0, 0, 0 } } end)
+refused("C1: up = 0 is refused", "camera%.up", function() glint.camera { eye = { 0, 0, 5 }, at = origin, up = { 0, 0, 0 } } end)
 for _, fov in ipairs { 0, 180, -1, 0 / 0 } do
-  refused("C2: fov " .. tostring(fov) .. " is refused", "camera%.fov", function() glint.camera { fov = fov } end)
+  refused("C2: fov " .. tostring(fov) .. " is refused", "camera%.fov", function() glint.camera { eye = { 0, 0, 5 }, at = origin, fov = fov } end)
 end
 do -- half the picture's height is tan(fov / 2): a sphere of radius 1 at distance 2 covers little of it
   local image = view(glint.camera { eye = { 0, 0, 2 }, at = origin, fov = 179.9 }, 101, 101)
@@ -194,7 +194,7 @@ do
     check(image.width == s[1] and image.height == s[2] and all(image, finite), ("C3: %d x %d"):format(s[1], s[2]))
   end
   for _, s in ipairs { { 65536, 65536 }, { 46341, 46341 }, { 1.5, 2 }, { 0 / 0, 2 }, { -1, 5 }, { math.huge, 2 } } do
-    refused(("I4: %s x %s is refused"):format(s[1], s[2]), "width", function()
+    refused(("I4: %s x %s is refused"):format(s[1], s[2]), "expected, got", function()
       scene:render { width = s[1], height = s[2] }
     end)
   end
@@ -232,7 +232,7 @@ do -- passes
   check(image:pixel(0, 0, "depth") == math.huge, "depth is inf in the background")
 end
 do
-  local empty = glint.scene { camera = glint.camera {}, background = { 0.25, 0.5, 1 } }:render { width = 5, height = 4 }
+  local empty = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = origin }, background = { 0.25, 0.5, 1 } }:render { width = 5, height = 4 }
   check(all(empty, function(r, g, b) return r == 0.25 and g == 0.5 and b == 1 end), "B1: an empty scene is its background")
 end
 print("1.." .. count)

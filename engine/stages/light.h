@@ -94,7 +94,7 @@ static inline void R(finish_light)(const glint_light_args *args, size_t at, cons
             cosine = cosine / f_sqrt(f_load(group->distance2 + i));
         f_store(args->cosine + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
         if (args->attenuated) {
-            vf attenuation = f_min(f_load(args->attenuation + at + i), f_set(FLT_MAX));
+            vf attenuation = f_min(f_load(args->attenuation + at + i), f_set(GLINT_ATTENUATION_MAX));
             f_store(args->attenuation + at + i, f_select(lit, attenuation, f_set(0)));
         }
         if (args->blinn_end) {

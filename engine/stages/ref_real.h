@@ -286,7 +286,7 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
     if (args->attenuated) {
         NAME(vec3) k = NAME(rounded)(args->coefficients);
         REAL d = NAME(square_root)(l2);
-        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * l2))), FLT_MAX);
+        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * l2))), GLINT_ATTENUATION_MAX);
     }
     if (args->blinn_end) {
         uint32_t material = args->material[i];

@@ -166,16 +166,17 @@ typedef struct glint_light_args {
     uint32_t phong_end, blinn_end; ///< materials < phong_end are Phong, < blinn_end Blinn-Phong; both 0: no highlight
     uint16_t *lit;          ///< out: a bit a lane where the light is above the surface's horizon
     float *cosine;          ///< out: n.l in 0 .. 1; 0 where unlit
-    float *attenuation;     ///< out: A, at most FLT_MAX; 0 where unlit
+    float *attenuation;     ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
     float *log2_specular;   ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
+#define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
 // l = position - point (directional: l = position); l2 = length2(l); nl = dot(normal, l)
 // lit = hit and nl > 0 and not side & GLINT_SIDE_UNLIT
 // cosine:      point light: q = (float)(l2 (scale scale)), m = (float)(nl scale), min(m / sqrt(q), 1) in float
 //              directional: min((float)nl, 1)
-// attenuation: d = sqrt(l2); min((float)(1 / (c0 + (c1 d + c2 l2))), FLT_MAX)
+// attenuation: d = sqrt(l2); min((float)(1 / (c0 + (c1 d + c2 l2))), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
