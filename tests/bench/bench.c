@@ -39,6 +39,8 @@ typedef struct workshop {
     glint_light *lamp;
 } workshop;
 
+static double shininess = 128; ///< of the balls that add_ball makes
+
 static void add_ball(glint_scene *scene, const double center[3], double radius, const double color[3], double gloss)
 {
     glint_error error;
@@ -49,7 +51,7 @@ static void add_ball(glint_scene *scene, const double center[3], double radius, 
         m.specular[c] = gloss;
         s.center[c] = center[c];
     }
-    m.shininess = 128;
+    m.shininess = shininess;
     s.radius = radius;
     glint_material *material;
     glint_shape *shape;
@@ -61,10 +63,21 @@ static void add_ball(glint_scene *scene, const double center[3], double radius, 
     glint_material_release(material);
 }
 
-static workshop make_workshop(bool shadows)
+typedef struct setting {
+    const char *isa;
+    int threads;
+    glint_precision precision;
+    bool no_shadows;
+    double samples;
+    enum { FRESH, MOVED_LIGHT, CHANGED_SHININESS } reuse; ///< what changes from round to round; FRESH: no reuse
+} setting;
+
+/// `step` 0 or 1 is the scene before and after the change that the setting's `reuse` names.
+static workshop make_workshop(const setting *set, int step)
 {
     glint_error error;
     workshop w;
+    shininess = set->reuse == CHANGED_SHININESS && step ? 64 : 128;
     must(glint_scene_create(&w.scene, &error), &error);
     add_ball(w.scene, (double[3]){0, -10000, 0}, 10000, (double[3]){0.42, 0.40, 0.37}, 0);
     add_ball(w.scene, (double[3]){-1.0, 4.0, -4.5}, 4.0, (double[3]){0.70, 0.10, 0.08}, 0.7);
@@ -73,8 +86,9 @@ static workshop make_workshop(bool shadows)
     add_ball(w.scene, (double[3]){0.6, 2.0, 4.2}, 2.0, (double[3]){0.16, 0.48, 0.20}, 0.7);
 
     glint_light_desc l = glint_light_desc_default(GLINT_LIGHT_POINT);
+    l.position[0] = set->reuse == MOVED_LIGHT && step ? 1 : 0;
     l.position[1] = 20;
-    l.shadows = shadows;
+    l.shadows = !set->no_shadows;
     must(glint_light_create(&l, &w.lamp, &error), &error);
     must(glint_scene_add_light(w.scene, w.lamp, &error), &error);
 
@@ -119,32 +133,33 @@ static glint_plan *make_plan(const glint_scene *scene, glint_precision precision
 typedef struct variant {
     char name[64];
     glint_renderer *renderer;
-    glint_plan *plan;
+    glint_plan *plans[2]; ///< rendered by turns; the same picture unless something is reused
     double render_ms[ROUNDS], tone_ms[ROUNDS];
 } variant;
 
 static variant variants[VARIANT_MAX];
 static int variant_count;
 
-/// Adds a variant; false when this machine lacks the instruction set.
-static bool add_variant(const char *name, const char *isa, int threads, glint_precision precision, bool shadows,
-                        double samples)
+/// Adds a variant; leaves it out when this machine lacks the instruction set.
+static void add_variant(const char *name, setting set)
 {
     glint_error error;
     glint_renderer_desc r = glint_renderer_desc_default();
-    r.isa = isa;
-    r.threads = threads;
+    r.isa = set.isa;
+    r.threads = set.threads;
+    r.no_reuse = set.reuse == FRESH;
     variant *v = &variants[variant_count];
     glint_status status = glint_renderer_create(&r, &v->renderer, &error);
     if (status == GLINT_ERR_UNSUPPORTED)
-        return false;
+        return;
     must(status, &error);
-    workshop w = make_workshop(shadows);
-    v->plan = make_plan(w.scene, precision, samples);
-    free_workshop(&w);
+    for (int step = 0; step < 2; step++) {
+        workshop w = make_workshop(&set, step);
+        v->plans[step] = make_plan(w.scene, set.precision, set.samples ? set.samples : 1);
+        free_workshop(&w);
+    }
     snprintf(v->name, sizeof v->name, "%s", name);
     variant_count++;
-    return true;
 }
 
 static void measure(variant *v, int round)
@@ -152,10 +167,12 @@ static void measure(variant *v, int round)
     glint_error error;
     glint_image *image;
     glint_frame_stats stats;
-    must(glint_render(v->renderer, v->plan, &image, &stats, &error), &error);
+    must(glint_render(v->renderer, v->plans[round & 1], &image, &stats, &error), &error);
+    glint_image_release(image);
+    if (round < 0) // the first one warms up
+        return;
     v->render_ms[round] = stats.render_ms;
     v->tone_ms[round] = stats.tone_ms;
-    glint_image_release(image);
 }
 
 static void shuffle(int *order, int count)
@@ -175,10 +192,10 @@ static void measure_all(void)
     int order[VARIANT_MAX];
     for (int i = 0; i < variant_count; i++)
         order[i] = i;
-    for (int round = -1; round < ROUNDS; round++) { // round -1 warms up and is overwritten by round 0
+    for (int round = -1; round < ROUNDS; round++) {
         shuffle(order, variant_count);
         for (int i = 0; i < variant_count; i++)
-            measure(&variants[order[i]], round < 0 ? 0 : round);
+            measure(&variants[order[i]], round);
     }
 }
 
@@ -231,23 +248,28 @@ static void print_ratio(const char *what, const char *a, const char *b, double b
 
 static void bench_frames(void)
 {
-    add_variant("1 thread", NULL, 1, GLINT_DOUBLE, true, 1);
-    add_variant("2 threads", NULL, 2, GLINT_DOUBLE, true, 1);
-    add_variant("1 thread, --precision float", NULL, 1, GLINT_FLOAT, true, 1);
-    add_variant("2 threads, --precision float", NULL, 2, GLINT_FLOAT, true, 1);
-    add_variant("1 thread, no shadow", NULL, 1, GLINT_DOUBLE, false, 1);
-    add_variant("1 thread, 4 samples", NULL, 1, GLINT_DOUBLE, true, 4);
-    add_variant("1 thread, avx512", "avx512", 1, GLINT_DOUBLE, true, 1);
-    add_variant("1 thread, avx2", "avx2", 1, GLINT_DOUBLE, true, 1);
-    add_variant("1 thread, sse2", "sse2", 1, GLINT_DOUBLE, true, 1);
-    add_variant("1 thread, ref", "ref", 1, GLINT_DOUBLE, true, 1);
+    add_variant("1 thread", (setting){.threads = 1});
+    add_variant("2 threads", (setting){.threads = 2});
+    add_variant("1 thread, --precision float", (setting){.threads = 1, .precision = GLINT_FLOAT});
+    add_variant("2 threads, --precision float", (setting){.threads = 2, .precision = GLINT_FLOAT});
+    add_variant("1 thread, no shadow", (setting){.threads = 1, .no_shadows = true});
+    add_variant("1 thread, 4 samples", (setting){.threads = 1, .samples = 4});
+    add_variant("1 thread, only the light moved", (setting){.threads = 1, .reuse = MOVED_LIGHT});
+    add_variant("1 thread, only the shininess changed", (setting){.threads = 1, .reuse = CHANGED_SHININESS});
+    add_variant("1 thread, avx512", (setting){.threads = 1, .isa = "avx512"});
+    add_variant("1 thread, avx2", (setting){.threads = 1, .isa = "avx2"});
+    add_variant("1 thread, sse2", (setting){.threads = 1, .isa = "sse2"});
+    add_variant("1 thread, ref", (setting){.threads = 1, .isa = "ref"});
     measure_all();
     print_variants();
     puts("");
     print_ratio("two threads / one", "2 threads", "1 thread", 0.55);
     print_ratio("default precision / float", "1 thread", "1 thread, --precision float", 1.30);
+    print_ratio("moved light / fresh frame", "1 thread, only the light moved", "1 thread", 0.65);
+    print_ratio("changed shininess / fresh frame", "1 thread, only the shininess changed", "1 thread", 0.15);
     for (int i = 0; i < variant_count; i++) {
-        glint_plan_destroy(variants[i].plan);
+        glint_plan_destroy(variants[i].plans[0]);
+        glint_plan_destroy(variants[i].plans[1]);
         glint_renderer_destroy(variants[i].renderer);
     }
 }
@@ -270,7 +292,7 @@ static void bench_encode(glint_encode encode, const char *name)
     glint_renderer *renderer;
     glint_writer *writer;
     glint_image *image;
-    workshop w = make_workshop(true);
+    workshop w = make_workshop(&(setting){0}, 0);
     glint_plan *plan = make_plan(w.scene, GLINT_DOUBLE, 1);
     must(glint_renderer_create(&r, &renderer, &error), &error);
     must(glint_writer_create(1, &writer, &error), &error);
@@ -303,14 +325,15 @@ static void bench_encode(glint_encode encode, const char *name)
 }
 
 /// The whole job: a lamp goes round, every frame becomes a PNG. Returns its seconds.
-static double run_job(int threads, glint_encode encode)
+static double run_job(int threads, glint_encode encode, bool no_reuse)
 {
     glint_error error;
     glint_renderer_desc r = glint_renderer_desc_default();
     r.threads = threads;
+    r.no_reuse = no_reuse;
     glint_renderer *renderer;
     glint_writer *writer;
-    workshop w = make_workshop(true);
+    workshop w = make_workshop(&(setting){0}, 0);
     double start = now_ms();
     must(glint_renderer_create(&r, &renderer, &error), &error);
     must(glint_writer_create(2, &writer, &error), &error);
@@ -351,16 +374,19 @@ static void bench_jobs(void)
         const char *name;
         int threads;
         glint_encode encode;
-    } jobs[] = {{"1 thread, fast", 1, GLINT_ENCODE_FAST},
-                {"2 threads, fast", 2, GLINT_ENCODE_FAST},
-                {"2 threads, small", 2, GLINT_ENCODE_SMALL}};
-    double seconds[3][3];
-    for (int round = 0; round < 3; round++)
-        for (int j = 0; j < 3; j++)
-            seconds[j][round] = run_job(jobs[j].threads, jobs[j].encode);
-    printf("\n%-44s %8s   %s\n", "job: 60 PNGs of a moving light, 1920x1080", "seconds", "least .. most of 3");
-    for (int j = 0; j < 3; j++) {
-        quartiles q = quartiles_of(seconds[j], 3);
+        bool no_reuse;
+    } jobs[] = {{"1 thread, fast", 1, GLINT_ENCODE_FAST, false},
+                {"2 threads, fast", 2, GLINT_ENCODE_FAST, false},
+                {"2 threads, fast, --no-reuse", 2, GLINT_ENCODE_FAST, true},
+                {"2 threads, small", 2, GLINT_ENCODE_SMALL, false}};
+    enum { COUNT = sizeof jobs / sizeof *jobs, TIMES = 5 };
+    double seconds[COUNT][TIMES];
+    for (int round = 0; round < TIMES; round++)
+        for (int j = 0; j < COUNT; j++)
+            seconds[j][round] = run_job(jobs[j].threads, jobs[j].encode, jobs[j].no_reuse);
+    printf("\n%-44s %8s   %s\n", "job: 60 PNGs of a moving light, 1920x1080", "seconds", "quartiles");
+    for (int j = 0; j < COUNT; j++) {
+        quartiles q = quartiles_of(seconds[j], TIMES);
         printf("%-44s %8.2f   %7.2f .. %6.2f\n", jobs[j].name, q.median, q.low, q.high);
     }
 }
