@@ -1,0 +1,133 @@
+/// The `glint` command: its command line, what it prints, and its sub-commands. Private to bindings/.
+///
+/// stdout is data, stderr is for people. What the functions here print goes to the streams of a cli_output.
+#ifndef GLINT_CLI_H
+#define GLINT_CLI_H
+
+#include <stdio.h>
+
+#include "bindings/run.h"
+
+// ---- command_line.c, options.c ----
+
+typedef enum cli_command {
+    CLI_RENDER = 1,
+    CLI_EXPLAIN = 2,
+    CLI_DESCRIBE = 4,
+    CLI_COMPARE = 8,
+    CLI_COST = 16
+} cli_command;
+
+typedef struct cli_sweep { ///< --sweep name=from:to:count
+    const char *name;
+    double from, to;
+    int64_t count;
+    char text[32]; ///< the value of the point that runs
+} cli_sweep;
+
+typedef struct cli_options {
+    cli_command command;
+    bool json, quiet, help, version;
+    const char *script; ///< NULL: none given
+    char **arguments;   ///< of compare; after `--` those of the script
+    int argument_count;
+    int64_t frame; ///< of explain
+    double fail, warn; ///< of compare
+    cli_sweep *sweeps;
+    size_t sweep_count;
+    glintL_asked asked; ///< moved into the run
+    char width[16], height[16]; ///< of --size
+    int64_t start, end, jump; ///< -s -e -j; 0: not given
+    bool has_frames;
+} cli_options;
+
+typedef struct cli_option cli_option;
+struct cli_option {
+    const char *name;
+    char letter; ///< 0: none
+    bool has_text;
+    unsigned commands; ///< that know it
+    /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
+    bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
+};
+#define CLI_OPTION_COUNT 30
+extern const cli_option cli_option_list[CLI_OPTION_COUNT];
+/// Adds a --set. False: out of memory.
+bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
+
+/// Reads the command line; what it keeps points into argv. False: `message` says what is wrong.
+bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
+void cli_free_options(cli_options *options);
+void cli_print_usage(FILE *out); ///< usage.c
+
+// ---- sweep_points.c ----
+
+/// "name=a:b:n"; the name stays in `text`.
+bool cli_read_sweep(char *text, cli_sweep *sweep, char message[GLINTL_MESSAGE_SIZE]);
+int64_t cli_sweep_points(const cli_options *options); ///< the product of the counts; 0: there is no --sweep
+/// Gives the swept parameters their values at a point, 1 ..: the first --sweep changes fastest.
+void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point);
+
+// ---- output.c, events.c, progress.c ----
+
+typedef struct cli_progress cli_progress;
+
+typedef struct cli_output {
+    FILE *data; ///< where data go: stdout, or under --json what stdout was
+    bool json, quiet, color;
+    bool data_failed, failure_printed;
+    int data_errno;
+    cli_progress *progress; ///< NULL: no bar
+    glintL_run *run;
+    double start_ms;
+} cli_output;
+
+/// Under --json whatever else is printed on stdout, by the script or by programs it starts, goes to stderr.
+bool cli_output_open(cli_output *output, const cli_options *options);
+/// Flushes; false: something could not be written, and the message was printed. Returns the exit code for it.
+int cli_output_close(cli_output *output);
+void cli_print_error(cli_output *output, const char *message);
+void cli_print_warning(cli_output *output, const char *message);
+
+glintL_reporter cli_reporter(cli_output *output);
+void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< "rays":{...}
+/// The error as an event and for people.
+void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
+/// The end of a run that did all it was asked.
+void cli_report_end(cli_output *output);
+
+/// NULL when there is no terminal to draw on.
+cli_progress *cli_progress_create(bool color);
+void cli_progress_destroy(cli_progress *progress);
+void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
+/// Wipes the bar, so that a line can be printed; it comes back with the next update.
+void cli_progress_clear(cli_progress *progress);
+
+// ---- script.c ----
+
+typedef struct cli_script {
+    lua_State *state;
+    int64_t frames;  ///< of the jobs it returned
+    bool has_jobs;
+} cli_script;
+
+/// Runs the script, and what it returns. False: the run has failed, was interrupted or was stopped.
+bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run);
+const char *cli_base_name(const char *path);
+void cli_close_script(cli_script *script);
+/// The state that a signal stops; NULL: none. signals.c
+void cli_set_state(lua_State *L);
+
+// ---- signals.c ----
+
+void cli_catch_signals(glintL_run *run);
+void cli_release_signals(void);
+
+// ---- The sub-commands: each returns the exit code ----
+
+int cli_render(cli_options *options, cli_output *output, glintL_run *run);
+int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
+int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
+int cli_compare(const cli_options *options, cli_output *output);
+
+#endif

@@ -1,0 +1,224 @@
+// The command line: words and options in any order.
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cli.h"
+
+#define MESSAGE GLINTL_MESSAGE_SIZE
+
+bool cli_add_set(glintL_asked *asked, const char *name, const char *text)
+{
+    glintL_set *grown = realloc(asked->sets, (asked->set_count + 1) * sizeof *grown);
+    if (!grown)
+        return false;
+    asked->sets = grown;
+    grown[asked->set_count++] = (glintL_set){.name = name, .text = text};
+    return true;
+}
+
+static bool complain_unknown(const char *text, char *message)
+{
+    char name[64];
+    const char *near = NULL;
+    if (strncmp(text, "--", 2) != 0 || strlen(text) > 60) {
+        snprintf(message, MESSAGE, "%.100s: no such option; --help lists them", text);
+        return false;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 2, "="), text + 2);
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        near = glintL_nearer(name, near, cli_option_list[i].name);
+    if (near)
+        snprintf(message, MESSAGE, "--%s: no such option; did you mean '--%s'?", name, near);
+    else
+        snprintf(message, MESSAGE, "--%s: no such option; --help lists them", name);
+    return false;
+}
+
+// getopt_long returned '?' or ':'.
+static bool complain(int what, const char *given, int code, char *message)
+{
+    if (code > 0xff) { // one of ours: its text is missing, or it takes none
+        const char *name = cli_option_list[code - 0x100].name;
+        snprintf(message, MESSAGE, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
+        return false;
+    }
+    if (what == ':') {
+        snprintf(message, MESSAGE, "-%c: a value is missing", code);
+        return false;
+    }
+    if (code && strncmp(given, "--", 2) != 0) {
+        snprintf(message, MESSAGE, "-%c: no such option; --help lists them", code);
+        return false;
+    }
+    return complain_unknown(given, message);
+}
+
+static const cli_option *find_option(int code)
+{
+    if (code > 0xff)
+        return &cli_option_list[code - 0x100];
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        if (cli_option_list[i].letter == code)
+            return &cli_option_list[i];
+    return NULL;
+}
+
+// Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
+static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI_OPTION_COUNT], char *message)
+{
+    struct option list[CLI_OPTION_COUNT + 1] = {0};
+    char letters[2 * CLI_OPTION_COUNT + 2] = ":", *letter = letters + 1, wrong[MESSAGE];
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
+        list[i] = (struct option){cli_option_list[i].name, cli_option_list[i].has_text ? required_argument : no_argument, NULL, 0x100 + (int)i};
+        if (cli_option_list[i].letter) {
+            *letter++ = cli_option_list[i].letter;
+            if (cli_option_list[i].has_text)
+                *letter++ = ':';
+        }
+    }
+    *letter = '\0';
+    opterr = 0;
+    for (;;) {
+        int at = optind, code = getopt_long(argc, argv, letters, list, NULL);
+        if (code == -1)
+            return true;
+        if (code == '?' || code == ':')
+            return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
+        const cli_option *option = find_option(code);
+        used[option - cli_option_list] = true;
+        if (!option->read(options, option, optarg, wrong)) {
+            snprintf(message, MESSAGE, "--%s: %.1000s", option->name, wrong);
+            return false;
+        }
+    }
+}
+
+// ---- What the words and the options say together ----
+
+static const struct {
+    const char *name;
+    cli_command command;
+} COMMANDS[] = {
+    {"render", CLI_RENDER}, {"explain", CLI_EXPLAIN}, {"describe", CLI_DESCRIBE}, {"compare", CLI_COMPARE},
+    {"cost", CLI_COST},
+};
+#define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
+
+static bool read_command(const char *word, cli_command *command)
+{
+    for (size_t i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(word, COMMANDS[i].name) == 0) {
+            *command = COMMANDS[i].command;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool read_words(int count, char **words, cli_options *options, char *message)
+{
+    const char *near = NULL;
+    int used = count > 0 && read_command(words[0], &options->command) ? 1 : 0;
+    if (options->command == CLI_COMPARE) {
+        options->arguments = words + used;
+        options->argument_count = count - used;
+        return true;
+    }
+    if (used < count)
+        options->script = words[used++];
+    if (used == count)
+        return true;
+    for (size_t i = 0; i < COMMAND_COUNT && used == 1; i++)
+        near = glintL_nearer(words[0], near, COMMANDS[i].name);
+    if (near)
+        snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
+    else
+        snprintf(message, MESSAGE, "'%.200s' is one word too many; arguments of the script follow --", words[used]);
+    return false;
+}
+
+static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
+{
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
+        if (used[i] && !(cli_option_list[i].commands & options->command)) {
+            snprintf(message, MESSAGE, "--%s: it means nothing to this command", cli_option_list[i].name);
+            return false;
+        }
+    }
+    if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {
+        snprintf(message, MESSAGE, "--frames: either it or --start, --end and --jump, not both");
+        return false;
+    }
+    if (options->end && options->end < (options->start ? options->start : 1)) {
+        snprintf(message, MESSAGE, "--end: a frame from %" PRId64 " on expected, got '%" PRId64 "'", options->start,
+                 options->end);
+        return false;
+    }
+    for (size_t i = 0; i < options->sweep_count; i++) {
+        bool twice = false;
+        for (size_t j = 0; j < options->asked.set_count; j++)
+            twice = twice || strcmp(options->asked.sets[j].name, options->sweeps[i].name) == 0;
+        for (size_t j = 0; j < i; j++)
+            twice = twice || strcmp(options->sweeps[j].name, options->sweeps[i].name) == 0;
+        if (twice) {
+            snprintf(message, MESSAGE, "--sweep %.200s: the parameter is set twice", options->sweeps[i].name);
+            return false;
+        }
+    }
+    if (cli_sweep_points(options) > GLINTL_FRAMES_MAX) {
+        snprintf(message, MESSAGE, "--sweep: at most %d points together expected", GLINTL_FRAMES_MAX);
+        return false;
+    }
+    return true;
+}
+
+// Room for the swept parameters, behind those that are set; and -s -e -j as a range.
+static bool complete(cli_options *options, char *message)
+{
+    bool good = true;
+    for (size_t i = 0; i < options->sweep_count; i++)
+        good = good && cli_add_set(&options->asked, options->sweeps[i].name, "");
+    if (options->start || options->end || options->jump) {
+        glintL_range range = {options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
+                              options->jump ? options->jump : 1};
+        good = good && glintL_selection_add(&options->asked.selection, range);
+    }
+    if (!good)
+        snprintf(message, MESSAGE, "out of memory");
+    return good;
+}
+
+bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE])
+{
+    bool used[CLI_OPTION_COUNT] = {false};
+    memset(options, 0, sizeof *options);
+    options->command = CLI_RENDER;
+    options->asked.repeat = 1;
+    options->frame = 1;
+    options->fail = options->warn = -1;
+    int words = argc;
+    for (int i = 1; i < words; i++) {
+        if (strcmp(argv[i], "--") == 0)
+            words = i; // what follows is the script's
+        else if (strcmp(argv[i], "--json") == 0)
+            options->json = true; // so that an error here is an event, too
+    }
+    if (!read_argv(words, argv, options, used, message) ||
+        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
+        !complete(options, message))
+        return false;
+    if (words < argc && options->command != CLI_COMPARE) {
+        options->arguments = argv + words + 1;
+        options->argument_count = argc - words - 1;
+    }
+    return true;
+}
+
+void cli_free_options(cli_options *options)
+{
+    glintL_selection_clear(&options->asked.selection);
+    free(options->asked.sets);
+    free(options->sweeps);
+}

@@ -1,0 +1,95 @@
+// The glint command.
+#include <locale.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cli.h"
+
+static int run_command(cli_options *options, cli_output *output, glintL_run *run)
+{
+    if (options->help)
+        return cli_describe(options, output, run);
+    switch (options->command) {
+    case CLI_EXPLAIN:
+        return cli_explain(options, output, run);
+    case CLI_DESCRIBE:
+        return cli_describe(options, output, run);
+    default:
+        return cli_render(options, output, run);
+    }
+}
+
+// Runs a command that needs a script. *signal_number is the signal that ended it, or 0.
+static int run_scripted(cli_options *options, cli_output *output, int *signal_number)
+{
+    glintL_run *run = glintL_run_create();
+    if (!run) {
+        cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
+    run->is_command = true;
+    run->times_stages = options->json;
+    snprintf(run->script, sizeof run->script, "%s", cli_base_name(options->script));
+    run->asked = options->asked; // which now owns what it points to
+    options->asked.sets = NULL;
+    options->asked.selection.ranges = NULL;
+    run->reporter = cli_reporter(output);
+    output->run = run;
+    cli_catch_signals(run);
+    int code = run_command(options, output, run);
+    cli_release_signals();
+    *signal_number = run->interrupted;
+    output->run = NULL;
+    glintL_run_destroy(run);
+    return code;
+}
+
+static int dispatch(cli_options *options, cli_output *output, int *signal_number)
+{
+    if (options->version) {
+        fputs("glint " GLINT_VERSION "\n", output->data);
+        return GLINTL_EXIT_DONE;
+    }
+    if (options->help && !options->script) {
+        cli_print_usage(output->data);
+        return GLINTL_EXIT_DONE;
+    }
+    if (options->command == CLI_COST) {
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "cost: it is not in this version");
+        return GLINTL_EXIT_USAGE;
+    }
+    if (options->command == CLI_COMPARE)
+        return cli_compare(options, output);
+    if (!options->script) {
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "a script expected; glint --help lists the commands");
+        return GLINTL_EXIT_USAGE;
+    }
+    return run_scripted(options, output, signal_number);
+}
+
+int main(int argc, char **argv)
+{
+    cli_options options;
+    cli_output output;
+    char message[GLINTL_MESSAGE_SIZE];
+    int code = GLINTL_EXIT_USAGE, signal_number = 0;
+    // A script may call os.setlocale; numbers keep their points all the same.
+    locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (numbers)
+        uselocale(numbers);
+    bool good = cli_read_options(argc, argv, &options, message);
+    if (!cli_output_open(&output, &options))
+        return GLINTL_EXIT_FAILED;
+    if (good)
+        code = dispatch(&options, &output, &signal_number);
+    else
+        cli_report_error(&output, 0, code, message);
+    int close_code = cli_output_close(&output);
+    cli_free_options(&options);
+    if (signal_number) { // so that a shell sees how it ended
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
+    return code ? code : close_code;
+}

@@ -1,0 +1,186 @@
+// The options: what each takes, checked before the script runs.
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cli.h"
+
+#define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
+#define ALL (SCRIPTED | CLI_COMPARE)
+#define MESSAGE GLINTL_MESSAGE_SIZE
+
+// ---- Readers ----
+
+static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out, char *message)
+{
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (end > text && *end == '\0' && !errno && value >= min && value <= max) {
+        *out = value;
+        return true;
+    }
+    snprintf(message, MESSAGE, "whole number %" PRId64 " .. %" PRId64 " expected, got '%.200s'", min, max, text);
+    return false;
+}
+
+static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)text, (void)message;
+    bool *const flags[] = {&options->json, &options->quiet, &options->help, &options->version, &options->asked.force};
+    static const char *const names[] = {"json", "quiet", "help", "version", "force"};
+    for (int i = 0; i < 5; i++)
+        if (strcmp(option->name, names[i]) == 0)
+            *flags[i] = true;
+    return true; // --no-reuse: nothing is reused between frames yet
+}
+
+static bool read_frames(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    options->has_frames = true;
+    return glintL_selection_parse(&options->asked.selection, text, message);
+}
+
+static bool read_frame(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    if (!read_whole(text, 1, GLINTL_FRAMES_MAX, &options->frame, message))
+        return false;
+    return read_frames(options, option, text, message);
+}
+
+static bool read_step(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    int64_t *out = option->letter == 's' ? &options->start : option->letter == 'e' ? &options->end : &options->jump;
+    return read_whole(text, 1, GLINTL_FRAMES_MAX, out, message);
+}
+
+static bool read_shard(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    return glintL_selection_parse_shard(&options->asked.selection, text, message);
+}
+
+// An option of the same name as a field of scene:render{}.
+static bool read_render(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    glintL_render scratch = glintL_render_default();
+    int field = glintL_render_find(option->name);
+    options->asked.render_text[field] = text;
+    return glintL_render_set_text(&scratch, field, text, message);
+}
+
+static bool read_size(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    char *end;
+    long width = strtol(text, &end, 10), height = 0;
+    bool good = end > text && (*end == 'x' || *end == 'X') && end[1] >= '0' && end[1] <= '9';
+    if (good)
+        height = strtol(end + 1, &end, 10);
+    if (!good || *end || width < 1 || width > GLINT_SIDE_MAX || height < 1 || height > GLINT_SIDE_MAX) {
+        snprintf(message, MESSAGE, "WxH with sides 1 .. %d expected, got '%.200s'", GLINT_SIDE_MAX, text);
+        return false;
+    }
+    snprintf(options->width, sizeof options->width, "%ld", width);
+    snprintf(options->height, sizeof options->height, "%ld", height);
+    options->asked.render_text[glintL_render_find("width")] = options->width;
+    options->asked.render_text[glintL_render_find("height")] = options->height;
+    return true;
+}
+
+static bool read_set(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    char *equals = strchr(text, '=');
+    if (equals && equals > text && cli_add_set(&options->asked, text, equals + 1)) {
+        *equals = '\0'; // the name ends there
+        return true;
+    }
+    snprintf(message, MESSAGE, "name=value expected, got '%.200s'", text);
+    return false;
+}
+
+static bool read_sweep(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    cli_sweep *grown = realloc(options->sweeps, (options->sweep_count + 1) * sizeof *grown);
+    if (!grown) {
+        snprintf(message, MESSAGE, "out of memory");
+        return false;
+    }
+    options->sweeps = grown;
+    if (!cli_read_sweep(text, &grown[options->sweep_count], message))
+        return false;
+    options->sweep_count++;
+    return true;
+}
+
+static bool read_count(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    bool threads = option->letter == 't';
+    int64_t count = 0;
+    bool good = read_whole(text, 1, threads ? 1024 : 1000000, &count, message);
+    if (good)
+        *(threads ? &options->asked.threads : &options->asked.repeat) = (int)count;
+    return good;
+}
+
+// A size such as 512M; nothing is kept between frames yet, so it is only checked.
+static bool read_memory(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)options, (void)option;
+    char *end;
+    double size = strtod(text, &end);
+    if (end > text && isfinite(size) && size >= 0 && (*end == '\0' || (strchr("KMGT", *end) && end[1] == '\0')))
+        return true;
+    snprintf(message, MESSAGE, "size such as 512M or 4G expected, got '%.200s'", text);
+    return false;
+}
+
+static bool read_threshold(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value >= 0) || !isfinite(value)) {
+        snprintf(message, MESSAGE, "number >= 0 expected, got '%.200s'", text);
+        return false;
+    }
+    *(option->name[0] == 'f' ? &options->fail : &options->warn) = value;
+    return true;
+}
+
+const cli_option cli_option_list[CLI_OPTION_COUNT] = {
+    {"frames", 'f', true, CLI_RENDER, read_frames},
+    {"start", 's', true, CLI_RENDER, read_step},
+    {"end", 'e', true, CLI_RENDER, read_step},
+    {"jump", 'j', true, CLI_RENDER, read_step},
+    {"shard", 0, true, CLI_RENDER, read_shard},
+    {"frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_COST, read_frame},
+    {"output", 'o', true, CLI_RENDER | CLI_EXPLAIN, read_render},
+    {"set", 'D', true, SCRIPTED, read_set},
+    {"sweep", 0, true, CLI_RENDER, read_sweep},
+    {"size", 0, true, SCRIPTED, read_size},
+    {"samples", 0, true, SCRIPTED, read_render},
+    {"precision", 0, true, SCRIPTED, read_render},
+    {"bits", 0, true, SCRIPTED, read_render},
+    {"transfer", 0, true, SCRIPTED, read_render},
+    {"rounding", 0, true, SCRIPTED, read_render},
+    {"tone", 0, true, SCRIPTED, read_render},
+    {"passes", 0, true, SCRIPTED, read_render},
+    {"encode", 0, true, SCRIPTED, read_render},
+    {"seed", 0, true, SCRIPTED, read_render},
+    {"threads", 't', true, SCRIPTED, read_count},
+    {"no-reuse", 0, false, CLI_RENDER, read_flag},
+    {"reuse-memory", 0, true, CLI_RENDER, read_memory},
+    {"force", 0, false, CLI_RENDER, read_flag},
+    {"repeat", 0, true, CLI_RENDER, read_count},
+    {"json", 0, false, ALL, read_flag},
+    {"quiet", 'q', false, ALL, read_flag},
+    {"fail", 0, true, CLI_COMPARE, read_threshold},
+    {"warn", 0, true, CLI_COMPARE, read_threshold},
+    {"help", 'h', false, ALL, read_flag},
+    {"version", 0, false, ALL, read_flag},
+};

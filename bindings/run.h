@@ -1,0 +1,295 @@
+/// The job side of the binding: what a run is asked, and the walk of its frames. Private to bindings/.
+///
+///   selection.c       which frames: --frames, --shard
+///   render_options.c  the fields of scene:render{}, animations and sweeps that describe a frame
+///   names.c           frame number and pass -> file name
+///   params.c          glint.params; param_spec.c one parameter and its --set
+///   animation.c       the job object and its fields; sweep.c its other kind
+///   work.c            one frame: plan, names, keys, render, hand to the writer
+///   run.c             the run: records in order, failures; jobs.c frames of jobs, job_run.c :run; call.c scene:render
+///   kept_image.c      the picture of a file that was kept
+///
+/// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
+#ifndef GLINT_L_RUN_H
+#define GLINT_L_RUN_H
+
+#include <signal.h>
+
+#include "bindings/glintL.h"
+
+#define GLINTL_PATH_SIZE 4096
+#define GLINTL_MESSAGE_SIZE 1024
+#define GLINTL_FRAMES_MAX 100000000 ///< of one job
+
+typedef enum glintL_exit {
+    GLINTL_EXIT_DONE = 0,
+    GLINTL_EXIT_FAILED = 1, ///< a frame failed
+    GLINTL_EXIT_USAGE = 2,  ///< usage or script error
+    GLINTL_EXIT_LATER = 75  ///< disk full
+} glintL_exit;
+
+// ---- selection.c ----
+
+typedef struct glintL_range {
+    int64_t first, last, step; ///< last = INT64_MAX: open
+} glintL_range;
+
+typedef struct glintL_selection {
+    glintL_range *ranges; ///< owned; none: every frame
+    size_t range_count;
+    int64_t shard, shard_count; ///< shard 1 .. shard_count; 0 of 0: no shards
+} glintL_selection;
+
+/// Each returns false and writes what was expected and what was got; the selection is then unchanged.
+bool glintL_selection_parse(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_selection_add(glintL_selection *selection, glintL_range range);
+void glintL_selection_clear(glintL_selection *selection);
+/// Without regard to shards.
+bool glintL_selection_has(const glintL_selection *selection, int64_t number);
+int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
+/// Which of the selected frames of 1 .. total are this shard's, counted from 1: *from .. *to, empty when to < from.
+void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to);
+/// Whether frames outside 1 .. total were asked for by number; writes the warning.
+bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- render_options.c ----
+
+#define GLINTL_RENDER_FIELDS 13
+
+extern const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1]; ///< names, and whether numbers, for listing
+glintL_render glintL_render_default(void);
+/// The field's number, or -1.
+int glintL_render_find(const char *name);
+/// Sets a field from text as on the command line. False: `message` says what was expected and what was got.
+bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+/// Sets a field from the Lua value at `index`; raises "<path><name>: ... expected, got ...".
+void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
+void glintL_render_push(lua_State *L, int field, const glintL_render *render);
+
+// ---- names.c ----
+
+typedef struct glintL_naming {
+    const char *pattern; ///< borrowed; NULL: no file is written
+    bool is_plain;       ///< '%' and '#' stand for themselves
+    bool is_numbered;    ///< a pattern without a place for the number gets "_0001" before its ending
+} glintL_naming;
+
+bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_name_has_number(const char *pattern);
+/// The file of a frame's pass. False: too long.
+bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
+bool glintL_name_is_pfm(const char *path);
+
+// ---- What is asked ----
+
+typedef struct glintL_set { ///< --set name=text
+    const char *name;
+    const char *text;
+    bool is_known; ///< a params table has it
+} glintL_set;
+
+typedef struct glintL_asked {
+    glintL_selection selection;
+    const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
+    glintL_set *sets;
+    size_t set_count;
+    int threads; ///< 0: one per processor
+    int repeat;  ///< >= 1
+    bool force;
+} glintL_asked;
+
+typedef enum glintL_mode { GLINTL_MODE_RENDER, GLINTL_MODE_DESCRIBE, GLINTL_MODE_EXPLAIN } glintL_mode;
+
+// ---- One frame on its way ----
+
+/// What is reported of a frame when its last file is written.
+typedef struct glintL_record {
+    int64_t index;
+    int repeat; ///< 1 ..; 0: frames are rendered once
+    bool kept, is_last; ///< is_last: of its repeats
+    double build_ms, encode_ms, write_ms;
+    double pixel_count;
+    glint_frame_stats stats;
+    int files_left; ///< at the writer
+    bool failed;
+    char *files[GLINT_PASS_COUNT]; ///< by pass; owned; NULL: none
+    struct glintL_record *next;
+} glintL_record;
+
+typedef struct glintL_file {
+    glint_pass pass;
+    char key[33]; ///< "": the format carries none
+    char path[GLINTL_PATH_SIZE];
+} glintL_file;
+
+typedef struct glintL_work {
+    int64_t index;
+    double build_ms;
+    glintL_render render;
+    glint_plan *plan;
+    glint_image *image; ///< NULL until it is rendered
+    glint_frame_stats stats;
+    int file_count;
+    glintL_file files[GLINT_PASS_COUNT];
+    char naming_pattern[GLINTL_PATH_SIZE]; ///< of a frame whose name is not settled yet
+} glintL_work;
+
+// ---- run.c ----
+
+typedef struct glintL_reporter {
+    void *context;
+    void (*rendering)(void *context, const glintL_run *run, bool begins); ///< around each glint_render
+    void (*frame)(void *context, const glintL_run *run, const glintL_record *record);
+    void (*warn)(void *context, const char *message);
+} glintL_reporter;
+
+struct glintL_run {
+    bool times_stages;
+    bool is_command; ///< run by the command: its options beat the script's, files are written behind
+    glintL_mode mode;
+    int64_t explain_frame;
+    glint_plan *explain_plan; ///< owned
+    char script[256]; ///< base name
+    glintL_asked asked;
+    glintL_reporter reporter;
+
+    glint_renderer *renderer;
+    int renderer_threads; ///< as asked
+    glint_writer *writer;
+    glintL_record *head, *tail; ///< in the order of frames
+    int64_t files_pending;
+    glintL_work *deferred; ///< the first call, while nobody knows whether there is a second
+    char *params_text; ///< owned; "name=value" lines
+
+    int64_t count; ///< frames numbered so far
+    int64_t call_count; ///< of these by scene:render
+    int64_t selected_calls;
+    int64_t total, todo; ///< 0: unknown
+    int64_t done, kept; ///< reported
+    uint64_t clipped, pixels, nonfinite; ///< of the reported frames
+    int64_t point, point_count; ///< which value of --sweep, 1 .. point_count; 0 of 0: no sweep
+    int64_t earlier; ///< lists of jobs that were run before this one
+    bool is_stopped; ///< the script was ended by glintL_stop_script
+    double since_ms; ///< when the last call returned
+    bool in_frame; ///< a frame function runs
+
+    int exit_code; ///< of the first failure
+    int64_t failed_index;
+    char message[GLINTL_MESSAGE_SIZE];
+    volatile sig_atomic_t interrupted; ///< number of the signal
+};
+
+glintL_run *glintL_run_create(void);
+void glintL_run_destroy(glintL_run *run);
+/// Lets `L` use a run that the caller owns and keeps longer than `L`.
+void glintL_attach_run(lua_State *L, glintL_run *run);
+double glintL_now_ms(void);
+/// Keeps the first failure, drops what is queued and returns false. `index` 0: not one frame's.
+bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/// What the command line says beats what the script says.
+void glintL_run_apply(const glintL_run *run, glintL_render *render);
+/// The pattern of a script that names no output.
+void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE]);
+/// The exit code that answers an engine's error.
+int glintL_run_exit_code(glint_status status);
+void glintL_run_warn(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool glintL_run_open(glintL_run *run, glint_error *error); ///< the renderer and the writer exist afterwards
+/// Adds a record to be reported in its turn. False: out of memory, and the run has failed.
+glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
+/// Reports what is complete; waits for all of it when `wait`. False: the run has failed.
+bool glintL_run_collect(glintL_run *run, bool wait);
+/// Message handler: a string out of any error object.
+int glintL_message_handler(lua_State *L);
+
+// ---- work.c ----
+
+/// Plans a frame. `keep_image`: the script will look at the linear picture.
+glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
+                                bool keep_image, glintL_work **out, glint_error *error);
+void glintL_work_destroy(glintL_work *work);
+/// Names the files and takes their keys.
+glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error);
+/// Whether every file is there with its key.
+bool glintL_work_is_kept(const glintL_work *work);
+glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
+/// Reports a frame and hands its files to the writer. False: the run has failed.
+bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
+/// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
+bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
+
+// ---- animation.c, sweep.c, jobs.c, job_run.c ----
+
+typedef enum glintL_job_kind { GLINTL_JOB_ANIMATION, GLINTL_JOB_SWEEP } glintL_job_kind;
+
+#define GLINTL_JOB_SCENE 1 ///< user values: the scene,
+#define GLINTL_JOB_FRAME 2 ///< the frame function or the list of axes,
+#define GLINTL_JOB_SHEET 3 ///< the sheet,
+#define GLINTL_JOB_SAVED 4 ///< what a sweep changes, as it was before
+
+typedef struct glintL_job {
+    void *self; ///< not NULL: messages take a userdata with NULL here for a closed object
+    glintL_job_kind kind;
+    int64_t frames;
+    double fps;
+    bool cyclic;
+    glintL_render render;
+} glintL_job;
+
+int glintL_new_sweep(lua_State *L);
+int glintL_job_run(lua_State *L); ///< animation:run{...}
+/// Reads the table of a constructor at `index` into the job at `job_index`; both absolute.
+void glintL_job_read_table(lua_State *L, int index, int job_index);
+void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name); ///< size, over, sheet
+void glintL_sweep_push_axes(lua_State *L, int axes); ///< a copy of the list at `axes` (absolute)
+void glintL_sweep_build(lua_State *L, int index, int64_t n);
+/// Pushes a userdata with default fields; see GLINTL_JOB_... for its user values.
+glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind);
+const char *glintL_job_name(glintL_job_kind kind); ///< "animation", "sweep"
+/// Sets the scene to frame n of the job, 1 .. frames; 1: the job. May raise.
+void glintL_job_build(lua_State *L, int index, int64_t n);
+/// Puts back what a sweep has changed, so that the next job does not depend on which frames were rendered.
+void glintL_sweep_restore(lua_State *L, int index);
+
+/// Makes a list of jobs out of what a script returned at `index` (a job, a scene, a list of them): pushes it and
+/// returns true, or pushes a message and returns false.
+bool glintL_push_jobs(lua_State *L, int index);
+/// Frames of the jobs in the list at `index`.
+int64_t glintL_jobs_total(lua_State *L, int index);
+/// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Does not raise.
+/// False: the run has failed.
+bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
+/// The plan of one frame of the list into run->explain_plan, when the frame is among them.
+bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
+
+// ---- call.c ----
+
+/// Settles the name of the first call now that the script has ended. False: the run has failed.
+bool glintL_call_settle(glintL_run *run);
+/// Raises the error that ends a script which has shown what was asked of it (its parameters, one frame's plan).
+int glintL_stop_script(lua_State *L);
+void glintL_open_kept_image(lua_State *L);
+/// Pushes an image that is rendered only when the script looks at it; it gets its plan, which it owns, later.
+void glintL_push_kept_image(lua_State *L);
+void glintL_set_kept_plan(lua_State *L, int index, glint_plan *plan);
+
+// ---- params.c, param_spec.c ----
+
+/// Pushes the spec of one parameter, from its entry in the table of glint.params at `entry` (absolute).
+void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int entry);
+/// Pushes the list of every parameter: {name=, type=, default=, value=, min=, max=, choices=, doc=}.
+void glintL_push_params(lua_State *L);
+/// Pushes the message about a --set that no params table has, or nothing and returns false.
+bool glintL_push_unknown_set(lua_State *L);
+
+// ---- json.c ----
+
+#include <stdio.h>
+
+/// The shortest spelling that reads back as the same number.
+void glintL_format_number(char out[32], double value);
+void glintL_json_string(FILE *out, const char *text);
+void glintL_json_number(FILE *out, double value); ///< null when it is not finite
+
+#endif

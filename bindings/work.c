@@ -1,0 +1,173 @@
+// One frame: its plan, its files and their keys, rendering, and handing over to the writer.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run.h"
+#include "engine/base/status.h"
+
+#define TEXT_MAX 65000 // a PNG text takes 64 KiB
+
+static bool ends_in_pfm(const glintL_render *render)
+{
+    return glintL_name_is_pfm(render->output);
+}
+
+glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
+                                bool keep_image, glintL_work **out, glint_error *error)
+{
+    glintL_work *work = calloc(1, sizeof *work);
+    if (!work)
+        return glint_fail_nomem(error);
+    bool is_pfm = writes && ends_in_pfm(render);
+    work->index = index;
+    work->render = *render;
+    glint_render_desc *desc = &work->render.desc;
+    desc->passes = writes || keep_image ? render->file_passes : 0;
+    if (keep_image || is_pfm)
+        desc->passes |= 1u << GLINT_PASS_BEAUTY;
+    desc->codes = writes ? !is_pfm : !keep_image; // a run that writes nothing makes the codes all the same: to time it
+    glint_status status = glint_plan_create(scene, desc, &work->plan, error);
+    if (status) {
+        free(work);
+        return status;
+    }
+    *out = work;
+    return GLINT_OK;
+}
+
+void glintL_work_destroy(glintL_work *work)
+{
+    if (!work)
+        return;
+    glint_plan_destroy(work->plan);
+    glint_image_release(work->image);
+    free(work);
+}
+
+static glint_write_desc write_desc(const glintL_work *work, const glintL_file *file)
+{
+    glint_write_desc desc = {.path = file->path, .pass = file->pass};
+    desc.tone = work->render.desc.tone;
+    desc.encode = work->render.encode;
+    return desc;
+}
+
+glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error)
+{
+    uint32_t passes = work->render.file_passes | 1u << GLINT_PASS_BEAUTY;
+    work->file_count = 0;
+    if (!naming->pattern)
+        return GLINT_OK;
+    for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        glintL_file *file = &work->files[work->file_count];
+        if (!(passes >> pass & 1))
+            continue;
+        file->pass = (glint_pass)pass;
+        if (!glintL_name_file(naming, work->index, file->pass, file->path))
+            return glint_fail(error, GLINT_ERR_INVALID, "output: the file name '%.100s...' is too long", naming->pattern);
+        file->key[0] = '\0';
+        if (!glintL_name_is_pfm(file->path)) {
+            glint_write_desc desc = write_desc(work, file);
+            glint_frame_key(work->plan, &desc, file->key);
+        }
+        work->file_count++;
+    }
+    return GLINT_OK;
+}
+
+bool glintL_work_is_kept(const glintL_work *work)
+{
+    for (int i = 0; i < work->file_count; i++) {
+        const glintL_file *file = &work->files[i];
+        if (file->key[0] == '\0' || !glint_file_has_key(file->path, file->key))
+            return false;
+    }
+    return work->file_count > 0;
+}
+
+glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
+{
+    glint_image *image = NULL;
+    if (!glintL_run_open(run, error))
+        return error->status;
+    if (run->reporter.rendering)
+        run->reporter.rendering(run->reporter.context, run, true);
+    glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
+    if (run->reporter.rendering)
+        run->reporter.rendering(run->reporter.context, run, false);
+    if (status == GLINT_OK) {
+        glint_image_release(work->image);
+        work->image = image;
+    }
+    return status;
+}
+
+// ---- To the writer ----
+
+static glint_status submit(glintL_run *run, const glintL_work *work, const glintL_file *file, glintL_record *record,
+                           glint_error *error)
+{
+    const char *params = run->params_text ? run->params_text : "";
+    glint_text text[] = {
+        {"Software", "glint " GLINT_VERSION}, {"glint:key", file->key}, {"glint:script", run->script},
+        {"glint:params", params},
+    };
+    glint_write_desc desc = write_desc(work, file);
+    desc.text = text;
+    desc.text_count = *params && strlen(params) < TEXT_MAX ? 4 : 3;
+    return glint_writer_submit(run->writer, work->image, &desc, record, error);
+}
+
+bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
+{
+    glint_error error;
+    if (kept)
+        memset(&work->stats, 0, sizeof work->stats);
+    glintL_record *record = glintL_run_add(run, work);
+    if (!record)
+        return false;
+    record->kept = kept;
+    record->is_last = true;
+    record->repeat = run->asked.repeat > 1 ? run->asked.repeat : 0;
+    record->files_left = kept ? 0 : work->file_count;
+    for (int i = 0; i < work->file_count && !kept; i++) {
+        glint_status status = submit(run, work, &work->files[i], record, &error);
+        if (status) {
+            record->files_left -= work->file_count - i;
+            record->failed = true;
+            glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+            break;
+        }
+        run->files_pending++;
+    }
+    return glintL_run_collect(run, false);
+}
+
+// Renders, and reports all but the last of the repeats.
+static bool render_repeats(glintL_run *run, glintL_work *work)
+{
+    glint_error error;
+    for (int repeat = 1; repeat <= run->asked.repeat; repeat++) {
+        glint_status status = glintL_work_render(run, work, &error);
+        if (status == GLINT_ERR_CANCELLED)
+            return glintL_run_fail(run, GLINTL_EXIT_FAILED, work->index, "interrupted");
+        if (status)
+            return glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+        if (repeat < run->asked.repeat) {
+            glintL_record *record = glintL_run_add(run, work);
+            if (!record)
+                return false;
+            record->repeat = repeat;
+            glintL_run_collect(run, false);
+        }
+    }
+    return true;
+}
+
+bool glintL_work_run(glintL_run *run, glintL_work *work, bool force)
+{
+    if (!force && run->asked.repeat == 1 && glintL_work_is_kept(work))
+        return glintL_work_finish(run, work, true);
+    return render_repeats(run, work) && glintL_work_finish(run, work, false);
+}
