@@ -113,7 +113,7 @@ static void render_item(void *context, size_t index, int worker)
 {
     frame *f = context;
     glint_renderer *renderer = f->renderer;
-    if (!atomic_load_explicit(&renderer->cancelled, memory_order_relaxed))
+    if (!glint_tile_cancelled(&f->shared))
         glint_tile_render(renderer->tiles[worker], &f->shared, (uint32_t)(index % f->across),
                           (uint32_t)(index / f->across));
     atomic_fetch_add(&renderer->tiles_done, 1);
@@ -188,6 +188,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .image = image,
                             .tone_table = table,
                             .reuse = &renderer->reuse,
+                            .cancelled = &renderer->cancelled,
                             .time_stages = renderer->time_stages } };
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;

@@ -72,13 +72,19 @@ static float float_of(uint32_t bits)
     return x;
 }
 
-/// The first float whose code is at least k, 1 <= k <= M: a guess by the inverse, then single steps.
+/// The first float whose code is at least k, 1 <= k <= M: the float above the inverse, where that is far enough from
+/// any float to be beyond doubt (the inverse and the definition agree to 2^-48), else by single steps.
 static float first_of_code(const glint_tone_desc *desc, int k)
 {
     double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
     double encoded = code / (desc->bits == 16 ? 65535 : 255);
     double linear = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded;
     uint32_t bits = bits_of((float)linear);
+    if (float_of(bits) < linear)
+        bits++;
+    double doubt = 0x1p-40 * linear;
+    if (linear < 1 && float_of(bits) - linear > doubt && linear - float_of(bits - 1) > doubt)
+        return float_of(bits);
     while (glint_tone_value(desc, float_of(bits)) < k)
         bits++;
     while (glint_tone_value(desc, float_of(bits - 1)) >= k)

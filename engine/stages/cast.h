@@ -63,22 +63,9 @@ static unsigned R(near_bundle)(const glint_cast_args *args, const glint_bundle_p
     return near;
 }
 
-/// The filter of rays that have their own origins; `local` holds the group's origins in filter units and, last, the
-/// bound 8 * 2^-24 |origin| (by the sum of its components, which is larger).
-static unsigned R(near_rays)(const float *const direction_f[3], size_t at, const float (*local)[GLINT_GROUP],
-                             const glint_prim *prim)
-{
-    unsigned near = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf f[3] = { f_load(local[0] + i) - f_set(prim->filter_center[0]),
-                          f_load(local[1] + i) - f_set(prim->filter_center[1]),
-                          f_load(local[2] + i) - f_set(prim->filter_center[2]) };
-        vf limit = f_set(prim->filter_bound) + f_load(local[3] + i);
-        near |= R(near_lanes)(f, direction_f, at + i, limit * limit) << i;
-    }
-    return near;
-}
-
+#if GLINT_REAL == 64
+/// Origins of a group for the filter: around the reference, in its units; and, last, the bound 8 * 2^-24 |origin| (by
+/// the sum of the components, which is larger).
 static void R(filter_origins)(const void *const point[3], size_t at, const double reference[3], double filter_scale,
                               float (*local)[GLINT_GROUP])
 {
@@ -89,6 +76,57 @@ static void R(filter_origins)(const void *const point[3], size_t at, const doubl
     for (int i = 0; i < GLINT_GROUP; i += VF)
         f_store(local[3] + i, f_set(8 * 0x1p-24f) * ((f_abs(f_load(local[0] + i)) + f_abs(f_load(local[1] + i))) +
                                                      f_abs(f_load(local[2] + i))));
+}
+
+static inline vf R(filter_limit)(const vf f[3], const float *bound, const glint_prim *prim)
+{
+    (void)f;
+    return f_set(prim->filter_bound) + f_load(bound);
+}
+
+static inline vf R(filter_offset)(const float *origin, const glint_prim *prim, int c)
+{
+    return f_load(origin) - f_set(prim->filter_center[c]);
+}
+#else
+/// Where float decides, the filter must see what it sees: the same f, with all its error.
+static void R(filter_origins)(const void *const point[3], size_t at, const double reference[3], double filter_scale,
+                              float (*local)[GLINT_GROUP])
+{
+    (void)reference, (void)filter_scale;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            f_store(local[c] + i, f_load((const float *)point[c] + at + i));
+}
+
+static inline vf R(filter_limit)(const vf f[3], const float *bound, const glint_prim *prim)
+{
+    (void)bound;
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return f_set(HUGE_VALF);
+    const vf reach = f_set((float)(prim->radius * prim->scale * (1 + 1e-6)));
+    return reach + f_set(8 * 0x1p-24f) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
+}
+
+static inline vf R(filter_offset)(const float *origin, const glint_prim *prim, int c)
+{
+    return (f_load(origin) - f_set((float)prim->center[c])) * f_set((float)prim->scale);
+}
+#endif
+
+/// The filter of rays that have their own origins, `local` of them by filter_origins.
+static unsigned R(near_rays)(const float *const direction_f[3], size_t at, const float (*local)[GLINT_GROUP],
+                             const glint_prim *prim)
+{
+    unsigned near = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf f[3];
+        for (int c = 0; c < 3; c++)
+            f[c] = R(filter_offset)(local[c] + i, prim, c);
+        const vf limit = R(filter_limit)(f, local[3] + i, prim);
+        near |= R(near_lanes)(f, direction_f, at + i, limit * limit) << i;
+    }
+    return near;
 }
 
 /// Decides one candidate for the lanes of a group in `near`, and keeps the nearest.

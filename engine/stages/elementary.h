@@ -74,6 +74,14 @@ static inline unsigned lanes_below(const uint32_t *index, uint32_t bound)
     return bits;
 }
 
+static inline unsigned lanes_with(const uint32_t *flags, uint32_t flag)
+{
+    unsigned bits = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        bits |= fm_bits(i_eq(i_and(i_load(flags + i), i_set(flag)), i_set(flag))) << i;
+    return bits;
+}
+
 /// to = value where the bit is set.
 static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
 {

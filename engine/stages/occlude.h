@@ -66,12 +66,13 @@ static inline unsigned R(blocked_by)(const glint_occlude_args *args, uint32_t id
     const unsigned own = lanes_equal(args->coincident + at, prim->coincident);
     unsigned blocked = 0;
     if (own && sphere && light_side > 0)
-        blocked = own & lanes_equal(args->side + at, GLINT_SIDE_BACK);
+        blocked = own & lanes_with(args->side + at, GLINT_SIDE_BACK);
     wanted &= ~own;
     if (!wanted)
         return blocked;
     const float *const way[3] = { rays->to_light_f[0], rays->to_light_f[1], rays->to_light_f[2] };
-    wanted &= R(near_rays)(way, 0, rays->local, prim);
+    if (light_side >= 0) // with the light inside, being outside is enough: no distance is asked
+        wanted &= R(near_rays)(way, 0, rays->local, prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         if (!lanes)

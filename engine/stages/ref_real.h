@@ -129,7 +129,7 @@ static void NAME(cast_sample)(const glint_cast_args *args, const glint_bundle_pr
         for (uint32_t k = 0; k < args->candidate_count; k++) {
             uint32_t index = args->candidates[k];
             REAL t = NAME(prim_t)(args, index, bundle, origin, direction);
-            if (t > 0 && (t < best || (t == best && index < best_prim))) {
+            if (t > 0 && t < INFINITY && (t < best || (t == best && index < best_prim))) {
                 best = t;
                 best_prim = index;
             }

@@ -100,18 +100,19 @@ static inline void add_where(double *to, dm mask, vd x)
 static inline void shade_sums(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                               const light_factors *factors, size_t at, unsigned lanes)
 {
+    const int kinds = specular ? 2 : 1;
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const dm mask = lane_mask(lanes, i);
         vd old[2][3], sum[2][3];
         for (int c = 0; c < 3; c++) {
             if (args->first)
                 add_where(args->sum[GLINT_TERM_AMBIENT][c] + at + i, mask, d_set(material->ambient[c]));
-            for (int k = 0; k < 2; k++)
+            for (int k = 0; k < kinds; k++)
                 old[k][c] = sum[k][c] = d_load(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i);
         }
         add_lights(factors, material, specular, i, sum[0], sum[1]);
         for (int c = 0; c < 3; c++)
-            for (int k = 0; k < 2; k++)
+            for (int k = 0; k < kinds; k++)
                 d_store(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i, d_select(mask, sum[k][c], old[k][c]));
     }
 }

@@ -91,7 +91,7 @@ typedef struct glint_cast_args {
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
 } glint_cast_args;
-// The best hit starts as t = +inf, GLINT_MISS. A candidate replaces it where t > 0 and (t < best, or t == best and its
+// The best hit starts as t = +inf, GLINT_MISS. A candidate replaces it where 0 < t < inf and (t < best, or t == best and its
 // index is lower). The filter is free to reject what the decision below would miss, and no more.
 // sphere, real:   f, c from the bundle, or f = (origin - center) * scale and c = exact_c(f, prim)
 //                 a = length2(direction), b = -dot(f, direction)
@@ -232,7 +232,7 @@ typedef struct glint_shade_args {
     bool has_specular;     ///< false: the term is not computed
     bool first;            ///< also the terms that no light makes: background and ambient
     const glint_shade_light *lights; uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
-    double *sum[GLINT_TERM_COUNT][3];  ///< in and out: added to; NULL: the frame has one sample and these are all lights
+    double *sum[GLINT_TERM_COUNT][3];  ///< in and out: added to (specular: if has_specular); NULL: the frame has one sample and these are all lights
     float *film[GLINT_TERM_COUNT][3];  ///< out when sum is NULL: the terms; NULL where nobody asked for one
     float *beauty[3];                  ///< out when sum is NULL
 } glint_shade_args;
