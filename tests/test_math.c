@@ -12,7 +12,7 @@
 
 #include "engine/base/math.h"
 
-#define MAX_ULP 0.51 // results are sums of two doubles, relative error below 2^-60, rounded once
+#define MAX_ULP 0.51           // results are sums of two doubles, relative error below 2^-60, rounded once
 #define MAX_ULP_SUBNORMAL 0.76 // rounded twice
 
 static uint64_t random_state;
@@ -93,11 +93,26 @@ static void try_one(worst_case *worst, double (*ours)(double), mpfr_function *th
     mpfr_clear(truth);
 }
 
-static int oracle_sin(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_sin(y, x, r); }
-static int oracle_cos(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_cos(y, x, r); }
-static int oracle_tan(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_tan(y, x, r); }
-static int oracle_exp(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_exp(y, x, r); }
-static int oracle_log(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_log(y, x, r); }
+static int oracle_sin(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
+{
+    return mpfr_sin(y, x, r);
+}
+static int oracle_cos(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
+{
+    return mpfr_cos(y, x, r);
+}
+static int oracle_tan(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
+{
+    return mpfr_tan(y, x, r);
+}
+static int oracle_exp(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
+{
+    return mpfr_exp(y, x, r);
+}
+static int oracle_log(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
+{
+    return mpfr_log(y, x, r);
+}
 
 static void check_angle_function(const char *name, double (*ours)(double), mpfr_function *theirs)
 {
@@ -191,9 +206,31 @@ static void test_pow(void **state)
 static void test_pow_special(void **state)
 {
     (void)state;
-    static const double cases[] = {0.0, -0.0, 1, -1, 2, -2, 0.5, -0.5, 3, -3, 2.5, -2.5, 1e300, -1e300, 1e-300, -1e-300,
-                                   0x1p53, 0x1.fffffffffffffp52, -0x1.fffffffffffffp52, 0x1p-1074, -0x1p-1074,
-                                   0x1.fffffffffffffp1023, INFINITY, -INFINITY, NAN};
+    static const double cases[] = {0.0,
+                                   -0.0,
+                                   1,
+                                   -1,
+                                   2,
+                                   -2,
+                                   0.5,
+                                   -0.5,
+                                   3,
+                                   -3,
+                                   2.5,
+                                   -2.5,
+                                   1e300,
+                                   -1e300,
+                                   1e-300,
+                                   -1e-300,
+                                   0x1p53,
+                                   0x1.fffffffffffffp52,
+                                   -0x1.fffffffffffffp52,
+                                   0x1p-1074,
+                                   -0x1p-1074,
+                                   0x1.fffffffffffffp1023,
+                                   INFINITY,
+                                   -INFINITY,
+                                   NAN};
     size_t count = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < count; k++) { // the C library follows annex F; an ulp apart elsewhere

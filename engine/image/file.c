@@ -23,8 +23,8 @@ static glint_status fail_errno(glint_error *error, const char *path, int code)
     char text[128];
     const char *reason = strerror_r(code, text, sizeof text); // the GNU one
     size_t length = strlen(path), most = 400;
-    return glint_fail(error, status, "%s%s: %s", length > most ? "..." : "", length > most ? path + length - most : path,
-                      reason);
+    return glint_fail(error, status, "%s%s: %s", length > most ? "..." : "",
+                      length > most ? path + length - most : path, reason);
 }
 
 /// 0 or an errno.

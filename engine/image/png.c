@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #define FILTER_SUB 1
-#define BAND_BYTES ((size_t)1 << 18) // of filtered rows; fixed, so that no setting changes the file
+#define BAND_BYTES ((size_t)1 << 18)  // of filtered rows; fixed, so that no setting changes the file
 #define CHUNK_BYTES ((size_t)1 << 20) // of one IDAT
 #define VECTOR 16
 
@@ -55,7 +55,7 @@ static void swap_to_file(const uint16_t *codes, size_t count, uint8_t *out)
 
 typedef struct rows {
     const glint_png_source *source;
-    size_t row_bytes; ///< without the filter's byte
+    size_t row_bytes;        ///< without the filter's byte
     void *scratch, *swapped; ///< a row each; swapped for 16 bits only
 } rows;
 
@@ -160,7 +160,8 @@ static glint_status check_text(const glint_text *text, size_t count, glint_error
 {
     for (size_t i = 0; i < count; i++) {
         if (!is_keyword(text[i].keyword))
-            return glint_fail(error, GLINT_ERR_INVALID, "text: keyword of 1 .. 79 Latin-1 characters expected, got '%.80s'",
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "text: keyword of 1 .. 79 Latin-1 characters expected, got '%.80s'",
                               text[i].keyword ? text[i].keyword : "");
         if (!text[i].value || strlen(text[i].value) > GLINT_PNG_TEXT_MAX)
             return glint_fail(error, GLINT_ERR_INVALID, "text: '%s': value of at most %d bytes expected",
@@ -233,7 +234,8 @@ static bool write_container(container *c)
     png_write_info(c->png, c->info);
     for (size_t at = 0; at < c->stream->size; at += CHUNK_BYTES) {
         size_t rest = c->stream->size - at;
-        png_write_chunk(c->png, (png_const_bytep) "IDAT", c->stream->data + at, rest < CHUNK_BYTES ? rest : CHUNK_BYTES);
+        png_write_chunk(c->png, (png_const_bytep) "IDAT", c->stream->data + at,
+                        rest < CHUNK_BYTES ? rest : CHUNK_BYTES);
     }
     png_write_chunk(c->png, (png_const_bytep) "IEND", NULL, 0);
     return true;

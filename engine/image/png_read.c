@@ -99,7 +99,8 @@ glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, 
     } else {
         free(r->out.codes);
         bool memory = strstr(r->message, "emory") != NULL; // libpng has several wordings
-        status = memory ? glint_fail_nomem(error) : glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: %s", r->message);
+        status =
+            memory ? glint_fail_nomem(error) : glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: %s", r->message);
     }
     free(r);
     return status;
@@ -115,7 +116,8 @@ static uint32_t big_endian(const uint8_t *p)
 static bool is_text(const uint8_t *body, size_t size, const char *keyword, const char *value)
 {
     size_t key = strlen(keyword), length = strlen(value);
-    return size == key + 1 + length && memcmp(body, keyword, key + 1) == 0 && memcmp(body + key + 1, value, length) == 0;
+    return size == key + 1 + length && memcmp(body, keyword, key + 1) == 0 &&
+           memcmp(body + key + 1, value, length) == 0;
 }
 
 bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value)

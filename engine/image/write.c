@@ -19,9 +19,9 @@
 typedef struct picture {
     const glint_image *image;
     float *const *plane;
-    glint_tone_desc tone; ///< of the file
+    glint_tone_desc tone;          ///< of the file
     const glint_tone_table *table; ///< colour passes
-    double nearest, depth_scale; ///< depth
+    double nearest, depth_scale;   ///< depth
 } picture;
 
 glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error)
@@ -194,7 +194,8 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return encode_png(image, desc, out, error);
     float *const *plane = image->plane[desc->pass];
     if (!plane[0])
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(desc->pass));
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image",
+                          glint_pass_name(desc->pass));
     return glint_pfm_encode(image->width, image->height, channels, plane, out) ? GLINT_OK : glint_fail_nomem(error);
 }
 

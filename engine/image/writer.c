@@ -14,7 +14,7 @@ typedef enum job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE } job_state;
 typedef struct job {
     struct job *next;
     job_state state;
-    glint_image *image; ///< owned until the job is done
+    glint_image *image;    ///< owned until the job is done
     glint_write_desc desc; ///< its strings follow the job in memory
     glint_write_result result;
 } job;

@@ -1,0 +1,226 @@
+/// Images: planes, tone, the passes as pictures, comparison.
+#include "tests/image_case.h"
+
+// ---- Image --------------------------------------------------------------------------------------------------------
+
+static void test_image_sizes(void **state) // I4
+{
+    (void)state;
+    static const int sides[][2] = {{65536, 65536}, {1, 0}, {0, 1}, {-1, 5}, {65536, 1}};
+    for (size_t i = 0; i < 5; i++) {
+        glint_image *image = NULL;
+        glint_error error;
+        assert_int_equal(glint_image_create(sides[i][0], sides[i][1], 1, NULL, &image, &error), GLINT_ERR_INVALID);
+        assert_null(image);
+    }
+    glint_image *thin = make_image(1, 10000, NULL);
+    float out[3];
+    glint_error error;
+    assert_int_equal(glint_image_pixel(thin, GLINT_PASS_DEPTH, 0, 9999, out, NULL), GLINT_OK);
+    assert_true(out[0] == out[1] || isinf(out[0]));
+    assert_int_equal(glint_image_pixel(thin, GLINT_PASS_DEPTH, 1, 0, out, &error), GLINT_ERR_INVALID);
+    assert_int_equal(glint_image_pixel(thin, GLINT_PASS_COUNT, 0, 0, out, &error), GLINT_ERR_INVALID);
+    assert_true((uintptr_t)thin->plane[0][0] % 64 == 0);
+    assert_ptr_equal(glint_image_retain(thin), thin);
+    glint_image_release(thin);
+    glint_image_release(thin);
+    glint_image_release(NULL);
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        assert_int_equal(glint_pass_from_name(glint_pass_name((glint_pass)pass)), pass);
+    assert_int_equal(glint_pass_from_name("nothing"), GLINT_PASS_COUNT);
+    assert_null(glint_pass_name(GLINT_PASS_COUNT));
+}
+
+// ---- Tone ---------------------------------------------------------------------------------------------------------
+
+static void check_code(const glint_tone_table *table, float x)
+{
+    double want = glint_tone_value(&table->desc, x);
+    if (code_of(table, x) != want)
+        fail_msg("%d bits, transfer %d, rounding %d: %a gives %d, want %g", table->desc.bits, (int)table->desc.transfer,
+                 (int)table->desc.rounding, (double)x, code_of(table, x), want);
+}
+
+/// Every float where the code could step: the inverse of each code, and the 20 floats on either side.
+static void check_every_step(const glint_tone_desc *desc)
+{
+    const glint_tone_table *table;
+    assert_int_equal(glint_tone_table_shared(desc, &table, NULL), GLINT_OK);
+    int max = desc->bits == 16 ? 65535 : 255;
+    for (int k = 0; k <= 2 * max; k++) {
+        double encoded = 0.5 * k / max;
+        float x = (float)(desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded);
+        int reach = desc->bits == 16 ? 2 : 20;
+        for (int i = 0; i < reach; i++)
+            x = nextafterf(x, 0);
+        for (int i = 0; i <= 2 * reach; i++, x = nextafterf(x, 2))
+            check_code(table, x);
+    }
+    for (uint32_t bits = 0; bits < 0x40000000u; bits += 9973) { // and a walk over all of them
+        float x;
+        memcpy(&x, &bits, sizeof x);
+        check_code(table, x);
+    }
+    assert_int_equal(code_of(table, NAN), 0);
+    assert_int_equal(code_of(table, INFINITY), max);
+    assert_int_equal(code_of(table, -INFINITY), 0);
+    assert_int_equal(code_of(table, 1), max);
+    assert_int_equal(code_of(table, 1.0001f), max);
+    assert_int_equal(code_of(table, -1), 0);
+}
+
+static void test_tone_every_step(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        glint_tone_desc desc = {GLINT_TONE_CLAMP, i & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
+                                i & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, i & 4 ? 16 : 8};
+        check_every_step(&desc);
+    }
+}
+
+static void test_tone_known(void **state) // I1, I2, I3
+{
+    (void)state;
+    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUND_NEAREST, 8};
+    static const double in[] = {0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, NAN, -1, INFINITY};
+    static const int want[] = {0, 1, 2, 128, 255, 255, 0, 0, 255};
+    for (int i = 0; i < 9; i++)
+        assert_int_equal((int)glint_tone_value(&linear, in[i]), want[i]);
+    glint_tone_desc d8 = glint_tone_desc_default(), d16 = d8;
+    d16.bits = 16;
+    static const double light[] = {0.0031308, 0.18, 0.2140411, 0.5, 0.75, 1};
+    static const int want8[] = {10, 118, 127, 188, 225, 255}, want16[] = {2651, 30235, 32767, 48192, 57725, 65535};
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal((int)glint_tone_value(&d8, light[i]), want8[i]);
+        assert_int_equal((int)glint_tone_value(&d16, light[i]), want16[i]);
+    }
+    for (int k = 0; k <= 255; k++)
+        assert_int_equal((int)glint_tone_value(&d8, glint_srgb_decode(k / 255.0)), k);
+    for (int k = 0; k <= 65535; k++)
+        assert_int_equal((int)glint_tone_value(&d16, glint_srgb_decode(k / 65535.0)), k);
+    d8.bits = 12;
+    glint_tone_table *table = NULL;
+    assert_int_equal(glint_tone_table_create(&d8, &table, NULL), GLINT_ERR_INVALID);
+    double start = now_ms();
+    assert_int_equal(glint_tone_table_create(&d16, &table, NULL), GLINT_OK);
+    print_message("16-bit sRGB table: %.1f ms\n", now_ms() - start);
+    glint_tone_table_destroy(table);
+}
+
+static void test_tone_counts(void **state)
+{
+    (void)state;
+    static const float r[] = {0.5f, 2, NAN, 0, INFINITY, -1}, g[] = {0.5f, 2, 0, -INFINITY, 0, 0}, b[6] = {0};
+    glint_tone_desc desc = glint_tone_desc_default();
+    const glint_tone_table *table;
+    uint8_t rgb[18];
+    uint64_t clipped = 10, nonfinite = 20;
+    assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
+    glint_tone_row8(table, r, g, b, 6, rgb, &clipped, &nonfinite);
+    assert_int_equal(clipped, 12);
+    assert_int_equal(nonfinite, 23);
+}
+
+// ---- Passes as pictures
+// ----------------------------------------------------------------------------------------------
+
+static void test_view_passes(void **state)
+{
+    (void)state;
+    glint_image *image = make_image(40, 30, NULL);
+    for (int i = 0; i < 6; i++) {
+        glint_write_desc desc = describe(in_folder("pass.png"));
+        desc.pass = (glint_pass)(GLINT_PASS_DEPTH + i % 3);
+        desc.tone.bits = i < 3 ? 8 : 16;
+        int max = i < 3 ? 255 : 65535;
+        write_ok(image, &desc);
+        glint_bytes bytes = read_ok(desc.path);
+        glint_png png;
+        assert_int_equal(glint_png_decode(bytes.data, bytes.size, &png, NULL), GLINT_OK);
+        for (size_t p = 0; p < 1200; p++)
+            for (size_t c = 0; c < 3; c++) {
+                int code = i < 3 ? ((uint8_t *)png.codes)[3 * p + c] : ((uint16_t *)png.codes)[3 * p + c];
+                bool hit = image->plane[GLINT_PASS_OBJECT_ID][0][p] != 0;
+                if (!hit)
+                    assert_int_equal(code, 0);
+                else if (desc.pass == GLINT_PASS_NORMAL)
+                    assert_int_equal(code, c == 2 ? max : max / 2 + 1);
+                else if (desc.pass == GLINT_PASS_DEPTH)
+                    assert_true(code >= max / 10);
+            }
+        free(png.codes);
+        free(bytes.data);
+    }
+    glint_image_release(image);
+}
+
+static void test_pass_not_kept(void **state)
+{
+    (void)state;
+    glint_tone_desc tone = glint_tone_desc_default();
+    glint_image *image = NULL;
+    glint_error error;
+    assert_int_equal(glint_image_create(4, 4, 0, &tone, &image, NULL), GLINT_OK);
+    memset(image->codes, 7, 48);
+    glint_write_desc desc = describe(in_folder("x.png"));
+    write_ok(image, &desc);
+    desc.tone.bits = 16;
+    assert_int_equal(glint_image_write(image, &desc, &error), GLINT_ERR_INVALID);
+    desc.pass = GLINT_PASS_DEPTH;
+    assert_int_equal(glint_image_write(image, &desc, &error), GLINT_ERR_INVALID);
+    desc.path = in_folder("x.tiff");
+    assert_int_equal(glint_image_write(image, &desc, &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "x.tiff"));
+    assert_non_null(strstr(error.message, ".pfm"));
+    glint_image_release(image);
+}
+
+// ---- Compare and PFM ----------------------------------------------------------------------------------------------
+
+static void test_compare(void **state)
+{
+    (void)state;
+    glint_image *image = make_image(40, 30, NULL);
+    glint_write_desc desc = describe(in_folder("a.pfm"));
+    glint_compare_result r;
+    glint_compare_desc limits = {0.2, 0.05};
+    write_ok(image, &desc);
+    assert_int_equal(glint_compare_files(desc.path, desc.path, NULL, &r, NULL), GLINT_OK);
+    assert_true(r.max_error == 0 && isinf(r.peak_snr) && r.failed == 0 && r.channels == 3 && r.pixels == 1200);
+    image->plane[0][1][40 * 3 + 7] += 0.25f;
+    image->plane[0][2][40 * 9 + 2] += 0.125f;
+    desc.path = in_folder("b.pfm");
+    write_ok(image, &desc);
+    assert_int_equal(glint_compare_files(in_folder("a.pfm"), desc.path, &limits, &r, NULL), GLINT_OK);
+    assert_true(r.max_x == 7 && r.max_y == 3 && r.max_channel == 1 && fabs(r.max_error - 0.25) < 1e-6);
+    assert_true(r.failed == 1 && r.warned == 2);
+    assert_true(fabs(r.mean_error - 0.375 / 3600) < 1e-8);
+    assert_true(fabs(r.rms_error - sqrt(0.078125 / 3600)) < 1e-8);
+    assert_true(fabs(r.peak_snr - 20 * log10(1 / r.rms_error)) < 1e-9);
+    desc.pass = GLINT_PASS_DEPTH; // one channel, infinities match
+    desc.path = in_folder("depth.pfm");
+    write_ok(image, &desc);
+    assert_int_equal(glint_compare_files(desc.path, desc.path, NULL, &r, NULL), GLINT_OK);
+    assert_true(r.channels == 1 && r.max_error == 0);
+    assert_int_equal(glint_compare_files(desc.path, in_folder("a.pfm"), NULL, &r, NULL), GLINT_ERR_INVALID);
+    assert_int_equal(r.width, -1);
+    assert_int_equal(glint_compare_files(desc.path, in_folder("none.pfm"), NULL, &r, NULL), GLINT_ERR_IO);
+    glint_bytes bytes = read_ok(in_folder("depth.pfm"));
+    assert_memory_equal(bytes.data, "Pf\n40 30\n-1.0\n", 14);
+    assert_int_equal(bytes.size, 14 + 4800);
+    assert_int_equal(glint_file_write(in_folder("cut.pfm"), bytes.data, bytes.size - 1, NULL), GLINT_OK);
+    assert_int_equal(glint_compare_files(desc.path, in_folder("cut.pfm"), NULL, &r, NULL), GLINT_ERR_FORMAT);
+    free(bytes.data);
+    glint_image_release(image);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_image_sizes), cmocka_unit_test(test_tone_known), cmocka_unit_test(test_tone_every_step),
+        cmocka_unit_test(test_tone_counts), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_kept),
+        WITH_FOLDER(test_compare),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
