@@ -77,11 +77,11 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
-/// A block of memory within the budget, or NULL.
+/// A block of memory within the budget, or NULL; its contents do not matter yet.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
     if (atomic_fetch_add(&reuse->used, bytes) + bytes <= reuse->budget) {
-        void *block = glint_alloc(1, bytes);
+        void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
         if (block)
             return block;
     }
