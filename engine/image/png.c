@@ -194,16 +194,17 @@ static void nothing_to_flush(png_structp png)
     (void)png;
 }
 
-static void ignore_warning(png_structp png, png_const_charp message)
-{
-    (void)png;
-    (void)message;
-}
-
 static void jump_out(png_structp png, png_const_charp message)
 {
     (void)message;
     png_longjmp(png, 1);
+}
+
+/// Arguments are checked, so that a warning too can only mean that memory is short: no file without its text.
+static void heed_warning(png_structp png, png_const_charp message)
+{
+    if (strstr(message, "emory"))
+        jump_out(png, message);
 }
 
 static void set_text(container *c)
@@ -248,7 +249,7 @@ static glint_status put_in_container(container *c, glint_error *error)
         longest = strlen(c->text[i].value) > longest ? strlen(c->text[i].value) : longest;
     bool done = false;
     c->latin1 = malloc(longest + 1);
-    c->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, jump_out, ignore_warning);
+    c->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, jump_out, heed_warning);
     c->info = c->png ? png_create_info_struct(c->png) : NULL;
     if (c->latin1 && c->info && glint_bytes_reserve(c->out, c->stream->size + 1024))
         done = write_container(c);

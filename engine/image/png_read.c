@@ -34,10 +34,11 @@ static void keep_message(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-static void ignore_warning(png_structp png, png_const_charp message)
+/// Warnings are none of ours, but that libpng goes on, out of step, where memory was short.
+static void heed_warning(png_structp png, png_const_charp message)
 {
-    (void)png;
-    (void)message;
+    if (strstr(message, "emory"))
+        keep_message(png, message);
 }
 
 static void read_header(reader *r)
@@ -88,7 +89,7 @@ glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, 
     r->size = size;
     bool done = false;
     snprintf(r->message, sizeof r->message, "out of memory");
-    r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, keep_message, ignore_warning);
+    r->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, r, keep_message, heed_warning);
     r->info = r->png ? png_create_info_struct(r->png) : NULL;
     if (r->info)
         done = read_container(r);
