@@ -27,7 +27,7 @@ end
 local lamp = glint.point_light { position = { P.radius, P.height, 0 }, intensity = 0.95, color = { 1, 0.96, 0.88 } }
 
 local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 10, 22 }, at = { 0, 2.2, 0 }, fov = 40 },
+  camera = glint.camera { eye = { 0, 8.5, 22 }, at = { 0, 2.6, 0 }, fov = 38 },
   ambient = { 0.10, 0.11, 0.14 },
   background = "#1b2333",
   lamp,
@@ -39,12 +39,12 @@ local scene = glint.scene {
   ball(6.2, 1.5, 1.9, paint(0.90, 0.60, 0.12)),
   ball(-6.0, 2.2, 2.2, paint(0.10, 0.36, 0.66)),
   ball(2.6, 6.0, 1.2, paint(0.20, 0.55, 0.24)),
-  ball(-3.2, -6.5, 2.6, paint(0.52, 0.30, 0.62)),
+  ball(-4.6, -7, 2.6, paint(0.52, 0.30, 0.62)),
 }
 
 -- glint.cos and glint.sin give the same bits on every machine, so that farms of mixed machines agree.
 return glint.animation {
-  scene = scene, frames = P.frames, fps = 24, cyclic = true, width = 1280, height = 720,
+  scene = scene, frames = P.frames, fps = 24, cyclic = true, width = 1280, height = 720, samples = 4,
   frame = function(t)
     local angle = 2 * math.pi * t
     lamp.position = { P.radius * glint.cos(angle), P.height, P.radius * glint.sin(angle) }

@@ -3,8 +3,8 @@
 --     Phong         S = (r.v)^n    r: the light mirrored at the surface, v: towards the eye
 --     Blinn-Phong   S = (n.h)^m    h: halfway between light and eye
 -- While n, l and v lie in one plane the angle between n and h is half of the angle between r and v, so Blinn-Phong
--- needs about four times the exponent for a highlight of the same size. Watch the difference grow as the lamp sinks:
--- at grazing light Phong's highlight stays round and Blinn-Phong's becomes a streak, as on wet roads.
+-- needs about four times the exponent for a highlight of the same size. Watch the difference grow as the lamp sinks
+-- behind the balls: at grazing light Phong's highlight smears along the rim, Blinn-Phong's stays compact.
 --     glint scripts/phong_and_blinn.lua                    5 pictures, the lamp from high to low behind the balls
 --     glint scripts/phong_and_blinn.lua --set factor=1     with the same exponent: Blinn-Phong's is far too wide
 local glint = require "glint"
@@ -34,7 +34,7 @@ local scene = glint.scene {
 }
 
 return glint.animation {
-  scene = scene, frames = P.frames, width = 1280, height = 640,
+  scene = scene, frames = P.frames, width = 1280, height = 640, samples = 4,
   frame = function(t)
     -- From 60 degrees over the viewer's shoulder to 10 degrees above the horizon behind the balls.
     local angle = math.rad(60 + 110 * t)

@@ -38,4 +38,4 @@ else
   over = { { clay, "shininess", values } }
 end
 
-return glint.sweep { scene = scene, over = over, width = 640, height = 480 }
+return glint.sweep { scene = scene, over = over, width = 640, height = 480, samples = 4 }

@@ -40,7 +40,7 @@ local function ball(x, z, radius, material)
 end
 
 local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 6.5, 19.5 }, at = { 0, 3.6, 0 }, fov = 42 },
+  camera = glint.camera { eye = { 0, 6.2, 20.5 }, at = { 0, 3.8, 0 }, fov = 42 },
   ambient = { 0.16, 0.17, 0.20 },
   background = P.step == "all" and "#8fb3d9" or 0, -- a term is easier to judge on black
   glint.point_light { position = { 0, 20, 0 }, intensity = 1, shadows = P.shadows, name = "lamp" },
@@ -52,4 +52,4 @@ local scene = glint.scene {
   ball(0.6, 4.2, 2.0, paint(0.16, 0.48, 0.20, 0.7)),
 }
 
-return glint.animation { scene = scene, frames = 1, width = 1920, height = 1080 }
+scene:render { width = 1920, height = 1080, samples = 4, output = "workshop.png" }

@@ -93,8 +93,8 @@ static workshop make_workshop(const setting *set, int step)
     must(glint_scene_add_light(w.scene, w.lamp, &error), &error);
 
     glint_camera_desc c = glint_camera_desc_default();
-    memcpy(c.eye, (double[3]){0, 6.5, 19.5}, sizeof c.eye);
-    memcpy(c.at, (double[3]){0, 3.6, 0}, sizeof c.at);
+    memcpy(c.eye, (double[3]){0, 6.2, 20.5}, sizeof c.eye);
+    memcpy(c.at, (double[3]){0, 3.8, 0}, sizeof c.at);
     c.fov_y_rad = 42 * acos(-1) / 180;
     glint_camera *camera;
     must(glint_camera_create(&c, &camera, &error), &error);

@@ -33,4 +33,4 @@ for _, sphere in ipairs(w.spheres) do
     },
   })
 end
-return glint.animation { scene = scene, frames = 1, width = 1280, height = 720, bits = 16, transfer = "linear" }
+scene:render { width = 1280, height = 720, bits = 16, transfer = "linear" }

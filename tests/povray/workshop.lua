@@ -1,8 +1,8 @@
 -- The workshop scene as plain numbers, for both renderers: scene.lua hands it to glint, pov.lua writes it for POV-Ray.
 -- All values stay below 1, since POV-Ray clips.
 return {
-  eye = { 0, 6.5, 19.5 },
-  at = { 0, 3.6, 0 },
+  eye = { 0, 6.2, 20.5 },
+  at = { 0, 3.8, 0 },
   fov = 42, -- degrees, vertical
   height = 15, -- world units, of the orthographic view
   background = { 0.2, 0.3, 0.5 },
