@@ -9,11 +9,11 @@ out=$build/tests/golden
 mode=${1:-check}
 bad=0
 
-# picture NAME SCRIPT OPTION...
+# picture NAME SCRIPT OPTION...    A number of four digits at the end of NAME is the frame's, which glint adds by itself.
 picture() {
-    local name=$1
+    local name=$1 pattern=${1%_[0-9][0-9][0-9][0-9]}
     shift
-    "$glint" "$@" --size 64x48 --quiet --force -o "$out/$name.png" || {
+    "$glint" "$@" --size 64x48 --quiet --force -o "$out/$pattern.png" || {
         echo "not ok - $name: no picture"
         bad=1
         return
@@ -38,7 +38,7 @@ for step in ambient diffuse specular all; do
 done
 picture workshop_16 scripts/workshop.lua --samples 16
 picture workshop_linear_16bit scripts/workshop.lua --bits 16 --transfer linear
-picture moving_light_031 scripts/moving_light.lua -f 31
-picture shininess_sweep_005 scripts/shininess_sweep.lua -f 5
-picture phong_and_blinn_004 scripts/phong_and_blinn.lua -f 4
+picture moving_light_0031 scripts/moving_light.lua -f 31
+picture shininess_sweep_0005 scripts/shininess_sweep.lua -f 5
+picture phong_and_blinn_0004 scripts/phong_and_blinn.lua -f 4
 exit $bad

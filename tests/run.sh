@@ -3,8 +3,8 @@
 #   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, or make:TARGET
 # From the environment: BUILD (the build folder), T (run the items whose name has it), PRELOAD (a sanitizer's runtime,
 # for the Lua tests), LUA, MAKE. A test exits 0 when it passed and 77 when it cannot run here. What it prints goes to
-# BUILD/tests/log/NAME and is shown when it fails. Cases are counted from cmocka's lines and from TAP; a test that
-# prints neither counts as one.
+# BUILD/tests/log/NAME and is shown when it fails. Cases are counted from a line of totals like our own, from
+# cmocka's lines or from TAP; a test that prints none of these counts as one.
 set -u
 
 BUILD=${BUILD:-build}
@@ -26,32 +26,40 @@ run_item() {
 
 count() { grep -cE "$1" "$2" || true; }
 
+# Sets good, bad and skips from a test's log: its own closing line of totals, else cmocka's lines and TAP.
+read_cases() {
+    local totals
+    totals=$(grep -E '^[0-9]+ passed, [0-9]+ failed(, [0-9]+ skipped)?$' "$1" | tail -n 1 | tr -dc '0-9 ')
+    if [ -n "$totals" ]; then
+        read -r good bad skips <<<"$totals 0"
+        return
+    fi
+    skips=$(count '^(\[  SKIPPED \] [a-zA-Z_]+$|ok .*# (skip|SKIP))' "$1")
+    good=$(($(count '^(\[       OK \]|ok )' "$1") - $(count '^ok .*# (skip|SKIP)' "$1")))
+    bad=$(count '^(\[  FAILED  \] [a-zA-Z_0-9]+$|not ok )' "$1")
+}
+
 # Adds the cases of one finished test to the totals and prints its line.
 tally() {
     local name=$1 status=$2 log=$3 seconds=$4
     local good bad skips
-    good=$(count '^(\[       OK \]|ok( |$))' "$log")
-    skips=$(count '^(\[  SKIPPED \] [a-zA-Z_]|ok .*# (skip|SKIP)|skip( |:))' "$log")
-    skips=$((skips)) bad=$(count '^(\[  FAILED  \] [a-zA-Z_]+$|not ok( |$))' "$log")
-    good=$((good - $(count '^ok .*# (skip|SKIP)' "$log")))
     if [ "$status" -eq 77 ]; then
         skipped=$((skipped + 1))
         printf 'skip  %-24s %s\n' "$name" "$(tail -n 1 "$log")"
         return
     fi
-    skipped=$((skipped + skips))
+    read_cases "$log"
     if [ "$status" -eq 0 ] && [ "$bad" -eq 0 ]; then
         [ "$good" -gt 0 ] || good=1
-        passed=$((passed + good))
-        printf 'ok    %-24s %5d case%s %6.1f s\n' "$name" "$good" "$([ "$good" -eq 1 ] && echo ' ' || echo s)" "$seconds"
-        grep -E '^(ok .*# (skip|SKIP)|skip( |:)|\[  SKIPPED \] [a-zA-Z_])' "$log" | sort -u | sed 's/^/        /'
-        return
+        printf 'ok    %-24s %5d %-6s %6.1f s\n' "$name" "$good" "$([ "$good" -eq 1 ] && echo case || echo cases)" "$seconds"
+    else
+        [ "$bad" -gt 0 ] || bad=1
+        sed 's/^/    | /' "$log" | tail -n 60
+        [ "$status" -ne 124 ] || echo "    | stopped after $limit_s s"
+        printf 'FAIL  %-24s %5d failed, exit %d, all of it in %s\n' "$name" "$bad" "$status" "$log"
     fi
-    [ "$bad" -gt 0 ] || bad=1
-    passed=$((passed + good)) failed=$((failed + bad))
-    sed 's/^/    | /' "$log" | tail -n 60
-    [ "$status" -ne 124 ] || echo "    | stopped after $limit_s s"
-    printf 'FAIL  %-24s %5d failed, exit %d, all of it in %s\n' "$name" "$bad" "$status" "$log"
+    grep -E '(^|# )(skip|SKIP|skipped|\[  SKIPPED \] [a-zA-Z_]+)( |:|$)' "$log" | sort -u | sed 's/^/        /'
+    passed=$((passed + good)) failed=$((failed + bad)) skipped=$((skipped + skips))
 }
 
 mkdir -p "$log_folder"
