@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #define DEPTH_NEAR 1.0 // what the nearest and the farthest depth look like; the background is 0
 #define DEPTH_FAR 0.1
@@ -24,6 +25,13 @@ typedef struct picture {
     double nearest, depth_scale;   ///< depth
 } picture;
 
+/// A pipe or a device: what has no ending to go by is written as PNG there.
+static bool is_special_file(const char *path)
+{
+    struct stat info;
+    return path && stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
 glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error)
 {
     const char *ending = path ? strrchr(path, '.') : NULL;
@@ -31,6 +39,8 @@ glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_e
         *kind = GLINT_FILE_PNG;
     else if (ending && strcasecmp(ending, ".pfm") == 0)
         *kind = GLINT_FILE_PFM;
+    else if (is_special_file(path))
+        *kind = GLINT_FILE_PNG;
     else
         return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png or .pfm expected, got '%.400s'",
                           path ? path : "");
@@ -212,6 +222,8 @@ glint_status glint_image_write(const glint_image *image, const glint_write_desc 
 bool glint_file_has_key(const char *path, const char *key)
 {
     struct glint_bytes bytes = {0};
+    if (is_special_file(path)) // reading a pipe would wait, and keeps nothing
+        return false;
     if (glint_file_read(path, KEY_FILE_LIMIT, &bytes, NULL))
         return false;
     bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);
