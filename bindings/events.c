@@ -41,7 +41,7 @@ static void print_times(FILE *out, const glintL_record *record)
         fprintf(out, "%s\"%s\":%.3f", i ? "," : "", stats->stage_name[i], stats->stage_ms[i]);
     fputs("}},\"stages\":{", out);
     for (int i = 0; i < stats->stage_count; i++)
-        fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i], stats->stage_reused[i] ? "reused" : "run");
+        fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i], stats->stage_reused[i] == 1 ? "reused" : "run");
     fputc('}', out);
 }
 

@@ -78,6 +78,7 @@ typedef struct job_walk {
     lua_State *L;
     glintL_run *run;
     int list, job_index; // on the stack; the job is on top of it
+    lua_Integer settled; // jobs of the list that left the scene as they leave it
     const glintL_job *job;
     glintL_render render; // with what the command line says
     char pattern[GLINTL_PATH_SIZE];
@@ -120,11 +121,17 @@ static bool is_shared(const job_walk *walk)
     return frames > 1 || walk->run->earlier > 0;
 }
 
-static void begin_job(job_walk *walk, lua_Integer i)
+// The job on top of the stack becomes the one at hand.
+static void take_job(job_walk *walk, lua_Integer i)
 {
     lua_rawgeti(walk->L, walk->list, i);
     walk->job_index = lua_gettop(walk->L);
     walk->job = lua_touserdata(walk->L, -1);
+}
+
+static void begin_job(job_walk *walk, lua_Integer i)
+{
+    take_job(walk, i);
     walk->render = walk->job->render;
     glintL_run_apply(walk->run, &walk->render);
     walk->naming = (glintL_naming){.pattern = walk->render.output, .is_numbered = is_shared(walk)};
@@ -165,6 +172,28 @@ static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t numb
                         "frame %" PRId64 ": %s", number, lua_tostring(L, -1));
     lua_settop(L, walk->job_index);
     return status == LUA_OK;
+}
+
+// A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation
+// after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has failed.
+static bool settle_before(job_walk *walk, lua_Integer i, int64_t first)
+{
+    const glintL_job *job = walk->job;
+    int job_index = walk->job_index;
+    bool good = true;
+    int64_t last = first - 1; // number of the last frame before this job
+    for (lua_Integer j = i - 1; j > walk->settled; j--)
+        last -= get_job(walk->L, walk->list, j)->frames;
+    for (; walk->settled < i - 1 && good; walk->settled++) {
+        take_job(walk, walk->settled + 1);
+        last += walk->job->frames;
+        if (walk->job->kind == GLINTL_JOB_ANIMATION)
+            good = call(walk, build, walk->job->frames, last);
+        lua_settop(walk->L, job_index);
+    }
+    walk->job = job;
+    walk->job_index = job_index;
+    return good;
 }
 
 // Sets the scene to frame n and plans it. NULL: the run has failed.
@@ -227,6 +256,7 @@ static part open_part(glintL_run *run, int64_t frames)
 static bool run_job(job_walk *walk, lua_Integer i, part *p)
 {
     glintL_run *run = walk->run;
+    int64_t first = run->count + 1;
     bool good = true;
     begin_job(walk, i);
     for (int64_t n = 1; n <= walk->job->frames && good; n++) {
@@ -234,8 +264,11 @@ static bool run_job(job_walk *walk, lua_Integer i, part *p)
         if (!glintL_selection_has(&run->asked.selection, number))
             continue;
         p->place++;
-        if (p->place >= p->from && p->place <= p->to)
-            good = !run->interrupted && run_frame(walk, n, number);
+        if (p->place < p->from || p->place > p->to)
+            continue;
+        good = !run->interrupted && settle_before(walk, i, first) && run_frame(walk, n, number);
+        if (n == walk->job->frames)
+            walk->settled = i;
     }
     if (walk->job->kind == GLINTL_JOB_SWEEP)
         good = call(walk, restore, 0, run->count) && good;
@@ -278,7 +311,8 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
         walk->list = lua_absindex(L, index);
         begin_job(walk, i);
         if (n <= walk->job->frames) {
-            glintL_work *work = plan_frame(walk, n, run->explain_frame);
+            bool settled = settle_before(walk, i, run->explain_frame - n + 1);
+            glintL_work *work = settled ? plan_frame(walk, n, run->explain_frame) : NULL;
             if (work) {
                 run->explain_plan = work->plan;
                 work->plan = NULL;

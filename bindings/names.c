@@ -51,7 +51,7 @@ static bool is_place(const char *pattern, const char *at)
 }
 
 // An existing pipe or device keeps its name: it is written in place, and nothing is made beside it.
-static bool is_special(const char *path)
+bool glintL_name_is_special(const char *path)
 {
     struct stat info;
     return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
@@ -64,13 +64,13 @@ static const char *ending(const char *path)
     if (length < 5 || path[length - 5] == '/')
         return NULL;
     const char *dot = path + length - 4;
-    return strcmp(dot, ".png") == 0 || strcmp(dot, ".pfm") == 0 ? dot : NULL;
+    return strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0 ? dot : NULL;
 }
 
 bool glintL_name_is_pfm(const char *path)
 {
     const char *dot = ending(path);
-    return dot && strcmp(dot, ".pfm") == 0;
+    return dot && strcasecmp(dot, ".pfm") == 0;
 }
 
 bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
@@ -84,7 +84,7 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
             wrong = "a place for the frame number such as %04d or ####, and %% for a per cent sign";
         at += length;
     }
-    if (!wrong && !ending(pattern) && !is_special(pattern))
+    if (!wrong && !ending(pattern) && !glintL_name_is_special(pattern))
         wrong = "a file name ending in .png or .pfm";
     if (!wrong && strlen(pattern) >= GLINTL_PATH_SIZE - 64)
         wrong = "a shorter file name";
@@ -101,7 +101,7 @@ bool glintL_name_has_number(const char *pattern)
             return true;
         at += found.length ? found.length : 1;
     }
-    return is_special(pattern);
+    return glintL_name_is_special(pattern);
 }
 
 // Copies the pattern with the number in its places. False: too long.

@@ -29,12 +29,13 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    bool *const flags[] = {&options->json, &options->quiet, &options->help, &options->version, &options->asked.force};
-    static const char *const names[] = {"json", "quiet", "help", "version", "force"};
-    for (int i = 0; i < 5; i++)
+    bool *const flags[] = {&options->json, &options->quiet, &options->help, &options->version, &options->asked.force,
+                           &options->asked.no_reuse};
+    static const char *const names[] = {"json", "quiet", "help", "version", "force", "no-reuse"};
+    for (int i = 0; i < 6; i++)
         if (strcmp(option->name, names[i]) == 0)
             *flags[i] = true;
-    return true; // --no-reuse: nothing is reused between frames yet
+    return true;
 }
 
 static bool read_frames(cli_options *options, const cli_option *option, char *text, char *message)
@@ -128,16 +129,25 @@ static bool read_count(cli_options *options, const cli_option *option, char *tex
     return good;
 }
 
-// A size such as 512M; nothing is kept between frames yet, so it is only checked.
+// A size such as 512M, in bytes. 0 keeps nothing.
 static bool read_memory(cli_options *options, const cli_option *option, char *text, char *message)
 {
-    (void)options, (void)option;
+    (void)option;
+    static const char suffixes[] = "KMGT";
     char *end;
     double size = strtod(text, &end);
-    if (end > text && isfinite(size) && size >= 0 && (*end == '\0' || (strchr("KMGT", *end) && end[1] == '\0')))
-        return true;
-    snprintf(message, MESSAGE, "size such as 512M or 4G expected, got '%.200s'", text);
-    return false;
+    bool good = end > text;
+    const char *suffix = *end ? strchr(suffixes, *end) : NULL;
+    for (const char *at = suffixes; suffix && at <= suffix; at++)
+        size *= 1024;
+    good = good && (*end == '\0' || (suffix && end[1] == '\0'));
+    if (!good || !(size >= 0 && size <= 0x1p50)) {
+        snprintf(message, MESSAGE, "size such as 512M or 4G expected, got '%.200s'", text);
+        return false;
+    }
+    options->asked.no_reuse = options->asked.no_reuse || size < 1;
+    options->asked.reuse_memory = (size_t)size;
+    return true;
 }
 
 static bool read_threshold(cli_options *options, const cli_option *option, char *text, char *message)

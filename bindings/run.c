@@ -146,8 +146,6 @@ bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *
     va_end(args);
     run->exit_code = exit_code;
     run->failed_index = index;
-    if (run->writer)
-        glint_writer_cancel(run->writer);
     return false;
 }
 
@@ -185,6 +183,8 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     glint_renderer *renderer = NULL;
     desc.threads = run->asked.threads;
     desc.time_stages = run->times_stages;
+    desc.no_reuse = run->asked.no_reuse;
+    desc.reuse_memory = run->asked.reuse_memory;
     glint_status status = glint_renderer_create(&desc, &renderer, error);
     if (status)
         return status;
@@ -279,6 +279,8 @@ static void flush_records(glintL_run *run)
 bool glintL_run_collect(glintL_run *run, bool wait)
 {
     glint_write_result result;
+    if (run->interrupted && run->writer)
+        glint_writer_cancel(run->writer);
     flush_records(run);
     while (run->files_pending > 0 && glint_writer_collect(run->writer, wait, &result)) {
         glintL_record *record = result.user;
@@ -290,6 +292,7 @@ bool glintL_run_collect(glintL_run *run, bool wait)
             record->failed = true;
             if (result.status != GLINT_ERR_CANCELLED)
                 glintL_run_fail(run, glintL_run_exit_code(result.status), record->index, "%s", result.message);
+            glint_writer_cancel(run->writer); // what else is queued would meet the same end
         }
         flush_records(run);
     }

@@ -80,6 +80,7 @@ bool glintL_name_has_number(const char *pattern);
 /// The file of a frame's pass. False: too long.
 bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
 bool glintL_name_is_pfm(const char *path);
+bool glintL_name_is_special(const char *path); ///< an existing pipe or device
 
 // ---- What is asked ----
 
@@ -96,7 +97,8 @@ typedef struct glintL_asked {
     size_t set_count;
     int threads; ///< 0: one per processor
     int repeat;  ///< >= 1
-    bool force;
+    bool force, no_reuse;
+    size_t reuse_memory; ///< bytes; 0: the engine's default
 } glintL_asked;
 
 typedef enum glintL_mode { GLINTL_MODE_RENDER, GLINTL_MODE_DESCRIBE, GLINTL_MODE_EXPLAIN } glintL_mode;
@@ -185,7 +187,7 @@ void glintL_run_destroy(glintL_run *run);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);
-/// Keeps the first failure, drops what is queued and returns false. `index` 0: not one frame's.
+/// Keeps the first failure and returns false. `index` 0: not one frame's.
 bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /// What the command line says beats what the script says.

@@ -67,7 +67,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
         if (!glintL_name_file(naming, work->index, file->pass, file->path))
             return glint_fail(error, GLINT_ERR_INVALID, "output: the file name '%.100s...' is too long", naming->pattern);
         file->key[0] = '\0';
-        if (!glintL_name_is_pfm(file->path)) {
+        if (!glintL_name_is_pfm(file->path) && !glintL_name_is_special(file->path)) {
             glint_write_desc desc = write_desc(work, file);
             glint_frame_key(work->plan, &desc, file->key);
         }

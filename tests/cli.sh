@@ -1,0 +1,675 @@
+#!/usr/bin/env bash
+# The command line from outside: names, selection, options, events, exit codes, files that are whole or absent.
+# GLINT is the command (default build/glint). Prints a line for each check that fails, then "N passed, N failed".
+# shellcheck disable=SC2016
+set -u
+
+GLINT=$(realpath "${GLINT:-build/glint}")
+LUA=${LUA:-lua5.4}
+SAN_EXIT=99
+export ASAN_OPTIONS="${ASAN_OPTIONS:-}:exitcode=$SAN_EXIT" UBSAN_OPTIONS="${UBSAN_OPTIONS:-}:exitcode=$SAN_EXIT"
+export TSAN_OPTIONS="${TSAN_OPTIONS:-}:exitcode=$SAN_EXIT"
+work=$(mktemp -d)
+mounted=
+cleanup() {
+    [ -z "$mounted" ] || umount "$mounted"
+    chmod -R u+rwx "$work"
+    rm -rf "$work"
+}
+trap cleanup EXIT
+cd "$work" || exit 1
+passed=0 failed=0
+
+pass() { passed=$((passed + 1)); }
+fail() {
+    failed=$((failed + 1))
+    echo "not ok - $*"
+}
+
+# run ARGUMENTS...: the command; its streams in out and err, its exit code in $status.
+run() {
+    "$GLINT" "$@" >out 2>err </dev/null
+    status=$?
+}
+
+# exits WANT NAME ARGUMENTS...
+exits() {
+    local want=$1 name=$2
+    shift 2
+    run "$@"
+    if [ "$status" -eq "$want" ]; then pass; else fail "$name: exit $status, not $want: $(head -n 3 err)"; fi
+}
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    if "$@" >/dev/null 2>&1; then pass; else fail "$name"; fi
+}
+
+says() { # NAME PATTERN: the last run said so on stderr
+    if grep -qE -- "$2" err; then pass; else fail "$1: stderr says: $(head -n 3 err)"; fi
+}
+
+prints() { # NAME PATTERN: the last run printed so on stdout
+    if grep -qE -- "$2" out; then pass; else fail "$1: stdout says: $(head -n 3 out)"; fi
+}
+
+files() { # NAME FILE...: exactly these pictures are here; removes them
+    local name=$1 have want
+    shift
+    have=$(find . -maxdepth 2 \( -name '*.png*' -o -name '*.pfm*' -o -name '.*.tmp*' \) | sort | sed 's|^\./||' | tr '\n' ' ')
+    want=$(printf '%s\n' "$@" | sort | tr '\n' ' ')
+    [ $# -gt 0 ] || want=
+    if [ "$have" = "$want" ]; then pass; else fail "$name: files: $have, not: $want"; fi
+    clean
+}
+
+clean() { find . -maxdepth 2 \( -name '*.png*' -o -name '*.pfm*' \) -delete; }
+sums() { (cd "$1" && sha256sum -- *.png); }
+
+# ---- Scripts ----
+
+cat >scene.lua <<'END'
+local glint = require "glint"
+local M = {}
+M.red = glint.material { diffuse = { 0.8, 0.2, 0.2 }, specular = 0.7, shininess = 20 }
+M.lamp = glint.point_light { position = { 3, 6, 5 }, name = "lamp" }
+M.scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 9 }, at = { 0, 0, 0 } }, ambient = 0.1, background = "#203040",
+  M.lamp, glint.sphere { center = { 0, 0, 0 }, radius = 1.5, material = M.red },
+  glint.sphere { center = { 1.6, 0.8, 1.5 }, radius = 0.5, material = M.red },
+  glint.plane { point = { 0, -1.5, 0 }, normal = { 0, 1, 0 } },
+}
+return M
+END
+
+cat >ten.lua <<'END'
+-- Ten frames of a lamp.
+-- It circles.
+local glint = require "glint"
+local S = require "scene"
+local P = glint.params {
+  radius = { 4, min = 1, max = 40, doc = "orbit radius" },
+  shiny = true,
+  mode = { "day", choices = { "day", "night" } },
+  plain = 1.5,
+}
+S.red.shininess = P.shiny and 20 or 5
+return glint.animation { scene = S.scene, frames = 10, cyclic = true, width = 40, height = 24, frame = function(t, n)
+  if os.getenv "TRACE" then io.stderr:write("frame ", n, " t ", t, "\n") end
+  S.lamp.position = { P.radius * glint.cos(2 * math.pi * t), 5, P.radius * glint.sin(2 * math.pi * t) }
+end }
+END
+
+cat >one.lua <<'END'
+local S = require "scene"
+return S.scene
+END
+
+cat >loop.lua <<'END'
+local S = require "scene"
+for i = 1, 5 do
+  S.lamp.x = i
+  local image, why = S.scene:render { width = 40, height = 24 }
+  io.stderr:write(i, " ", image and image.width or why, "\n")
+end
+END
+
+cat >single.lua <<'END'
+local S = require "scene"
+local image = S.scene:render { width = 40, height = 24 }
+if image and os.getenv "LOOK" then io.stderr:write(("%.6f\n"):format(image:pixel(20, 12))) end
+END
+
+cat >list.lua <<'END'
+local glint = require "glint"
+local S = require "scene"
+local function part(frames)
+  return glint.animation { scene = S.scene, frames = frames, width = 40, height = 24, frame = function(t)
+    S.lamp.position = { 5 * t, 5, 5 }
+  end }
+end
+return { part(2), glint.sweep { scene = S.scene, size = { 40, 24 },
+  over = { { S.red, "shininess", { 1, 4, 16 } }, { S.lamp, "intensity", { 0.5, 1 } } } }, part(1) }
+END
+
+script() { printf '%s\n' "$2" >"$1.lua"; }
+script empty 'local x = 1'
+script syntax 'local = 3'
+script number 'return 5'
+script text 'print "hello" io.write "raw\n" return require("scene").scene'
+script table_error 'error { code = 3 }'
+script text_error 'error(setmetatable({}, { __tostring = function() return "my own words" end }))'
+script nil_error 'error()'
+script frame_error 'local g, S = require "glint", require "scene"
+return g.animation { scene = S.scene, frames = 4, width = 40, height = 24, frame = function(t, n) if n == 3 then S.lamp.intensity = -1 end end }'
+script no_camera 'local g = require "glint" return g.scene { g.sphere { center = { 0, 0, 0 }, radius = 1 } }'
+script endless 'while true do end'
+script stubborn 'while true do pcall(function() while true do end end) end'
+script slow 'local g, S = require "glint", require "scene"
+return g.animation { scene = S.scene, frames = 400, width = 1600, height = 1200, samples = 64, frame = function(t) S.lamp.x = t end }'
+
+# ---- Names of files ----
+
+names() {
+    exits 0 "a scene is a still" one.lua --size 40x24
+    files "default of a still" one.png
+    exits 0 "default of several" ten.lua -f 1-2
+    files "default of several, part selected" ten_0001.png ten_0002.png
+    exits 0 "one of several" ten.lua -f 7
+    files "one selected of several keeps its number" ten_0007.png
+    exits 0 "%04d" ten.lua -f 3 -o 'a_%04d.png'
+    files "%04d" a_0003.png
+    exits 0 "%d" ten.lua -f 3 -o 'a%d.png'
+    files "%d" a3.png
+    exits 0 "####" ten.lua -f 3 -o 'b####.png'
+    files "####" b0003.png
+    exits 0 "no place" ten.lua -f 3 -o c.png
+    files "number before the ending" c_0003.png
+    exits 0 "a still under -o" one.lua --size 40x24 -o d.png
+    files "a still under -o" d.png
+    exits 0 "%%" one.lua --size 40x24 -o '5%%.png'
+    files "per cent sign" '5%.png'
+    exits 0 "folders are made" one.lua --size 40x24 -o new/e.png
+    files "folders are made" new/e.png
+    exits 0 "pfm" ten.lua -f 2 -o f.pfm
+    files "pfm" f_0002.pfm
+    exits 0 "passes" ten.lua -f 2 --passes ambient,depth -o g.png
+    files "passes" g_0002.png g_0002.ambient.png g_0002.depth.png
+    exits 0 "-o none" ten.lua -o none
+    files "-o none writes nothing"
+    exits 0 "a list" list.lua
+    files "frames of a list are numbered through" list_000{1,2,3,4,5,6,7,8,9}.png
+    mkdir odd
+    cp one.lua 'odd/100%#1.lua'
+    cp scene.lua odd/
+    exits 0 "odd script name" 'odd/100%#1.lua' --size 40x24
+    files "a script's name is no pattern" '100%#1.png'
+    script outputs 'local S = require "scene"
+for _, name in ipairs { "x.png", "y.png" } do S.scene:render { width = 40, height = 24, output = name } end'
+    exits 0 "named calls" outputs.lua
+    files "a call's own name is its name" x.png y.png
+    exits 0 "loop without output" loop.lua
+    files "a loop writes nothing by itself"
+    exits 0 "loop under -o" loop.lua -o l.png
+    files "loop under -o" l_0001.png l_0002.png l_0003.png l_0004.png l_0005.png
+    exits 0 "single call under -o" single.lua -o s.png
+    files "single call under -o" s.png
+}
+
+# ---- Which frames ----
+
+traced() { # NAME WANT ARGUMENTS...: the frame function is called for these frames
+    local name=$1 want=$2 have
+    shift 2
+    TRACE=1 run ten.lua -o none "$@"
+    have=$(sed -n 's/^frame \([0-9]*\) t .*/\1/p' err | tr '\n' ' ')
+    if [ "$have" = "$want" ] && [ "$status" -eq 0 ]; then pass; else fail "$name: frames $have, exit $status"; fi
+}
+
+selection() {
+    traced "all" "1 2 3 4 5 6 7 8 9 10 "
+    traced "ranges" "1 2 3 5 7 9 " -f 1-3,5,7-9:2
+    traced "order and doubles" "2 3 " -f 3,2,2-3
+    traced "open range" "9 10 " --frames 9-
+    traced "-s -e -j" "2 5 8 " -s 2 -e 9 -j 3
+    traced "cut" "10 " -f 10-30
+    says "cut warns" 'warning: .*1 \.\. 10'
+    traced "nothing left" "" -f 11
+    traced "shard 1/3" "1 2 3 " --shard 1/3
+    traced "shard 2/3" "4 5 6 " --shard 2/3
+    traced "shard 3/3" "7 8 9 10 " --shard 3/3
+    traced "shard of a selection" "4 5 " -f 2-5 --shard 2/2
+    traced "more shards than frames" "" -f 1 --shard 1/2
+    TRACE=1 run ten.lua -o none -f 1,10
+    says "cyclic t of the first" '^frame 1 t 0$'
+    says "cyclic t of the last" '^frame 10 t 0\.9$'
+    run loop.lua -f 2,4 --quiet
+    check "a loop skips" test "$(tr '\n' ' ' <err | grep -o '1 skipped 2 40 3 skipped 4 40 5 skipped')"
+    run loop.lua --shard 2/2 --quiet
+    check "every Nth call" test "$(tr '\n' ' ' <err | grep -o '1 skipped 2 40 3 skipped 4 40 5 skipped')"
+    run loop.lua -f 4-9 --quiet
+    says "a loop's cut warns" 'warning: .*1 \.\. 5'
+    exits 0 "-f of a list" list.lua -f 3,9
+    files "numbers of a list" list_0003.png list_0009.png
+}
+
+# ---- Parameters ----
+
+parameters() {
+    exits 0 "-D number" ten.lua -o none -f 1 -D radius=7
+    exits 0 "-D before the script" -D radius=7 --set shiny=false -o none ten.lua --set mode=night
+    exits 2 "-D below min" ten.lua -D radius=0.5
+    says "-D below min" 'radius: number 1 \.\. 40 expected, got .0\.5'
+    exits 2 "-D not a number" ten.lua -D radius=math.pi
+    exits 2 "-D boolean" ten.lua -D shiny=1
+    says "-D boolean" 'true or false'
+    exits 2 "-D choice" ten.lua -D mode=dusk
+    exits 2 "-D unknown" ten.lua -D raduis=3
+    says "-D unknown names the nearest" "did you mean 'radius'"
+    exits 2 "-D in a loop without parameters" loop.lua -D x=1
+    exits 2 "-D without value" ten.lua -D radius
+    files "nothing written" # but names of earlier checks
+    script assign 'local P = require("glint").params { a = 1 } P.a = 2'
+    exits 2 "assigning raises" assign.lua
+    script unknown 'local P = require("glint").params { radius = 1 } print(P.raduis)'
+    exits 2 "reading an unknown one raises" unknown.lua
+    says "reading an unknown one" "did you mean 'radius'"
+    script types 'local P = require("glint").params { a = 15, b = 1.0, s = "x" }
+io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return require("scene").scene'
+    run types.lua -o none -D a=20.0 -D b=3 -D 's=os.exit(7)' --size 8x8
+    says "literals have the default's type" '^integer float os\.exit\(7\)$'
+    exits 0 "--sweep" ten.lua --sweep radius=2:4:2 -f 10-11
+    files "--sweep numbers through" ten_0010.png ten_0011.png
+    exits 0 "--sweep shard" ten.lua --sweep radius=2:4:3 --sweep plain=0:1:2 --shard 12/12 -o 'w%02d.png'
+    files "--sweep shard" w56.png w57.png w58.png w59.png w60.png
+    exits 0 "--sweep of a still" one.lua --size 40x24 -o none
+    exits 2 "--sweep of an unknown one" ten.lua --sweep raduis=1:2:3
+    exits 2 "--sweep out of range" ten.lua --sweep radius=1:50:3 -o none
+    for wrong in radius radius=1 radius=1:2 radius=1:2:0 radius=a:2:3 =1:2:3 radius=1:2:3x; do
+        exits 2 "--sweep $wrong" ten.lua --sweep "$wrong"
+    done
+    exits 2 "--sweep and --set of one" ten.lua --sweep radius=1:2:3 --set radius=2
+    run ten.lua --help
+    check "--help exits 0" test "$status" -eq 0
+    prints "--help has the comment" '^It circles\.$'
+    prints "--help has a parameter" '^  radius=4 +1 \.\. 40 +orbit radius'
+    prints "--help has choices" 'mode=day +day\|night'
+    run describe --json ten.lua
+    prints "describe" '"name":"radius","type":"number","default":4,"value":4,"min":1,"max":40,"doc":"orbit radius"'
+    prints "describe has choices" '"choices":\["day","night"\]'
+    check "describe is one line" test "$(wc -l <out)" -eq 1
+    exits 0 "describe of a loop renders nothing" describe loop.lua --json
+    files "describe writes nothing"
+}
+
+# ---- Options ----
+
+options() {
+    exits 0 "--version" --version
+    prints "--version" '^glint [0-9]'
+    exits 0 "--help" --help
+    exits 2 "no script" --json
+    exits 2 "unknown option" ten.lua --thraeds 2
+    says "unknown option names the nearest" "did you mean '--threads'"
+    exits 2 "unknown letter" ten.lua -Z
+    exits 2 "unknown command" explian ten.lua
+    says "unknown command names the nearest" "did you mean 'explain'"
+    exits 2 "two scripts" ten.lua one.lua
+    exits 2 "cost" cost ten.lua
+    local wrong
+    for wrong in '-f x' '-f 3-1' '-f 1,' '-f -3' '-f 1-5:0' '-s 0' '-e x' '-j 0' '-s 5 -e 4' '-f 1 -s 1' '--shard 0/2' \
+        '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \
+        '--size 65536x1' '--samples 0' '--samples 1.5' '--samples nan' '--precision half' '--bits 9' '--transfer foo' \
+        '--rounding up' '--tone foo' '--passes foo' '--passes depth,' '--encode foo' '-t 0' '-t x' '-t 1025' '--seed -1' \
+        '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--samples' '--fail 1'; do
+        # shellcheck disable=SC2086
+        exits 2 "wrong: $wrong" ten.lua $wrong
+    done
+    files "wrong options write nothing"
+    exits 0 "every option" --precision float --bits 16 --transfer linear ten.lua --rounding truncate --tone clamp \
+        --encode small -t 2 --seed 5 --no-reuse --reuse-memory 64M --samples 4 --quiet --size 20x12 -f 1 -o q.png
+    check "--quiet is quiet" test ! -s err
+    exits 0 "the picture is as asked" compare q_0001.png q_0001.png --json
+    prints "size on the command line wins" '"width":20,"height":12'
+    clean
+    script fields 'local S = require "scene" S.scene:render { widht = 3 }'
+    exits 2 "unknown field" fields.lua
+    says "unknown field" "fields.lua:1: scene:render: widht: .*did you mean 'width'"
+    script fields 'local S = require "scene" S.scene:render { width = -1 }'
+    exits 2 "wrong field" fields.lua
+    says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
+    for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'precision=true' 'rounding="up"' \
+        'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'encode="x"' 'output="x.gif"' 'output=3' '[1]=2'; do
+        script fields "local S = require 'scene' S.scene:render { $wrong }"
+        exits 2 "wrong field $wrong" fields.lua
+    done
+    script jobs 'local g, S = require "glint", require "scene" return g.animation { scene = S.scene, frame = print, fraems = 3 }'
+    exits 2 "unknown field of an animation" jobs.lua
+    says "unknown field of an animation" "animation.fraems: .*did you mean 'frames'"
+    script words 'io.stderr:write(table.concat(arg, "+"), " ", arg[0], "\n") return require("scene").scene'
+    run words.lua -o none --size 8x8 -- -f 3 x
+    says "arguments of the script" '^-f\+3\+x words.lua$'
+}
+
+# ---- Events ----
+
+cat >parse.lua <<'END' # Reads JSON lines strictly enough; prints each path=value.
+local function value(s, i, path)
+  local c = s:sub(i, i)
+  if c == "{" or c == "[" then
+    local close, n = c == "{" and "}" or "]", 0
+    i = i + 1
+    while s:sub(i, i) ~= close do
+      if n > 0 then assert(s:sub(i, i) == ",", "comma") i = i + 1 end
+      n = n + 1
+      local key = n
+      if c == "{" then
+        key = assert(s:match('^"([%w_]+)":', i), "key")
+        i = i + #key + 3
+      end
+      i = value(s, i, path .. "." .. key)
+    end
+    return i + 1
+  end
+  if c == '"' then
+    local j = i + 1
+    while s:sub(j, j) ~= '"' do
+      assert(j <= #s and s:byte(j) >= 32, "string")
+      j = j + (s:sub(j, j) == "\\" and 2 or 1)
+    end
+    print(path .. "=" .. s:sub(i + 1, j - 1))
+    return j + 1
+  end
+  local word = assert(s:match("^[%w%.+-]+", i), "value at " .. i)
+  assert(word == "null" or word == "true" or word == "false" or tonumber(word), word)
+  print(path .. "=" .. word)
+  return i + #word
+end
+for line in io.lines() do assert(value(line, 1, "") == #line + 1, "rest") end
+END
+
+parsed() { # NAME: the last run's events are JSON; their values are in values
+    if "$LUA" parse.lua <out >values 2>err2; then pass; else fail "$1: $(head -n 1 err2): $(head -c 300 out)"; fi
+}
+valued() { # NAME PATTERN
+    if grep -qE -- "$2" values; then pass; else fail "$1: no $2 among the values"; fi
+}
+
+events() {
+    exits 0 "--json" ten.lua --json -f 2-4
+    parsed "--json"
+    check "a line for each frame and the end" test "$(wc -l <out)" -eq 4
+    check "frames in order" test "$(sed -n 's/^\.index=//p' values | tr '\n' ' ')" = "2 3 4 "
+    for want in 'event=frame' 'file=ten_0003.png' 'status=rendered' 'ms.build=[0-9.]+' 'ms.render=[0-9.]+' 'ms.tone=[0-9.]+' \
+        'ms.encode=[0-9.]+' 'ms.stages.cast=[0-9.]+' 'stages.cast=(run|reused)' 'rays.primary=[0-9]+' 'rays.shadow=[0-9]+' \
+        'rays.mirror=0' 'rays.refraction=0' 'rays.indirect=0' 'clipped=[0-9.e-]+' 'nonfinite=0' 'event=end' 'frames=3' \
+        'kept=0' 'seconds=[0-9.]+'; do
+        valued "event has $want" "^\.$want\$"
+    done
+    run ten.lua --json -f 2-4
+    parsed "kept"
+    check "kept" test "$(grep -c '^\.status=kept$' values)" -eq 3
+    valued "the end counts kept" '^\.kept=3$'
+    clean
+    exits 0 "text goes to stderr" text.lua --json --size 40x24
+    parsed "text"
+    says "print under --json" '^hello$'
+    says "io.write under --json" '^raw$'
+    clean
+    exits 2 "an error is an event" frame_error.lua --json
+    parsed "error"
+    valued "error event" '^\.event=error$'
+    valued "error's frame" '^\.index=3$'
+    clean
+    exits 2 "a usage error is an event" ten.lua --json --nonsense
+    parsed "usage error"
+    printf 'error "q\\"b\\\\ t\\t u\\u{e9} x\\xff"' >quote.lua
+    exits 2 "strings are escaped" quote.lua --json
+    parsed "strings"
+    exits 0 "--repeat" ten.lua --json -f 1 --repeat 3 -o none
+    parsed "--repeat"
+    check "--repeat reports each" test "$(sed -n 's/^\.repeat=//p' values | tr '\n' ' ')" = "1 2 3 "
+    valued "--repeat is one frame" '^\.frames=1$'
+    exits 0 "explain --json" explain ten.lua --json --frame 4
+    parsed "explain"
+    valued "explain has effects" '^\.effects\.[0-9]+\.caller=.*lamp'
+    valued "explain has stages" '^\.stages\.[0-9]+\.name=cast$'
+    valued "explain has rays" '^\.rays\.primary=960$'
+    exits 0 "explain of a loop" explain loop.lua --json --frame 3
+    exits 2 "explain beyond the end" explain ten.lua --frame 11
+    exits 0 "explain for people" explain ten.lua
+    prints "explain names who called" "point_light 'lamp'"
+    files "explain writes nothing"
+    "$GLINT" ten.lua --json -o none >/dev/full 2>err
+    check "stdout is full" test $? -eq 75
+    says "stdout is full" 'stdout: No space'
+    "$GLINT" --version >/dev/full 2>err
+    check "stdout is full for --version" test $? -eq 75
+    "$GLINT" ten.lua --json -o none 2>err | true
+    check "the reader has gone" test "${PIPESTATUS[0]}" -le 1
+    check "no SIGPIPE" test "${PIPESTATUS[0]}" -ne 141
+}
+
+# ---- Errors of scripts ----
+
+errors() {
+    exits 2 "no such script" nothing.lua
+    exits 2 "a folder" .
+    exits 2 "syntax" syntax.lua
+    says "syntax" 'syntax.lua:1:'
+    exits 2 "returns nothing" empty.lua
+    says "returns nothing" 'returned nothing'
+    exits 2 "returns a number" number.lua
+    exits 2 "table as error" table_error.lua
+    says "table as error" '\(error object is a table value\)'
+    exits 2 "table with __tostring" text_error.lua
+    says "table with __tostring" 'my own words'
+    exits 2 "nil as error" nil_error.lua
+    exits 2 "error in frame" frame_error.lua
+    says "error in frame" 'frame 3: frame_error.lua:2: point_light.intensity: '
+    files "what was done stays" frame_error_0001.png frame_error_0002.png
+    exits 2 "no camera" no_camera.lua
+    says "no camera" 'camera'
+    "$LUA" -e 'io.open("code.lua", "wb"):write(string.dump(function() end))'
+    exits 2 "bytecode" code.lua
+    GLINT_ISA=foo run ten.lua -o none
+    check "GLINT_ISA=foo" test "$status" -eq 2
+    script results 'local s = require("scene").scene return s, s'
+    exits 2 "two results" results.lua
+    script nested 'local g, S = require "glint", require "scene"
+return g.animation { scene = S.scene, frame = function() S.scene:render() end }'
+    exits 2 "render inside frame" nested.lua
+    files "errors write nothing"
+}
+
+# ---- Files: kept, forced, whole or absent ----
+
+whole() {
+    run ten.lua -f 1-2
+    local before after
+    before=$(stat -c %y.%i ten_0001.png)
+    run ten.lua -f 1-2
+    after=$(stat -c %y.%i ten_0001.png)
+    check "a kept file is not touched" test "$before" = "$after"
+    cp ten_0001.png whole.bin
+    truncate -s -8 ten_0001.png
+    run ten.lua -f 1-2 --json
+    check "a truncated file is rendered again" grep -q '"index":1.*"status":"rendered"' out
+    check "and only that" grep -q '"index":2.*"status":"kept"' out
+    check "to the same bytes" cmp ten_0001.png whole.bin
+    run ten.lua -f 1 --json -D radius=5
+    check "another scene is rendered" grep -q '"status":"rendered"' out
+    run ten.lua -f 1 --json
+    run ten.lua -f 1 --json --force
+    check "--force renders" grep -q '"status":"rendered"' out
+    run ten.lua -f 1 --json --transfer linear
+    check "another transfer is rendered" grep -q '"status":"rendered"' out
+    run ten.lua -f 1 --passes depth
+    run ten.lua -f 1 --passes depth --json
+    check "passes are kept" grep -q '"status":"kept"' out
+    rm ten_0001.depth.png
+    run ten.lua -f 1 --passes depth --json
+    check "a missing pass is rendered" grep -q '"status":"rendered"' out
+    clean
+    run single.lua -o s.png
+    LOOK=1 run single.lua -o s.png --json
+    check "a kept call" grep -q '"status":"kept"' out
+    says "a kept call still has its picture" '^[0-9.]+$'
+    run loop.lua -o l.png
+    run loop.lua -o l.png --json
+    check "kept calls" test "$(grep -c '"status":"kept"' out)" -eq 5
+    says "kept calls return images" '^3 40$'
+    clean
+    ln -s /dev/full full.png
+    exits 75 "a full device" one.lua --size 40x24 -o full.png
+    check "the link is still there" test -L full.png
+    exits 75 "a full device by its name" one.lua --size 40x24 -o /dev/full
+    check "and the device" test -c /dev/full
+    rm -f full.png
+    mkfifo pipe.png
+    cat pipe.png >piped.bin &
+    exits 0 "a pipe" one.lua --size 40x24 -o pipe.png
+    wait $!
+    check "a pipe is written in place" test -p pipe.png -a -s piped.bin
+    rm -f pipe.png
+    if [ "$(id -u)" -ne 0 ]; then
+        mkdir locked
+        chmod a-w locked
+        exits 1 "a locked folder" one.lua --size 40x24 -o locked/x.png
+    fi
+    exits 1 "a folder that cannot be" one.lua --size 40x24 -o /proc/nothing/x.png
+    echo text >plain
+    exits 1 "a file where a folder should be" one.lua --size 40x24 -o plain/x.png
+    (ulimit -f 1 && "$GLINT" one.lua --size 400x300 -o big.png) >out 2>err
+    check "a limit on file size" test $? -eq 1 -o $? -eq 75
+    files "nothing partial"
+}
+
+small_disk() {
+    mkdir small
+    if ! mount -t tmpfs -o size=64k tmpfs small 2>/dev/null; then
+        echo "skip: a small disk needs permission to mount"
+        return
+    fi
+    mounted=$work/small
+    exits 75 "disk full" ten.lua --size 200x150 --bits 16 -o 'small/%04d.png'
+    says "disk full names the file" 'small/[0-9]+\.png'
+    local file
+    for file in small/*; do
+        [ -e "$file" ] || continue
+        check "whole after disk full: $file" "$GLINT" compare "$file" "$file"
+    done
+    check "no temporary is left" test -z "$(find small -name '.*' -type f; find small -name '*tmp*')"
+    umount small
+    mounted=
+}
+
+# ---- Signals ----
+
+signalled() { # NAME SIGNAL WANT SCRIPT ARGUMENTS...
+    local name=$1 signal=$2 want=$3 pid begin
+    shift 3
+    "$GLINT" "$@" >out 2>err </dev/null &
+    pid=$!
+    sleep 0.5
+    begin=$(date +%s%N)
+    kill -s "$signal" $pid
+    wait $pid
+    status=$?
+    if [ $status -eq "$want" ]; then pass; else fail "$name: exit $status, not $want"; fi
+    check "$name: within 2 s" test $((($(date +%s%N) - begin) / 1000000)) -lt 2000
+    check "$name: no temporary is left" test -z "$(find . -name '*tmp*'; find . -name '.*' -type f)"
+    local file
+    for file in *.png; do
+        [ -e "$file" ] || continue
+        check "$name: whole: $file" "$GLINT" compare "$file" "$file"
+    done
+    clean
+}
+
+signals() {
+    signalled SIGINT INT 130 slow.lua
+    signalled SIGTERM TERM 143 slow.lua --json
+    check "SIGTERM is an event" grep -q '"message":"interrupted"' out
+    case ${PRELOAD:-} in
+    *tsan*) echo "skip: ThreadSanitizer holds signals back from a loop that makes no system call" ;;
+    *)
+        signalled "SIGINT in a loop" INT 130 endless.lua
+        signalled "SIGINT in a loop that catches errors" INT 130 stubborn.lua
+        ;;
+    esac
+    local begin=$SECONDS
+    "$GLINT" slow.lua -o 'many%d.png' --size 60x40 --samples 1 >out 2>err </dev/null &
+    local pid=$!
+    sleep 0.05
+    kill -s KILL $pid
+    wait $pid 2>/dev/null
+    local file
+    for file in many*.png; do
+        [ -e "$file" ] || continue
+        "$GLINT" compare "$file" "$file" >/dev/null || fail "partial after SIGKILL: $file"
+    done
+    check "SIGKILL" test $((SECONDS - begin)) -lt 60
+    find . -name '*many*' -delete
+}
+
+# ---- The same bits ----
+
+same_bits() {
+    mkdir -p base
+    run ten.lua -o 'base/%04d.png' -t 1 --passes depth
+    local want isa threads
+    want=$(sums base)
+    for threads in 2 7; do
+        mkdir -p other
+        run ten.lua -o 'other/%04d.png' -t $threads --passes depth --no-reuse
+        check "$threads threads" test "$(sums other)" = "$want"
+        rm -rf other
+    done
+    for isa in ref sse2 avx2 avx512; do
+        mkdir -p other
+        GLINT_ISA=$isa run ten.lua -o 'other/%04d.png' --passes depth
+        if [ "$status" -eq 2 ] && grep -q "$isa" err; then
+            echo "skip: this machine has no $isa"
+        else
+            check "GLINT_ISA=$isa" test "$(sums other)" = "$want"
+        fi
+        rm -rf other
+    done
+    mkdir -p other
+    for shard in 3 1 2; do run ten.lua --shard $shard/3 -o 'other/%04d.png' --passes depth; done
+    check "3 shards are the whole" test "$(sums other)" = "$want"
+    rm -rf other base
+    run list.lua -o 'a%d.png'
+    for shard in 1 2 3 4; do run list.lua --shard $shard/4 -o 'b%d.png'; done
+    local n
+    for n in 1 2 3 4 5 6 7 8 9; do check "shards of a list: $n" cmp a$n.png b$n.png; done
+    clean
+}
+
+# ---- compare, and plain Lua ----
+
+comparing() {
+    run ten.lua -f 1-2
+    run one.lua --size 41x24
+    exits 0 "compare same" compare ten_0001.png ten_0001.png
+    exits 2 "compare differ" compare ten_0001.png ten_0002.png
+    exits 1 "compare warn" compare ten_0001.png ten_0002.png --fail 1 --warn 0.001
+    exits 3 "compare size" compare ten_0001.png one.png
+    exits 4 "compare no file" compare ten_0001.png nothing.png
+    exits 4 "compare no picture" compare ten_0001.png ten.lua
+    exits 2 "compare one file" compare ten_0001.png
+    for other in ten_0001.png ten_0002.png one.png nothing.png; do
+        run compare --json ten_0001.png $other
+        parsed "compare --json $other"
+    done
+    clean
+}
+
+plain_lua() {
+    local module=${GLINT%/*}/glint.so
+    [ -e "$module" ] || { echo "skip: no glint.so beside the command"; return; }
+    export LUA_CPATH="${GLINT%/*}/?.so;;"
+    script plain 'local a = dofile "ten.lua"
+local r = a:run { frames = "2-3", output = "p%d.png", threads = 2 }
+assert(r.frames == 2 and r.kept == 0)
+assert(a:run { frames = 2, output = "p%d.png" }.kept == 1)
+assert(not pcall(a.run, a, { frames = "x" }) and not pcall(a.run, a, { thread = 2 }))
+assert(not pcall(a.run, a, { output = "/proc/nothing/x.png", frames = 1 }))
+local image = a.scene:render { width = 8, height = 8, output = "q.png" }
+assert(image.width == 8 and io.open "q.png")
+assert(a.frames == 10 and a.cyclic and a.width == 40)'
+    if LD_PRELOAD=${PRELOAD:-} "$LUA" plain.lua >out 2>err; then pass; else fail "plain Lua: $(head -n 3 err)"; fi
+    run ten.lua -f 2 -o 'c%d.png'
+    mv p3.png q.png plain_rest 2>/dev/null
+    check "the same picture" "$GLINT" compare p2.png c2.png
+    clean
+}
+
+for part in names selection parameters options events errors whole small_disk signals same_bits comparing plain_lua; do
+    $part
+    clean
+done
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
