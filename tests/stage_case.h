@@ -26,21 +26,44 @@ static uint64_t random_bits(void)
     return z ^ z >> 31;
 }
 
-static uint32_t below(uint32_t n) { return (uint32_t)((random_bits() >> 32) * n >> 32); }
-static bool one_in(uint32_t n) { return below(n) == 0; }
-static double between(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
-static double power_of_ten(double a, double b) { return pow(10, between(a, b)); }
-static double either_sign(double x) { return one_in(2) ? x : -x; }
+static uint32_t below(uint32_t n)
+{
+    return (uint32_t)((random_bits() >> 32) * n >> 32);
+}
+
+static bool one_in(uint32_t n)
+{
+    return below(n) == 0;
+}
+
+static double between(double a, double b)
+{
+    return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53);
+}
+
+static double power_of_ten(double a, double b)
+{
+    return pow(10, between(a, b));
+}
+
+static double either_sign(double x)
+{
+    return one_in(2) ? x : -x;
+}
 
 static double odd_number(void)
 {
-    static const double odd[] = {0, -0.0, 1, -1, NAN, INFINITY, -INFINITY, 0x1p-1074, -0x1p-1030, 0x1p-149, -0x1p-140,
-                                 DBL_MIN, DBL_MAX, -DBL_MAX, FLT_MIN, FLT_MAX, 1e-30, 1e30, -1e20, 1e-160, 1e160};
+    static const double odd[] = {0,         -0.0,       1,        -1,        NAN,     INFINITY, -INFINITY,
+                                 0x1p-1074, -0x1p-1030, 0x1p-149, -0x1p-140, DBL_MIN, DBL_MAX,  -DBL_MAX,
+                                 FLT_MIN,   FLT_MAX,    1e-30,    1e30,      -1e20,   1e-160,   1e160};
     return odd[below(COUNT_OF(odd))];
 }
 
 /// `x`, or where the case is an odd one, now and then something nobody expects.
-static double maybe_odd(bool odd_case, double x) { return odd_case && one_in(12) ? odd_number() : x; }
+static double maybe_odd(bool odd_case, double x)
+{
+    return odd_case && one_in(12) ? odd_number() : x;
+}
 
 /// A mask of lanes: all, none, or some of them.
 static uint16_t random_mask(void)
@@ -65,11 +88,21 @@ typedef struct test_array {
 static test_array inputs[MOST_ARRAYS], wanted[MOST_ARRAYS], gotten[MOST_ARRAYS];
 static uint32_t input_count, wanted_count, gotten_count;
 
-static size_t element_size(array_kind kind) { return kind == KIND_U16 ? 2 : kind == KIND_DOUBLE ? 8 : 4; }
-static size_t array_bytes(const test_array *a) { return element_size(a->kind) * a->count + 2 * GUARD_BYTES; }
+static size_t element_size(array_kind kind)
+{
+    return kind == KIND_U16 ? 2 : kind == KIND_DOUBLE ? 8 : 4;
+}
+
+static size_t array_bytes(const test_array *a)
+{
+    return element_size(a->kind) * a->count + 2 * GUARD_BYTES;
+}
 
 /// Where the elements start: 64-byte aligned, as a tile's arrays are.
-static void *array_elements(const test_array *a) { return a->bytes + GUARD_BYTES; }
+static void *array_elements(const test_array *a)
+{
+    return a->bytes + GUARD_BYTES;
+}
 
 static void *new_array(test_array *list, uint32_t *list_count, const char *name, array_kind kind, uint32_t count)
 {
@@ -90,8 +123,15 @@ static void free_arrays(test_array *list, uint32_t *list_count)
         free(list[--*list_count].bytes);
 }
 
-static void *input(array_kind kind, uint32_t count) { return new_array(inputs, &input_count, "", kind, count); }
-static array_kind real_kind(int precision) { return precision == GLINT_DOUBLE ? KIND_DOUBLE : KIND_FLOAT; }
+static void *input(array_kind kind, uint32_t count)
+{
+    return new_array(inputs, &input_count, "", kind, count);
+}
+
+static array_kind real_kind(int precision)
+{
+    return precision == GLINT_DOUBLE ? KIND_DOUBLE : KIND_FLOAT;
+}
 
 static void input3(const void *array[3], array_kind kind, uint32_t count)
 {
@@ -134,9 +174,15 @@ static void find_tested(void)
             continue;
         if (glint_stages_usable(*isa))
             tested[tested_count++] = *isa;
-        else
-            printf("skipped: %s\n", (*isa)->name);
     }
+}
+
+/// The last lines of a run: what it could not test, so that it is never silent.
+static void print_skipped(void)
+{
+    for (const glint_stages *const *isa = glint_stages_built; *isa; isa++)
+        if (!glint_stages_usable(*isa))
+            printf("skipped: %s\n", (*isa)->name);
 }
 
 static void *output(const char *name, array_kind kind, uint32_t count)
@@ -156,7 +202,8 @@ static void output3(void *array[3], const char *name, array_kind kind, uint32_t 
 static bool same_element(const test_array *a, const test_array *b, uint32_t i)
 {
     size_t size = element_size(a->kind);
-    const unsigned char *x = (unsigned char *)array_elements(a) + size * i, *y = (unsigned char *)array_elements(b) + size * i;
+    const void *x = (unsigned char *)array_elements(a) + size * i;
+    const void *y = (unsigned char *)array_elements(b) + size * i;
     if (memcmp(x, y, size) == 0)
         return true;
     if (a->kind == KIND_FLOAT)
@@ -183,7 +230,8 @@ static void compare_array(const char *stage, const test_array *want, const test_
         return;
     if (memcmp(want->bytes, got->bytes, GUARD_BYTES) || memcmp(want->bytes + end, got->bytes + end, GUARD_BYTES)) {
         mismatches++;
-        printf("%s %s, seed %llu: wrote outside `%s`\n", stage, running->name, (unsigned long long)case_seed, want->name);
+        printf("%s %s, seed %llu: wrote outside `%s`\n", stage, running->name, (unsigned long long)case_seed,
+               want->name);
     }
     for (uint32_t i = 0; i < want->count; i++) {
         if (same_element(want, got, i) || ++mismatches > 20)
@@ -223,8 +271,15 @@ typedef struct test_scene {
     double reference[3], filter_scale;
 } test_scene;
 
-static double dot3(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
-static double length3(const double a[3]) { return hypot(hypot(a[0], a[1]), a[2]); }
+static double dot3(const double a[3], const double b[3])
+{
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+static double length3(const double a[3])
+{
+    return hypot(hypot(a[0], a[1]), a[2]);
+}
 
 static void random_unit(double v[3])
 {

@@ -13,11 +13,12 @@
 
 enum { MOST_GROUPS = GLINT_TILE_GROUPS, CASES = 300, FILTER_CASES = 330 };
 
-/// Worst errors in units of the last place of a float. Polynomials: 2e-8 of the value, 0.34 at most. exp2: the last
-/// rounding is half a unit of a result that may have just fallen below 1 (so 1 unit), the terms before it are at most
-/// 0.42 of the result and carry two roundings. log2: near 1 the last product and C0's sum round, each up to 1 unit.
+/// Worst errors in units of the last place of a float result, as sums of what can happen.
+/// exp2: the last sum 0.5, the product before it 0.25, its factor 0.25, the terms before that 0.1, and the polynomial's
+/// 2e-8 at most 0.34. log2, near a power of two from below: f rounded to float 1, the last sum of the polynomial 0.7,
+/// the terms before it 0.2, the last product 0.5, the polynomial 0.34.
 #define MAX_ULP_EXP2 1.5
-#define MAX_ULP_LOG2 2.5
+#define MAX_ULP_LOG2 2.75
 
 static void run_cases(uint32_t cases, uint64_t seed, void (*one)(int precision, bool odd))
 {
@@ -39,9 +40,15 @@ static uint16_t *masks(uint32_t groups)
     return mask;
 }
 
-static bool lane_of(const uint16_t *mask, uint32_t i) { return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1; }
+static bool lane_of(const uint16_t *mask, uint32_t i)
+{
+    return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
 
-static const struct glint_geometry_stages *geometry(int precision) { return &running->geometry[precision]; }
+static const struct glint_geometry_stages *geometry(int precision)
+{
+    return &running->geometry[precision];
+}
 
 // ---- camera ------------------------------------------------------------------------------------------------------
 
@@ -61,7 +68,8 @@ static void camera_case(int precision, bool odd)
         args.right[c] = maybe_odd(odd, between(-1e-2, 1e-2));
         args.up[c] = maybe_odd(odd, between(-1e-2, 1e-2));
     }
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         output3(args.origin, "origin", real_kind(precision), n);
         output3(args.direction, "direction", real_kind(precision), n);
         for (int c = 0; c < 3; c++)
@@ -104,7 +112,8 @@ static void make_rays(const test_scene *scene, int precision, bool odd, glint_ca
 static void cast_all(int precision, glint_cast_args *args)
 {
     uint32_t n = args->group_count * GLINT_GROUP;
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         args->t = output("t", real_kind(precision), n);
         args->prim = output("prim", KIND_U32, n);
         args->hits = output("hits", KIND_U16, args->group_count);
@@ -118,9 +127,13 @@ static void cast_all(int precision, glint_cast_args *args)
 
 static glint_cast_args cast_args(const test_scene *scene, bool bundle, uint32_t groups)
 {
-    glint_cast_args args = {.group_count = groups, .active = masks(groups), .prims = scene->prims,
-                            .bundle = bundle ? scene->bundle : NULL, .candidates = scene->candidates,
-                            .candidate_count = scene->candidate_count, .filter_scale = scene->filter_scale};
+    glint_cast_args args = {.group_count = groups,
+                            .active = masks(groups),
+                            .prims = scene->prims,
+                            .bundle = bundle ? scene->bundle : NULL,
+                            .candidates = scene->candidates,
+                            .candidate_count = scene->candidate_count,
+                            .filter_scale = scene->filter_scale};
     memcpy(args.reference, scene->reference, sizeof args.reference);
     return args;
 }
@@ -232,30 +245,48 @@ static void test_filter_loses_no_hit(void **state)
 
 // ---- surface and bounds ------------------------------------------------------------------------------------------
 
+/// Hits as cast leaves them; in an odd case other primitives and distances than those.
+static void make_hits(const test_scene *scene, int precision, bool odd, glint_cast_args *cast)
+{
+    uint32_t n = cast->group_count * GLINT_GROUP;
+    cast->t = input(real_kind(precision), n);
+    cast->prim = input(KIND_U32, n);
+    cast->hits = input(KIND_U16, cast->group_count);
+    if (cast->bundle)
+        glint_stages_ref.geometry[precision].cast_bundle(cast);
+    else
+        glint_stages_ref.geometry[precision].cast_rays(cast);
+    for (uint32_t i = 0; i < n && odd; i++) {
+        if (!lane_of(cast->hits, i))
+            continue;
+        put(cast->t, precision, i, maybe_odd(odd, get(cast->t, precision, i)));
+        if (one_in(2))
+            cast->prim[i] = below(scene->prim_count);
+    }
+}
+
 static void surface_case(int precision, bool odd)
 {
     test_scene scene;
-    random_scene(&scene, power_of_ten(-3, 5), one_in(2) ? 0 : power_of_ten(-3, 6), one_in(2) ? 8 : 1);
+    if (odd && one_in(2))
+        random_scene(&scene, power_of_ten(-30, 30), one_in(2) ? 0 : power_of_ten(-30, 30), 40);
+    else
+        random_scene(&scene, power_of_ten(-3, 5), one_in(2) ? 0 : power_of_ten(-3, 6), one_in(2) ? 8 : 1);
     glint_cast_args cast = cast_args(&scene, one_in(2), 1 + below(MOST_GROUPS));
     make_rays(&scene, precision, false, &cast);
+    make_hits(&scene, precision, odd, &cast);
     uint32_t n = cast.group_count * GLINT_GROUP;
-    cast.t = input(real_kind(precision), n);
-    cast.prim = input(KIND_U32, n);
-    cast.hits = input(KIND_U16, cast.group_count);
-    if (cast.bundle)
-        glint_stages_ref.geometry[precision].cast_bundle(&cast);
-    else
-        glint_stages_ref.geometry[precision].cast_rays(&cast);
-    for (uint32_t i = 0; i < n; i++)
-        if (lane_of(cast.hits, i))
-            put(cast.t, precision, i, maybe_odd(odd, get(cast.t, precision, i)));
-
-    glint_surface_args args = {.group_count = cast.group_count, .hits = cast.hits, .prim = cast.prim,
-                               .prims = scene.prims, .bundle = cast.bundle, .t = cast.t};
+    glint_surface_args args = {.group_count = cast.group_count,
+                               .hits = cast.hits,
+                               .prim = cast.prim,
+                               .prims = scene.prims,
+                               .bundle = cast.bundle,
+                               .t = cast.t};
     memcpy(args.eye, scene.origin, sizeof args.eye);
     memcpy(args.origin, cast.origin, sizeof args.origin);
     memcpy(args.direction, cast.direction, sizeof args.direction);
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         output3(args.point, "point", real_kind(precision), n);
         output3(args.normal, "normal", real_kind(precision), n);
         args.material = output("material", KIND_U32, n);
@@ -282,7 +313,8 @@ static void bounds_case(int precision, bool odd)
             put(args.point[c], precision, i, maybe_odd(odd, one_in(4) ? either_sign(0) : between(-1, 1)));
     if (one_in(8))
         memset((void *)(uintptr_t)args.hits, 0, groups * sizeof *args.hits);
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         geometry(precision)->bounds(&args);
         memcpy(output("lower", KIND_DOUBLE, 3), args.lower, sizeof args.lower);
         memcpy(output("upper", KIND_DOUBLE, 3), args.upper, sizeof args.upper);
@@ -320,7 +352,11 @@ static void make_points(glint_light_args *args, int precision, bool odd, double 
                 point[c] = maybe_odd(odd, one_in(20) ? args->position[c] : size * between(-1, 1));
                 normal[c] = maybe_odd(odd, grazing ? normal[c] * power_of_ten(-30, 0) : normal[c]);
                 direction[c] *= power_of_ten(-2, 2);
-                direction[c] = maybe_odd(odd, one_in(6) ? point[c] - args->position[c] : direction[c]);
+            }
+            uint32_t facing = below(10); // the eye at the light, or the light straight behind
+            for (int c = 0; c < 3; c++) {
+                double along = point[c] - args->position[c];
+                direction[c] = maybe_odd(odd, facing == 0 ? along : facing == 1 ? -along : direction[c]);
             }
         }
         put3(args->direction, precision, i, direction);
@@ -348,7 +384,8 @@ static void light_case(int precision, bool odd)
     }
     args.hits = masks(args.group_count);
     make_points(&args, precision, odd, size);
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         args.lit = output("lit", KIND_U16, args.group_count);
         args.cosine = output("cosine", KIND_FLOAT, n);
         args.attenuation = output("attenuation", KIND_FLOAT, n);
@@ -366,7 +403,10 @@ static void test_light(void **state)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-static int sign_of(long double x) { return (x > 0) - (x < 0); }
+static int sign_of(long double x)
+{
+    return (x > 0) - (x < 0);
+}
 
 /// On which side of each primitive the light is.
 static void make_light_sides(const test_scene *scene, const glint_occlude_args *args, int8_t *side)
@@ -383,6 +423,8 @@ static void make_light_sides(const test_scene *scene, const glint_occlude_args *
             side[i] = (int8_t)sign_of(height);
         else
             side[i] = (int8_t)(args->directional ? 1 : sign_of(length2 - (long double)prim->radius * prim->radius));
+        if (one_in(12)) // exactly on it
+            side[i] = 0;
     }
 }
 
@@ -401,7 +443,8 @@ static void make_shadow_point(const test_scene *scene, const glint_occlude_args 
     aim(scene, scene->origin, direction);
     double length = power_of_ten(-2, 2) / (scene->filter_scale * length3(direction));
     for (int c = 0; c < 3; c++)
-        point[c] = args->directional ? scene->origin[c] - args->position[c] * length : scene->origin[c] + direction[c] * length;
+        point[c] = args->directional ? scene->origin[c] - args->position[c] * length
+                                     : scene->origin[c] + direction[c] * length;
 }
 
 static void occlude_case(int precision, bool odd)
@@ -409,8 +452,12 @@ static void occlude_case(int precision, bool odd)
     test_scene scene;
     double size = power_of_ten(-3, 5);
     random_scene(&scene, size, one_in(2) ? 0 : power_of_ten(-3, 6), one_in(2) ? 6 : 1);
-    glint_occlude_args args = {.group_count = 1 + below(MOST_GROUPS), .directional = one_in(3), .prims = scene.prims,
-                               .candidates = scene.candidates, .filter_scale = scene.filter_scale, .scale = 1};
+    glint_occlude_args args = {.group_count = 1 + below(MOST_GROUPS),
+                               .directional = one_in(3),
+                               .prims = scene.prims,
+                               .candidates = scene.candidates,
+                               .filter_scale = scene.filter_scale,
+                               .scale = 1};
     args.candidate_count = one_in(2) ? scene.prim_count : below(scene.prim_count + 1);
     memcpy(args.reference, scene.reference, sizeof args.reference);
     memcpy(args.position, scene.origin, sizeof args.position);
@@ -435,7 +482,8 @@ static void occlude_case(int precision, bool odd)
         for (int c = 0; c < 3; c++)
             put(args.point[c], precision, i, maybe_odd(odd, one_in(30) ? scene.origin[c] : point[c]));
     }
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         uint64_t rays = 5;
         args.rays = &rays;
         args.open = output("open", KIND_U16, args.group_count);
@@ -530,13 +578,20 @@ static void shade_case(int precision, bool odd)
             before[i] = one_in(3) ? 0 : power_of_ten(-5, 3);
     }
     make_materials(material_table, COUNT_OF(material_table));
-    glint_shade_args args = {.group_count = groups, .active = active, .hits = hits, .material = material,
-                             .materials = material_table, .has_specular = one_in(2), .first = !before || one_in(2),
-                             .lights = lights, .light_count = below(GLINT_LIGHT_CHUNK + 1)};
+    glint_shade_args args = {.group_count = groups,
+                             .active = active,
+                             .hits = hits,
+                             .material = material,
+                             .materials = material_table,
+                             .has_specular = one_in(2),
+                             .first = !before || one_in(2),
+                             .lights = lights,
+                             .light_count = below(GLINT_LIGHT_CHUNK + 1)};
     random_color(args.background);
     for (uint32_t k = 0; k < args.light_count; k++)
         make_shade_light(&lights[k], hits, groups);
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         make_shade_outputs(&args, before, args.has_specular ? passes : passes & 7);
         running->shade(&args);
         compare_outputs(before ? "shade, sums" : "shade");
@@ -561,7 +616,8 @@ static void resolve_case(int precision, bool odd)
                 args.sum[term][c][i] = maybe_odd(odd, one_in(3) ? 0 : power_of_ten(-5, 3));
         }
     }
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         for (int term = 0; term < GLINT_TERM_COUNT; term++)
             for (int c = 0; c < 3; c++)
                 args.film[term][c] = passes >> term & 1 ? output("film", KIND_FLOAT, n) : NULL;
@@ -614,7 +670,8 @@ static void tone_case(int precision, bool odd)
             beauty[i] = tone_value(table);
         args.beauty[c] = beauty;
     }
-    FOR_EACH_TESTED {
+    FOR_EACH_TESTED
+    {
         uint64_t clipped = 3, nonfinite = 4;
         args.clipped = &clipped;
         args.nonfinite = &nonfinite;
@@ -652,9 +709,16 @@ static double exp2_error(const float y[GLINT_TILE_SAMPLES])
     memset(all, 0xff, sizeof all);
     glint_shade_material white = {.specular = {1, 1, 1}, .shininess = 1, .has_specular = 1};
     glint_shade_light light = {.lit = all, .cosine = cosine, .log2_specular = y, .specular = {1, 1, 1}};
-    glint_shade_args args = {.group_count = GLINT_TILE_GROUPS, .active = all, .hits = all, .material = material,
-                             .materials = &white, .has_specular = true, .first = true, .lights = &light,
-                             .light_count = 1, .beauty = {beauty[0], beauty[1], beauty[2]}};
+    glint_shade_args args = {.group_count = GLINT_TILE_GROUPS,
+                             .active = all,
+                             .hits = all,
+                             .material = material,
+                             .materials = &white,
+                             .has_specular = true,
+                             .first = true,
+                             .lights = &light,
+                             .light_count = 1,
+                             .beauty = {beauty[0], beauty[1], beauty[2]}};
     args.film[GLINT_TERM_SPECULAR][0] = film;
     running->shade(&args);
     double worst = 0;
@@ -674,7 +738,8 @@ static void test_exp2_accuracy(void **state)
         y[0] = -40;
         y[1] = 0;
         y[2] = -0.5f;
-        FOR_EACH_TESTED {
+        FOR_EACH_TESTED
+        {
             double worst = exp2_error(y);
             if (!(worst <= MAX_ULP_EXP2))
                 print_message("%s: exp2 is %.3f ulp off\n", running->name, worst);
@@ -690,9 +755,18 @@ static double log2_error(int precision, uint32_t n, const double *s)
     static ALIGNED uint32_t zero[GLINT_TILE_SAMPLES];
     static ALIGNED float cosine[GLINT_TILE_SAMPLES], log2_specular[GLINT_TILE_SAMPLES];
     memset(all, 0xff, sizeof all);
-    glint_light_args args = {.group_count = n / GLINT_GROUP, .hits = all, .material = zero, .side = zero,
-                             .directional = true, .position = {0, 0, 1}, .scale = 1, .phong_end = 1, .blinn_end = 1,
-                             .lit = lit, .cosine = cosine, .log2_specular = log2_specular};
+    glint_light_args args = {.group_count = n / GLINT_GROUP,
+                             .hits = all,
+                             .material = zero,
+                             .side = zero,
+                             .directional = true,
+                             .position = {0, 0, 1},
+                             .scale = 1,
+                             .phong_end = 1,
+                             .blinn_end = 1,
+                             .lit = lit,
+                             .cosine = cosine,
+                             .log2_specular = log2_specular};
     input3(args.point, real_kind(precision), n);
     input3(args.normal, real_kind(precision), n);
     input3(args.direction, real_kind(precision), n);
@@ -722,9 +796,10 @@ static void test_log2_accuracy(void **state)
     for (uint32_t k = 0; k < 200; k++) {
         for (uint32_t i = 0; i < GLINT_TILE_SAMPLES; i++)
             s[i] = k % 3 == 0 ? power_of_ten(-12, 0) : k % 3 == 1 ? power_of_ten(0, 9) : power_of_ten(-1, 0.5);
-        FOR_EACH_TESTED {
-            double worst = fmax(log2_error(GLINT_DOUBLE, GLINT_TILE_SAMPLES, s),
-                                log2_error(GLINT_FLOAT, GLINT_TILE_SAMPLES, s));
+        FOR_EACH_TESTED
+        {
+            double worst =
+                fmax(log2_error(GLINT_DOUBLE, GLINT_TILE_SAMPLES, s), log2_error(GLINT_FLOAT, GLINT_TILE_SAMPLES, s));
             if (!(worst <= MAX_ULP_LOG2))
                 print_message("%s: log2 is %.3f ulp off\n", running->name, worst);
             assert_true(worst <= MAX_ULP_LOG2);
@@ -751,5 +826,7 @@ int main(void)
         cmocka_unit_test(test_exp2_accuracy),
         cmocka_unit_test(test_log2_accuracy),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
 }

@@ -65,7 +65,9 @@ static float exp2_of(float y)
 
 // ---- errors of sums and products ---------------------------------------------------------------------------------
 
-typedef struct exact_pair { double value, error; } exact_pair; ///< a number as value + error, value the rounded one
+typedef struct exact_pair {
+    double value, error;
+} exact_pair; ///< a number as value + error, value the rounded one
 
 static exact_pair two_sum(double a, double b)
 {
@@ -106,8 +108,15 @@ static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
 
 // ---- geometry, in float and in double ----------------------------------------------------------------------------
 
-static float square_root_float(float x) { return sqrtf(x); }
-static double square_root_double(double x) { return sqrt(x); }
+static float square_root_float(float x)
+{
+    return sqrtf(x);
+}
+
+static double square_root_double(double x)
+{
+    return sqrt(x);
+}
 
 #define PLANE_GRAZING_float 1e-30f
 #define PLANE_GRAZING_double 1e-60
@@ -128,7 +137,9 @@ static double square_root_double(double x) { return sqrt(x); }
 
 // ---- shade -------------------------------------------------------------------------------------------------------
 
-typedef struct terms { double value[GLINT_TERM_COUNT][3]; } terms; ///< of one sample
+typedef struct terms {
+    double value[GLINT_TERM_COUNT][3];
+} terms; ///< of one sample
 
 static float highlight_strength(float shininess, float log2_specular)
 {
@@ -263,8 +274,10 @@ static void tone(const glint_tone_args *args)
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double, occlude_double},
-                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float, occlude_float}},
+    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double,
+                  occlude_double},
+                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float,
+                  occlude_float}},
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

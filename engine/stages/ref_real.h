@@ -1,22 +1,67 @@
 // The reference of the geometry stages, for one type of real. ref.c includes this twice, with
 //   REAL      the type: double or float
-//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c, log2_of and PLANE_GRAZING for each type
+//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c, log2_of, PLANE_GRAZING and
+//             SMALLEST_NORMAL for each type
 // Every function is one line of stages.h after the other, for one sample; the loops over samples come last.
 
-typedef struct NAME(vec3) { REAL x, y, z; } NAME(vec3);
+typedef struct NAME(vec3) {
+    REAL x, y, z;
+} NAME(vec3);
 
-static NAME(vec3) NAME(vec)(REAL x, REAL y, REAL z) { return (NAME(vec3)){x, y, z}; }
-static NAME(vec3) NAME(rounded)(const double v[3]) { return NAME(vec)((REAL)v[0], (REAL)v[1], (REAL)v[2]); }
+static NAME(vec3) NAME(vec)(REAL x, REAL y, REAL z)
+{
+    return (NAME(vec3)){x, y, z};
+}
 
-static NAME(vec3) NAME(add)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x + b.x, a.y + b.y, a.z + b.z); }
-static NAME(vec3) NAME(sub)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x - b.x, a.y - b.y, a.z - b.z); }
-static NAME(vec3) NAME(times)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x * k, a.y * k, a.z * k); }
-static NAME(vec3) NAME(over)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x / k, a.y / k, a.z / k); }
-static NAME(vec3) NAME(negated)(NAME(vec3) a) { return NAME(vec)(-a.x, -a.y, -a.z); }
-static REAL NAME(dot)(NAME(vec3) a, NAME(vec3) b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
-static REAL NAME(length2)(NAME(vec3) a) { return NAME(dot)(a, a); }
-static REAL NAME(min)(REAL a, REAL b) { return a < b ? a : b; }
-static REAL NAME(max)(REAL a, REAL b) { return a > b ? a : b; }
+static NAME(vec3) NAME(rounded)(const double v[3])
+{
+    return NAME(vec)((REAL)v[0], (REAL)v[1], (REAL)v[2]);
+}
+
+static NAME(vec3) NAME(add)(NAME(vec3) a, NAME(vec3) b)
+{
+    return NAME(vec)(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+
+static NAME(vec3) NAME(sub)(NAME(vec3) a, NAME(vec3) b)
+{
+    return NAME(vec)(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+static NAME(vec3) NAME(times)(NAME(vec3) a, REAL k)
+{
+    return NAME(vec)(a.x * k, a.y * k, a.z * k);
+}
+
+static NAME(vec3) NAME(over)(NAME(vec3) a, REAL k)
+{
+    return NAME(vec)(a.x / k, a.y / k, a.z / k);
+}
+
+static NAME(vec3) NAME(negated)(NAME(vec3) a)
+{
+    return NAME(vec)(-a.x, -a.y, -a.z);
+}
+
+static REAL NAME(dot)(NAME(vec3) a, NAME(vec3) b)
+{
+    return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+static REAL NAME(length2)(NAME(vec3) a)
+{
+    return NAME(dot)(a, a);
+}
+
+static REAL NAME(min)(REAL a, REAL b)
+{
+    return a < b ? a : b;
+}
+
+static REAL NAME(max)(REAL a, REAL b)
+{
+    return a > b ? a : b;
+}
 
 static NAME(vec3) NAME(cross)(NAME(vec3) f, NAME(vec3) d)
 {
@@ -149,8 +194,15 @@ static void NAME(cast)(const glint_cast_args *args, const glint_bundle_prim *bun
         NAME(cast_sample)(args, bundle, i);
 }
 
-static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->bundle); }
-static void NAME(cast_rays)(const glint_cast_args *args) { NAME(cast)(args, NULL); }
+static void NAME(cast_bundle)(const glint_cast_args *args)
+{
+    NAME(cast)(args, args->bundle);
+}
+
+static void NAME(cast_rays)(const glint_cast_args *args)
+{
+    NAME(cast)(args, NULL);
+}
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 
@@ -220,7 +272,7 @@ static void NAME(surface)(const glint_surface_args *args)
     }
 }
 
-// ---- bounds ----
+// ---- bounds ---------------------------------------------------------------------------------------------------------
 
 static void NAME(bounds)(glint_bounds_args *args)
 {
@@ -292,8 +344,8 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
         uint32_t material = args->material[i];
         NAME(vec3) direction = NAME(load)(args->direction, i);
         args->log2_specular[i] = material < args->blinn_end
-            ? NAME(highlight)(material < args->phong_end, l2, nl, l, normal, direction)
-            : GLINT_NO_SPECULAR;
+                                     ? NAME(highlight)(material < args->phong_end, l2, nl, l, normal, direction)
+                                     : GLINT_NO_SPECULAR;
     }
 }
 
