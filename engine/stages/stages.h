@@ -9,6 +9,9 @@
 /// Samples of a tile travel in groups of 16: a block of 4 x 4 pixels, row by row. `real` is double or float by the
 /// frame's precision; arrays of real are `void *` here and every kernel of geometry exists for both. Where a table
 /// (which is double) meets float arithmetic, its numbers are first rounded to float.
+///
+/// Arrays are aligned to 64 bytes and as long as the groups; indices of primitives and materials are below 2^31. Where
+/// a result is NaN, its sign and payload are not part of the promise.
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
@@ -167,7 +170,7 @@ typedef struct glint_light_args {
     uint16_t *lit;          ///< out: a bit a lane where the light is above the surface's horizon
     float *cosine;          ///< out: n.l in 0 .. 1; 0 where unlit
     float *attenuation;     ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
-    float *log2_specular;   ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none
+    float *log2_specular;   ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
@@ -181,7 +184,7 @@ typedef struct glint_light_args {
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
 //              x = min(num / den, 1);  there is one where num > 0 and den > 0
-//   log2_specular = 0.5 log2(x), see elementary functions below; x <= 0 (after underflow): none
+//   log2_specular = 0.5 log2(x), see elementary functions below; x below the smallest normal number: none
 // In --precision float all of this is float, l2 a included.
 
 // ---- occlude: which points a light reaches ----
@@ -209,7 +212,7 @@ typedef struct glint_occlude_args {
 //         else c < 0:     blocked = light_side > 0
 //         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b < a scale_of_prim)
 // plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
-// The own sphere: blocked where side & GLINT_SIDE_BACK and light_side > 0. The own plane never blocks.
+// The own sphere, when it is a candidate: blocked where side & GLINT_SIDE_BACK and light_side > 0. The own plane never blocks.
 
 // ---- shade: the terms of each sample ----
 
