@@ -66,10 +66,14 @@ KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa
 
 # ---- Build ----
 
+# V=1 prints the commands.
+Q   := $(if $(V),,@)
+say  = $(if $(V),,@echo "  $(1)	$@")
+
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run asan asan-run tsan bench demo demo-run install golden-update check-layers \
-        check-symbols check-headers lint format clean help tests FORCE
+.PHONY: all need deps check check-run asan tsan bench demo demo-run install golden-update check-layers \
+        check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
@@ -81,17 +85,21 @@ $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
-	$(CC) $(COMPILE) $(ISA) -MMD -MP -c $< -o $@
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(ISA) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
-	$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -ldl -o $@
+	$(call say,LINK)
+	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -ldl -o $@
 
 $(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
-	$(CC) $(LINK) -shared $(MODULE_OBJ) $(BUILD)/libglint.a $(LIBS) -o $@
+	$(call say,LINK)
+	$(Q)$(CC) $(LINK) -shared $(MODULE_OBJ) $(BUILD)/libglint.a $(LIBS) -o $@
 
 $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	@rm -f $@
-	$(AR) rcs $@ $(ENGINE_OBJ)
+	$(call say,AR)
+	$(Q)$(AR) rcs $@ $(ENGINE_OBJ)
 
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
@@ -107,7 +115,8 @@ need:
 
 $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
 tests: all $(TEST_BIN) $(TEST_TOOLS)
 
@@ -122,20 +131,24 @@ check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
-SANITIZED := $(filter-out tests/povray.sh tests/readme.sh,$(SCRIPTED))
+SANITIZED := $(filter-out tests/povray.sh,$(SCRIPTED))
+# Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh), breaks popen
+# (test_api.lua), and lets through any allocation that ought to fail (test_misuse.lua).
+WATCHED   := $(filter-out tests/cli.sh tests/test_api.lua tests/test_misuse.lua,$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" \
-	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so
+	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS="$(SANITIZED)"
 
 tsan: ## the tests under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread PRELOAD=libtsan.so
+	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread \
+	    PRELOAD=libtsan.so ITEMS="$(WATCHED)"
 
 .PHONY: san-run
 san-run: tests
-	@T="$(T)" PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(SANITIZED)
+	@T="$(T)" PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(ITEMS)
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
 	@BUILD=$(BUILD) tests/golden.sh update
@@ -186,9 +199,6 @@ install: all ## PREFIX=/usr/local, DESTDIR=
 
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
-
-format: ## clang-format over the C files
-	clang-format -i $(ENGINE_SRC) $(BINDINGS_SRC) $(wildcard engine/*.h engine/*/*.h bindings/*.h tests/*.c tests/*/*.c)
 
 clean: ## removes build/, build-asan/, build-tsan/
 	rm -rf $(BUILD) build-asan build-tsan
