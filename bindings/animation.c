@@ -171,8 +171,7 @@ static int push_own_field(lua_State *L, const glintL_job *job, const char *name)
     else if (strcmp(name, "over") == 0) {
         lua_getiuservalue(L, 1, GLINTL_JOB_FRAME);
         glintL_sweep_push_axes(L, lua_gettop(L));
-    }
-    else if (strcmp(name, "sheet") == 0)
+    } else if (strcmp(name, "sheet") == 0)
         lua_getiuservalue(L, 1, GLINTL_JOB_SHEET);
     else { // size
         lua_createtable(L, 2, 0);
@@ -243,7 +242,10 @@ static void list_fields(lua_State *L, const char *name, const glintL_field *own)
 void glintL_open_animation(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_member}, {"__newindex", write_field}, {"__tostring", to_string}, {NULL, NULL},
+        {"__index", read_member},
+        {"__newindex", write_field},
+        {"__tostring", to_string},
+        {NULL, NULL},
     };
     luaL_newmetatable(L, GLINTL_ANIMATION);
     luaL_setfuncs(L, meta, 0);

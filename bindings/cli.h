@@ -80,6 +80,7 @@ typedef struct cli_output {
     cli_progress *progress; ///< NULL: no bar
     glintL_run *run;
     double start_ms;
+    int64_t kept_first, kept_last; ///< frames kept in a row and not printed yet; 0: none
 } cli_output;
 
 /// Under --json whatever else is printed on stdout, by the script or by programs it starts, goes to stderr.

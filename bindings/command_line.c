@@ -71,7 +71,8 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
     struct option list[CLI_OPTION_COUNT + 1] = {0};
     char letters[2 * CLI_OPTION_COUNT + 2] = ":", *letter = letters + 1, wrong[MESSAGE];
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
-        list[i] = (struct option){cli_option_list[i].name, cli_option_list[i].has_text ? required_argument : no_argument, NULL, 0x100 + (int)i};
+        list[i] = (struct option){cli_option_list[i].name,
+                                  cli_option_list[i].has_text ? required_argument : no_argument, NULL, 0x100 + (int)i};
         if (cli_option_list[i].letter) {
             *letter++ = cli_option_list[i].letter;
             if (cli_option_list[i].has_text)
@@ -101,8 +102,8 @@ static const struct {
     const char *name;
     cli_command command;
 } COMMANDS[] = {
-    {"render", CLI_RENDER}, {"explain", CLI_EXPLAIN}, {"describe", CLI_DESCRIBE}, {"compare", CLI_COMPARE},
-    {"cost", CLI_COST},
+    {"render", CLI_RENDER},   {"explain", CLI_EXPLAIN}, {"describe", CLI_DESCRIBE},
+    {"compare", CLI_COMPARE}, {"cost", CLI_COST},
 };
 #define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
 

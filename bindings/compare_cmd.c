@@ -39,9 +39,10 @@ static void print_json(FILE *out, char **files, verdict found, const glint_compa
         print_number(out, "rms_error", result->rms_error);
         print_number(out, "peak_snr", result->peak_snr);
         print_number(out, "max_error", result->max_error);
-        fprintf(out, ",\"max_at\":{\"x\":%d,\"y\":%d,\"channel\":%d}", result->max_x, result->max_y, result->max_channel);
-        fprintf(out, ",\"failed\":%" PRIu64 ",\"warned\":%" PRIu64 ",\"pixels\":%" PRIu64, result->failed, result->warned,
-                result->pixels);
+        fprintf(out, ",\"max_at\":{\"x\":%d,\"y\":%d,\"channel\":%d}", result->max_x, result->max_y,
+                result->max_channel);
+        fprintf(out, ",\"failed\":%" PRIu64 ",\"warned\":%" PRIu64 ",\"pixels\":%" PRIu64, result->failed,
+                result->warned, result->pixels);
     }
     fputs("}\n", out);
 }
@@ -49,11 +50,12 @@ static void print_json(FILE *out, char **files, verdict found, const glint_compa
 static void print_share(FILE *out, uint64_t count, uint64_t pixels, double threshold)
 {
     if (count)
-        fprintf(out, "  %" PRIu64 " pixels (%.3g%%) over %g\n", count, 100.0 * (double)count / (double)pixels, threshold);
+        fprintf(out, "  %" PRIu64 " pixels (%.3g%%) over %g\n", count, 100.0 * (double)count / (double)pixels,
+                threshold);
 }
 
-static void print_for_people(FILE *out, char **files, const glint_compare_result *result, const glint_compare_desc *desc,
-                             verdict found)
+static void print_for_people(FILE *out, char **files, const glint_compare_result *result,
+                             const glint_compare_desc *desc, verdict found)
 {
     static const char *const words[] = {"same", "nearly the same", "different"};
     fprintf(out, "%s and %s: %s\n", files[0], files[1], words[found]);

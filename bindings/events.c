@@ -41,7 +41,8 @@ static void print_times(FILE *out, const glintL_record *record)
         fprintf(out, "%s\"%s\":%.3f", i ? "," : "", stats->stage_name[i], stats->stage_ms[i]);
     fputs("}},\"stages\":{", out);
     for (int i = 0; i < stats->stage_count; i++)
-        fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i], stats->stage_reused[i] == 1 ? "reused" : "run");
+        fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i],
+                stats->stage_reused[i] == 1 ? "reused" : "run");
     fputc('}', out);
 }
 
@@ -98,28 +99,45 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
 
 // ---- Frames for people ----
 
-static void print_frame_line(const glintL_record *record)
+// Kept frames get one line for each run of them, printed when it has ended.
+static void print_kept(cli_output *output)
+{
+    if (output->kept_first == 0)
+        return;
+    if (output->kept_first == output->kept_last)
+        fprintf(stderr, "frame %" PRId64 ": kept\n", output->kept_first);
+    else
+        fprintf(stderr, "frames %" PRId64 "-%" PRId64 ": kept\n", output->kept_first, output->kept_last);
+    output->kept_first = 0;
+}
+
+static void print_frame_line(cli_output *output, const glintL_record *record)
 {
     const char *file = record->files[GLINT_PASS_BEAUTY];
     double ms = record->stats.render_ms + record->stats.tone_ms + record->encode_ms + record->write_ms;
+    if (output->kept_first == 0 || record->index != output->kept_last + 1 || !record->kept)
+        print_kept(output);
+    if (record->kept) {
+        if (output->kept_first == 0)
+            output->kept_first = record->index;
+        output->kept_last = record->index;
+        return;
+    }
     fprintf(stderr, "frame %" PRId64, record->index);
     if (record->repeat)
         fprintf(stderr, ", repeat %d", record->repeat);
-    if (file)
-        fprintf(stderr, ": %s", file);
-    if (record->kept)
-        fputs(", kept\n", stderr);
-    else
-        fprintf(stderr, "%s%.1f ms\n", file ? ", " : ": ", ms);
+    fprintf(stderr, ": %s%s%.1f ms\n", file ? file : "", file ? ", " : "", ms);
 }
 
 static void report_frame(void *context, const glintL_run *run, const glintL_record *record)
 {
     cli_output *output = context;
+    if (output->progress)
+        cli_progress_clear(output->progress);
     if (output->json)
         print_frame_json(output, record);
     else if (!output->quiet && (!output->progress || record->repeat))
-        print_frame_line(record);
+        print_frame_line(output, record);
     if (record->stats.nonfinite > 0 && !record->kept)
         glintL_run_warn(run, "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",
                         record->index, record->stats.nonfinite);
@@ -148,6 +166,7 @@ glintL_reporter cli_reporter(cli_output *output)
 
 void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message)
 {
+    print_kept(output);
     cli_print_error(output, message);
     output->failure_printed = output->failure_printed || output->data_failed;
     if (!output->json || output->data_failed)
@@ -175,10 +194,12 @@ void cli_report_end(cli_output *output)
         return;
     if (output->progress)
         cli_progress_clear(output->progress);
+    print_kept(output);
     if (!output->json)
-        fprintf(stderr, "%" PRId64 " frame%s in %.2f s, %" PRId64 " kept\n", run->done, run->done == 1 ? "" : "s", seconds,
-                run->kept);
+        fprintf(stderr, "%" PRId64 " frame%s in %.2f s, %" PRId64 " kept\n", run->done, run->done == 1 ? "" : "s",
+                seconds, run->kept);
     if (clipped > CLIPPED_HINT)
-        fprintf(stderr, "glint: hint: %.0f %% of the pixels are brighter than white; dimmer lights keep what is lost there\n",
+        fprintf(stderr,
+                "glint: hint: %.0f %% of the pixels are brighter than white; dimmer lights keep what is lost there\n",
                 100 * clipped);
 }

@@ -55,7 +55,8 @@ static void print_json(FILE *out, const glintL_run *run)
     glint_ray_counts rays = glint_plan_expected_rays(plan);
     fputs("{\"event\":\"plan\",\"script\":", out);
     glintL_json_string(out, run->script);
-    fprintf(out, ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
+    fprintf(out,
+            ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
             run->explain_frame, desc->width, desc->height, desc->samples,
             desc->precision == GLINT_FLOAT ? "float" : "double");
     for (size_t i = 0; i < effect_count; i++) {
@@ -85,8 +86,9 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
     cli_run_script(&script, options, run);
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->explain_plan)
-        glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'",
-                        run->count, options->frame);
+        glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                        "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'", run->count,
+                        options->frame);
     if (run->interrupted)
         return GLINTL_EXIT_FAILED;
     if (run->exit_code) {

@@ -58,37 +58,50 @@ static void read_options(lua_State *L, int index, glintL_asked *asked, glintL_re
     }
 }
 
-// Reads `frames` and `shard` of the table at 2. Does not raise: the selection is owned. False: the message is written.
+// Reads `frames` and `shard` of the table at 2, which read_option has checked. The selection is owned: nothing raises
+// after it has something. False: the message is written.
 static bool parse_selection(lua_State *L, glintL_selection *selection, char message[GLINTL_MESSAGE_SIZE])
 {
-    char text[GLINTL_MESSAGE_SIZE];
     bool good = true;
     if (!lua_istable(L, 2))
         return true;
     lua_pushliteral(L, "frames");
-    if (lua_rawget(L, 2) == LUA_TNUMBER) {
-        snprintf(text, sizeof text, LUA_INTEGER_FMT, lua_tointeger(L, -1));
-        good = glintL_selection_parse(selection, text, message);
-    } else if (lua_isstring(L, -1)) {
-        good = glintL_selection_parse(selection, lua_tostring(L, -1), message);
-    }
+    lua_rawget(L, 2);
+    const char *frames = lua_tostring(L, -1);
     lua_pushliteral(L, "shard");
-    if (lua_rawget(L, 2) == LUA_TSTRING && good)
-        good = glintL_selection_parse_shard(selection, lua_tostring(L, -1), message);
+    lua_rawget(L, 2);
+    const char *shard = lua_tostring(L, -1);
+    if (frames)
+        good = glintL_selection_parse(selection, frames, message);
+    if (good && shard)
+        good = glintL_selection_parse_shard(selection, shard, message);
     lua_pop(L, 2);
     return good;
 }
 
-// Runs the job at 1, alone in the list at `list`, as `asked`; the run and the job are as before afterwards.
+static int run_protected(lua_State *L)
+{
+    bool *good = lua_touserdata(L, 2);
+    *good = glintL_jobs_run(L, 1, glintL_get_run(L));
+    return 0;
+}
+
+// Runs the list at `list`, which holds the job at 1 alone, as `asked`; the run and the job are as before afterwards.
+// Does not raise.
 static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_asked *asked, const glintL_render *render)
 {
     glintL_job *job = lua_touserdata(L, 1);
     char message[GLINTL_MESSAGE_SIZE];
     glintL_asked before = run->asked;
     glintL_render render_before = job->render;
+    bool good = false;
     run->asked = *asked;
     job->render = *render;
-    bool good = glintL_jobs_run(L, list, run);
+    lua_pushcfunction(L, run_protected);
+    lua_pushvalue(L, list);
+    lua_pushlightuserdata(L, &good);
+    if (lua_pcall(L, 2, 0, 0) != LUA_OK)
+        good = glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
     if (!run->is_command) {
         good = glintL_run_collect(run, true) && good;
         if (good && glintL_selection_outside(&run->asked.selection, run->total, message))

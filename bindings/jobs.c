@@ -175,7 +175,8 @@ static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t numb
 }
 
 // A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation
-// after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has failed.
+// after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has
+// failed.
 static bool settle_before(job_walk *walk, lua_Integer i, int64_t first)
 {
     const glintL_job *job = walk->job;
@@ -214,7 +215,8 @@ static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
     glint_status status =
         glintL_work_create(scene, &walk->render, number, walk->naming.pattern != NULL, false, &work, &error);
     if (status)
-        glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number, error.message);
+        glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number,
+                        error.message);
     else
         work->build_ms = glintL_now_ms() - start;
     return work;
@@ -276,39 +278,41 @@ static bool run_job(job_walk *walk, lua_Integer i, part *p)
     return good;
 }
 
+// Pushes a walk over the list at `index`: the collector's, so that it is freed whatever happens.
+static job_walk *push_walk(lua_State *L, int index, glintL_run *run)
+{
+    int list = lua_absindex(L, index);
+    luaL_checkstack(L, 16, "jobs");
+    job_walk *walk = lua_newuserdatauv(L, sizeof *walk, 0);
+    memset(walk, 0, sizeof *walk);
+    walk->L = L;
+    walk->run = run;
+    walk->list = list;
+    return walk;
+}
+
 bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
 {
     glint_error error;
-    job_walk *walk = calloc(1, sizeof *walk);
-    if (!walk || !lua_checkstack(L, 16)) {
-        free(walk);
-        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    }
-    walk->L = L;
-    walk->run = run;
-    walk->list = lua_absindex(L, index);
-    part p = open_part(run, glintL_jobs_total(L, index));
+    int top = lua_gettop(L);
+    job_walk *walk = push_walk(L, index, run);
+    part p = open_part(run, glintL_jobs_total(L, walk->list));
     bool good = glintL_run_open(run, &error);
     if (!good)
         glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);
     for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, walk->list) && good; i++)
         good = run_job(walk, i, &p);
     run->earlier += good ? 1 : 0;
-    free(walk);
+    lua_settop(L, top);
     return good;
 }
 
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
 {
-    int64_t n = run->explain_frame - run->count;
-    int64_t total = glintL_jobs_total(L, index);
-    job_walk *walk = calloc(1, sizeof *walk);
-    if (!walk || !lua_checkstack(L, 16))
-        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    for (lua_Integer i = 1; walk && n >= 1 && n <= total && !run->exit_code; i++) {
-        walk->L = L;
-        walk->run = run;
-        walk->list = lua_absindex(L, index);
+    int top = lua_gettop(L);
+    job_walk *walk = push_walk(L, index, run);
+    int64_t n = run->explain_frame - run->count, total = glintL_jobs_total(L, walk->list);
+    for (lua_Integer i = 1; n >= 1 && n <= total; i++) {
         begin_job(walk, i);
         if (n <= walk->job->frames) {
             bool settled = settle_before(walk, i, run->explain_frame - n + 1);
@@ -323,7 +327,7 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
         n -= walk->job->frames;
         lua_settop(L, walk->job_index - 1);
     }
-    free(walk);
+    lua_settop(L, top);
     run->count += total;
     return run->explain_plan != NULL;
 }

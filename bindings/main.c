@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bindings/cli.h"
 
@@ -18,6 +19,30 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
     default:
         return cli_render(options, output, run);
     }
+}
+
+// A script that calls os.exit ends the process from inside: what it has rendered is written all the same.
+static cli_output *open_output;
+
+static void finish_early(void)
+{
+    cli_output *output = open_output;
+    glintL_run *run = output ? output->run : NULL;
+    if (!run)
+        return;
+    open_output = NULL;
+    bool good = glintL_call_settle(run);
+    good = glintL_run_collect(run, true) && good;
+    cli_progress_destroy(output->progress);
+    output->progress = NULL;
+    if (good)
+        cli_report_end(output);
+    else
+        cli_report_error(output, run->failed_index, run->exit_code, run->message);
+    int code = run->exit_code;
+    int close_code = cli_output_close(output);
+    if (code || close_code)
+        _exit(code ? code : close_code);
 }
 
 // Runs a command that needs a script. *signal_number is the signal that ended it, or 0.
@@ -36,10 +61,13 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     options->asked.selection.ranges = NULL;
     run->reporter = cli_reporter(output);
     output->run = run;
+    open_output = output;
+    atexit(finish_early);
     cli_catch_signals(run);
     int code = run_command(options, output, run);
     cli_release_signals();
     *signal_number = run->interrupted;
+    open_output = NULL;
     output->run = NULL;
     glintL_run_destroy(run);
     return code;

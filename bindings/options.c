@@ -29,8 +29,8 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    bool *const flags[] = {&options->json, &options->quiet, &options->help, &options->version, &options->asked.force,
-                           &options->asked.no_reuse};
+    bool *const flags[] = {&options->json,    &options->quiet,       &options->help,
+                           &options->version, &options->asked.force, &options->asked.no_reuse};
     static const char *const names[] = {"json", "quiet", "help", "version", "force", "no-reuse"};
     for (int i = 0; i < 6; i++)
         if (strcmp(option->name, names[i]) == 0)

@@ -145,8 +145,8 @@ static void read_limits(lua_State *L, int from, int spec, const char *path, cons
 
 static void check_keys(lua_State *L, int index, const char *path)
 {
-    static const glintL_field known[] = {{.name = "min"}, {.name = "max"}, {.name = "choices"}, {.name = "doc"},
-                                         {.name = NULL}};
+    static const glintL_field known[] = {
+        {.name = "min"}, {.name = "max"}, {.name = "choices"}, {.name = "doc"}, {.name = NULL}};
     lua_pushnil(L);
     while (lua_next(L, index)) {
         lua_pop(L, 1);

@@ -35,20 +35,13 @@ static const char *const encodes[] = {"fast", "small", NULL};
 #define AT(member) offsetof(glintL_render, member)
 
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    {.name = "width", .kind = GLINTL_NUMBER},
-    {.name = "height", .kind = GLINTL_NUMBER},
-    {.name = "samples", .kind = GLINTL_NUMBER},
-    {.name = "seed", .kind = GLINTL_NUMBER},
-    {.name = "max_depth", .kind = GLINTL_NUMBER},
-    {.name = "bits", .kind = GLINTL_NUMBER},
-    {.name = "precision", .kind = GLINTL_ENUM},
-    {.name = "transfer", .kind = GLINTL_ENUM},
-    {.name = "rounding", .kind = GLINTL_ENUM},
-    {.name = "tone", .kind = GLINTL_ENUM},
-    {.name = "encode", .kind = GLINTL_ENUM},
-    {.name = "output", .kind = GLINTL_STRING},
-    {.name = "passes", .kind = GLINTL_STRING},
-    {.name = NULL},
+    {.name = "width", .kind = GLINTL_NUMBER},     {.name = "height", .kind = GLINTL_NUMBER},
+    {.name = "samples", .kind = GLINTL_NUMBER},   {.name = "seed", .kind = GLINTL_NUMBER},
+    {.name = "max_depth", .kind = GLINTL_NUMBER}, {.name = "bits", .kind = GLINTL_NUMBER},
+    {.name = "precision", .kind = GLINTL_ENUM},   {.name = "transfer", .kind = GLINTL_ENUM},
+    {.name = "rounding", .kind = GLINTL_ENUM},    {.name = "tone", .kind = GLINTL_ENUM},
+    {.name = "encode", .kind = GLINTL_ENUM},      {.name = "output", .kind = GLINTL_STRING},
+    {.name = "passes", .kind = GLINTL_STRING},    {.name = NULL},
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {

@@ -259,8 +259,8 @@ void glintL_sweep_restore(lua_State *L, int index);
 bool glintL_push_jobs(lua_State *L, int index);
 /// Frames of the jobs in the list at `index`.
 int64_t glintL_jobs_total(lua_State *L, int index);
-/// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Does not raise.
-/// False: the run has failed.
+/// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Raises
+/// for want of memory only. False: the run has failed.
 bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
 /// The plan of one frame of the list into run->explain_plan, when the frame is among them.
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);

@@ -65,8 +65,10 @@ static int refuse_results(lua_State *L, int count)
 
 static int refuse_silence(lua_State *L, const char *script)
 {
-    lua_pushfstring(L, "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
-                       "expected, or calls of scene:render", cli_base_name(script));
+    lua_pushfstring(L,
+                    "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
+                    "expected, or calls of scene:render",
+                    cli_base_name(script));
     return lua_error(L);
 }
 
@@ -151,7 +153,8 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     lua_pushlightuserdata(L, &work);
     int status = lua_pcall(L, 1, 0, 1);
     if (status != LUA_OK && !run->is_stopped && !run->interrupted)
-        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
+        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
+                        lua_tostring(L, -1));
     return status == LUA_OK && !run->exit_code && !run->interrupted;
 }
 

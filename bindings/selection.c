@@ -133,10 +133,11 @@ bool glintL_selection_outside(const glintL_selection *selection, int64_t total, 
         if (range->first >= 1 && range->first <= total && (open || range->last <= total))
             continue;
         if (range->first == range->last)
-            snprintf(message, GLINTL_MESSAGE_SIZE, "frame %" PRId64 " is left out: the frames of the script are 1 .. %" PRId64,
-                     range->first, total);
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "frame %" PRId64 " is left out: the frames of the script are 1 .. %" PRId64, range->first, total);
         else if (open)
-            snprintf(message, GLINTL_MESSAGE_SIZE, "of frames %" PRId64 "- some are left out: the frames of the script are 1 .. %" PRId64,
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "of frames %" PRId64 "- some are left out: the frames of the script are 1 .. %" PRId64,
                      range->first, total);
         else
             snprintf(message, GLINTL_MESSAGE_SIZE,

@@ -1,5 +1,5 @@
-// SIGINT and SIGTERM: the first stops the render within a tile and the script at its next instruction, so that no file
-// is left half written; the second ends the process at once.
+// SIGINT, SIGTERM and SIGHUP: the first stops the render within a tile and the script at its next instruction, so that
+// no file is left half written; the second ends the process at once.
 #include <signal.h>
 #include <string.h>
 
@@ -50,6 +50,10 @@ void cli_catch_signals(glintL_run *run)
     caught_run = run;
     handle(SIGINT, stop);
     handle(SIGTERM, stop);
+    if (signal(SIGHUP, SIG_DFL) == SIG_IGN) // nohup
+        signal(SIGHUP, SIG_IGN);
+    else
+        handle(SIGHUP, stop);
     // A write that fails says so. Handlers, for programs that the script starts would inherit SIG_IGN.
     handle(SIGPIPE, ignore);
     handle(SIGXFSZ, ignore);

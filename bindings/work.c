@@ -65,7 +65,8 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
             continue;
         file->pass = (glint_pass)pass;
         if (!glintL_name_file(naming, work->index, file->pass, file->path))
-            return glint_fail(error, GLINT_ERR_INVALID, "output: the file name '%.100s...' is too long", naming->pattern);
+            return glint_fail(error, GLINT_ERR_INVALID, "output: the file name '%.100s...' is too long",
+                              naming->pattern);
         file->key[0] = '\0';
         if (!glintL_name_is_pfm(file->path) && !glintL_name_is_special(file->path)) {
             glint_write_desc desc = write_desc(work, file);
@@ -110,7 +111,9 @@ static glint_status submit(glintL_run *run, const glintL_work *work, const glint
 {
     const char *params = run->params_text ? run->params_text : "";
     glint_text text[] = {
-        {"Software", "glint " GLINT_VERSION}, {"glint:key", file->key}, {"glint:script", run->script},
+        {"Software", "glint " GLINT_VERSION},
+        {"glint:key", file->key},
+        {"glint:script", run->script},
         {"glint:params", params},
     };
     glint_write_desc desc = write_desc(work, file);

@@ -457,6 +457,11 @@ errors() {
     check "GLINT_ISA=foo" test "$status" -eq 2
     script results 'local s = require("scene").scene return s, s'
     exits 2 "two results" results.lua
+    script exits 'local S = require "scene"
+S.scene:render { width = 40, height = 24, output = "x.png" } os.exit(7)'
+    exits 7 "os.exit" exits.lua --json
+    prints "os.exit ends with the event" '"event":"end","frames":1'
+    files "os.exit leaves no picture behind" x.png
     script nested 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frame = function() S.scene:render() end }'
     exits 2 "render inside frame" nested.lua
