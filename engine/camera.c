@@ -8,13 +8,13 @@
 
 glint_camera_desc glint_camera_desc_default(void)
 {
-    return (glint_camera_desc){ .projection = GLINT_PERSPECTIVE,
-                                .eye = { 0, 0, 10 },
-                                .up = { 0, 1, 0 },
-                                .direction = { 0, 0, -1 },
-                                .fov_y_rad = 40 * PI / 180,
-                                .height = 10,
-                                .pixel_offset = 0.5 };
+    return (glint_camera_desc) { .projection = GLINT_PERSPECTIVE,
+                                 .eye = { 0, 0, 10 },
+                                 .up = { 0, 1, 0 },
+                                 .direction = { 0, 0, -1 },
+                                 .fov_y_rad = 40 * PI / 180,
+                                 .height = 10,
+                                 .pixel_offset = 0.5 };
 }
 
 static glint_status check_view(const glint_camera_desc *desc, glint_error *error)
@@ -27,8 +27,8 @@ static glint_status check_view(const glint_camera_desc *desc, glint_error *error
     status = glint_check_vector("at", desc->at, error);
     const double *at = desc->at, *eye = desc->eye;
     if (!status && at[0] == eye[0] && at[1] == eye[1] && at[2] == eye[2])
-        status = glint_fail(error, GLINT_ERR_INVALID, "at: a point other than the eye expected, got {%.15g, %.15g, %.15g}",
-                            at[0], at[1], at[2]);
+        status = glint_fail(error, GLINT_ERR_INVALID,
+                            "at: a point other than the eye expected, got {%.15g, %.15g, %.15g}", at[0], at[1], at[2]);
     if (!status && !(isfinite(at[0] - eye[0]) && isfinite(at[1] - eye[1]) && isfinite(at[2] - eye[2])))
         status = glint_fail(error, GLINT_ERR_INVALID, "at: a point within reach of the eye expected, got {%g, %g, %g}",
                             at[0], at[1], at[2]);
@@ -62,7 +62,7 @@ glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **o
     glint_camera *camera = malloc(sizeof *camera);
     if (!camera)
         return glint_fail_nomem(error);
-    *camera = (glint_camera){ .references = 1, .desc = *desc };
+    *camera = (glint_camera) { .references = 1, .desc = *desc };
     *out = camera;
     return GLINT_OK;
 }
@@ -75,10 +75,7 @@ glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *des
     return status;
 }
 
-const glint_camera_desc *glint_camera_get(const glint_camera *camera)
-{
-    return &camera->desc;
-}
+const glint_camera_desc *glint_camera_get(const glint_camera *camera) { return &camera->desc; }
 
 glint_camera *glint_camera_retain(glint_camera *camera)
 {

@@ -244,7 +244,8 @@ typedef struct glint_tone_desc {
 glint_tone_desc glint_tone_desc_default(void);
 
 typedef struct glint_render_desc {
-    double width, height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
+    double width,
+        height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double samples; ///< a pixel; whole number, 1 .. 65536; default 1
     glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
@@ -320,7 +321,8 @@ typedef struct glint_frame_stats {
     int stage_count; ///< the plan's stages, in its order
     const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
-    double stage_reused[GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
+    double stage_reused
+        [GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     glint_ray_counts rays;
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes

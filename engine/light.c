@@ -7,12 +7,12 @@
 
 glint_light_desc glint_light_desc_default(glint_light_kind kind)
 {
-    return (glint_light_desc){ .kind = kind,
-                               .color = { 1, 1, 1 },
-                               .intensity = 1,
-                               .attenuation = { 1, 0, 0 },
-                               .shadows = true,
-                               .direction = { 0, -1, 0 } };
+    return (glint_light_desc) { .kind = kind,
+                                .color = { 1, 1, 1 },
+                                .intensity = 1,
+                                .attenuation = { 1, 0, 0 },
+                                .shadows = true,
+                                .direction = { 0, -1, 0 } };
 }
 
 static glint_status check_colors(const glint_light_desc *desc, glint_error *error)
@@ -54,7 +54,7 @@ glint_status glint_light_create(const glint_light_desc *desc, glint_light **out,
     glint_light *light = malloc(sizeof *light);
     if (!light)
         return glint_fail_nomem(error);
-    *light = (glint_light){ .references = 1, .desc = *desc };
+    *light = (glint_light) { .references = 1, .desc = *desc };
     *out = light;
     return GLINT_OK;
 }
@@ -69,10 +69,7 @@ glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, g
     return status;
 }
 
-const glint_light_desc *glint_light_get(const glint_light *light)
-{
-    return &light->desc;
-}
+const glint_light_desc *glint_light_get(const glint_light *light) { return &light->desc; }
 
 glint_light *glint_light_retain(glint_light *light)
 {

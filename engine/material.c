@@ -6,7 +6,7 @@
 
 glint_material_desc glint_material_desc_default(void)
 {
-    return (glint_material_desc){ .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32 };
+    return (glint_material_desc) { .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32 };
 }
 
 static glint_status check(const glint_material_desc *desc, glint_error *error)
@@ -33,7 +33,7 @@ glint_status glint_material_create(const glint_material_desc *desc, glint_materi
     glint_material *material = malloc(sizeof *material);
     if (!material)
         return glint_fail_nomem(error);
-    *material = (glint_material){ .references = 1, .desc = *desc };
+    *material = (glint_material) { .references = 1, .desc = *desc };
     *out = material;
     return GLINT_OK;
 }
@@ -46,10 +46,7 @@ glint_status glint_material_set(glint_material *material, const glint_material_d
     return status;
 }
 
-const glint_material_desc *glint_material_get(const glint_material *material)
-{
-    return &material->desc;
-}
+const glint_material_desc *glint_material_get(const glint_material *material) { return &material->desc; }
 
 glint_material *glint_material_retain(glint_material *material)
 {

@@ -23,9 +23,9 @@ struct glint_camera {
 struct glint_shape {
     size_t references;
     glint_shape_desc desc;
-    size_t count;          ///< spheres; 1 for other kinds
-    double (*spheres)[4];  ///< GLINT_SHAPE_SPHERES: centre and radius of each
-    uint32_t *index;       ///< GLINT_SHAPE_SPHERES: material of each, or NULL
+    size_t count; ///< spheres; 1 for other kinds
+    double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
+    uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
     glint_material **materials;
     size_t material_count;
 };

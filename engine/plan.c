@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast", "surface", "light",
-                                                          "occlude", "shade", "resolve", "tone" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "light",
+                                                           "occlude", "shade", "resolve", "tone" };
 
 void *glint_alloc(size_t count, size_t size)
 {
@@ -21,11 +21,9 @@ void *glint_alloc(size_t count, size_t size)
 
 glint_render_desc glint_render_desc_default(void)
 {
-    return (glint_render_desc){ .width = 1280,
-                                .height = 720,
-                                .samples = 1,
-                                .passes = 1u << GLINT_PASS_BEAUTY,
-                                .tone = glint_tone_desc_default() };
+    return (glint_render_desc) {
+        .width = 1280, .height = 720, .samples = 1, .passes = 1u << GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default()
+    };
 }
 
 static glint_status check_render_desc(const glint_render_desc *desc, glint_error *error)
@@ -34,8 +32,9 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     if (!status)
         status = glint_check_whole("height", desc->height, 1, GLINT_SIDE_MAX, error);
     if (!status && desc->width * desc->height > INT32_MAX)
-        status = glint_fail(error, GLINT_ERR_INVALID, "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f",
-                            desc->width, desc->height);
+        status = glint_fail(error, GLINT_ERR_INVALID,
+                            "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f", desc->width,
+                            desc->height);
     if (!status)
         status = glint_check_whole("samples", desc->samples, 1, 65536, error);
     if (!status)
@@ -69,9 +68,8 @@ static glint_key camera_key(const glint_plan *plan)
 {
     glint_key key = { 0 };
     const glint_plan_camera *c = &plan->camera;
-    const double frame[] = { plan->desc.width, plan->desc.height, plan->desc.samples,
-                             plan->desc.seed,  plan->desc.precision, c->orthographic,
-                             c->pixel_offset };
+    const double frame[] = { plan->desc.width,     plan->desc.height, plan->desc.samples, plan->desc.seed,
+                             plan->desc.precision, c->orthographic,   c->pixel_offset };
     ADD(key, frame);
     ADD(key, c->eye);
     ADD(key, c->forward);
@@ -102,7 +100,7 @@ static void light_keys(glint_plan *plan)
     glint_key all = base;
     for (uint32_t i = 0; i < plan->light_count; i++) {
         glint_plan_light *l = &plan->lights[i];
-        const double numbers[] = { l->directional, l->position[0], l->position[1], l->position[2],
+        const double numbers[] = { l->directional,     l->position[0],     l->position[1],    l->position[2],
                                    l->coefficients[0], l->coefficients[1], l->coefficients[2] };
         l->key = glint_key_add(base, numbers, sizeof numbers);
         l->occlude_key = l->key; // it reads the primitives, too, whose key is in the surface's
@@ -143,7 +141,8 @@ static void make_keys(glint_plan *plan)
     keys[GLINT_STAGE_SHADE] = shade_key(plan, keys[GLINT_STAGE_OCCLUDE]);
     keys[GLINT_STAGE_RESOLVE] = keys[GLINT_STAGE_SHADE];
     ADD(keys[GLINT_STAGE_RESOLVE], plan->desc.passes);
-    const int tone[] = { plan->desc.tone.curve, plan->desc.tone.transfer, plan->desc.tone.rounding, plan->desc.tone.bits };
+    const int tone[] = { plan->desc.tone.curve, plan->desc.tone.transfer, plan->desc.tone.rounding,
+                         plan->desc.tone.bits };
     keys[GLINT_STAGE_TONE] = glint_key_add(keys[GLINT_STAGE_RESOLVE], tone, sizeof tone);
 }
 
@@ -209,10 +208,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan);
 }
 
-const glint_render_desc *glint_plan_render_desc(const glint_plan *plan)
-{
-    return &plan->desc;
-}
+const glint_render_desc *glint_plan_render_desc(const glint_plan *plan) { return &plan->desc; }
 
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list)
 {

@@ -30,18 +30,18 @@ extern const char *const glint_stage_names[GLINT_STAGE_COUNT];
 typedef struct glint_plan_camera {
     bool orthographic;
     double eye[3], forward[3]; ///< forward is unit
-    double right[3], up[3];    ///< from a pixel's centre to its edge
+    double right[3], up[3]; ///< from a pixel's centre to its edge
     double pixel_offset;
 } glint_plan_camera;
 
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
     double position[3]; ///< directional: the unit vector towards the light
-    double scale;       ///< see glint_light_args
+    double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
-    int8_t *light_side;             ///< per primitive, when it casts shadows; owned
-    glint_key key, occlude_key;     ///< of what `light` and `occlude` read for this light
+    int8_t *light_side; ///< per primitive, when it casts shadows; owned
+    glint_key key, occlude_key; ///< of what `light` and `occlude` read for this light
 } glint_plan_light;
 
 /// The cone of directions in which a sphere is seen from an origin; for culling.
@@ -63,7 +63,7 @@ struct glint_plan {
     uint32_t prim_count;
     uint32_t *prim_shape; ///< which shape of the scene each is of
     glint_bundle_prim *bundle; ///< NULL for an orthographic camera
-    glint_cone *cones;         ///< with bundle
+    glint_cone *cones; ///< with bundle
     double reference[3], filter_scale;
 
     glint_shade_material *materials;
@@ -86,7 +86,8 @@ struct glint_plan {
 /// Zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees it.
 void *glint_alloc(size_t count, size_t size);
 
-glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc,
+                                    const glint_render_desc *render);
 /// Fills prims, prim_shape, and with `materials` (scene order) the unsorted material index of each.
 glint_status glint_plan_prims(glint_plan *plan, const glint_scene *scene, glint_list *materials, glint_error *error);
 /// What rays from `origin` know of every primitive. Either output may be NULL.

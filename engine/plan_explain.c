@@ -60,7 +60,8 @@ typedef bool light_test(const glint_light_desc *desc);
 
 static bool gives(const glint_light_desc *d)
 {
-    const double *diffuse = d->has_diffuse ? d->diffuse : d->color, *specular = d->has_specular ? d->specular : d->color;
+    const double *diffuse = d->has_diffuse ? d->diffuse : d->color,
+                 *specular = d->has_specular ? d->specular : d->color;
     bool any = false;
     for (int c = 0; c < 3; c++)
         any = any || diffuse[c] > 0 || specular[c] > 0;
@@ -157,9 +158,14 @@ static void list_effects(explainer *e, const glint_scene *scene)
 static void list_stages(glint_plan *plan)
 {
     static const char *const why[GLINT_STAGE_COUNT] = {
-        "rays of each sample", "nearest object and distance of each ray", "point, normal and material of each hit",
-        "direction, distance and highlight angle of each light", "which points each shadow-casting light reaches",
-        "ambient, diffuse and specular terms", "mean of samples and lights", "light to 8 or 16-bit codes",
+        "rays of each sample",
+        "nearest object and distance of each ray",
+        "point, normal and material of each hit",
+        "direction, distance and highlight angle of each light",
+        "which points each shadow-casting light reaches",
+        "ambient, diffuse and specular terms",
+        "mean of samples and lights",
+        "light to 8 or 16-bit codes",
     };
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         if (!plan->runs[id])
@@ -182,6 +188,6 @@ glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glin
     if (!plan->effects)
         return glint_fail_nomem(error);
     for (size_t i = 0; i < plan->effect_count; i++)
-        plan->effects[i] = (glint_effect){ plan->lines[i].effect, plan->lines[i].caller };
+        plan->effects[i] = (glint_effect) { plan->lines[i].effect, plan->lines[i].caller };
     return GLINT_OK;
 }

@@ -30,11 +30,12 @@ static void view_axes(const glint_camera_desc *desc, double forward[3], double r
     vec_cross(up, right, forward);
 }
 
-glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
+glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc,
+                                    const glint_render_desc *render)
 {
     double right[3], up[3];
-    *out = (glint_plan_camera){ .orthographic = desc->projection == GLINT_ORTHOGRAPHIC,
-                                .pixel_offset = desc->pixel_offset };
+    *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_ORTHOGRAPHIC,
+                                 .pixel_offset = desc->pixel_offset };
     vec_copy(out->eye, desc->eye);
     view_axes(desc, out->forward, right, up);
     const double half_height = out->orthographic ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
@@ -131,7 +132,7 @@ static glint_key place_key(const glint_prim *prim)
 {
     const double place[] = { prim->kind,      prim->center[0], prim->center[1], prim->center[2],
                              prim->normal[0], prim->normal[1], prim->normal[2], prim->radius };
-    return glint_key_add((glint_key){ 0 }, place, sizeof place);
+    return glint_key_add((glint_key) { 0 }, place, sizeof place);
 }
 
 /// Finds, for each primitive, the first one with bit-equal geometry.
@@ -152,7 +153,7 @@ static glint_status find_coincident(glint_plan *plan, glint_error *error)
         while (slots[at].prim && (slots[at].key.low != key.low || slots[at].key.high != key.high))
             at = (at + 1) & (size - 1);
         if (!slots[at].prim)
-            slots[at] = (struct slot){ key, i + 1 };
+            slots[at] = (struct slot) { key, i + 1 };
         plan->prims[i].coincident = slots[at].prim - 1;
     }
     free(slots);
@@ -182,7 +183,8 @@ static void filter_frame(glint_plan *plan)
         for (int c = 0; c < 3; c++)
             prim->filter_center[c] = (float)offset[c];
         const double distance = sqrt(vec_dot(offset, offset));
-        prim->filter_bound = float_up(prim->radius * plan->filter_scale * (1 + 1e-6) + 8 * 0x1p-24 * distance + FLT_MIN);
+        prim->filter_bound =
+            float_up(prim->radius * plan->filter_scale * (1 + 1e-6) + 8 * 0x1p-24 * distance + FLT_MIN);
     }
 }
 
@@ -211,7 +213,7 @@ glint_status glint_plan_prims(glint_plan *plan, const glint_scene *scene, glint_
 static void cone_init(glint_cone *cone, const glint_bundle_prim *seen, const glint_prim *prim)
 {
     const double distance = sqrt(vec_dot(seen->f, seen->f)), radius = prim->radius * prim->scale;
-    *cone = (glint_cone){ .cosine = -1 };
+    *cone = (glint_cone) { .cosine = -1 };
     if (prim->kind != GLINT_PRIM_SPHERE || !(seen->c > 0) || !(distance < DBL_MAX))
         return;
     for (int c = 0; c < 3; c++)
@@ -255,10 +257,7 @@ void glint_plan_bundle(const glint_plan *plan, const double origin[3], glint_bun
     }
 }
 
-static int8_t sign(double x)
-{
-    return (int8_t)((x > 0) - (x < 0));
-}
+static int8_t sign(double x) { return (int8_t)((x > 0) - (x < 0)); }
 
 glint_status glint_plan_light_sides(const glint_plan *plan, glint_plan_light *light, glint_error *error)
 {

@@ -8,10 +8,7 @@
 /// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
 #define STRENGTH_MAX 1e150
 
-static bool is_black(const double c[3])
-{
-    return c[0] == 0 && c[1] == 0 && c[2] == 0;
-}
+static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
 static void bounded(double out[3], const double color[3], double factor)
 {
@@ -21,7 +18,7 @@ static void bounded(double out[3], const double color[3], double factor)
 
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3])
 {
-    *out = (glint_shade_material){ .shininess = (float)fmin(desc->shininess, FLT_MAX) };
+    *out = (glint_shade_material) { .shininess = (float)fmin(desc->shininess, FLT_MAX) };
     bounded(out->diffuse, desc->diffuse, 1);
     bounded(out->specular, desc->specular, 1);
     const double *ka = desc->has_ambient ? desc->ambient : desc->diffuse;
@@ -34,7 +31,9 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
 
 void glint_plan_light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
 {
-    *out = (glint_plan_light){ .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL, .shadows = desc->shadows, .scale = 1 };
+    *out = (glint_plan_light) { .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
+                                .shadows = desc->shadows,
+                                .scale = 1 };
     bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, desc->intensity);
     bounded(out->specular, desc->has_specular ? desc->specular : desc->color, desc->intensity);
     if (out->directional) {

@@ -7,7 +7,8 @@
 
 /// A group of which lane 0 alone is used.
 typedef struct lane_group {
-    _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP], normal[3][GLINT_GROUP];
+    _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP],
+        normal[3][GLINT_GROUP];
     _Alignas(64) double t[GLINT_GROUP];
     _Alignas(64) float direction_f[3][GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP], coincident[GLINT_GROUP], side[GLINT_GROUP];
@@ -23,7 +24,8 @@ static glint_status choose(const glint_stages **out, glint_error *error)
     *out = glint_stages_select(NULL, &asked, &unknown);
     if (*out)
         return GLINT_OK;
-    return glint_fail(error, unknown ? GLINT_ERR_INVALID : GLINT_ERR_UNSUPPORTED, "GLINT_ISA: '%s' cannot be used", asked);
+    return glint_fail(error, unknown ? GLINT_ERR_INVALID : GLINT_ERR_UNSUPPORTED, "GLINT_ISA: '%s' cannot be used",
+                      asked);
 }
 
 static void cast_lane(const glint_stages *stages, const glint_plan *plan, const uint32_t *candidates, lane_group *g)
@@ -60,8 +62,8 @@ static void cast_lane(const glint_stages *stages, const glint_plan *plan, const 
 }
 
 /// The parts of a plan that a ray needs, without a camera.
-static glint_status plan_for_ray(const glint_scene *scene, const double origin[3], glint_plan *plan, uint32_t **candidates,
-                                 glint_error *error)
+static glint_status plan_for_ray(const glint_scene *scene, const double origin[3], glint_plan *plan,
+                                 uint32_t **candidates, glint_error *error)
 {
     glint_list materials = { 0 };
     vec_copy(plan->camera.eye, origin);
@@ -79,13 +81,14 @@ static glint_status plan_for_ray(const glint_scene *scene, const double origin[3
     return GLINT_OK;
 }
 
-static void read_hit(const glint_scene *scene, const glint_plan *plan, const lane_group *g, double scale, glint_hit *out)
+static void read_hit(const glint_scene *scene, const glint_plan *plan, const lane_group *g, double scale,
+                     glint_hit *out)
 {
     const uint32_t id = g->prim[0], shape = plan->prim_shape[id];
     uint32_t first = id;
     while (first > 0 && plan->prim_shape[first - 1] == shape)
         first--;
-    *out = (glint_hit){ .t = g->t[0] * scale, .shape = glint_scene_shape(scene, shape), .element = id - first };
+    *out = (glint_hit) { .t = g->t[0] * scale, .shape = glint_scene_shape(scene, shape), .element = id - first };
     const double turn = g->side[0] & GLINT_SIDE_BACK ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         out->point[c] = g->point[c][0];

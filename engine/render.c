@@ -31,10 +31,7 @@ typedef struct frame {
     uint32_t across;
 } frame;
 
-glint_renderer_desc glint_renderer_desc_default(void)
-{
-    return (glint_renderer_desc){ 0 };
-}
+glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
 
 static glint_status choose_stages(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -44,7 +41,8 @@ static glint_status choose_stages(const char *isa, const glint_stages **out, gli
     if (*out)
         return GLINT_OK;
     if (unknown)
-        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_ISA: one of ref, sse2, avx2, avx512 expected, got '%s'", asked);
+        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_ISA: one of ref, sse2, avx2, avx512 expected, got '%s'",
+                          asked);
     return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_ISA: this machine lacks '%s'", asked);
 }
 
@@ -88,20 +86,11 @@ void glint_renderer_destroy(glint_renderer *renderer)
     free(renderer);
 }
 
-const char *glint_renderer_isa(const glint_renderer *renderer)
-{
-    return renderer->stages->name;
-}
+const char *glint_renderer_isa(const glint_renderer *renderer) { return renderer->stages->name; }
 
-int glint_renderer_threads(const glint_renderer *renderer)
-{
-    return glint_pool_threads(renderer->pool);
-}
+int glint_renderer_threads(const glint_renderer *renderer) { return glint_pool_threads(renderer->pool); }
 
-void glint_renderer_cancel(glint_renderer *renderer)
-{
-    atomic_store(&renderer->cancelled, true);
-}
+void glint_renderer_cancel(glint_renderer *renderer) { atomic_store(&renderer->cancelled, true); }
 
 double glint_renderer_progress(const glint_renderer *renderer)
 {
@@ -131,7 +120,7 @@ static glint_status prepare_tiles(glint_renderer *renderer, const glint_plan *pl
 {
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
         glint_tile *tile = renderer->tiles[i];
-        tile->counts = (glint_tile_counts){ 0 };
+        tile->counts = (glint_tile_counts) { 0 };
         if (tile->candidate_capacity >= plan->prim_count)
             continue;
         free(tile->candidates);
@@ -161,8 +150,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.nonfinite += part->nonfinite;
     }
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
-    *stats = (glint_frame_stats){ .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
-    stats->rays = (glint_ray_counts){ .primary = sum.primary, .shadow = sum.shadow };
+    *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
+    stats->rays = (glint_ray_counts) { .primary = sum.primary, .shadow = sum.shadow };
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
@@ -217,7 +206,7 @@ static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_im
         return false;
     *out = glint_image_retain(renderer->last);
     if (stats) {
-        *stats = (glint_frame_stats){ .stage_count = renderer->last_stats.stage_count };
+        *stats = (glint_frame_stats) { .stage_count = renderer->last_stats.stage_count };
         stats->clipped = renderer->last_stats.clipped;
         stats->nonfinite = renderer->last_stats.nonfinite;
         for (int i = 0; i < stats->stage_count; i++) {
@@ -228,7 +217,8 @@ static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_im
     return true;
 }
 
-static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_frame_stats *stats)
+static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                     const glint_frame_stats *stats)
 {
     if (!renderer->reuse.on)
         return;

@@ -55,9 +55,6 @@ bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
 
-static inline bool glint_key_equal(glint_key a, glint_key b)
-{
-    return a.high == b.high && a.low == b.low;
-}
+static inline bool glint_key_equal(glint_key a, glint_key b) { return a.high == b.high && a.low == b.low; }
 
 #endif

@@ -26,10 +26,7 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, g
     return GLINT_OK;
 }
 
-const glint_scene_desc *glint_scene_get(const glint_scene *scene)
-{
-    return &scene->desc;
-}
+const glint_scene_desc *glint_scene_get(const glint_scene *scene) { return &scene->desc; }
 
 glint_scene *glint_scene_retain(glint_scene *scene)
 {
@@ -100,12 +97,6 @@ glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, gl
     return status;
 }
 
-size_t glint_scene_shape_count(const glint_scene *scene)
-{
-    return scene->shapes.count;
-}
+size_t glint_scene_shape_count(const glint_scene *scene) { return scene->shapes.count; }
 
-size_t glint_scene_light_count(const glint_scene *scene)
-{
-    return scene->lights.count;
-}
+size_t glint_scene_light_count(const glint_scene *scene) { return scene->lights.count; }

@@ -10,7 +10,7 @@
 
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
 {
-    return (glint_shape_desc){ .kind = kind, .two_sided = true, .radius = 1, .normal = { 0, 1, 0 } };
+    return (glint_shape_desc) { .kind = kind, .two_sided = true, .radius = 1, .normal = { 0, 1, 0 } };
 }
 
 static glint_status check(const glint_shape_desc *desc, glint_error *error)
@@ -92,10 +92,7 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     return GLINT_OK;
 }
 
-const glint_shape_desc *glint_shape_get(const glint_shape *shape)
-{
-    return &shape->desc;
-}
+const glint_shape_desc *glint_shape_get(const glint_shape *shape) { return &shape->desc; }
 
 glint_shape *glint_shape_retain(glint_shape *shape)
 {
@@ -116,10 +113,7 @@ void glint_shape_release(glint_shape *shape)
     free(shape);
 }
 
-size_t glint_spheres_count(const glint_shape *shape)
-{
-    return shape->count;
-}
+size_t glint_spheres_count(const glint_shape *shape) { return shape->count; }
 
 static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
 {
@@ -136,8 +130,9 @@ static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
 static glint_status check_sphere(size_t i, const double s[4], glint_error *error)
 {
     if (!isfinite(s[0]) || !isfinite(s[1]) || !isfinite(s[2]))
-        return glint_fail(error, GLINT_ERR_INVALID, "data: sphere %zu: finite centre expected, got {%.15g, %.15g, %.15g}",
-                          i + 1, s[0], s[1], s[2]);
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "data: sphere %zu: finite centre expected, got {%.15g, %.15g, %.15g}", i + 1, s[0], s[1],
+                          s[2]);
     if (!(s[3] > 0 && isfinite(s[3])))
         return glint_fail(error, GLINT_ERR_INVALID, "data: sphere %zu: radius > 0 expected, got %.15g", i + 1, s[3]);
     return GLINT_OK;
@@ -163,8 +158,8 @@ static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *d
     for (size_t i = 0; i < desc->count; i++) {
         shape->index[i] = desc->material_index[i];
         if (shape->index[i] >= shape->material_count)
-            return glint_fail(error, GLINT_ERR_INVALID, "index: sphere %zu: material 1 .. %zu expected, got %llu", i + 1,
-                              shape->material_count, (unsigned long long)shape->index[i] + 1);
+            return glint_fail(error, GLINT_ERR_INVALID, "index: sphere %zu: material 1 .. %zu expected, got %llu",
+                              i + 1, shape->material_count, (unsigned long long)shape->index[i] + 1);
     }
     return GLINT_OK;
 }
@@ -172,7 +167,8 @@ static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *d
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error)
 {
     if (desc->count < 1 || desc->count > MAX_SPHERES)
-        return glint_fail(error, GLINT_ERR_INVALID, "data: 1 .. %zu spheres expected, got %zu", MAX_SPHERES, desc->count);
+        return glint_fail(error, GLINT_ERR_INVALID, "data: 1 .. %zu spheres expected, got %zu", MAX_SPHERES,
+                          desc->count);
     for (size_t i = 0; i < desc->material_count; i++)
         if (!desc->materials[i])
             return glint_fail(error, GLINT_ERR_INVALID, "materials: entry %zu is missing", i + 1);

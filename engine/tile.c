@@ -45,8 +45,8 @@ static void find_geometry_memory(glint_tile *tile, const glint_tile_frame *frame
         tile->at.material = kept->material + first;
 }
 
-static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
-                              bool *light_known, bool *occlude_known)
+static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
+                              uint32_t slot, bool *light_known, bool *occlude_known)
 {
     const glint_plan_light *l = &frame->plan->lights[light];
     glint_reuse *reuse = frame->reuse;

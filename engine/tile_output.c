@@ -19,8 +19,7 @@ static void store_plane(const glint_tile *tile, const float *groups, float *plan
 }
 
 /// `groups`: the channels one after the other.
-static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass,
-                       const float *groups)
+static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass, const float *groups)
 {
     if (!(frame->plan->desc.passes >> pass & 1))
         return;

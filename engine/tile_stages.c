@@ -208,10 +208,10 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
-        lights[i] = (glint_shade_light){ .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
-                                         .cosine = tile->at.light[i].cosine,
-                                         .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
-                                         .log2_specular = tile->at.light[i].log2_specular };
+        lights[i] = (glint_shade_light) { .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
+                                          .cosine = tile->at.light[i].cosine,
+                                          .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
+                                          .log2_specular = tile->at.light[i].log2_specular };
         vec_copy(lights[i].diffuse, light->diffuse);
         vec_copy(lights[i].specular, light->specular);
     }

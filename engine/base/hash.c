@@ -10,13 +10,10 @@ glint_key glint_key_add(glint_key key, const void *bytes, size_t size)
     // The part's seed carries the low half; the high half and the length are folded in by a second, short hash.
     const uint64_t chain[5] = { key.high, key.low, part.high64, part.low64, size };
     const XXH128_hash_t sum = XXH3_128bits(chain, sizeof chain);
-    return (glint_key){ sum.high64, sum.low64 };
+    return (glint_key) { sum.high64, sum.low64 };
 }
 
-glint_key glint_key_add_string(glint_key key, const char *string)
-{
-    return glint_key_add(key, string, strlen(string));
-}
+glint_key glint_key_add_string(glint_key key, const char *string) { return glint_key_add(key, string, strlen(string)); }
 
 void glint_key_hex(glint_key key, char hex[33])
 {

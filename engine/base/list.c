@@ -73,5 +73,5 @@ void glint_list_free(glint_list *list)
 {
     free(list->items);
     free(list->slots);
-    *list = (glint_list){ 0 };
+    *list = (glint_list) { 0 };
 }

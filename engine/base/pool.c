@@ -18,7 +18,7 @@ struct glint_pool {
     pthread_mutex_t mutex;
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run
-    int busy;            ///< workers that have not finished this round
+    int busy; ///< workers that have not finished this round
     bool stop;
     size_t count;
     glint_pool_item *item;
@@ -60,7 +60,7 @@ static int start_workers(glint_pool *pool, int threads)
     pthread_sigmask(SIG_SETMASK, &all, &old);
     while (pool->threads < threads) {
         struct worker *worker = &pool->workers[pool->threads];
-        *worker = (struct worker){ .pool = pool, .number = pool->threads };
+        *worker = (struct worker) { .pool = pool, .number = pool->threads };
         if (pthread_create(&worker->thread, NULL, work, worker))
             break;
         pool->threads++;
@@ -105,10 +105,7 @@ void glint_pool_destroy(glint_pool *pool)
     free(pool);
 }
 
-int glint_pool_threads(const glint_pool *pool)
-{
-    return pool->threads;
-}
+int glint_pool_threads(const glint_pool *pool) { return pool->threads; }
 
 void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
 {

@@ -16,10 +16,7 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
     return status;
 }
 
-glint_status glint_fail_nomem(glint_error *error)
-{
-    return glint_fail(error, GLINT_ERR_NOMEM, "out of memory");
-}
+glint_status glint_fail_nomem(glint_error *error) { return glint_fail(error, GLINT_ERR_NOMEM, "out of memory"); }
 
 glint_status glint_check_finite(const char *name, double value, glint_error *error)
 {
@@ -65,6 +62,6 @@ glint_status glint_check_color(const char *name, const double v[3], glint_error 
     glint_status status = glint_check_vector(name, v, error);
     if (status || (v[0] >= 0 && v[1] >= 0 && v[2] >= 0))
         return status;
-    return glint_fail(error, GLINT_ERR_INVALID, "%s: colour >= 0 expected, got {%.15g, %.15g, %.15g}", name, v[0],
-                      v[1], v[2]);
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: colour >= 0 expected, got {%.15g, %.15g, %.15g}", name, v[0], v[1],
+                      v[2]);
 }

@@ -6,10 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-static inline double vec_dot(const double a[3], const double b[3])
-{
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
+static inline double vec_dot(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
 static inline void vec_copy(double out[3], const double v[3]) { memcpy(out, v, 3 * sizeof *out); }
 
@@ -31,10 +28,7 @@ static inline void vec_cross(double out[3], const double a[3], const double b[3]
     out[0] = x, out[1] = y, out[2] = z;
 }
 
-static inline double vec_max_abs(const double v[3])
-{
-    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-}
+static inline double vec_max_abs(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
 /// The power of two that brings x > 0 into [1, 2); kept within the normal numbers.
 static inline double power_of_two_scale(double x)

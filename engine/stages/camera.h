@@ -1,8 +1,8 @@
 // camera: the rays of one sample of each pixel of a tile. Contract: stages.h.
 
 /// 2 (first + step) - size for the lanes of a group, in double, rounded to real. `mirrored`: size - 2 (...).
-static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], double offset, double size, bool mirrored,
-                                 real out[GLINT_GROUP])
+static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], double offset, double size,
+                                 bool mirrored, real out[GLINT_GROUP])
 {
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         vd twice = d_set(2) * ((d_set(first) + d_load(step + i)) + d_set(offset));

@@ -203,8 +203,8 @@ static inline void R(cast)(const glint_cast_args *args, bool bundle)
         for (uint32_t k = 0; k < args->candidate_count; k++) {
             const uint32_t id = args->candidates[k];
             unsigned near = active & (bundle ? R(near_bundle)(args, &args->bundle[id], at)
-                                             : R(near_rays)(args->direction_f, at,
-                                                            (const float(*)[GLINT_GROUP])local, &args->prims[id]));
+                                             : R(near_rays)(args->direction_f, at, (const float(*)[GLINT_GROUP])local,
+                                                            &args->prims[id]));
             if (near)
                 R(decide)(args, at, id, near, bundle);
         }

@@ -10,10 +10,7 @@ static inline vf f_exponent(vf x)
     return f_from_bits(i_or(i_shr(f_bits(x), 23), i_set(0x4b000000))) - f_set(0x1p23f + 127);
 }
 
-static inline vf f_mantissa(vf x)
-{
-    return f_from_bits(i_or(i_and(f_bits(x), i_set(0x007fffff)), i_set(0x3f800000)));
-}
+static inline vf f_mantissa(vf x) { return f_from_bits(i_or(i_and(f_bits(x), i_set(0x007fffff)), i_set(0x3f800000))); }
 
 /// log2 of m 2^e, m = 1 + f in [sqrt(1/2), sqrt(2)).
 static inline vf f_log2_of_parts(vf e, vf f)

@@ -19,7 +19,7 @@ typedef struct R(lit_group) {
     _Alignas(64) float fraction[GLINT_GROUP];
     _Alignas(64) float exponent[GLINT_GROUP];
     unsigned phong, blinn; ///< lanes by the highlight of their material
-    unsigned lit, shiny;   ///< out
+    unsigned lit, shiny; ///< out
 } R(lit_group);
 
 static inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
@@ -39,7 +39,7 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 }
 
 /// The real part of one vector of lanes.
-static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned open, R(lit_group) *group)
+static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned open, R(lit_group) * group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr n[3], l[3];
@@ -61,7 +61,8 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
         r_store_f(group->distance2 + i, l2 * (scale * scale));
     }
     if (args->attenuated) {
-        const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
+        const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]),
+                 c2 = r_set(args->coefficients[2]);
         vr distance = r_sqrt(l2);
         r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * l2)));
     }
@@ -85,7 +86,7 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
 }
 
 /// The float part of one group.
-static inline void R(finish_light)(const glint_light_args *args, size_t at, const R(lit_group) *group)
+static inline void R(finish_light)(const glint_light_args *args, size_t at, const R(lit_group) * group)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));

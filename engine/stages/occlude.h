@@ -9,7 +9,7 @@ typedef struct R(shadow_group) {
     _Alignas(64) float local[4][GLINT_GROUP]; ///< origins for the filter, and its bound
 } R(shadow_group);
 
-static inline void R(shadow_rays)(const glint_occlude_args *args, size_t at, R(shadow_group) *rays)
+static inline void R(shadow_rays)(const glint_occlude_args *args, size_t at, R(shadow_group) * rays)
 {
     for (int i = 0; i < GLINT_GROUP; i += VR)
         for (int k = 0; k < 3; k++) {
@@ -23,7 +23,7 @@ static inline void R(shadow_rays)(const glint_occlude_args *args, size_t at, R(s
 }
 
 static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, int light_side, size_t at,
-                                  const R(shadow_group) *rays, int i)
+                                  const R(shadow_group) * rays, int i)
 {
     const vr zero = r_set(0), scale = r_set(prim->scale);
     vr f[3], d[3];
@@ -58,7 +58,7 @@ static inline rm R(plane_blocks)(const glint_occlude_args *args, const glint_pri
 
 /// The lanes of `wanted` that the primitive blocks.
 static inline unsigned R(blocked_by)(const glint_occlude_args *args, uint32_t id, size_t at,
-                                     const R(shadow_group) *rays, unsigned wanted)
+                                     const R(shadow_group) * rays, unsigned wanted)
 {
     const glint_prim *prim = &args->prims[id];
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;

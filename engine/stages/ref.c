@@ -16,8 +16,8 @@
 /// log2 of m 2^e for m in [1, 2), f being m - 1; or of 2 m 2^(e-1) when f is m / 2 - 1.
 static float log2_of_parts(float f, int e)
 {
-    static const float c[10] = {GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
-                                GLINT_LOG2_C5, GLINT_LOG2_C6, GLINT_LOG2_C7, GLINT_LOG2_C8, GLINT_LOG2_C9};
+    static const float c[10] = { GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
+                                 GLINT_LOG2_C5, GLINT_LOG2_C6, GLINT_LOG2_C7, GLINT_LOG2_C8, GLINT_LOG2_C9 };
     float p = c[9];
     for (int i = 8; i >= 0; i--)
         p = p * f + c[i];
@@ -50,8 +50,8 @@ static float log2_of_float(float x)
 /// 2^y for y in [-40, 0].
 static float exp2_of(float y)
 {
-    static const float d[7] = {GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
-                               GLINT_EXP2_D4, GLINT_EXP2_D5, GLINT_EXP2_D6};
+    static const float d[7] = { GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
+                                GLINT_EXP2_D4, GLINT_EXP2_D5, GLINT_EXP2_D6 };
     float n = (y + 12582912.0f) - 12582912.0f;
     float f = y - n;
     float p = d[6];
@@ -72,7 +72,7 @@ typedef struct exact_pair {
 static exact_pair two_sum(double a, double b)
 {
     double s = a + b, v = s - a;
-    return (exact_pair){s, (a - (s - v)) + (b - v)};
+    return (exact_pair) { s, (a - (s - v)) + (b - v) };
 }
 
 /// Upper half of a number, Veltkamp's way: the lower half, x - upper, fits 26 bits as well.
@@ -87,7 +87,7 @@ static exact_pair two_square(double x)
 {
     double p = x * x, upper = upper_half(x), lower = x - upper;
     double error = ((upper * upper - p) + 2 * (upper * lower)) + lower * lower;
-    return (exact_pair){p, error};
+    return (exact_pair) { p, error };
 }
 
 /// |f|^2 - (radius scale)^2, rounded once.
@@ -108,15 +108,9 @@ static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
 
 // ---- geometry, in float and in double ----------------------------------------------------------------------------
 
-static float square_root_float(float x)
-{
-    return sqrtf(x);
-}
+static float square_root_float(float x) { return sqrtf(x); }
 
-static double square_root_double(double x)
-{
-    return sqrt(x);
-}
+static double square_root_double(double x) { return sqrt(x); }
 
 #define PLANE_GRAZING_float 1e-30f
 #define PLANE_GRAZING_double 1e-60
@@ -274,10 +268,10 @@ static void tone(const glint_tone_args *args)
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = {{camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double,
-                  occlude_double},
-                 {camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float,
-                  occlude_float}},
+    .geometry = { { camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double,
+                    occlude_double },
+                  { camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float,
+                    occlude_float } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -8,60 +8,27 @@ typedef struct NAME(vec3) {
     REAL x, y, z;
 } NAME(vec3);
 
-static NAME(vec3) NAME(vec)(REAL x, REAL y, REAL z)
-{
-    return (NAME(vec3)){x, y, z};
-}
+static NAME(vec3) NAME(vec)(REAL x, REAL y, REAL z) { return (NAME(vec3)) { x, y, z }; }
 
-static NAME(vec3) NAME(rounded)(const double v[3])
-{
-    return NAME(vec)((REAL)v[0], (REAL)v[1], (REAL)v[2]);
-}
+static NAME(vec3) NAME(rounded)(const double v[3]) { return NAME(vec)((REAL)v[0], (REAL)v[1], (REAL)v[2]); }
 
-static NAME(vec3) NAME(add)(NAME(vec3) a, NAME(vec3) b)
-{
-    return NAME(vec)(a.x + b.x, a.y + b.y, a.z + b.z);
-}
+static NAME(vec3) NAME(add)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x + b.x, a.y + b.y, a.z + b.z); }
 
-static NAME(vec3) NAME(sub)(NAME(vec3) a, NAME(vec3) b)
-{
-    return NAME(vec)(a.x - b.x, a.y - b.y, a.z - b.z);
-}
+static NAME(vec3) NAME(sub)(NAME(vec3) a, NAME(vec3) b) { return NAME(vec)(a.x - b.x, a.y - b.y, a.z - b.z); }
 
-static NAME(vec3) NAME(times)(NAME(vec3) a, REAL k)
-{
-    return NAME(vec)(a.x * k, a.y * k, a.z * k);
-}
+static NAME(vec3) NAME(times)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x * k, a.y * k, a.z * k); }
 
-static NAME(vec3) NAME(over)(NAME(vec3) a, REAL k)
-{
-    return NAME(vec)(a.x / k, a.y / k, a.z / k);
-}
+static NAME(vec3) NAME(over)(NAME(vec3) a, REAL k) { return NAME(vec)(a.x / k, a.y / k, a.z / k); }
 
-static NAME(vec3) NAME(negated)(NAME(vec3) a)
-{
-    return NAME(vec)(-a.x, -a.y, -a.z);
-}
+static NAME(vec3) NAME(negated)(NAME(vec3) a) { return NAME(vec)(-a.x, -a.y, -a.z); }
 
-static REAL NAME(dot)(NAME(vec3) a, NAME(vec3) b)
-{
-    return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
+static REAL NAME(dot)(NAME(vec3) a, NAME(vec3) b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
 
-static REAL NAME(length2)(NAME(vec3) a)
-{
-    return NAME(dot)(a, a);
-}
+static REAL NAME(length2)(NAME(vec3) a) { return NAME(dot)(a, a); }
 
-static REAL NAME(min)(REAL a, REAL b)
-{
-    return a < b ? a : b;
-}
+static REAL NAME(min)(REAL a, REAL b) { return a < b ? a : b; }
 
-static REAL NAME(max)(REAL a, REAL b)
-{
-    return a > b ? a : b;
-}
+static REAL NAME(max)(REAL a, REAL b) { return a > b ? a : b; }
 
 static NAME(vec3) NAME(cross)(NAME(vec3) f, NAME(vec3) d)
 {
@@ -194,15 +161,9 @@ static void NAME(cast)(const glint_cast_args *args, const glint_bundle_prim *bun
         NAME(cast_sample)(args, bundle, i);
 }
 
-static void NAME(cast_bundle)(const glint_cast_args *args)
-{
-    NAME(cast)(args, args->bundle);
-}
+static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->bundle); }
 
-static void NAME(cast_rays)(const glint_cast_args *args)
-{
-    NAME(cast)(args, NULL);
-}
+static void NAME(cast_rays)(const glint_cast_args *args) { NAME(cast)(args, NULL); }
 
 // ---- surface -----------------------------------------------------------------------------------------------------
 

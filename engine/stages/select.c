@@ -7,7 +7,9 @@
 const glint_stages *const glint_stages_built[] = {
     &glint_stages_ref,
 #if defined(__x86_64__)
-    &glint_stages_sse2, &glint_stages_avx2, &glint_stages_avx512,
+    &glint_stages_sse2,
+    &glint_stages_avx2,
+    &glint_stages_avx512,
 #endif
     NULL,
 };

@@ -60,10 +60,7 @@ typedef struct group_terms {
 } group_terms;
 
 /// Writes `x` where the mask is set.
-static inline void put_float(float *to, fm mask, vf x)
-{
-    f_store(to, f_select(mask, x, f_load(to)));
-}
+static inline void put_float(float *to, fm mask, vf x) { f_store(to, f_select(mask, x, f_load(to))); }
 
 /// One material's lanes of a group whose terms are final: no sums in memory.
 static inline void shade_direct(const glint_shade_material *material, bool specular, const light_factors *factors,

@@ -47,7 +47,10 @@ static inline fm i_lt(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpgt_epi3
 static inline fm i_eq(vi a, vi b) { return _mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)); }
 static inline vi i_load(const uint32_t *p) { return _mm256_load_si256((const __m256i *)p); }
 static inline void i_store(uint32_t *p, vi x) { _mm256_store_si256((__m256i *)p, x); }
-static inline vi i_gather(const uint32_t *table, vi index) { return _mm256_i32gather_epi32((const int *)table, index, 4); }
+static inline vi i_gather(const uint32_t *table, vi index)
+{
+    return _mm256_i32gather_epi32((const int *)table, index, 4);
+}
 
 static inline vd d_set(double x) { return _mm256_set1_pd(x); }
 static inline vd d_load(const double *p) { return _mm256_load_pd(p); }

@@ -24,7 +24,7 @@
 #define GLINT_TILE_GROUPS (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT / GLINT_GROUP)
 #define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
 #define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
-#define GLINT_LIGHT_CHUNK 8    ///< lights one call of shade takes at most
+#define GLINT_LIGHT_CHUNK 8 ///< lights one call of shade takes at most
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
 
@@ -33,22 +33,22 @@ typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE } glint_prim_
 /// One surface, as far as no ray is concerned.
 typedef struct glint_prim {
     uint32_t kind;
-    uint32_t material;   ///< index in the material table
+    uint32_t material; ///< index in the material table
     uint32_t coincident; ///< the first primitive with bit-equal geometry: what a leaving ray skips
-    uint32_t two_sided;  ///< 0: seen from behind it gets ambient light only
-    double center[3];    ///< sphere: centre; plane: a point of it
-    double normal[3];    ///< plane: unit
-    double scale;        ///< sphere: a power of two, so that radius * scale is in [1, 2)
-    double radius;       ///< sphere, world units
-    double r2, r2_low;   ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+    uint32_t two_sided; ///< 0: seen from behind it gets ambient light only
+    double center[3]; ///< sphere: centre; plane: a point of it
+    double normal[3]; ///< plane: unit
+    double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
+    double radius; ///< sphere, world units
+    double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
     float filter_center[3]; ///< sphere: (center - reference) * filter_scale
-    float filter_bound;  ///< sphere: >= radius (1 + 1e-6) + 8 * 2^-24 |filter_center|, in filter units; plane: +inf
+    float filter_bound; ///< sphere: >= radius (1 + 1e-6) + 8 * 2^-24 |filter_center|, in filter units; plane: +inf
 } glint_prim;
 
 /// The same, seen from an origin that many rays share.
 typedef struct glint_bundle_prim {
     double f[3]; ///< sphere: (origin - center) * scale
-    double c;    ///< sphere: |f|^2 - (radius scale)^2, rounded once; plane: dot(normal, origin - point)
+    double c; ///< sphere: |f|^2 - (radius scale)^2, rounded once; plane: dot(normal, origin - point)
     float filter_f[3]; ///< sphere: f rounded
     float filter_limit2; ///< sphere: (radius scale (1 + 1e-6) + 8 * 2^-24 |f|)^2, rounded up; plane: +inf
 } glint_bundle_prim;
@@ -65,13 +65,13 @@ typedef struct glint_shade_material {
 
 typedef struct glint_camera_args {
     uint32_t group_count, groups_across; ///< group g is column g % groups_across, row g / groups_across
-    double x0, y0;         ///< the tile's first pixel
-    double offset[2];      ///< where in the pixel this sample lies, 0 .. 1
-    double width, height;  ///< of the image
+    double x0, y0; ///< the tile's first pixel
+    double offset[2]; ///< where in the pixel this sample lies, 0 .. 1
+    double width, height; ///< of the image
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
-    void *origin[3];       ///< out, real; written only when orthographic
-    void *direction[3];    ///< out, real
+    void *origin[3]; ///< out, real; written only when orthographic
+    void *direction[3]; ///< out, real
     float *direction_f[3]; ///< out: direction rounded to float, for the filter of cast
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
@@ -85,12 +85,15 @@ typedef struct glint_cast_args {
     uint32_t group_count;
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
     const glint_prim *prims;
-    const glint_bundle_prim *bundle;            ///< cast_bundle only
-    const uint32_t *candidates; uint32_t candidate_count; ///< primitives that the rays may meet, in any order
-    const void *origin[3];                      ///< cast_rays only: real, one a ray
-    const void *direction[3]; const float *direction_f[3];
-    double reference[3]; double filter_scale;   ///< cast_rays only: frame of the filter
-    void *t;        ///< out, real: point = origin + t direction; +inf where nothing is hit
+    const glint_bundle_prim *bundle; ///< cast_bundle only
+    const uint32_t *candidates;
+    uint32_t candidate_count; ///< primitives that the rays may meet, in any order
+    const void *origin[3]; ///< cast_rays only: real, one a ray
+    const void *direction[3];
+    const float *direction_f[3];
+    double reference[3];
+    double filter_scale; ///< cast_rays only: frame of the filter
+    void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
 } glint_cast_args;
@@ -115,7 +118,7 @@ typedef struct glint_cast_args {
 
 // ---- surface: point, normal and material of each hit ----
 
-#define GLINT_SIDE_BACK 1u  ///< seen from behind (from inside): the normal was turned to the viewer
+#define GLINT_SIDE_BACK 1u ///< seen from behind (from inside): the normal was turned to the viewer
 #define GLINT_SIDE_UNLIT 2u ///< and the surface is one-sided: ambient only
 
 typedef struct glint_surface_args {
@@ -123,13 +126,13 @@ typedef struct glint_surface_args {
     const uint16_t *hits;
     const uint32_t *prim;
     const glint_prim *prims;
-    const glint_bundle_prim *bundle;  ///< NULL: each ray has its own origin
-    const void *origin[3];            ///< real; read only where bundle is NULL
-    double eye[3];                    ///< the shared origin; read only with a bundle
+    const glint_bundle_prim *bundle; ///< NULL: each ray has its own origin
+    const void *origin[3]; ///< real; read only where bundle is NULL
+    double eye[3]; ///< the shared origin; read only with a bundle
     const void *direction[3], *t;
-    void *point[3], *normal[3];       ///< out, real; the normal is unit and turned to the viewer
-    uint32_t *material, *coincident;  ///< out
-    uint32_t *side;                   ///< out: GLINT_SIDE_ bits
+    void *point[3], *normal[3]; ///< out, real; the normal is unit and turned to the viewer
+    uint32_t *material, *coincident; ///< out
+    uint32_t *side; ///< out: GLINT_SIDE_ bits
 } glint_surface_args;
 // Groups without a hit are not written; of other groups, lanes without a hit get point = normal = 0 and
 // material = coincident = side = 0.
@@ -162,15 +165,16 @@ typedef struct glint_light_args {
     const void *point[3], *normal[3], *direction[3];
     const uint32_t *material, *side;
     bool directional;
-    double position[3];     ///< of the light; directional: the unit vector towards it
-    double scale;           ///< a power of two that brings distances to the light near 1
-    bool attenuated;        ///< false: attenuation is not written
+    double position[3]; ///< of the light; directional: the unit vector towards it
+    double scale; ///< a power of two that brings distances to the light near 1
+    bool attenuated; ///< false: attenuation is not written
     double coefficients[3]; ///< c0, c1, c2
     uint32_t phong_end, blinn_end; ///< materials < phong_end are Phong, < blinn_end Blinn-Phong; both 0: no highlight
-    uint16_t *lit;          ///< out: a bit a lane where the light is above the surface's horizon
-    float *cosine;          ///< out: n.l in 0 .. 1; 0 where unlit
-    float *attenuation;     ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
-    float *log2_specular;   ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
+    uint16_t *lit; ///< out: a bit a lane where the light is above the surface's horizon
+    float *cosine; ///< out: n.l in 0 .. 1; 0 where unlit
+    float *attenuation; ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
+    float *
+        log2_specular; ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
@@ -196,14 +200,16 @@ typedef struct glint_occlude_args {
     const uint32_t *coincident, *side;
     bool directional;
     double position[3]; ///< as in glint_light_args
-    double scale;       ///< as in glint_light_args
+    double scale; ///< as in glint_light_args
     const glint_prim *prims;
     const int8_t *light_side; ///< per primitive: sphere: the sign of |light - c|^2 - r^2 (directional: 1)
-                              ///< plane: the sign of dot(normal, light - point) (directional: of dot(normal, position))
-    const uint32_t *candidates; uint32_t candidate_count; ///< in any order
-    double reference[3]; double filter_scale;
-    uint16_t *open;   ///< out: the lit lanes that nothing blocks
-    uint64_t *rays;   ///< added to: lit lanes
+        ///< plane: the sign of dot(normal, light - point) (directional: of dot(normal, position))
+    const uint32_t *candidates;
+    uint32_t candidate_count; ///< in any order
+    double reference[3];
+    double filter_scale;
+    uint16_t *open; ///< out: the lit lanes that nothing blocks
+    uint64_t *rays; ///< added to: lit lanes
 } glint_occlude_args;
 // A lane is blocked where any candidate other than its own (candidate.coincident == coincident) blocks it:
 // sphere: d = position - point (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
@@ -217,7 +223,11 @@ typedef struct glint_occlude_args {
 // ---- shade: the terms of each sample ----
 
 typedef enum glint_term {
-    GLINT_TERM_BACKGROUND, GLINT_TERM_AMBIENT, GLINT_TERM_DIFFUSE, GLINT_TERM_SPECULAR, GLINT_TERM_COUNT
+    GLINT_TERM_BACKGROUND,
+    GLINT_TERM_AMBIENT,
+    GLINT_TERM_DIFFUSE,
+    GLINT_TERM_SPECULAR,
+    GLINT_TERM_COUNT
 } glint_term;
 
 typedef struct glint_shade_light {
@@ -232,12 +242,15 @@ typedef struct glint_shade_args {
     const uint32_t *material;
     const glint_shade_material *materials;
     double background[3];
-    bool has_specular;     ///< false: the term is not computed
-    bool first;            ///< also the terms that no light makes: background and ambient
-    const glint_shade_light *lights; uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
-    double *sum[GLINT_TERM_COUNT][3];  ///< in and out: added to (specular: if has_specular); NULL: the frame has one sample and these are all lights
-    float *film[GLINT_TERM_COUNT][3];  ///< out when sum is NULL: the terms; NULL where nobody asked for one
-    float *beauty[3];                  ///< out when sum is NULL
+    bool has_specular; ///< false: the term is not computed
+    bool first; ///< also the terms that no light makes: background and ambient
+    const glint_shade_light *lights;
+    uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
+    double *sum
+        [GLINT_TERM_COUNT]
+        [3]; ///< in and out: added to (specular: if has_specular); NULL: the frame has one sample and these are all lights
+    float *film[GLINT_TERM_COUNT][3]; ///< out when sum is NULL: the terms; NULL where nobody asked for one
+    float *beauty[3]; ///< out when sum is NULL
 } glint_shade_args;
 // For each lane, double unless said otherwise:
 //   background += background where active and not hit; ambient += materials[m].ambient where hit
@@ -257,7 +270,7 @@ typedef struct glint_resolve_args {
     double samples;
     double *sum[GLINT_TERM_COUNT][3];
     float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
-    float *beauty[3];                 ///< out
+    float *beauty[3]; ///< out
 } glint_resolve_args;
 // term = (float)(sum / samples); beauty as in shade
 
@@ -267,7 +280,7 @@ typedef struct glint_resolve_args {
 /// that agree in their upper 16 bits; its entry is code | threshold << 8: the code of its first float, and from which
 /// of the lower 16 bits on the code is one more (65536: never).
 #define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; floats below have code 0
-#define GLINT_TONE_LAST 0x3f80u  ///< upper bits of 1
+#define GLINT_TONE_LAST 0x3f80u ///< upper bits of 1
 #define GLINT_TONE_ENTRIES (GLINT_TONE_LAST - GLINT_TONE_FIRST + 1)
 
 typedef struct glint_tone_args {
@@ -275,7 +288,7 @@ typedef struct glint_tone_args {
     const uint16_t *active;
     const float *beauty[3];
     const uint32_t *table;
-    uint32_t *rgb;                 ///< out: red | green << 8 | blue << 16
+    uint32_t *rgb; ///< out: red | green << 8 | blue << 16
     uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > 1; with one that is not finite
 } glint_tone_args;
 // x = max(x, 0) (NaN gives 0), x = min(x, 1); bits of x below GLINT_TONE_FIRST << 16: code 0;

@@ -51,7 +51,8 @@ static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 
 /// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
 /// is seen from behind.
-static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id, size_t at, unsigned lanes)
+static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id,
+                                                                       size_t at, unsigned lanes)
 {
     const glint_prim *prim = &args->prims[id];
     const bool whole = lanes == (1u << VR) - 1;
@@ -126,7 +127,8 @@ static void R(surface)(const glint_surface_args *args)
             lanes_put(args->coincident + at, lanes, prim->coincident);
             lanes_put(args->side + at, lanes, 0);
             if (back)
-                lanes_put(args->side + at, back, prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
+                lanes_put(args->side + at, back,
+                          prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
             left &= ~lanes;
         }
     }
