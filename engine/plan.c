@@ -19,6 +19,18 @@ void *glint_alloc(size_t count, size_t size)
     return memory;
 }
 
+glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
+{
+    const char *asked, *who = isa && *isa ? "isa" : "GLINT_ISA";
+    bool unknown;
+    *out = glint_stages_select(isa, &asked, &unknown);
+    if (*out)
+        return GLINT_OK;
+    if (unknown)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, sse2, avx2 or avx512 expected, got '%s'", who, asked);
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, asked);
+}
+
 glint_render_desc glint_render_desc_default(void)
 {
     return (glint_render_desc) {
@@ -83,10 +95,10 @@ static void geometry_keys(const glint_plan *plan, glint_key *where, glint_key *l
 {
     for (uint32_t i = 0; i < plan->prim_count; i++) {
         const glint_prim *p = &plan->prims[i];
-        const double numbers[] = { p->kind,      p->center[0], p->center[1], p->center[2],
-                                   p->normal[0], p->normal[1], p->normal[2], p->radius };
         const uint32_t shown[] = { p->two_sided, p->material };
-        ADD(*where, numbers);
+        double place[8];
+        glint_prim_place(p, place);
+        ADD(*where, place);
         ADD(*look, shown);
     }
 }
@@ -103,7 +115,6 @@ static void light_keys(glint_plan *plan)
         const double numbers[] = { l->directional,     l->position[0],     l->position[1],    l->position[2],
                                    l->coefficients[0], l->coefficients[1], l->coefficients[2] };
         l->key = glint_key_add(base, numbers, sizeof numbers);
-        l->occlude_key = l->key; // it reads the primitives, too, whose key is in the surface's
         ADD(all, l->key);
     }
     plan->keys[GLINT_STAGE_LIGHT] = all;
@@ -150,9 +161,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
 {
     glint_list materials = { 0 };
     const glint_camera_desc *camera = glint_camera_get(scene->desc.camera);
-    glint_status status = glint_plan_camera_init(&plan->camera, camera, &plan->desc);
-    if (!status)
-        status = glint_plan_prims(plan, scene, &materials, error);
+    glint_plan_camera_init(&plan->camera, camera, &plan->desc);
+    glint_status status = glint_plan_prims(plan, scene, &materials, error);
     if (!status)
         status = glint_plan_shading(plan, scene, &materials, error);
     glint_list_free(&materials);

@@ -41,7 +41,7 @@ typedef struct glint_plan_light {
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
     int8_t *light_side; ///< per primitive, when it casts shadows; owned
-    glint_key key, occlude_key; ///< of what `light` and `occlude` read for this light
+    glint_key key; ///< of what `light` reads for this light; `occlude` reads the same
 } glint_plan_light;
 
 /// The cone of directions in which a sphere is seen from an origin; for culling.
@@ -83,11 +83,14 @@ struct glint_plan {
     size_t effect_count, effect_capacity;
 };
 
+/// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
+glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);
 /// Zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees it.
 void *glint_alloc(size_t count, size_t size);
 
-glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc,
-                                    const glint_render_desc *render);
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+/// All that a primitive's place is made of, for keys.
+void glint_prim_place(const glint_prim *prim, double out[8]);
 /// Fills prims, prim_shape, and with `materials` (scene order) the unsorted material index of each.
 glint_status glint_plan_prims(glint_plan *plan, const glint_scene *scene, glint_list *materials, glint_error *error);
 /// What rays from `origin` know of every primitive. Either output may be NULL.
@@ -99,7 +102,6 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, cons
                                 glint_error *error);
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
-void glint_plan_light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3]);
 
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 

@@ -30,8 +30,7 @@ static void view_axes(const glint_camera_desc *desc, double forward[3], double r
     vec_cross(up, right, forward);
 }
 
-glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc,
-                                    const glint_render_desc *render)
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
 {
     double right[3], up[3];
     *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_ORTHOGRAPHIC,
@@ -41,7 +40,6 @@ glint_status glint_plan_camera_init(glint_plan_camera *out, const glint_camera_d
     const double half_height = out->orthographic ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
     vec_scale(out->right, right, half_height / render->height);
     vec_scale(out->up, up, half_height / render->height);
-    return GLINT_OK;
 }
 
 // ---- Primitives ----
@@ -128,10 +126,18 @@ static glint_status add_shape(glint_plan *plan, const glint_shape *shape, uint32
     return GLINT_OK;
 }
 
+void glint_prim_place(const glint_prim *prim, double out[8])
+{
+    out[0] = prim->kind;
+    vec_copy(out + 1, prim->center);
+    vec_copy(out + 4, prim->normal);
+    out[7] = prim->radius;
+}
+
 static glint_key place_key(const glint_prim *prim)
 {
-    const double place[] = { prim->kind,      prim->center[0], prim->center[1], prim->center[2],
-                             prim->normal[0], prim->normal[1], prim->normal[2], prim->radius };
+    double place[8];
+    glint_prim_place(prim, place);
     return glint_key_add((glint_key) { 0 }, place, sizeof place);
 }
 

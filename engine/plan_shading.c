@@ -29,7 +29,7 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
         vec_scale(out->specular, out->specular, 0);
 }
 
-void glint_plan_light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
+static void light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
 {
     *out = (glint_plan_light) { .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
                                 .shadows = desc->shadows,
@@ -114,7 +114,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, cons
     bool highlights = false;
     for (size_t i = 0; i < scene->lights.count; i++) {
         glint_plan_light light;
-        glint_plan_light_init(&light, &glint_scene_light(scene, i)->desc, plan->camera.eye);
+        light_init(&light, &glint_scene_light(scene, i)->desc, plan->camera.eye);
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
         highlights = highlights || !is_black(light.specular);

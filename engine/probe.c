@@ -17,17 +17,6 @@ typedef struct lane_group {
     uint16_t active, hits, lit;
 } lane_group;
 
-static glint_status choose(const glint_stages **out, glint_error *error)
-{
-    const char *asked;
-    bool unknown;
-    *out = glint_stages_select(NULL, &asked, &unknown);
-    if (*out)
-        return GLINT_OK;
-    return glint_fail(error, unknown ? GLINT_ERR_INVALID : GLINT_ERR_UNSUPPORTED, "GLINT_ISA: '%s' cannot be used",
-                      asked);
-}
-
 static void cast_lane(const glint_stages *stages, const glint_plan *plan, const uint32_t *candidates, lane_group *g)
 {
     glint_cast_args cast = { .group_count = 1,
@@ -104,7 +93,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     if (!status)
         status = glint_check_direction("direction", direction, error);
     if (!status)
-        status = choose(&stages, error);
+        status = glint_choose_isa(NULL, &stages, error);
     if (status)
         return status;
     double scaled[3];
@@ -183,7 +172,7 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
     if (!status)
         status = glint_check_direction("to_eye", to_eye, error);
     if (!status)
-        status = choose(&stages, error);
+        status = glint_choose_isa(NULL, &stages, error);
     if (status)
         return status;
     double n[3], l[3], v[3];

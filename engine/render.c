@@ -33,19 +33,6 @@ typedef struct frame {
 
 glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
 
-static glint_status choose_stages(const char *isa, const glint_stages **out, glint_error *error)
-{
-    const char *asked;
-    bool unknown;
-    *out = glint_stages_select(isa, &asked, &unknown);
-    if (*out)
-        return GLINT_OK;
-    if (unknown)
-        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_ISA: one of ref, sse2, avx2, avx512 expected, got '%s'",
-                          asked);
-    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_ISA: this machine lacks '%s'", asked);
-}
-
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
 {
     glint_renderer *renderer = calloc(1, sizeof *renderer);
@@ -53,7 +40,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
         return glint_fail_nomem(error);
     renderer->time_stages = desc->time_stages;
     glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
-    glint_status status = choose_stages(desc->isa, &renderer->stages, error);
+    glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
     if (!status)
         status = glint_pool_create(threads, &renderer->pool, error);
@@ -161,7 +148,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         if (renderer->time_stages)
             stats->stage_ms[stats->stage_count] = (double)sum.ns[id] * 1e-6;
         const uint64_t calls = sum.runs[id] + sum.reuses[id];
-        stats->stage_reused[stats->stage_count++] = calls ? (double)sum.reuses[id] / (double)calls : 0;
+        stats->stage_reused[stats->stage_count++] =
+            calls ? (double)sum.reuses[id] / (double)calls : sum.reuses[GLINT_STAGE_CAST] > 0;
     }
 }
 
@@ -235,6 +223,8 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     glint_image *image = NULL;
     glint_tone_table *table = NULL;
     glint_frame_stats counted;
+    if (atomic_load(&renderer->cancelled))
+        return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (unchanged(renderer, plan, out, stats))
         return GLINT_OK;
     glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,

@@ -71,22 +71,23 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     for (uint32_t i = 0; i < lights; i++) {
         const glint_plan_light *light = &plan->lights[i];
         reuse->keep_light[i] = glint_key_equal(reuse->light[i], light->key);
-        reuse->keep_occlude[i] = light->shadows && glint_key_equal(reuse->occlude[i], light->occlude_key);
         reuse->light[i] = light->key;
-        reuse->occlude[i] = light->occlude_key;
     }
 }
 
-/// A block of memory within the budget, or NULL; its contents do not matter yet.
+/// A block of memory within the budget, or NULL; its contents do not matter yet. Nothing is booked that does not fit:
+/// a failing request must not make another worker's fail.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
-    if (atomic_fetch_add(&reuse->used, bytes) + bytes <= reuse->budget) {
-        void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
-        if (block)
-            return block;
-    }
-    atomic_fetch_sub(&reuse->used, bytes);
-    return NULL;
+    size_t used = atomic_load(&reuse->used);
+    do {
+        if (bytes > reuse->budget || used > reuse->budget - bytes)
+            return NULL;
+    } while (!atomic_compare_exchange_weak(&reuse->used, &used, used + bytes));
+    void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!block)
+        atomic_fetch_sub(&reuse->used, bytes);
+    return block;
 }
 
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile)

@@ -38,9 +38,9 @@ typedef struct glint_reuse {
     glint_kept_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
-    glint_key cast, surface, light[GLINT_KEPT_LIGHTS], occlude[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    glint_key cast, surface, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
     // which results this frame has in common with the last, and therefore keeps
-    bool keep_cast, keep_surface, keep_light[GLINT_KEPT_LIGHTS], keep_occlude[GLINT_KEPT_LIGHTS];
+    bool keep_cast, keep_surface, keep_light[GLINT_KEPT_LIGHTS];
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -54,7 +54,5 @@ bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
-
-static inline bool glint_key_equal(glint_key a, glint_key b) { return a.high == b.high && a.low == b.low; }
 
 #endif

@@ -22,7 +22,8 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
     }
 }
 
-/// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own.
+/// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
+/// asked for at the first sample alone: all samples of a tile are kept, or none.
 static void find_geometry_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, bool *cast_known,
                                  bool *surface_known)
 {
@@ -36,12 +37,13 @@ static void find_geometry_memory(glint_tile *tile, const glint_tile_frame *frame
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;
     tile->at.material = tile->material;
-    if (*cast_known || (kept && reuse->keep_cast && glint_reuse_hold_cast(reuse, kept))) {
+    if (*cast_known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
         tile->at.t = (char *)kept->t + first * reuse->real_size;
         tile->at.prim = kept->prim + first;
         tile->at.hits = kept->hits + first / GLINT_GROUP;
     }
-    if (*surface_known || (kept && reuse->keep_surface && glint_reuse_hold_surface(reuse, kept)))
+    if (*surface_known ||
+        (kept && reuse->keep_surface && (k ? kept->material != NULL : glint_reuse_hold_surface(reuse, kept))))
         tile->at.material = kept->material + first;
 }
 
@@ -54,19 +56,21 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
     glint_tile_light *own = &tile->lights[slot];
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
     *light_known = kept && glint_key_equal(kept->light, l->key);
-    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->occlude_key);
+    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
     tile->at.light[slot].cosine = own->cosine;
     tile->at.light[slot].attenuation = own->attenuation;
     tile->at.light[slot].log2_specular = own->log2_specular;
     tile->at.light[slot].lit = own->lit;
     tile->at.light[slot].open = own->open;
-    if (*light_known || (kept && reuse->keep_light[light] && glint_reuse_hold_light(reuse, kept))) {
+    if (*light_known ||
+        (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
         tile->at.light[slot].cosine = kept->cosine + first;
         tile->at.light[slot].attenuation = kept->attenuation + first;
         tile->at.light[slot].log2_specular = kept->log2_specular + first;
         tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
     }
-    if (*occlude_known || (kept && l->shadows && reuse->keep_occlude[light] && glint_reuse_hold_occlude(reuse, kept)))
+    if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
+                           (k ? kept->open != NULL : glint_reuse_hold_occlude(reuse, kept))))
         tile->at.light[slot].open = kept->open + first / GLINT_GROUP;
 }
 
@@ -85,8 +89,8 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         if (reuse->keep_light[i] && kept->lights[i].cosine)
             kept->lights[i].light = plan->lights[i].key;
-        if (reuse->keep_occlude[i] && kept->lights[i].open)
-            kept->lights[i].occlude = plan->lights[i].occlude_key;
+        if (reuse->keep_light[i] && plan->lights[i].shadows && kept->lights[i].open)
+            kept->lights[i].occlude = plan->lights[i].key;
     }
 }
 
@@ -205,8 +209,10 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
         glint_tile_resolve(tile, frame);
     glint_tile_store_light(tile, frame);
     const uint64_t rendered = glint_tile_now_ns();
-    if (plan->runs[GLINT_STAGE_TONE])
+    if (plan->runs[GLINT_STAGE_TONE]) {
         glint_tile_tone(tile, frame);
+        tile->counts.runs[GLINT_STAGE_TONE]++;
+    }
     const uint64_t done = glint_tile_now_ns();
     tile->counts.ns[GLINT_STAGE_TONE] += done - rendered;
     tile->counts.tile_ns += done - start;

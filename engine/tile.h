@@ -95,7 +95,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
 
-/// tile_output.c: puts the finished tile into the image's planes and codes. `first`: of sample 0, before shading.
+/// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);

@@ -2,6 +2,7 @@
 #ifndef GLINT_BASE_HASH_H
 #define GLINT_BASE_HASH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -13,5 +14,7 @@ typedef struct glint_key {
 glint_key glint_key_add(glint_key key, const void *bytes, size_t size);
 glint_key glint_key_add_string(glint_key key, const char *string);
 void glint_key_hex(glint_key key, char hex[33]);
+
+static inline bool glint_key_equal(glint_key a, glint_key b) { return a.high == b.high && a.low == b.low; }
 
 #endif

@@ -18,13 +18,6 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
 
 glint_status glint_fail_nomem(glint_error *error) { return glint_fail(error, GLINT_ERR_NOMEM, "out of memory"); }
 
-glint_status glint_check_finite(const char *name, double value, glint_error *error)
-{
-    if (isfinite(value))
-        return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID, "%s: finite number expected, got %g", name, value);
-}
-
 glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
                                glint_error *error)
 {

@@ -12,7 +12,6 @@ glint_status glint_fail(glint_error *error, glint_status status, const char *for
 glint_status glint_fail_nomem(glint_error *error);
 
 /// Checks of one field; on failure the message reads "<name>: <what is allowed> expected, got <value>".
-glint_status glint_check_finite(const char *name, double value, glint_error *error);
 glint_status glint_check_range(const char *name, double value, double min, double max, const char *allowed,
                                glint_error *error);
 glint_status glint_check_whole(const char *name, double value, double min, double max, glint_error *error);

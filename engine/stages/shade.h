@@ -175,6 +175,7 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
     }
 }
 
+/// Each way is compiled for its constant.
 static void shade(const glint_shade_args *args)
 {
     if (args->sum[0][0])
