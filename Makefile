@@ -19,7 +19,7 @@ VERSION := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.
 # ---- Flags ----
 
 # Same bits everywhere: no contraction, and nothing of the user's that picks instructions or loosens arithmetic.
-UNWANTED := -march=% -mcpu=% -mavx% -msse% -mfma -Ofast -ffast-math -funsafe-math-optimizations -ffp-contract=% -flto%
+UNWANTED := -march=% -mcpu=% -mavx% -msse% -mfma -Of% -ffast% -funsafe% -ffp-contract=% -flto%
 WARN := -Wall -Wextra -Wpedantic
 WARN += -Wshadow
 WARN += -Wstrict-prototypes

@@ -11,16 +11,14 @@
 #include "bindings/run.h"
 
 static const glintL_field ANIMATION_FIELDS[] = {
-    {.name = "scene"}, {.name = "frames"}, {.name = "fps"}, {.name = "cyclic"}, {.name = "frame"}, {.name = NULL},
+    { .name = "scene" },  { .name = "frames" }, { .name = "fps" },
+    { .name = "cyclic" }, { .name = "frame" },  { .name = NULL },
 };
 static const glintL_field SWEEP_FIELDS[] = {
-    {.name = "scene"}, {.name = "size"}, {.name = "over"}, {.name = "sheet"}, {.name = NULL},
+    { .name = "scene" }, { .name = "size" }, { .name = "over" }, { .name = "sheet" }, { .name = NULL },
 };
 
-const char *glintL_job_name(glintL_job_kind kind)
-{
-    return kind == GLINTL_JOB_SWEEP ? "sweep" : "animation";
-}
+const char *glintL_job_name(glintL_job_kind kind) { return kind == GLINTL_JOB_SWEEP ? "sweep" : "animation"; }
 
 static const glintL_field *own_fields(glintL_job_kind kind)
 {
@@ -229,23 +227,23 @@ void glintL_job_build(lua_State *L, int index, int64_t n)
 
 static void list_fields(lua_State *L, const char *name, const glintL_field *own)
 {
-    static const luaL_Reg methods[] = {{"run", glintL_job_run}, {NULL, NULL}};
+    static const luaL_Reg methods[] = { { "run", glintL_job_run }, { NULL, NULL } };
     glintL_field fields[GLINTL_RENDER_FIELDS + 8];
     size_t count = 0;
     for (; own->name; own++)
         fields[count++] = *own;
     memcpy(fields + count, glintL_render_fields, sizeof glintL_render_fields); // with its end
-    glintL_variant variant = {.name = name, .fields = fields};
+    glintL_variant variant = { .name = name, .fields = fields };
     glintL_list_variant(L, &variant, methods);
 }
 
 void glintL_open_animation(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_member},
-        {"__newindex", write_field},
-        {"__tostring", to_string},
-        {NULL, NULL},
+        { "__index", read_member },
+        { "__newindex", write_field },
+        { "__tostring", to_string },
+        { NULL, NULL },
     };
     luaL_newmetatable(L, GLINTL_ANIMATION);
     luaL_setfuncs(L, meta, 0);

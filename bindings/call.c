@@ -68,7 +68,7 @@ bool glintL_call_settle(glintL_run *run)
     if (!work)
         return true;
     run->deferred = NULL;
-    glintL_naming naming = {.pattern = work->render.output, .is_numbered = run->count > 1};
+    glintL_naming naming = { .pattern = work->render.output, .is_numbered = run->count > 1 };
     bool good = glintL_work_name(work, &naming, &error) == GLINT_OK;
     if (!good)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index, "%s", error.message);
@@ -89,7 +89,7 @@ static glintL_naming naming_of(const glintL_run *run, const glintL_render *rende
     bool writes = *render->output && strcmp(render->output, "none") != 0;
     bool asked = run->asked.render_text[glintL_render_find("output")] != NULL;
     // A name the script gives for one call is that call's name; one from the command line serves all of them.
-    return (glintL_naming){.pattern = writes ? render->output : NULL, .is_numbered = asked && is_numbered};
+    return (glintL_naming) { .pattern = writes ? render->output : NULL, .is_numbered = asked && is_numbered };
 }
 
 // Whether the files of the work are there, under the name the first call would get either way.

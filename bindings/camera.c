@@ -12,22 +12,22 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, camera.member)
 
-static const char *const PROJECTIONS[] = {"perspective", "orthographic", NULL};
+static const char *const PROJECTIONS[] = { "perspective", "orthographic", NULL };
 
 static const glintL_field FIELDS[] = {
-    {.name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true},
-    {.name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at)},
-    {.name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction)},
-    {.name = "up", .kind = GLINTL_VECTOR, .offset = AT(up)},
-    {.name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad)},
-    {.name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS},
-    {.name = "height", .kind = GLINTL_NUMBER, .offset = AT(height)},
-    {.name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset)},
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)},
-    {.name = NULL},
+    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true },
+    { .name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at) },
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction) },
+    { .name = "up", .kind = GLINTL_VECTOR, .offset = AT(up) },
+    { .name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad) },
+    { .name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS },
+    { .name = "height", .kind = GLINTL_NUMBER, .offset = AT(height) },
+    { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
 };
 
-static const glintL_variant CAMERA = {.name = "camera", .fields = FIELDS};
+static const glintL_variant CAMERA = { .name = "camera", .fields = FIELDS };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -47,15 +47,9 @@ static glint_status set(void *object, const void *desc, glint_error *error)
     return glint_camera_set(object, &((const desc_type *)desc)->camera, error);
 }
 
-static void *retain(void *object)
-{
-    return glint_camera_retain(object);
-}
+static void *retain(void *object) { return glint_camera_retain(object); }
 
-static void release(void *object)
-{
-    glint_camera_release(object);
-}
+static void release(void *object) { glint_camera_release(object); }
 
 // The one of at and direction set last is the one used.
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
@@ -81,7 +75,7 @@ static const glintL_class CLASS = {
 
 static int new_camera(lua_State *L)
 {
-    desc_type desc = {.camera = glint_camera_desc_default(), .has_at = false};
+    desc_type desc = { .camera = glint_camera_desc_default(), .has_at = false };
     glint_camera *camera = NULL;
     glint_error error;
     lua_settop(L, 1);

@@ -14,10 +14,7 @@ typedef union description { // of whatever object
 // ---- Fields ----
 
 // The class is the first upvalue of each metamethod. 1: the object.
-static const glintL_class *this_class(lua_State *L)
-{
-    return lua_touserdata(L, lua_upvalueindex(1));
-}
+static const glintL_class *this_class(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
 
 static const luaL_Reg *find_function(const luaL_Reg *functions, const char *name)
 {
@@ -120,9 +117,9 @@ static int read_member(lua_State *L)
 static void read_component(lua_State *L, const glintL_variant *variant, int part, description *desc)
 {
     static const glintL_field parts[] = {
-        {.name = "x", .kind = GLINTL_NUMBER},
-        {.name = "y", .kind = GLINTL_NUMBER},
-        {.name = "z", .kind = GLINTL_NUMBER},
+        { .name = "x", .kind = GLINTL_NUMBER },
+        { .name = "y", .kind = GLINTL_NUMBER },
+        { .name = "z", .kind = GLINTL_NUMBER },
     };
     double value;
     glintL_read_field(L, 3, variant->name, &parts[part], &value);
@@ -230,11 +227,11 @@ static int to_string(lua_State *L)
 void glintL_open_class(lua_State *L, const glintL_class *class)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_member},
-        {"__newindex", write_member},
-        {"__eq", same_object},
-        {"__tostring", to_string},
-        {NULL, NULL},
+        { "__index", read_member },
+        { "__newindex", write_member },
+        { "__eq", same_object },
+        { "__tostring", to_string },
+        { NULL, NULL },
     };
     luaL_newmetatable(L, class->type);
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);
@@ -277,8 +274,8 @@ void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL
 
 void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *class)
 {
-    static const luaL_Reg parts[] = {{"x", NULL}, {"y", NULL}, {"z", NULL}, {NULL, NULL}};
-    static const luaL_Reg close[] = {{"close", close_object}, {NULL, NULL}};
+    static const luaL_Reg parts[] = { { "x", NULL }, { "y", NULL }, { "z", NULL }, { NULL, NULL } };
+    static const luaL_Reg close[] = { { "close", close_object }, { NULL, NULL } };
     glintL_list_variant(L, variant, class->methods);
     glintL_push_table(L, &LISTED);
     lua_getfield(L, -1, variant->name);
@@ -287,7 +284,4 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
     lua_pop(L, 2);
 }
 
-void glintL_push_listed(lua_State *L)
-{
-    glintL_push_table(L, &LISTED);
-}
+void glintL_push_listed(lua_State *L) { glintL_push_table(L, &LISTED); }

@@ -29,7 +29,7 @@ typedef struct cli_options {
     cli_command command;
     bool json, quiet, help, version;
     const char *script; ///< NULL: none given
-    char **arguments;   ///< of compare; after `--` those of the script
+    char **arguments; ///< of compare; after `--` those of the script
     int argument_count;
     int64_t frame; ///< of explain
     double fail, warn; ///< of compare
@@ -108,7 +108,7 @@ void cli_progress_clear(cli_progress *progress);
 
 typedef struct cli_script {
     lua_State *state;
-    int64_t frames;  ///< of the jobs it returned
+    int64_t frames; ///< of the jobs it returned
     bool has_jobs;
 } cli_script;
 

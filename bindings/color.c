@@ -56,15 +56,12 @@ static const named NAMES[] = {
 #define NAME_COUNT (sizeof NAMES / sizeof *NAMES)
 #define LONGEST_NAME 20 // lightgoldenrodyellow
 
-static int compare(const void *name, const void *entry)
-{
-    return strcmp(name, ((const named *)entry)->name);
-}
+static int compare(const void *name, const void *entry) { return strcmp(name, ((const named *)entry)->name); }
 
 // Case does not matter, as in CSS.
 static bool find_name(const char *text, size_t length, uint32_t *code)
 {
-    char lower[LONGEST_NAME + 1] = {0};
+    char lower[LONGEST_NAME + 1] = { 0 };
     if (length > LONGEST_NAME)
         return false;
     for (size_t i = 0; i < length; i++)

@@ -14,7 +14,7 @@ bool cli_add_set(glintL_asked *asked, const char *name, const char *text)
     if (!grown)
         return false;
     asked->sets = grown;
-    grown[asked->set_count++] = (glintL_set){.name = name, .text = text};
+    grown[asked->set_count++] = (glintL_set) { .name = name, .text = text };
     return true;
 }
 
@@ -68,11 +68,12 @@ static const cli_option *find_option(int code)
 // Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
 static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI_OPTION_COUNT], char *message)
 {
-    struct option list[CLI_OPTION_COUNT + 1] = {0};
+    struct option list[CLI_OPTION_COUNT + 1] = { 0 };
     char letters[2 * CLI_OPTION_COUNT + 2] = ":", *letter = letters + 1, wrong[MESSAGE];
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
-        list[i] = (struct option){cli_option_list[i].name,
-                                  cli_option_list[i].has_text ? required_argument : no_argument, NULL, 0x100 + (int)i};
+        list[i] =
+            (struct option) { cli_option_list[i].name, cli_option_list[i].has_text ? required_argument : no_argument,
+                              NULL, 0x100 + (int)i };
         if (cli_option_list[i].letter) {
             *letter++ = cli_option_list[i].letter;
             if (cli_option_list[i].has_text)
@@ -102,8 +103,8 @@ static const struct {
     const char *name;
     cli_command command;
 } COMMANDS[] = {
-    {"render", CLI_RENDER},   {"explain", CLI_EXPLAIN}, {"describe", CLI_DESCRIBE},
-    {"compare", CLI_COMPARE}, {"cost", CLI_COST},
+    { "render", CLI_RENDER },   { "explain", CLI_EXPLAIN }, { "describe", CLI_DESCRIBE },
+    { "compare", CLI_COMPARE }, { "cost", CLI_COST },
 };
 #define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
 
@@ -182,8 +183,8 @@ static bool complete(cli_options *options, char *message)
     for (size_t i = 0; i < options->sweep_count; i++)
         good = good && cli_add_set(&options->asked, options->sweeps[i].name, "");
     if (options->start || options->end || options->jump) {
-        glintL_range range = {options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
-                              options->jump ? options->jump : 1};
+        glintL_range range = { options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
+                               options->jump ? options->jump : 1 };
         good = good && glintL_selection_add(&options->asked.selection, range);
     }
     if (!good)
@@ -193,7 +194,7 @@ static bool complete(cli_options *options, char *message)
 
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE])
 {
-    bool used[CLI_OPTION_COUNT] = {false};
+    bool used[CLI_OPTION_COUNT] = { false };
     memset(options, 0, sizeof *options);
     options->command = CLI_RENDER;
     options->asked.repeat = 1;

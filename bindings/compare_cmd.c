@@ -6,7 +6,7 @@
 
 typedef enum verdict { SAME, WARN, DIFFER, SIZE, UNREADABLE } verdict;
 
-static const char *const VERDICTS[] = {"same", "warn", "differ", "size", "file"};
+static const char *const VERDICTS[] = { "same", "warn", "differ", "size", "file" };
 
 static verdict judge(glint_status status, const glint_compare_result *result)
 {
@@ -57,7 +57,7 @@ static void print_share(FILE *out, uint64_t count, uint64_t pixels, double thres
 static void print_for_people(FILE *out, char **files, const glint_compare_result *result,
                              const glint_compare_desc *desc, verdict found)
 {
-    static const char *const words[] = {"same", "nearly the same", "different"};
+    static const char *const words[] = { "same", "nearly the same", "different" };
     fprintf(out, "%s and %s: %s\n", files[0], files[1], words[found]);
     fprintf(out, "  mean error %g, RMS error %g, peak SNR %g dB\n", result->mean_error, result->rms_error,
             result->peak_snr);
@@ -71,9 +71,9 @@ static void print_for_people(FILE *out, char **files, const glint_compare_result
 
 int cli_compare(const cli_options *options, cli_output *output)
 {
-    glint_compare_desc desc = {.fail = 1e-6, .warn = 1e-6};
-    glint_compare_result result = {0};
-    glint_error error = {.message = ""};
+    glint_compare_desc desc = { .fail = 1e-6, .warn = 1e-6 };
+    glint_compare_result result = { 0 };
+    glint_error error = { .message = "" };
     if (options->argument_count != 2) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "compare: two files expected");
         return GLINTL_EXIT_USAGE;

@@ -78,7 +78,7 @@ static void print_value(lua_State *L, FILE *out)
 
 static void print_param_json(lua_State *L, FILE *out)
 {
-    static const char *const names[] = {"name", "type", "default", "value", "min", "max", "doc"};
+    static const char *const names[] = { "name", "type", "default", "value", "min", "max", "doc" };
     for (int i = 0; i < 7; i++) {
         if (lua_getfield(L, -1, names[i]) == LUA_TNIL) {
             lua_pop(L, 1);
@@ -194,7 +194,7 @@ int cli_describe(cli_options *options, cli_output *output, glintL_run *run)
     run->mode = GLINTL_MODE_DESCRIBE;
     bool good = cli_run_script(&script, options, run) || (run->is_stopped && !run->exit_code && !run->interrupted);
     char *comment = read_comment(options->script);
-    description what = {options, run, comment ? comment : "", output->data};
+    description what = { options, run, comment ? comment : "", output->data };
     if (good) {
         lua_settop(script.state, 0);
         lua_pushcfunction(script.state, print_protected);

@@ -23,10 +23,7 @@ static void end_line(cli_output *output)
 
 // ---- Frames as JSON ----
 
-static void print_ms(FILE *out, const char *before, double ms)
-{
-    fprintf(out, "%s%.3f", before, ms);
-}
+static void print_ms(FILE *out, const char *before, double ms) { fprintf(out, "%s%.3f", before, ms); }
 
 static void print_times(FILE *out, const glintL_record *record)
 {
@@ -42,7 +39,9 @@ static void print_times(FILE *out, const glintL_record *record)
     fputs("}},\"stages\":{", out);
     for (int i = 0; i < stats->stage_count; i++)
         fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i],
-                stats->stage_reused[i] == 1 ? "reused" : "run");
+                stats->stage_reused[i] == 1  ? "reused"
+                : stats->stage_reused[i] > 0 ? "partial"
+                                             : "run");
     fputc('}', out);
 }
 
@@ -152,14 +151,11 @@ static void report_rendering(void *context, const glintL_run *run, bool begins)
         cli_progress_update(output->progress, run, begins);
 }
 
-static void report_warning(void *context, const char *message)
-{
-    cli_print_warning(context, message);
-}
+static void report_warning(void *context, const char *message) { cli_print_warning(context, message); }
 
 glintL_reporter cli_reporter(cli_output *output)
 {
-    return (glintL_reporter){output, report_rendering, report_frame, report_warning};
+    return (glintL_reporter) { output, report_rendering, report_frame, report_warning };
 }
 
 // ---- The end ----

@@ -8,15 +8,12 @@
 #include "bindings/glintL.h"
 
 #define PATH_SIZE 192 // a path longer than this is cut in messages
-#define WORD_MAX 32   // longer names have no near ones
+#define WORD_MAX 32 // longer names have no near ones
 #define PI 0x1.921fb54442d18p+1
 
 // ---- Misspelt names ----
 
-static int least(int a, int b)
-{
-    return a < b ? a : b;
-}
+static int least(int a, int b) { return a < b ? a : b; }
 
 // Edits that turn one word into the other: a letter added, left out, changed, or two neighbours swapped.
 static int distance(const char *a, const char *b)

@@ -15,24 +15,24 @@
 
 /// One field of a description struct, and how Lua spells it.
 typedef enum glintL_kind {
-    GLINTL_NUMBER,  ///< double
+    GLINTL_NUMBER, ///< double
     GLINTL_DEGREES, ///< double in radians; degrees in Lua
     GLINTL_BOOLEAN, ///< bool
-    GLINTL_VECTOR,  ///< double[3], {x, y, z}
-    GLINTL_COLOR,   ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
-    GLINTL_ENUM,    ///< enum; `names` spells its values in order, ends with NULL
-    GLINTL_STRING,  ///< char[GLINT_NAME_SIZE]
-    GLINTL_OBJECT,  ///< a glintL_box of the type `names[0]`
-    GLINTL_OTHER    ///< known by name only; the caller reads it
+    GLINTL_VECTOR, ///< double[3], {x, y, z}
+    GLINTL_COLOR, ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
+    GLINTL_ENUM, ///< enum; `names` spells its values in order, ends with NULL
+    GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
+    GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
+    GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
 
 typedef struct glintL_field {
     const char *name;
     glintL_kind kind;
-    size_t offset;            ///< in the description
-    size_t set_offset;        ///< of a bool that says the field was set (has_ambient ...); 0: none
+    size_t offset; ///< in the description
+    size_t set_offset; ///< of a bool that says the field was set (has_ambient ...); 0: none
     const char *const *names; ///< GLINTL_ENUM, GLINTL_OBJECT
-    bool required;            ///< in the constructor's table
+    bool required; ///< in the constructor's table
 } glintL_field;
 
 /// Raises `message` with the position of the Lua code that called.
@@ -114,10 +114,10 @@ void glintL_charge(lua_State *L, size_t bytes);
 
 /// What one sort of object looks like to a script.
 typedef struct glintL_variant {
-    const char *name;           ///< "point_light": the path in messages
+    const char *name; ///< "point_light": the path in messages
     const glintL_field *fields; ///< ends with a NULL name
-    const char *place;          ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
-    const luaL_Reg *getters;    ///< fields that are only read: functions of the object; NULL: none
+    const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
+    const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
 } glintL_variant;
 
 /// How the objects of one type are read and written. `desc` is a copy of the description, of at most
@@ -183,9 +183,9 @@ void glintL_set_field(lua_State *L, int object_index, const char *name);
 /// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
 typedef struct glintL_render {
     glint_render_desc desc;
-    char output[4096];       ///< "" = none given
+    char output[4096]; ///< "" = none given
     glint_encode encode;
-    uint32_t file_passes;    ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
+    uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
 } glintL_render;
 
 // ---- run.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----

@@ -3,7 +3,7 @@
 
 #include "bindings/glintL.h"
 
-static const glintL_field NO_FIELDS[] = {{.name = NULL}};
+static const glintL_field NO_FIELDS[] = { { .name = NULL } };
 
 static int get_width(lua_State *L)
 {
@@ -31,13 +31,13 @@ static int get_passes(lua_State *L)
 }
 
 static const luaL_Reg GETTERS[] = {
-    {"width", get_width},
-    {"height", get_height},
-    {"passes", get_passes},
-    {NULL, NULL},
+    { "width", get_width },
+    { "height", get_height },
+    { "passes", get_passes },
+    { NULL, NULL },
 };
 
-static const glintL_variant IMAGE = {.name = "image", .fields = NO_FIELDS, .getters = GETTERS};
+static const glintL_variant IMAGE = { .name = "image", .fields = NO_FIELDS, .getters = GETTERS };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -45,15 +45,9 @@ static const glintL_variant *variant(const void *object)
     return &IMAGE;
 }
 
-static void *retain(void *object)
-{
-    return glint_image_retain(object);
-}
+static void *retain(void *object) { return glint_image_retain(object); }
 
-static void release(void *object)
-{
-    glint_image_release(object);
-}
+static void release(void *object) { glint_image_release(object); }
 
 // A whole number from 0 up to `count` - 1.
 static int check_coordinate(lua_State *L, int index, const char *path, int count)
@@ -96,22 +90,29 @@ static int pixel(lua_State *L)
 
 static void read_options(lua_State *L, glint_write_desc *desc)
 {
-    static const char *const curves[] = {"clamp", NULL}, *const transfers[] = {"srgb", "linear", NULL};
-    static const char *const roundings[] = {"nearest", "truncate", NULL}, *const encodes[] = {"fast", "small", NULL};
+    static const char *const curves[] = { "clamp", NULL }, *const transfers[] = { "srgb", "linear", NULL };
+    static const char *const roundings[] = { "nearest", "truncate", NULL }, *const encodes[] = { "fast", "small",
+                                                                                                 NULL };
     typedef struct options {
         glint_write_desc desc;
         double bits;
     } options;
     static const glintL_field fields[] = {
-        {.name = "bits", .kind = GLINTL_NUMBER, .offset = offsetof(options, bits)},
-        {.name = "transfer", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.tone.transfer), .names = transfers},
-        {.name = "rounding", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.tone.rounding), .names = roundings},
-        {.name = "tone", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.tone.curve), .names = curves},
-        {.name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes},
-        {.name = "pass", .kind = GLINTL_OTHER},
-        {.name = NULL},
+        { .name = "bits", .kind = GLINTL_NUMBER, .offset = offsetof(options, bits) },
+        { .name = "transfer",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.transfer),
+          .names = transfers },
+        { .name = "rounding",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.rounding),
+          .names = roundings },
+        { .name = "tone", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.tone.curve), .names = curves },
+        { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
+        { .name = "pass", .kind = GLINTL_OTHER },
+        { .name = NULL },
     };
-    options read = {.desc = *desc, .bits = desc->tone.bits};
+    options read = { .desc = *desc, .bits = desc->tone.bits };
     glintL_read_table(L, 3, "save", fields, &read, false);
     if (read.bits != 8 && read.bits != 16)
         glintL_error(L, "save.bits: 8 or 16 expected, got %f", read.bits);
@@ -138,7 +139,7 @@ static int save(lua_State *L)
 {
     glint_error error;
     glintL_check_object(L, 1, GLINTL_IMAGE);
-    glint_write_desc desc = {.path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default()};
+    glint_write_desc desc = { .path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
     if (!lua_isnoneornil(L, 3))
         read_options(L, &desc);
     glint_status status = glint_image_write(glintL_check_object(L, 1, GLINTL_IMAGE), &desc, &error);
@@ -152,7 +153,7 @@ static int save(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg METHODS[] = {{"pixel", pixel}, {"save", save}, {NULL, NULL}};
+static const luaL_Reg METHODS[] = { { "pixel", pixel }, { "save", save }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_IMAGE,

@@ -5,7 +5,8 @@
 #include "bindings/run.h"
 
 static const glintL_field OPTIONS[] = {
-    {.name = "frames"}, {.name = "shard"}, {.name = "threads"}, {.name = "force"}, {.name = "repeat"}, {.name = NULL},
+    { .name = "frames" }, { .name = "shard" },  { .name = "threads" },
+    { .name = "force" },  { .name = "repeat" }, { .name = NULL },
 };
 
 static int read_count(lua_State *L, int index, const char *path, const char *expected, int max)
@@ -136,7 +137,7 @@ static void begin_plain(glintL_run *run)
 static bool merge(lua_State *L, const glintL_run *run, glintL_asked *asked, char message[GLINTL_MESSAGE_SIZE])
 {
     const glintL_selection *given = &run->asked.selection;
-    asked->selection = (glintL_selection){0};
+    asked->selection = (glintL_selection) { 0 };
     if (!parse_selection(L, &asked->selection, message)) {
         glintL_selection_clear(&asked->selection);
         return false;

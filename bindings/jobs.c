@@ -134,7 +134,7 @@ static void begin_job(job_walk *walk, lua_Integer i)
     take_job(walk, i);
     walk->render = walk->job->render;
     glintL_run_apply(walk->run, &walk->render);
-    walk->naming = (glintL_naming){.pattern = walk->render.output, .is_numbered = is_shared(walk)};
+    walk->naming = (glintL_naming) { .pattern = walk->render.output, .is_numbered = is_shared(walk) };
     if (strcmp(walk->render.output, "none") == 0) {
         walk->naming.pattern = NULL;
     } else if (!*walk->render.output) {

@@ -25,7 +25,7 @@ void glintL_json_number(FILE *out, double value)
 // Bytes of the UTF-8 character at `text`; 0: it is not well formed.
 static size_t character_length(const unsigned char *text)
 {
-    static const unsigned least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    static const unsigned least[5] = { 0, 0, 0x80, 0x800, 0x10000 };
     size_t length = text[0] < 0x80 ? 1 : text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
     if (length == 1)
         return 1;

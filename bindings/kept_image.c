@@ -7,7 +7,7 @@
 #define KEPT_IMAGE "glint.kept_image"
 
 typedef struct kept_image {
-    glintL_box box;   // of the image it becomes
+    glintL_box box; // of the image it becomes
     glint_plan *plan; // owned; a snapshot of the scene
 } kept_image;
 
@@ -75,11 +75,11 @@ static int write_member(lua_State *L)
 void glintL_open_kept_image(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_member},
-        {"__newindex", write_member},
-        {"__gc", close_kept},
-        {"__close", close_kept},
-        {NULL, NULL},
+        { "__index", read_member },
+        { "__newindex", write_member },
+        { "__gc", close_kept },
+        { "__close", close_kept },
+        { NULL, NULL },
     };
     luaL_newmetatable(L, KEPT_IMAGE);
     luaL_setfuncs(L, meta, 0);

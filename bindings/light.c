@@ -23,45 +23,33 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 static const glintL_field POINT_FIELDS[] = {
     EVERY_LIGHT,
-    {.name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true},
-    {.name = NULL},
+    { .name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true },
+    { .name = NULL },
 };
 
 static const glintL_field DIRECTIONAL_FIELDS[] = {
     EVERY_LIGHT,
-    {.name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true},
-    {.name = NULL},
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true },
+    { .name = NULL },
 };
 
 static const glintL_variant VARIANTS[] = {
-    [GLINT_LIGHT_POINT] = {.name = "point_light", .fields = POINT_FIELDS, .place = "position"},
-    [GLINT_LIGHT_DIRECTIONAL] = {.name = "directional_light", .fields = DIRECTIONAL_FIELDS},
+    [GLINT_LIGHT_POINT] = { .name = "point_light", .fields = POINT_FIELDS, .place = "position" },
+    [GLINT_LIGHT_DIRECTIONAL] = { .name = "directional_light", .fields = DIRECTIONAL_FIELDS },
 };
 
-static const glintL_variant *variant(const void *object)
-{
-    return &VARIANTS[glint_light_get(object)->kind];
-}
+static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_light_get(object)->kind]; }
 
-static void get(const void *object, void *desc)
-{
-    memcpy(desc, glint_light_get(object), sizeof(desc_type));
-}
+static void get(const void *object, void *desc) { memcpy(desc, glint_light_get(object), sizeof(desc_type)); }
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
     return glint_light_set(object, desc, error);
 }
 
-static void *retain(void *object)
-{
-    return glint_light_retain(object);
-}
+static void *retain(void *object) { return glint_light_retain(object); }
 
-static void release(void *object)
-{
-    glint_light_release(object);
-}
+static void release(void *object) { glint_light_release(object); }
 
 static void follow(void *desc)
 {
@@ -97,22 +85,16 @@ static int new_light(lua_State *L, glint_light_kind kind)
     return 1;
 }
 
-static int new_point_light(lua_State *L)
-{
-    return new_light(L, GLINT_LIGHT_POINT);
-}
+static int new_point_light(lua_State *L) { return new_light(L, GLINT_LIGHT_POINT); }
 
-static int new_directional_light(lua_State *L)
-{
-    return new_light(L, GLINT_LIGHT_DIRECTIONAL);
-}
+static int new_directional_light(lua_State *L) { return new_light(L, GLINT_LIGHT_DIRECTIONAL); }
 
 void glintL_open_light(lua_State *L)
 {
     static const luaL_Reg constructors[] = {
-        {"point_light", new_point_light},
-        {"directional_light", new_directional_light},
-        {NULL, NULL},
+        { "point_light", new_point_light },
+        { "directional_light", new_directional_light },
+        { NULL, NULL },
     };
     glintL_open_class(L, &CLASS);
     for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)

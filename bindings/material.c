@@ -9,19 +9,19 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
-static const char *const MODELS[] = {"phong", "blinn_phong", "lambert", NULL};
+static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", NULL };
 
 static const glintL_field FIELDS[] = {
-    {.name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS},
-    {.name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient)},
-    {.name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse)},
-    {.name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular)},
-    {.name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess)},
-    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)},
-    {.name = NULL},
+    { .name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS },
+    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient) },
+    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse) },
+    { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular) },
+    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
 };
 
-static const glintL_variant MATERIAL = {.name = "material", .fields = FIELDS};
+static const glintL_variant MATERIAL = { .name = "material", .fields = FIELDS };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -29,25 +29,16 @@ static const glintL_variant *variant(const void *object)
     return &MATERIAL;
 }
 
-static void get(const void *object, void *desc)
-{
-    memcpy(desc, glint_material_get(object), sizeof(desc_type));
-}
+static void get(const void *object, void *desc) { memcpy(desc, glint_material_get(object), sizeof(desc_type)); }
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
     return glint_material_set(object, desc, error);
 }
 
-static void *retain(void *object)
-{
-    return glint_material_retain(object);
-}
+static void *retain(void *object) { return glint_material_retain(object); }
 
-static void release(void *object)
-{
-    glint_material_release(object);
-}
+static void release(void *object) { glint_material_release(object); }
 
 static void follow(void *desc)
 {
@@ -72,10 +63,10 @@ static int evaluate(lua_State *L)
         double normal[3], to_light[3], to_eye[3];
     } geometry;
     static const glintL_field fields[] = {
-        {.name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true},
-        {.name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true},
-        {.name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true},
-        {.name = NULL},
+        { .name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },
+        { .name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },
+        { .name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },
+        { .name = NULL },
     };
     geometry at;
     glint_reflection out;
@@ -93,7 +84,7 @@ static int evaluate(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg METHODS[] = {{"evaluate", evaluate}, {NULL, NULL}};
+static const luaL_Reg METHODS[] = { { "evaluate", evaluate }, { NULL, NULL } };
 
 static const glintL_class CLASS = {
     .type = GLINTL_MATERIAL,

@@ -7,25 +7,13 @@ static int apply(lua_State *L, const char *path, double (*function)(double))
     return 1;
 }
 
-static int math_sin(lua_State *L)
-{
-    return apply(L, "sin", glint_sin);
-}
+static int math_sin(lua_State *L) { return apply(L, "sin", glint_sin); }
 
-static int math_cos(lua_State *L)
-{
-    return apply(L, "cos", glint_cos);
-}
+static int math_cos(lua_State *L) { return apply(L, "cos", glint_cos); }
 
-static int math_tan(lua_State *L)
-{
-    return apply(L, "tan", glint_tan);
-}
+static int math_tan(lua_State *L) { return apply(L, "tan", glint_tan); }
 
-static int math_exp(lua_State *L)
-{
-    return apply(L, "exp", glint_exp);
-}
+static int math_exp(lua_State *L) { return apply(L, "exp", glint_exp); }
 
 static int math_log(lua_State *L)
 {
@@ -44,8 +32,8 @@ static int math_pow(lua_State *L)
 void glintL_open_math(lua_State *L)
 {
     static const luaL_Reg functions[] = {
-        {"sin", math_sin}, {"cos", math_cos}, {"tan", math_tan}, {"exp", math_exp},
-        {"log", math_log}, {"pow", math_pow}, {NULL, NULL},
+        { "sin", math_sin }, { "cos", math_cos }, { "tan", math_tan }, { "exp", math_exp },
+        { "log", math_log }, { "pow", math_pow }, { NULL, NULL },
     };
     luaL_setfuncs(L, functions, 0);
 }

@@ -17,19 +17,19 @@
 // What stands in a pattern at `text`, which begins with '%' or '#'.
 typedef struct place {
     size_t length; // of the pattern; 0: wrong
-    int digits;    // -1: a plain '%'
+    int digits; // -1: a plain '%'
 } place;
 
 static place read_place(const char *text)
 {
-    place found = {0, 0};
+    place found = { 0, 0 };
     if (*text == '#') {
         found.length = strspn(text, "#");
         found.digits = found.length <= DIGITS_MAX ? (int)found.length : DIGITS_MAX;
         return found;
     }
     if (text[1] == '%')
-        return (place){2, -1};
+        return (place) { 2, -1 };
     size_t figures = strspn(text + 1, "0123456789");
     if (text[1 + figures] != 'd' || figures > 3 || (figures > 0 && text[1] != '0'))
         return found;
@@ -96,7 +96,7 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
 bool glintL_name_has_number(const char *pattern)
 {
     for (const char *at = pattern; *at;) {
-        place found = is_place(pattern, at) ? read_place(at) : (place){1, -1};
+        place found = is_place(pattern, at) ? read_place(at) : (place) { 1, -1 };
         if (found.digits >= 0)
             return true;
         at += found.length ? found.length : 1;
@@ -109,7 +109,7 @@ static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_P
 {
     size_t used = 0;
     for (const char *at = naming->pattern; *at && used < GLINTL_PATH_SIZE - 1;) {
-        place found = {1, -1};
+        place found = { 1, -1 };
         if (!naming->is_plain && is_place(naming->pattern, at))
             found = read_place(at);
         if (found.digits >= 0)

@@ -29,9 +29,9 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    bool *const flags[] = {&options->json,    &options->quiet,       &options->help,
-                           &options->version, &options->asked.force, &options->asked.no_reuse};
-    static const char *const names[] = {"json", "quiet", "help", "version", "force", "no-reuse"};
+    bool *const flags[] = { &options->json,    &options->quiet,       &options->help,
+                            &options->version, &options->asked.force, &options->asked.no_reuse };
+    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse" };
     for (int i = 0; i < 6; i++)
         if (strcmp(option->name, names[i]) == 0)
             *flags[i] = true;
@@ -163,34 +163,34 @@ static bool read_threshold(cli_options *options, const cli_option *option, char 
 }
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    {"frames", 'f', true, CLI_RENDER, read_frames},
-    {"start", 's', true, CLI_RENDER, read_step},
-    {"end", 'e', true, CLI_RENDER, read_step},
-    {"jump", 'j', true, CLI_RENDER, read_step},
-    {"shard", 0, true, CLI_RENDER, read_shard},
-    {"frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_COST, read_frame},
-    {"output", 'o', true, CLI_RENDER | CLI_EXPLAIN, read_render},
-    {"set", 'D', true, SCRIPTED, read_set},
-    {"sweep", 0, true, CLI_RENDER, read_sweep},
-    {"size", 0, true, SCRIPTED, read_size},
-    {"samples", 0, true, SCRIPTED, read_render},
-    {"precision", 0, true, SCRIPTED, read_render},
-    {"bits", 0, true, SCRIPTED, read_render},
-    {"transfer", 0, true, SCRIPTED, read_render},
-    {"rounding", 0, true, SCRIPTED, read_render},
-    {"tone", 0, true, SCRIPTED, read_render},
-    {"passes", 0, true, SCRIPTED, read_render},
-    {"encode", 0, true, SCRIPTED, read_render},
-    {"seed", 0, true, SCRIPTED, read_render},
-    {"threads", 't', true, SCRIPTED, read_count},
-    {"no-reuse", 0, false, CLI_RENDER, read_flag},
-    {"reuse-memory", 0, true, CLI_RENDER, read_memory},
-    {"force", 0, false, CLI_RENDER, read_flag},
-    {"repeat", 0, true, CLI_RENDER, read_count},
-    {"json", 0, false, ALL, read_flag},
-    {"quiet", 'q', false, ALL, read_flag},
-    {"fail", 0, true, CLI_COMPARE, read_threshold},
-    {"warn", 0, true, CLI_COMPARE, read_threshold},
-    {"help", 'h', false, ALL, read_flag},
-    {"version", 0, false, ALL, read_flag},
+    { "frames", 'f', true, CLI_RENDER, read_frames },
+    { "start", 's', true, CLI_RENDER, read_step },
+    { "end", 'e', true, CLI_RENDER, read_step },
+    { "jump", 'j', true, CLI_RENDER, read_step },
+    { "shard", 0, true, CLI_RENDER, read_shard },
+    { "frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_COST, read_frame },
+    { "output", 'o', true, CLI_RENDER | CLI_EXPLAIN, read_render },
+    { "set", 'D', true, SCRIPTED, read_set },
+    { "sweep", 0, true, CLI_RENDER, read_sweep },
+    { "size", 0, true, SCRIPTED, read_size },
+    { "samples", 0, true, SCRIPTED, read_render },
+    { "precision", 0, true, SCRIPTED, read_render },
+    { "bits", 0, true, SCRIPTED, read_render },
+    { "transfer", 0, true, SCRIPTED, read_render },
+    { "rounding", 0, true, SCRIPTED, read_render },
+    { "tone", 0, true, SCRIPTED, read_render },
+    { "passes", 0, true, SCRIPTED, read_render },
+    { "encode", 0, true, SCRIPTED, read_render },
+    { "seed", 0, true, SCRIPTED, read_render },
+    { "threads", 't', true, SCRIPTED, read_count },
+    { "no-reuse", 0, false, CLI_RENDER, read_flag },
+    { "reuse-memory", 0, true, CLI_RENDER, read_memory },
+    { "force", 0, false, CLI_RENDER, read_flag },
+    { "repeat", 0, true, CLI_RENDER, read_count },
+    { "json", 0, false, ALL, read_flag },
+    { "quiet", 'q', false, ALL, read_flag },
+    { "fail", 0, true, CLI_COMPARE, read_threshold },
+    { "warn", 0, true, CLI_COMPARE, read_threshold },
+    { "help", 'h', false, ALL, read_flag },
+    { "version", 0, false, ALL, read_flag },
 };

@@ -44,10 +44,7 @@ static void print_line(cli_output *output, const char *color, const char *kind, 
         fprintf(stderr, "glint: %s%s\n", kind, message);
 }
 
-void cli_print_error(cli_output *output, const char *message)
-{
-    print_line(output, "\033[1;31m", "error: ", message);
-}
+void cli_print_error(cli_output *output, const char *message) { print_line(output, "\033[1;31m", "error: ", message); }
 
 void cli_print_warning(cli_output *output, const char *message)
 {

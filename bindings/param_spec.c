@@ -114,7 +114,7 @@ static void check_type(lua_State *L, int index, const char *path)
 // Copies min, max, doc and choices from the table at `from` into the spec on top. The default is at spec.default.
 static void read_limits(lua_State *L, int from, int spec, const char *path, const char *type)
 {
-    static const char *const names[] = {"min", "max", "doc", "choices"};
+    static const char *const names[] = { "min", "max", "doc", "choices" };
     char full[160];
     for (int i = 0; i < 4; i++) {
         snprintf(full, sizeof full, "%s.%s", path, names[i]);
@@ -146,7 +146,8 @@ static void read_limits(lua_State *L, int from, int spec, const char *path, cons
 static void check_keys(lua_State *L, int index, const char *path)
 {
     static const glintL_field known[] = {
-        {.name = "min"}, {.name = "max"}, {.name = "choices"}, {.name = "doc"}, {.name = NULL}};
+        { .name = "min" }, { .name = "max" }, { .name = "choices" }, { .name = "doc" }, { .name = NULL }
+    };
     lua_pushnil(L);
     while (lua_next(L, index)) {
         lua_pop(L, 1);

@@ -146,8 +146,8 @@ static int new_params(lua_State *L)
     params_box *box = lua_newuserdatauv(L, sizeof *box, 1); // 2
     box->self = box;
     luaL_setmetatable(L, GLINTL_PARAMS);
-    lua_newtable(L);                   // 3: name -> value
-    glintL_push_params(L);             // 4
+    lua_newtable(L); // 3: name -> value
+    glintL_push_params(L); // 4
     lua_Integer count = push_names(L); // 5
     for (lua_Integer i = 1; i <= count; i++) {
         lua_rawgeti(L, 5, i);
@@ -221,10 +221,10 @@ static int pairs_of_params(lua_State *L)
 void glintL_open_params(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__index", read_param},
-        {"__newindex", write_param},
-        {"__pairs", pairs_of_params},
-        {NULL, NULL},
+        { "__index", read_param },
+        { "__newindex", write_param },
+        { "__pairs", pairs_of_params },
+        { NULL, NULL },
     };
     luaL_newmetatable(L, GLINTL_PARAMS);
     luaL_setfuncs(L, meta, 0);

@@ -11,7 +11,7 @@
 #define SAMPLES_MAX 65536.0
 
 typedef enum sort {
-    WHOLE,  // a double of the engine's, min .. max
+    WHOLE, // a double of the engine's, min .. max
     CHOICE, // an enum
     BITS,
     OUTPUT,
@@ -26,38 +26,38 @@ typedef struct detail {
     const char *const *names; // CHOICE
 } detail;
 
-static const char *const precisions[] = {"double", "float", NULL};
-static const char *const transfers[] = {"srgb", "linear", NULL};
-static const char *const roundings[] = {"nearest", "truncate", NULL};
-static const char *const curves[] = {"clamp", NULL};
-static const char *const encodes[] = {"fast", "small", NULL};
+static const char *const precisions[] = { "double", "float", NULL };
+static const char *const transfers[] = { "srgb", "linear", NULL };
+static const char *const roundings[] = { "nearest", "truncate", NULL };
+static const char *const curves[] = { "clamp", NULL };
+static const char *const encodes[] = { "fast", "small", NULL };
 
 #define AT(member) offsetof(glintL_render, member)
 
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    {.name = "width", .kind = GLINTL_NUMBER},     {.name = "height", .kind = GLINTL_NUMBER},
-    {.name = "samples", .kind = GLINTL_NUMBER},   {.name = "seed", .kind = GLINTL_NUMBER},
-    {.name = "max_depth", .kind = GLINTL_NUMBER}, {.name = "bits", .kind = GLINTL_NUMBER},
-    {.name = "precision", .kind = GLINTL_ENUM},   {.name = "transfer", .kind = GLINTL_ENUM},
-    {.name = "rounding", .kind = GLINTL_ENUM},    {.name = "tone", .kind = GLINTL_ENUM},
-    {.name = "encode", .kind = GLINTL_ENUM},      {.name = "output", .kind = GLINTL_STRING},
-    {.name = "passes", .kind = GLINTL_STRING},    {.name = NULL},
+    { .name = "width", .kind = GLINTL_NUMBER },     { .name = "height", .kind = GLINTL_NUMBER },
+    { .name = "samples", .kind = GLINTL_NUMBER },   { .name = "seed", .kind = GLINTL_NUMBER },
+    { .name = "max_depth", .kind = GLINTL_NUMBER }, { .name = "bits", .kind = GLINTL_NUMBER },
+    { .name = "precision", .kind = GLINTL_ENUM },   { .name = "transfer", .kind = GLINTL_ENUM },
+    { .name = "rounding", .kind = GLINTL_ENUM },    { .name = "tone", .kind = GLINTL_ENUM },
+    { .name = "encode", .kind = GLINTL_ENUM },      { .name = "output", .kind = GLINTL_STRING },
+    { .name = "passes", .kind = GLINTL_STRING },    { .name = NULL },
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {
-    {WHOLE, AT(desc.width), 1, GLINT_SIDE_MAX, NULL},
-    {WHOLE, AT(desc.height), 1, GLINT_SIDE_MAX, NULL},
-    {WHOLE, AT(desc.samples), 1, SAMPLES_MAX, NULL},
-    {WHOLE, AT(desc.seed), 0, SEED_MAX, NULL},
-    {DEPTH, 0, 0, 0, NULL},
-    {BITS, AT(desc.tone.bits), 0, 0, NULL},
-    {CHOICE, AT(desc.precision), 0, 0, precisions},
-    {CHOICE, AT(desc.tone.transfer), 0, 0, transfers},
-    {CHOICE, AT(desc.tone.rounding), 0, 0, roundings},
-    {CHOICE, AT(desc.tone.curve), 0, 0, curves},
-    {CHOICE, AT(encode), 0, 0, encodes},
-    {OUTPUT, AT(output), 0, 0, NULL},
-    {PASSES, AT(file_passes), 0, 0, NULL},
+    { WHOLE, AT(desc.width), 1, GLINT_SIDE_MAX, NULL },
+    { WHOLE, AT(desc.height), 1, GLINT_SIDE_MAX, NULL },
+    { WHOLE, AT(desc.samples), 1, SAMPLES_MAX, NULL },
+    { WHOLE, AT(desc.seed), 0, SEED_MAX, NULL },
+    { DEPTH, 0, 0, 0, NULL },
+    { BITS, AT(desc.tone.bits), 0, 0, NULL },
+    { CHOICE, AT(desc.precision), 0, 0, precisions },
+    { CHOICE, AT(desc.tone.transfer), 0, 0, transfers },
+    { CHOICE, AT(desc.tone.rounding), 0, 0, roundings },
+    { CHOICE, AT(desc.tone.curve), 0, 0, curves },
+    { CHOICE, AT(encode), 0, 0, encodes },
+    { OUTPUT, AT(output), 0, 0, NULL },
+    { PASSES, AT(file_passes), 0, 0, NULL },
 };
 
 glintL_render glintL_render_default(void)
@@ -78,10 +78,7 @@ int glintL_render_find(const char *name)
     return -1;
 }
 
-static bool is_number(const detail *what)
-{
-    return what->sort == WHOLE || what->sort == BITS || what->sort == DEPTH;
-}
+static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == BITS || what->sort == DEPTH; }
 
 // What is allowed, for messages.
 static void describe(const detail *what, char out[256])

@@ -85,10 +85,7 @@ static run_box *new_box(lua_State *L)
     return box;
 }
 
-void glintL_attach_run(lua_State *L, glintL_run *run)
-{
-    new_box(L)->run = run;
-}
+void glintL_attach_run(lua_State *L, glintL_run *run) { new_box(L)->run = run; }
 
 // Plain Lua keeps the script's name in arg[0].
 static void read_script_name(lua_State *L, glintL_run *run)
@@ -183,7 +180,7 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     glint_renderer *renderer = NULL;
     desc.threads = run->asked.threads;
     desc.time_stages = run->times_stages;
-    desc.no_reuse = run->asked.no_reuse;
+    desc.no_reuse = run->asked.no_reuse || run->asked.repeat > 1; // repeats measure the whole frame
     desc.reuse_memory = run->asked.reuse_memory;
     glint_status status = glint_renderer_create(&desc, &renderer, error);
     if (status)

@@ -24,8 +24,8 @@
 typedef enum glintL_exit {
     GLINTL_EXIT_DONE = 0,
     GLINTL_EXIT_FAILED = 1, ///< a frame failed
-    GLINTL_EXIT_USAGE = 2,  ///< usage or script error
-    GLINTL_EXIT_LATER = 75  ///< disk full
+    GLINTL_EXIT_USAGE = 2, ///< usage or script error
+    GLINTL_EXIT_LATER = 75 ///< disk full
 } glintL_exit;
 
 // ---- selection.c ----
@@ -71,8 +71,8 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render);
 
 typedef struct glintL_naming {
     const char *pattern; ///< borrowed; NULL: no file is written
-    bool is_plain;       ///< '%' and '#' stand for themselves
-    bool is_numbered;    ///< a pattern without a place for the number gets "_0001" before its ending
+    bool is_plain; ///< '%' and '#' stand for themselves
+    bool is_numbered; ///< a pattern without a place for the number gets "_0001" before its ending
 } glintL_naming;
 
 bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
@@ -96,7 +96,7 @@ typedef struct glintL_asked {
     glintL_set *sets;
     size_t set_count;
     int threads; ///< 0: one per processor
-    int repeat;  ///< >= 1
+    int repeat; ///< >= 1
     bool force, no_reuse;
     size_t reuse_memory; ///< bytes; 0: the engine's default
 } glintL_asked;

@@ -9,16 +9,16 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
-static const char *const CAMERA[] = {GLINTL_CAMERA};
+static const char *const CAMERA[] = { GLINTL_CAMERA };
 
 static const glintL_field FIELDS[] = {
-    {.name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA},
-    {.name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient)},
-    {.name = "background", .kind = GLINTL_COLOR, .offset = AT(background)},
-    {.name = NULL},
+    { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
+    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
+    { .name = "background", .kind = GLINTL_COLOR, .offset = AT(background) },
+    { .name = NULL },
 };
 
-static const glintL_variant SCENE = {.name = "scene", .fields = FIELDS};
+static const glintL_variant SCENE = { .name = "scene", .fields = FIELDS };
 
 static const glintL_variant *variant(const void *object)
 {
@@ -26,25 +26,16 @@ static const glintL_variant *variant(const void *object)
     return &SCENE;
 }
 
-static void get(const void *object, void *desc)
-{
-    memcpy(desc, glint_scene_get(object), sizeof(desc_type));
-}
+static void get(const void *object, void *desc) { memcpy(desc, glint_scene_get(object), sizeof(desc_type)); }
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
     return glint_scene_set(object, desc, error);
 }
 
-static void *retain(void *object)
-{
-    return glint_scene_retain(object);
-}
+static void *retain(void *object) { return glint_scene_retain(object); }
 
-static void release(void *object)
-{
-    glint_scene_release(object);
-}
+static void release(void *object) { glint_scene_release(object); }
 
 // ---- Objects in and out ----
 
@@ -198,7 +189,7 @@ static int render(lua_State *L)
 }
 
 static const luaL_Reg METHODS[] = {
-    {"add", add}, {"remove", drop}, {"cast", cast}, {"render", render}, {NULL, NULL},
+    { "add", add }, { "remove", drop }, { "cast", cast }, { "render", render }, { NULL, NULL },
 };
 
 static const glintL_class CLASS = {
@@ -225,7 +216,7 @@ static void add_list(lua_State *L)
 
 static int new_scene(lua_State *L)
 {
-    desc_type desc = {.camera = NULL};
+    desc_type desc = { .camera = NULL };
     glint_scene *scene = NULL;
     glint_error error;
     lua_settop(L, 1);

@@ -143,8 +143,8 @@ static int run_protected(lua_State *L)
 
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
 {
-    task work = {script, options, run};
-    *script = (cli_script){.state = luaL_newstate()};
+    task work = { script, options, run };
+    *script = (cli_script) { .state = luaL_newstate() };
     lua_State *L = script->state;
     if (!L)
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");

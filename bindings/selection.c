@@ -62,7 +62,7 @@ void glintL_selection_clear(glintL_selection *selection)
 
 bool glintL_selection_parse(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE])
 {
-    glintL_selection read = {0};
+    glintL_selection read = { 0 };
     glintL_range range;
     const char *at = text;
     bool good;

@@ -8,7 +8,7 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
-static const char *const MATERIAL[] = {GLINTL_MATERIAL};
+static const char *const MATERIAL[] = { GLINTL_MATERIAL };
 
 // clang-format off
 #define EVERY_SHAPE \
@@ -18,20 +18,20 @@ static const char *const MATERIAL[] = {GLINTL_MATERIAL};
 // clang-format on
 
 static const glintL_field SPHERE_FIELDS[] = {
-    {.name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true},
-    {.name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true},
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
     EVERY_SHAPE,
-    {.name = NULL},
+    { .name = NULL },
 };
 
 static const glintL_field PLANE_FIELDS[] = {
-    {.name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true},
-    {.name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true},
+    { .name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true },
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
     EVERY_SHAPE,
-    {.name = NULL},
+    { .name = NULL },
 };
 
-static const glintL_field SPHERES_FIELDS[] = {EVERY_SHAPE, {.name = NULL}};
+static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
 
 // Pushes the list of materials given to glint.spheres{materials = ...}; nil for other shapes.
 static void push_kept_list(lua_State *L)
@@ -67,38 +67,26 @@ static int get_materials(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg SPHERES_GETTERS[] = {{"count", get_count}, {"materials", get_materials}, {NULL, NULL}};
+static const luaL_Reg SPHERES_GETTERS[] = { { "count", get_count }, { "materials", get_materials }, { NULL, NULL } };
 
 static const glintL_variant VARIANTS[] = {
-    [GLINT_SHAPE_SPHERE] = {.name = "sphere", .fields = SPHERE_FIELDS, .place = "center"},
-    [GLINT_SHAPE_PLANE] = {.name = "plane", .fields = PLANE_FIELDS},
-    [GLINT_SHAPE_SPHERES] = {.name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS},
+    [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
+    [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
+    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS },
 };
 
-static const glintL_variant *variant(const void *object)
-{
-    return &VARIANTS[glint_shape_get(object)->kind];
-}
+static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
 
-static void get(const void *object, void *desc)
-{
-    memcpy(desc, glint_shape_get(object), sizeof(desc_type));
-}
+static void get(const void *object, void *desc) { memcpy(desc, glint_shape_get(object), sizeof(desc_type)); }
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
     return glint_shape_set(object, desc, error);
 }
 
-static void *retain(void *object)
-{
-    return glint_shape_retain(object);
-}
+static void *retain(void *object) { return glint_shape_retain(object); }
 
-static void release(void *object)
-{
-    glint_shape_release(object);
-}
+static void release(void *object) { glint_shape_release(object); }
 
 static void assigned(lua_State *L, const glintL_field *field, void *desc)
 {
@@ -142,23 +130,17 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
     return 1;
 }
 
-static int new_sphere(lua_State *L)
-{
-    return new_shape(L, GLINT_SHAPE_SPHERE);
-}
+static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
 
-static int new_plane(lua_State *L)
-{
-    return new_shape(L, GLINT_SHAPE_PLANE);
-}
+static int new_plane(lua_State *L) { return new_shape(L, GLINT_SHAPE_PLANE); }
 
 void glintL_open_shape(lua_State *L)
 {
     static const luaL_Reg constructors[] = {
-        {"sphere", new_sphere},
-        {"plane", new_plane},
-        {"spheres", glintL_new_spheres},
-        {NULL, NULL},
+        { "sphere", new_sphere },
+        { "plane", new_plane },
+        { "spheres", glintL_new_spheres },
+        { NULL, NULL },
     };
     glintL_open_class(L, &CLASS);
     for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)

@@ -30,10 +30,7 @@ static void stop(int number)
         lua_sethook(L, raise_interrupted, LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
 }
 
-static void ignore(int number)
-{
-    (void)number;
-}
+static void ignore(int number) { (void)number; }
 
 static void handle(int number, void (*handler)(int))
 {

@@ -12,17 +12,17 @@ typedef struct arguments {
     format format;
 } arguments;
 
-static const char *const FORMATS[] = {"none", "f32", "f64", NULL};
+static const char *const FORMATS[] = { "none", "f32", "f64", NULL };
 
 static const glintL_field FIELDS[] = {
-    {.name = "data", .kind = GLINTL_OTHER},
-    {.name = "format", .kind = GLINTL_OTHER},
-    {.name = "material", .kind = GLINTL_OTHER},
-    {.name = "materials", .kind = GLINTL_OTHER},
-    {.name = "index", .kind = GLINTL_OTHER},
-    {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = offsetof(arguments, desc.two_sided)},
-    {.name = "name", .kind = GLINTL_STRING, .offset = offsetof(arguments, desc.name)},
-    {.name = NULL},
+    { .name = "data", .kind = GLINTL_OTHER },
+    { .name = "format", .kind = GLINTL_OTHER },
+    { .name = "material", .kind = GLINTL_OTHER },
+    { .name = "materials", .kind = GLINTL_OTHER },
+    { .name = "index", .kind = GLINTL_OTHER },
+    { .name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = offsetof(arguments, desc.two_sided) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = offsetof(arguments, desc.name) },
+    { .name = NULL },
 };
 
 // The stack of the constructor: its argument, the box, then what the argument's fields hold and room for each.
@@ -209,7 +209,7 @@ static void read_materials(lua_State *L, const arguments *a, glint_material **po
 
 int glintL_new_spheres(lua_State *L)
 {
-    arguments a = {.desc = {.two_sided = true}};
+    arguments a = { .desc = { .two_sided = true } };
     glint_shape *shape = NULL;
     glint_error error;
     lua_settop(L, 1);

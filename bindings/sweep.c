@@ -91,7 +91,7 @@ static void read_axes(lua_State *L, int index, int job_index)
 
 static void read_size(lua_State *L, int index, glintL_job *job)
 {
-    static const char *const names[] = {"width", "height"};
+    static const char *const names[] = { "width", "height" };
     glintL_render read = job->render;
     if (!lua_istable(L, index) || glintL_check_list(L, index, "sweep.size", false) != 2)
         glintL_refuse(L, index, "sweep.size", "{ width, height }");
@@ -106,7 +106,7 @@ static void read_size(lua_State *L, int index, glintL_job *job)
 // A contact sheet is not made yet; its description is checked all the same.
 static void check_sheet(lua_State *L, int index)
 {
-    static const glintL_field known[] = {{.name = "label"}, {.name = "output"}, {.name = NULL}};
+    static const glintL_field known[] = { { .name = "label" }, { .name = "output" }, { .name = NULL } };
     if (!lua_istable(L, index))
         glintL_refuse(L, index, "sweep.sheet", "table");
     lua_pushnil(L);

@@ -55,7 +55,7 @@ void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
         else if (step > 0)
             value = sweep->from + (sweep->to - sweep->from) * ((double)step / (double)(sweep->count - 1));
         glintL_format_number(sweep->text, value);
-        run->asked.sets[first_set + i] = (glintL_set){.name = sweep->name, .text = sweep->text};
+        run->asked.sets[first_set + i] = (glintL_set) { .name = sweep->name, .text = sweep->text };
         rest /= sweep->count;
     }
 }

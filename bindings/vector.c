@@ -13,10 +13,7 @@ void glintL_push_vector(lua_State *L, const double v[3])
     luaL_setmetatable(L, VECTOR);
 }
 
-const double *glintL_to_vector(lua_State *L, int index)
-{
-    return luaL_testudata(L, index, VECTOR);
-}
+const double *glintL_to_vector(lua_State *L, int index) { return luaL_testudata(L, index, VECTOR); }
 
 static const double *check_self(lua_State *L)
 {
@@ -42,7 +39,7 @@ static int add(lua_State *L)
     double a[3], b[3];
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
-    glintL_push_vector(L, (const double[3]){a[0] + b[0], a[1] + b[1], a[2] + b[2]});
+    glintL_push_vector(L, (const double[3]) { a[0] + b[0], a[1] + b[1], a[2] + b[2] });
     return 1;
 }
 
@@ -51,7 +48,7 @@ static int subtract(lua_State *L)
     double a[3], b[3];
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
-    glintL_push_vector(L, (const double[3]){a[0] - b[0], a[1] - b[1], a[2] - b[2]});
+    glintL_push_vector(L, (const double[3]) { a[0] - b[0], a[1] - b[1], a[2] - b[2] });
     return 1;
 }
 
@@ -60,7 +57,7 @@ static int multiply(lua_State *L)
     double a[3], b[3];
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
-    glintL_push_vector(L, (const double[3]){a[0] * b[0], a[1] * b[1], a[2] * b[2]});
+    glintL_push_vector(L, (const double[3]) { a[0] * b[0], a[1] * b[1], a[2] * b[2] });
     return 1;
 }
 
@@ -69,14 +66,14 @@ static int divide(lua_State *L)
     double a[3], b[3];
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
-    glintL_push_vector(L, (const double[3]){a[0] / b[0], a[1] / b[1], a[2] / b[2]});
+    glintL_push_vector(L, (const double[3]) { a[0] / b[0], a[1] / b[1], a[2] / b[2] });
     return 1;
 }
 
 static int negate(lua_State *L)
 {
     const double *v = check_self(L);
-    glintL_push_vector(L, (const double[3]){-v[0], -v[1], -v[2]});
+    glintL_push_vector(L, (const double[3]) { -v[0], -v[1], -v[2] });
     return 1;
 }
 
@@ -147,23 +144,24 @@ static int write_field(lua_State *L)
 void glintL_open_vector(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        {"__add", add},
-        {"__sub", subtract},
-        {"__mul", multiply},
-        {"__div", divide},
-        {"__unm", negate},
-        {"__eq", equal},
-        {"__len", length},
-        {"__tostring", to_string},
-        {"__index", read_field},
-        {"__newindex", write_field},
-        {NULL, NULL},
+        { "__add", add },
+        { "__sub", subtract },
+        { "__mul", multiply },
+        { "__div", divide },
+        { "__unm", negate },
+        { "__eq", equal },
+        { "__len", length },
+        { "__tostring", to_string },
+        { "__index", read_field },
+        { "__newindex", write_field },
+        { NULL, NULL },
     };
-    static const luaL_Reg methods[] = {{"unpack", unpack}, {NULL, NULL}};
+    static const luaL_Reg methods[] = { { "unpack", unpack }, { NULL, NULL } };
     static const glintL_field fields[] = {
-        {.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "r"}, {.name = "g"}, {.name = "b"}, {.name = NULL},
+        { .name = "x" }, { .name = "y" }, { .name = "z" },  { .name = "r" },
+        { .name = "g" }, { .name = "b" }, { .name = NULL },
     };
-    static const glintL_variant variant = {.name = "vector", .fields = fields};
+    static const glintL_variant variant = { .name = "vector", .fields = fields };
     luaL_newmetatable(L, VECTOR);
     luaL_setfuncs(L, meta, 0);
     lua_pushboolean(L, false);

@@ -8,10 +8,7 @@
 
 #define TEXT_MAX 65000 // a PNG text takes 64 KiB
 
-static bool ends_in_pfm(const glintL_render *render)
-{
-    return glintL_name_is_pfm(render->output);
-}
+static bool ends_in_pfm(const glintL_render *render) { return glintL_name_is_pfm(render->output); }
 
 glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
                                 bool keep_image, glintL_work **out, glint_error *error)
@@ -47,7 +44,7 @@ void glintL_work_destroy(glintL_work *work)
 
 static glint_write_desc write_desc(const glintL_work *work, const glintL_file *file)
 {
-    glint_write_desc desc = {.path = file->path, .pass = file->pass};
+    glint_write_desc desc = { .path = file->path, .pass = file->pass };
     desc.tone = work->render.desc.tone;
     desc.encode = work->render.encode;
     return desc;
@@ -111,10 +108,10 @@ static glint_status submit(glintL_run *run, const glintL_work *work, const glint
 {
     const char *params = run->params_text ? run->params_text : "";
     glint_text text[] = {
-        {"Software", "glint " GLINT_VERSION},
-        {"glint:key", file->key},
-        {"glint:script", run->script},
-        {"glint:params", params},
+        { "Software", "glint " GLINT_VERSION },
+        { "glint:key", file->key },
+        { "glint:script", run->script },
+        { "glint:params", params },
     };
     glint_write_desc desc = write_desc(work, file);
     desc.text = text;

@@ -36,13 +36,13 @@ static double times_power(double x, int e)
 static sum2 fast_two_sum(double a, double b) // |a| >= |b|, or a = 0
 {
     double s = a + b;
-    return (sum2){s, b - (s - a)};
+    return (sum2) { s, b - (s - a) };
 }
 
 static sum2 two_sum(double a, double b)
 {
     double s = a + b, v = s - a;
-    return (sum2){s, (a - (s - v)) + (b - v)};
+    return (sum2) { s, (a - (s - v)) + (b - v) };
 }
 
 static sum2 two_prod(double a, double b) // Dekker; |a|, |b| < 2^990 and no underflow of the error
@@ -50,7 +50,7 @@ static sum2 two_prod(double a, double b) // Dekker; |a|, |b| < 2^990 and no unde
     double p = a * b;
     double ta = 134217729.0 * a, ah = ta - (ta - a), al = a - ah;
     double tb = 134217729.0 * b, bh = tb - (tb - b), bl = b - bh;
-    return (sum2){p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
+    return (sum2) { p, ((ah * bh - p) + ah * bl + al * bh) + al * bl };
 }
 
 static sum2 add2(sum2 a, sum2 b)
@@ -112,7 +112,7 @@ static sum2 reduce_angle(double x, unsigned *quadrant)
 {
     if (fabs(x) <= HALF_PI_HIGH / 2) {
         *quadrant = 0;
-        return (sum2){x, 0};
+        return (sum2) { x, 0 };
     }
     uint64_t bits = bits_of(x), w[3];
     uint64_t m = (bits & 0xfffffffffffff) | 0x10000000000000;
@@ -128,9 +128,9 @@ static sum2 reduce_angle(double x, unsigned *quadrant)
         w[1] = ~w[1];
         w[2] = ~w[2];
     }
-    sum2 r = mul2(fraction_to_sum(w), (sum2){HALF_PI_HIGH, HALF_PI_LOW});
+    sum2 r = mul2(fraction_to_sum(w), (sum2) { HALF_PI_HIGH, HALF_PI_LOW });
     if (negative != (x < 0))
-        r = (sum2){-r.high, -r.low};
+        r = (sum2) { -r.high, -r.low };
     *quadrant = (x < 0 ? 0u - q : q) & 3;
     return r;
 }
@@ -150,15 +150,15 @@ static sum2 sine_series(sum2 r)
     p = p * x + 1.0 / 362880.0;
     p = p * x - 1.0 / 5040.0;
     p = p * x + 1.0 / 120.0;
-    sum2 third = mul2(cube, (sum2){-0x1.5555555555555p-3, -0x1.5555555555555p-57});
-    return add2(r, add2(third, (sum2){cube.high * x * p, 0}));
+    sum2 third = mul2(cube, (sum2) { -0x1.5555555555555p-3, -0x1.5555555555555p-57 });
+    return add2(r, add2(third, (sum2) { cube.high * x * p, 0 }));
 }
 
 /// cos r for |r| <= pi/4: 1 - r^2/2 + r^4/24 as sums, the rest (to r^20) in double.
 static sum2 cosine_series(sum2 r)
 {
     if (fabs(r.high) < 0x1p-54)
-        return (sum2){1, 0};
+        return (sum2) { 1, 0 };
     sum2 z = mul2(r, r), fourth = mul2(z, z);
     double x = z.high;
     double p = 1.0 / 2432902008176640000.0;
@@ -169,9 +169,9 @@ static sum2 cosine_series(sum2 r)
     p = p * x - 1.0 / 3628800.0;
     p = p * x + 1.0 / 40320.0;
     p = p * x - 1.0 / 720.0;
-    sum2 tail = mul2(fourth, (sum2){0x1.5555555555555p-5, 0x1.5555555555555p-59});
-    tail = add2(tail, (sum2){fourth.high * x * p, 0});
-    return add2(add2((sum2){1, 0}, (sum2){-0.5 * z.high, -0.5 * z.low}), tail);
+    sum2 tail = mul2(fourth, (sum2) { 0x1.5555555555555p-5, 0x1.5555555555555p-59 });
+    tail = add2(tail, (sum2) { fourth.high * x * p, 0 });
+    return add2(add2((sum2) { 1, 0 }, (sum2) { -0.5 * z.high, -0.5 * z.low }), tail);
 }
 
 static double sine_of_quadrant(sum2 r, unsigned quadrant)
@@ -212,7 +212,7 @@ double glint_tan(double radians)
     if (quadrant & 1) {
         sum2 swap = s;
         s = c;
-        c = (sum2){-swap.high, -swap.low};
+        c = (sum2) { -swap.high, -swap.low };
     }
     double q = s.high / c.high;
     sum2 product = two_prod(q, c.high);
@@ -220,10 +220,7 @@ double glint_tan(double radians)
     return q + rest / c.high;
 }
 
-double glint_tan_half(double angle_rad)
-{
-    return angle_rad == HALF_PI_HIGH ? 1.0 : glint_tan(0.5 * angle_rad);
-}
+double glint_tan_half(double angle_rad) { return angle_rad == HALF_PI_HIGH ? 1.0 : glint_tan(0.5 * angle_rad); }
 
 // ---- Exponential and logarithm ------------------------------------------------------------------------------------
 
@@ -241,10 +238,10 @@ static double exp_of_sum(sum2 x)
     p = p * f + 1.0 / 24;
     p = p * f + 1.0 / 6;
     sum2 square = mul2(r, r);
-    sum2 series = add2(r, (sum2){0.5 * square.high, 0.5 * square.low});
-    series = add2(series, (sum2){square.high * f * p, 0});
+    sum2 series = add2(r, (sum2) { 0.5 * square.high, 0.5 * square.low });
+    series = add2(series, (sum2) { square.high * f * p, 0 });
     int n = (int)k, j = n & 63, e = (n - j) / 64;
-    sum2 base = {exp2_table[j][0], exp2_table[j][1]};
+    sum2 base = { exp2_table[j][0], exp2_table[j][1] };
     sum2 y = add2(base, mul2(base, series));
     if (e > 1023)
         return times_power(times_power(y.high, 1023), e - 1023);
@@ -282,11 +279,11 @@ static sum2 log_to_sum(double x)
     p = p * h + 1.0 / 5;
     p = p * h - 1.0 / 4;
     sum2 square = mul2(f, f), cube = mul2(square, f);
-    sum2 y = mul2(cube, (sum2){0x1.5555555555555p-2, 0x1.5555555555555p-56});
-    y = add2(y, (sum2){square.high * square.high * p, 0});
-    y = add2((sum2){-0.5 * square.high, -0.5 * square.low}, y);
+    sum2 y = mul2(cube, (sum2) { 0x1.5555555555555p-2, 0x1.5555555555555p-56 });
+    y = add2(y, (sum2) { square.high * square.high * p, 0 });
+    y = add2((sum2) { -0.5 * square.high, -0.5 * square.low }, y);
     y = add2(f, y);
-    y = add2((sum2){log_table[j][1], log_table[j][2]}, y);
+    y = add2((sum2) { log_table[j][1], log_table[j][2] }, y);
     sum2 powers = two_sum(e * 0x1.62e42fefa4p-1, e * -0x1.8432a1b0e2p-43); // exact: 11 bits by 41
     powers.low -= e * 0x1.8cff81a12a17ep-85;
     return add2(powers, y);
@@ -302,7 +299,7 @@ double glint_exp(double x)
         return 0;
     if (fabs(x) < 0x1p-54)
         return 1;
-    return exp_of_sum((sum2){x, 0});
+    return exp_of_sum((sum2) { x, 0 });
 }
 
 double glint_log(double x)
@@ -367,5 +364,5 @@ double glint_pow(double x, double y)
         return sign * 0.0;
     if (fabs(estimate) < 0x1p-60)
         return sign;
-    return sign * exp_of_sum(mul2(logarithm, (sum2){y, 0}));
+    return sign * exp_of_sum(mul2(logarithm, (sum2) { y, 0 }));
 }

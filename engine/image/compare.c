@@ -31,11 +31,11 @@ static glint_status decode(const glint_bytes *bytes, glint_file_kind kind, pictu
     if (kind == GLINT_FILE_PNG) {
         status = glint_png_decode(bytes->data, bytes->size, &png, error);
         if (!status)
-            *out = (picture){png.width, png.height, png.channels, png.bits, png.codes, NULL};
+            *out = (picture) { png.width, png.height, png.channels, png.bits, png.codes, NULL };
     } else {
         status = glint_pfm_decode(bytes->data, bytes->size, &pfm, error);
         if (!status)
-            *out = (picture){pfm.width, pfm.height, pfm.channels, 0, NULL, pfm.values};
+            *out = (picture) { pfm.width, pfm.height, pfm.channels, 0, NULL, pfm.values };
     }
     return status;
 }
@@ -43,7 +43,7 @@ static glint_status decode(const glint_bytes *bytes, glint_file_kind kind, pictu
 static glint_status load(const char *path, picture *out, glint_error *error)
 {
     glint_file_kind kind;
-    glint_bytes bytes = {0};
+    glint_bytes bytes = { 0 };
     glint_error inner;
     glint_status status = glint_file_kind_of(path, &kind, error);
     if (!status)
@@ -109,11 +109,11 @@ static glint_status compare(const char *a, const picture *pa, const char *b, con
                             const glint_compare_desc *desc, glint_compare_result *out, glint_error *error)
 {
     if (pa->width != pb->width || pa->height != pb->height || pa->channels != pb->channels) {
-        *out = (glint_compare_result){.width = -1};
+        *out = (glint_compare_result) { .width = -1 };
         return glint_fail(error, GLINT_ERR_INVALID, "%.200s is %d x %d with %d channels, %.200s %d x %d with %d", a,
                           pa->width, pa->height, pa->channels, b, pb->width, pb->height, pb->channels);
     }
-    *out = (glint_compare_result){.width = pa->width, .height = pa->height, .channels = pa->channels};
+    *out = (glint_compare_result) { .width = pa->width, .height = pa->height, .channels = pa->channels };
     compare_pixels(pa, pb, desc, out);
     return GLINT_OK;
 }
@@ -121,11 +121,11 @@ static glint_status compare(const char *a, const picture *pa, const char *b, con
 glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
                                  glint_compare_result *out, glint_error *error)
 {
-    glint_compare_desc thresholds = desc ? *desc : (glint_compare_desc){1e-6, 1e-6};
+    glint_compare_desc thresholds = desc ? *desc : (glint_compare_desc) { 1e-6, 1e-6 };
     if (!(thresholds.fail >= 0) || !(thresholds.warn >= 0))
         return glint_fail(error, GLINT_ERR_INVALID, "fail, warn: numbers >= 0 expected, got %g, %g", thresholds.fail,
                           thresholds.warn);
-    picture pa = {0}, pb = {0};
+    picture pa = { 0 }, pb = { 0 };
     glint_status status = load(a, &pa, error);
     if (!status)
         status = load(b, &pb, error);

@@ -18,20 +18,14 @@
 #define SMALL_LEVEL_ZLIB 6
 
 /// Room that any of the encoders finds enough; a function of the size alone, since some look at how much there is.
-static size_t room_for(size_t size)
-{
-    return size + size / 8 + 4096;
-}
+static size_t room_for(size_t size) { return size + size / 8 + 4096; }
 
 // ---- zlib ---------------------------------------------------------------------------------------------------------
 
 #if !defined GLINT_HAVE_ISAL || !defined GLINT_HAVE_LIBDEFLATE
 static char zlib_name[32];
 
-static void make_zlib_name(void)
-{
-    snprintf(zlib_name, sizeof zlib_name, "zlib %s", zlibVersion());
-}
+static void make_zlib_name(void) { snprintf(zlib_name, sizeof zlib_name, "zlib %s", zlibVersion()); }
 
 static const char *name_of_zlib(void)
 {
@@ -42,7 +36,7 @@ static const char *name_of_zlib(void)
 
 static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
 {
-    z_stream stream = {0};
+    z_stream stream = { 0 };
     if (deflateInit2(&stream, level, Z_DEFLATED, -15, 9, level < 4 ? Z_RLE : Z_FILTERED) != Z_OK)
         return 0;
     stream.next_in = (Bytef *)(uintptr_t)data; // not written: zlib's interface lacks the const
@@ -125,10 +119,7 @@ const char *glint_encoder_name(glint_encode encode)
     return encode == GLINT_ENCODE_SMALL ? NAME_OF_SMALL : NAME_OF_FAST;
 }
 
-bool glint_deflate_has_bands(glint_encode encode)
-{
-    return encode == GLINT_ENCODE_SMALL ? SMALL_HAS_BANDS : true;
-}
+bool glint_deflate_has_bands(glint_encode encode) { return encode == GLINT_ENCODE_SMALL ? SMALL_HAS_BANDS : true; }
 
 static uint32_t checksum(const uint8_t *data, size_t size)
 {
@@ -164,13 +155,10 @@ uint32_t glint_deflate_join(uint32_t first, uint32_t second, size_t second_size)
     return (uint32_t)adler32_combine64(first, second, (off_t)second_size);
 }
 
-bool glint_deflate_begin(glint_bytes *out)
-{
-    return glint_bytes_append(out, "\x78\x01", 2);
-}
+bool glint_deflate_begin(glint_bytes *out) { return glint_bytes_append(out, "\x78\x01", 2); }
 
 bool glint_deflate_end(glint_bytes *out, uint32_t adler)
 {
-    uint8_t tail[4] = {(uint8_t)(adler >> 24), (uint8_t)(adler >> 16), (uint8_t)(adler >> 8), (uint8_t)adler};
+    uint8_t tail[4] = { (uint8_t)(adler >> 24), (uint8_t)(adler >> 16), (uint8_t)(adler >> 8), (uint8_t)adler };
     return glint_bytes_append(out, tail, sizeof tail);
 }

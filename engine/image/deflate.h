@@ -23,7 +23,7 @@ glint_status glint_deflate_band(glint_encode encode, const uint8_t *data, size_t
 /// The Adler-32 of two pieces one after the other, `second` of second_size bytes. Of nothing it is 1.
 uint32_t glint_deflate_join(uint32_t first, uint32_t second, size_t second_size);
 
-bool glint_deflate_begin(glint_bytes *out);               ///< appends the two-byte zlib header; false: out of memory
+bool glint_deflate_begin(glint_bytes *out); ///< appends the two-byte zlib header; false: out of memory
 bool glint_deflate_end(glint_bytes *out, uint32_t adler); ///< appends the checksum of all bands
 
 #endif

@@ -219,7 +219,7 @@ glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, g
     int file = open_again(path, O_RDONLY | O_CLOEXEC | O_NOCTTY, 0);
     if (file < 0)
         return fail_errno(error, path, errno);
-    glint_bytes bytes = {0};
+    glint_bytes bytes = { 0 };
     int code = read_all(file, limit, &bytes);
     close(file);
     if (!code) {

@@ -12,21 +12,15 @@ static const struct {
     const char *name;
     int channels;
 } pass_table[GLINT_PASS_COUNT] = {
-    [GLINT_PASS_BEAUTY] = {"beauty", 3},     [GLINT_PASS_BACKGROUND] = {"background", 3},
-    [GLINT_PASS_AMBIENT] = {"ambient", 3},   [GLINT_PASS_DIFFUSE] = {"diffuse", 3},
-    [GLINT_PASS_SPECULAR] = {"specular", 3}, [GLINT_PASS_DEPTH] = {"depth", 1},
-    [GLINT_PASS_NORMAL] = {"normal", 3},     [GLINT_PASS_OBJECT_ID] = {"object_id", 1},
+    [GLINT_PASS_BEAUTY] = { "beauty", 3 },     [GLINT_PASS_BACKGROUND] = { "background", 3 },
+    [GLINT_PASS_AMBIENT] = { "ambient", 3 },   [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
+    [GLINT_PASS_SPECULAR] = { "specular", 3 }, [GLINT_PASS_DEPTH] = { "depth", 1 },
+    [GLINT_PASS_NORMAL] = { "normal", 3 },     [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
 };
 
-static bool is_pass(glint_pass pass)
-{
-    return (unsigned)pass < GLINT_PASS_COUNT;
-}
+static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
 
-const char *glint_pass_name(glint_pass pass)
-{
-    return is_pass(pass) ? pass_table[pass].name : NULL;
-}
+const char *glint_pass_name(glint_pass pass) { return is_pass(pass) ? pass_table[pass].name : NULL; }
 
 glint_pass glint_pass_from_name(const char *name)
 {
@@ -36,10 +30,7 @@ glint_pass glint_pass_from_name(const char *name)
     return (glint_pass)pass;
 }
 
-int glint_pass_channels(glint_pass pass)
-{
-    return is_pass(pass) ? pass_table[pass].channels : 0;
-}
+int glint_pass_channels(glint_pass pass) { return is_pass(pass) ? pass_table[pass].channels : 0; }
 
 static bool allocate_plane(size_t pixels, float **plane)
 {
@@ -107,15 +98,9 @@ void glint_image_release(glint_image *image)
     free(image);
 }
 
-int glint_image_width(const glint_image *image)
-{
-    return image->width;
-}
+int glint_image_width(const glint_image *image) { return image->width; }
 
-int glint_image_height(const glint_image *image)
-{
-    return image->height;
-}
+int glint_image_height(const glint_image *image) { return image->height; }
 
 bool glint_image_has_pass(const glint_image *image, glint_pass pass)
 {

@@ -10,8 +10,8 @@ struct glint_image {
     atomic_int references;
     int width, height;
     float *plane[GLINT_PASS_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
-                                       ///< One-channel passes have [0] only
-    void *codes;               ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
+        ///< One-channel passes have [0] only
+    void *codes; ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
     glint_tone_desc code_tone; ///< how the codes were made
 };
 

@@ -33,10 +33,7 @@ bool glint_pfm_encode(int width, int height, int channels, float *const plane[],
 
 // ---- Reading ------------------------------------------------------------------------------------------------------
 
-static bool is_space(uint8_t c)
-{
-    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
-}
+static bool is_space(uint8_t c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
 /// Cuts the header into words; *at is then the first byte of the values: one space after the last word is taken.
 static bool split_header(const uint8_t *data, size_t size, char word[HEADER_FIELDS][32], size_t *at)
@@ -92,7 +89,7 @@ static float get_value(const uint8_t *p, bool little)
 
 glint_status glint_pfm_decode(const uint8_t *data, size_t size, glint_pfm *out, glint_error *error)
 {
-    glint_pfm pfm = {0};
+    glint_pfm pfm = { 0 };
     bool little = true;
     size_t at = 0;
     if (!parse_header(data, size, &pfm, &little, &at))

@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #define FILTER_SUB 1
-#define BAND_BYTES ((size_t)1 << 18)  // of filtered rows; fixed, so that no setting changes the file
+#define BAND_BYTES ((size_t)1 << 18) // of filtered rows; fixed, so that no setting changes the file
 #define CHUNK_BYTES ((size_t)1 << 20) // of one IDAT
 #define VECTOR 16
 
@@ -55,7 +55,7 @@ static void swap_to_file(const uint16_t *codes, size_t count, uint8_t *out)
 
 typedef struct rows {
     const glint_png_source *source;
-    size_t row_bytes;        ///< without the filter's byte
+    size_t row_bytes; ///< without the filter's byte
     void *scratch, *swapped; ///< a row each; swapped for 16 bits only
 } rows;
 
@@ -111,7 +111,7 @@ static glint_status deflate_picture(const glint_png_source *source, glint_encode
                                     glint_error *error)
 {
     size_t row_bytes = (size_t)source->width * 3 * (source->bits == 16 ? 2 : 1);
-    rows r = {source, row_bytes, malloc(row_bytes), source->bits == 16 ? malloc(row_bytes) : NULL};
+    rows r = { source, row_bytes, malloc(row_bytes), source->bits == 16 ? malloc(row_bytes) : NULL };
     glint_status status = r.scratch && (r.swapped || source->bits == 8) ? GLINT_OK : glint_fail_nomem(error);
     if (!status)
         status = deflate_bands(&r, encode, stream, error);
@@ -122,10 +122,7 @@ static glint_status deflate_picture(const glint_png_source *source, glint_encode
 
 // ---- Text ---------------------------------------------------------------------------------------------------------
 
-static bool is_latin1(uint8_t c)
-{
-    return (c >= 32 && c <= 126) || c >= 161;
-}
+static bool is_latin1(uint8_t c) { return (c >= 32 && c <= 126) || c >= 161; }
 
 static bool is_keyword(const char *keyword)
 {
@@ -189,10 +186,7 @@ static void take_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, "out of memory");
 }
 
-static void nothing_to_flush(png_structp png)
-{
-    (void)png;
-}
+static void nothing_to_flush(png_structp png) { (void)png; }
 
 static void jump_out(png_structp png, png_const_charp message)
 {
@@ -211,7 +205,7 @@ static void set_text(container *c)
 {
     for (size_t i = 0; i < c->text_count; i++) {
         copy_as_latin1(c->text[i].value, c->latin1);
-        png_text entry = {.compression = PNG_TEXT_COMPRESSION_NONE};
+        png_text entry = { .compression = PNG_TEXT_COMPRESSION_NONE };
         entry.key = (png_charp)(uintptr_t)c->text[i].keyword; // copied by libpng
         entry.text = c->latin1;
         png_set_text(c->png, c->info, &entry, 1);
@@ -264,10 +258,10 @@ glint_status glint_png_encode(const glint_png_source *source, glint_encode encod
     glint_status status = check_text(text, text_count, error);
     if (status)
         return status;
-    glint_bytes stream = {0};
+    glint_bytes stream = { 0 };
     status = deflate_picture(source, encode, &stream, error);
     if (!status) {
-        container c = {.source = source, .text = text, .text_count = text_count, .stream = &stream, .out = out};
+        container c = { .source = source, .text = text, .text_count = text_count, .stream = &stream, .out = out };
         status = put_in_container(&c, error);
     }
     free(stream.data);

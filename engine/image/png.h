@@ -5,13 +5,13 @@
 #include "engine/glint.h"
 #include "engine/image/bytes.h"
 
-#define GLINT_PNG_TEXT_MAX 65536  ///< bytes of one text value
+#define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value
 #define GLINT_PNG_KEY "glint:key" ///< tEXt keyword of a frame's key
 
 /// Where the codes of an RGB picture come from, a row at a time.
 typedef struct glint_png_source {
-    int width, height;       ///< 1 .. GLINT_SIDE_MAX
-    int bits;                ///< 8 or 16
+    int width, height; ///< 1 .. GLINT_SIDE_MAX
+    int bits; ///< 8 or 16
     glint_transfer transfer; ///< sRGB: an sRGB chunk; linear: gAMA 1.0
     /// The 3 * width codes (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
     /// large enough, or where they already are. Rows may be asked for in any order.
@@ -27,8 +27,8 @@ glint_status glint_png_encode(const glint_png_source *source, glint_encode encod
 typedef struct glint_png {
     int width, height;
     int channels; ///< 1 .. 4: grey, grey and alpha, RGB, RGB and alpha
-    int bits;     ///< 8 or 16; fewer are widened to 8, palettes become RGB
-    void *codes;  ///< uint8_t or uint16_t (native order), interleaved; the owner calls free
+    int bits; ///< 8 or 16; fewer are widened to 8, palettes become RGB
+    void *codes; ///< uint8_t or uint16_t (native order), interleaved; the owner calls free
 } glint_png;
 
 /// Decodes a PNG; every CRC must be right and IEND there. GLINT_ERR_FORMAT otherwise; *out is written on success.

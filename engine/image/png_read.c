@@ -123,7 +123,7 @@ static bool is_text(const uint8_t *body, size_t size, const char *keyword, const
 
 bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value)
 {
-    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' };
     if (size < sizeof signature || memcmp(data, signature, sizeof signature) != 0)
         return false;
     bool found = false, pixels = false;

@@ -11,7 +11,7 @@
 
 glint_tone_desc glint_tone_desc_default(void)
 {
-    return (glint_tone_desc){GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUND_NEAREST, 8};
+    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUND_NEAREST, 8 };
 }
 
 glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)

@@ -20,9 +20,9 @@
 typedef struct picture {
     const glint_image *image;
     float *const *plane;
-    glint_tone_desc tone;          ///< of the file
+    glint_tone_desc tone; ///< of the file
     const glint_tone_table *table; ///< colour passes
-    double nearest, depth_scale;   ///< depth
+    double nearest, depth_scale; ///< depth
 } picture;
 
 /// A pipe or a device: what has no ending to go by is written as PNG there.
@@ -164,11 +164,11 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
 static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
                                glint_error *error)
 {
-    picture p = {.image = image, .plane = image->plane[desc->pass], .tone = desc->tone};
+    picture p = { .image = image, .plane = image->plane[desc->pass], .tone = desc->tone };
     glint_status status = glint_tone_check(&desc->tone, error);
     if (status)
         return status;
-    glint_png_source source = {image->width, image->height, desc->tone.bits, desc->tone.transfer, NULL, &p};
+    glint_png_source source = { image->width, image->height, desc->tone.bits, desc->tone.transfer, NULL, &p };
     if (!is_color(desc->pass))
         source.transfer = GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && same_tone(&image->code_tone, &desc->tone)) {
@@ -211,7 +211,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
 
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
 {
-    glint_bytes bytes = {0};
+    glint_bytes bytes = { 0 };
     glint_status status = glint_image_encode(image, desc, &bytes, error);
     if (!status)
         status = glint_file_write(desc->path, bytes.data, bytes.size, error);
@@ -221,7 +221,7 @@ glint_status glint_image_write(const glint_image *image, const glint_write_desc 
 
 bool glint_file_has_key(const char *path, const char *key)
 {
-    struct glint_bytes bytes = {0};
+    struct glint_bytes bytes = { 0 };
     if (is_special_file(path)) // reading a pipe would wait, and keeps nothing
         return false;
     if (glint_file_read(path, KEY_FILE_LIMIT, &bytes, NULL))

@@ -14,7 +14,7 @@ typedef enum job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE } job_state;
 typedef struct job {
     struct job *next;
     job_state state;
-    glint_image *image;    ///< owned until the job is done
+    glint_image *image; ///< owned until the job is done
     glint_write_desc desc; ///< its strings follow the job in memory
     glint_write_result result;
 } job;
@@ -39,8 +39,8 @@ static double now_ms(void)
 
 static void do_job(job *j)
 {
-    glint_error error = {0};
-    glint_bytes bytes = {0};
+    glint_error error = { 0 };
+    glint_bytes bytes = { 0 };
     double start = now_ms();
     glint_status status = glint_image_encode(j->image, &j->desc, &bytes, &error);
     double encoded = now_ms();
@@ -145,10 +145,7 @@ static const char *keep_string(char **at, const char *string)
     return copy;
 }
 
-static size_t room_of(const char *string)
-{
-    return string ? strlen(string) + 1 : 0;
-}
+static size_t room_of(const char *string) { return string ? strlen(string) + 1 : 0; }
 
 static job *make_job(const glint_write_desc *desc)
 {
@@ -159,7 +156,7 @@ static job *make_job(const glint_write_desc *desc)
     job *j = malloc(room);
     if (!j)
         return NULL;
-    *j = (job){.state = JOB_QUEUED, .desc = *desc};
+    *j = (job) { .state = JOB_QUEUED, .desc = *desc };
     glint_text *text = (glint_text *)(j + 1);
     char *at = (char *)(text + desc->text_count);
     j->desc.path = keep_string(&at, desc->path);
