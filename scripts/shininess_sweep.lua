@@ -12,13 +12,13 @@ local P = glint.params {
   steps = { 16, min = 2, max = 1000, doc = "pictures of the log sweep" },
 }
 
-local clay = glint.material { diffuse = { 0.62, 0.20, 0.12 }, specular = 0.5, shininess = 50 }
+local clay = glint.material { diffuse = { 0.50, 0.16, 0.10 }, specular = 0.5, shininess = 50 }
 
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 1.2, 7 }, at = { 0, 0, 0 }, fov = 26 },
   ambient = { 0.09, 0.09, 0.11 },
   background = "#20242c",
-  glint.point_light { position = { -5, 6, 7 }, intensity = 0.85, name = "key" },
+  glint.point_light { position = { -5, 6, 7 }, intensity = 0.75, name = "key" },
   glint.point_light { position = { 7, 1, 2 }, intensity = 0.22, color = "#d6e4ff", shadows = false, name = "rim" },
   glint.plane {
     point = { 0, -1.2, 0 }, normal = { 0, 1, 0 },

@@ -9,6 +9,7 @@
 --     glint scripts/workshop.lua --set step=diffuse
 --     glint scripts/workshop.lua --set step=specular
 --     glint scripts/workshop.lua
+--     glint scripts/workshop.lua --set frames=48
 -- A term is switched off by black reflectances, and the engine then does not compute it at all: see `glint explain`.
 local glint = require "glint"
 
@@ -16,6 +17,7 @@ local P = glint.params {
   step = { "all", choices = { "ambient", "diffuse", "specular", "all" }, doc = "which term of the lighting to show" },
   shininess = { 128, min = 0, max = 2000, doc = "exponent of the highlight: higher is smaller and sharper" },
   shadows = { true, doc = "does the lamp cast shadows?" },
+  frames = { 1, min = 1, max = 10000, doc = "1 is a still; in more the lamp swings from side to side" },
 }
 
 -- 1 when the term is part of the chosen step, else 0.
@@ -39,12 +41,13 @@ local function ball(x, z, radius, material)
   return glint.sphere { center = { x, radius, z }, radius = radius, material = material }
 end
 
+local lamp = glint.point_light { position = { 0, 20, 0 }, intensity = 1, shadows = P.shadows, name = "lamp" }
+
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 6.2, 20.5 }, at = { 0, 3.8, 0 }, fov = 42 },
   ambient = { 0.16, 0.17, 0.20 },
   background = P.step == "all" and "#8fb3d9" or 0, -- a term is easier to judge on black
-  glint.point_light { position = { 0, 20, 0 }, intensity = 1, shadows = P.shadows, name = "lamp" },
-
+  lamp,
   glint.sphere { center = { 0, -10000, 0 }, radius = 10000, material = paint(0.42, 0.40, 0.37, 0), name = "ground" },
   ball(-1.0, -4.5, 4.0, paint(0.70, 0.10, 0.08, 0.7)),
   ball(5.8, -1.0, 3.0, paint(0.85, 0.55, 0.10, 0.7)),
@@ -52,4 +55,9 @@ local scene = glint.scene {
   ball(0.6, 4.2, 2.0, paint(0.16, 0.48, 0.20, 0.7)),
 }
 
-scene:render { width = 1920, height = 1080, samples = 4, output = "workshop.png" }
+return glint.animation {
+  scene = scene, frames = P.frames, cyclic = true, width = 1920, height = 1080, samples = 4,
+  frame = function(t)
+    lamp.x = 8 * glint.sin(2 * math.pi * t) -- 0 in the still: straight above
+  end,
+}
