@@ -66,9 +66,9 @@ KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa
 
 # ---- Build ----
 
-# V=1 prints the commands.
+# V=1 prints the commands, -s nothing.
 Q   := $(if $(V),,@)
-say  = $(if $(V),,@echo "  $(1)	$@")
+say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
