@@ -72,7 +72,7 @@ bool glintL_call_settle(glintL_run *run)
     bool good = glintL_work_name(work, &naming, &error) == GLINT_OK;
     if (!good)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index, "%s", error.message);
-    else if (!run->asked.force && run->asked.repeat == 1 && glintL_work_is_kept(work))
+    else if (!run->asked.force && run->asked.repeat == 1 && glintL_work_is_kept(run, work))
         good = glintL_work_finish(run, work, true);
     else if (work->image)
         good = glintL_work_finish(run, work, false);
@@ -100,7 +100,7 @@ static bool is_kept(glintL_run *run, glintL_work *work, bool open)
         return false;
     for (int numbered = 0; numbered <= (open ? 1 : 0); numbered++) {
         glintL_naming naming = naming_of(run, &work->render, open ? numbered : true);
-        if (glintL_work_name(work, &naming, &error) == GLINT_OK && glintL_work_is_kept(work))
+        if (glintL_work_name(work, &naming, &error) == GLINT_OK && glintL_work_is_kept(run, work))
             return true;
     }
     return false;

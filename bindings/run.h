@@ -214,7 +214,8 @@ void glintL_work_destroy(glintL_work *work);
 /// Names the files and takes their keys.
 glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error);
 /// Whether every file is there with its key.
-bool glintL_work_is_kept(const glintL_work *work);
+/// Whether the files are there, whole and with the work's keys. Waits for a file of the same name still at the writer.
+bool glintL_work_is_kept(glintL_run *run, const glintL_work *work);
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
 /// Reports a frame and hands its files to the writer. False: the run has failed.
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);

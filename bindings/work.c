@@ -74,8 +74,21 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
     return GLINT_OK;
 }
 
-bool glintL_work_is_kept(const glintL_work *work)
+// Whether an earlier frame of this run is on its way to one of the work's files.
+static bool is_awaited(const glintL_run *run, const glintL_work *work)
 {
+    for (const glintL_record *record = run->head; record; record = record->next)
+        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+            for (int i = 0; i < work->file_count && record->files[pass]; i++)
+                if (strcmp(record->files[pass], work->files[i].path) == 0)
+                    return true;
+    return false;
+}
+
+bool glintL_work_is_kept(glintL_run *run, const glintL_work *work)
+{
+    if (is_awaited(run, work))
+        glintL_run_collect(run, true);
     for (int i = 0; i < work->file_count; i++) {
         const glintL_file *file = &work->files[i];
         if (file->key[0] == '\0' || !glint_file_has_key(file->path, file->key))
@@ -167,7 +180,7 @@ static bool render_repeats(glintL_run *run, glintL_work *work)
 
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force)
 {
-    if (!force && run->asked.repeat == 1 && glintL_work_is_kept(work))
+    if (!force && run->asked.repeat == 1 && glintL_work_is_kept(run, work))
         return glintL_work_finish(run, work, true);
     return render_repeats(run, work) && glintL_work_finish(run, work, false);
 }
