@@ -98,7 +98,7 @@ static glintL_set *find_set(glintL_run *run, const char *name)
     glintL_set *found = NULL;
     for (size_t i = 0; i < run->asked.set_count; i++)
         if (strcmp(run->asked.sets[i].name, name) == 0)
-            found = &run->asked.sets[i]; // the last one given
+            (found = &run->asked.sets[i])->is_known = true; // the last one given wins
     return found;
 }
 
@@ -167,7 +167,6 @@ static void apply_set(lua_State *L, glintL_run *run, const char *name, int spec)
     glintL_set *set = find_set(run, name);
     if (!set)
         return;
-    set->is_known = true;
     lua_getfield(L, spec, "default");
     bool good = push_literal(L, set->text, lua_gettop(L));
     if (!good || !is_allowed(L, spec, lua_gettop(L))) {

@@ -278,7 +278,8 @@ glint_status glint_plan_light_sides(const glint_plan *plan, glint_plan_light *li
             light->light_side[i] = sign(vec_dot(prim->normal, light->directional ? light->position : f));
         } else {
             vec_scale(f, f, prim->scale);
-            light->light_side[i] = light->directional ? 1 : sign(exact_c(f, prim));
+            const bool beyond = !(vec_dot(f, f) < HUGE_VAL); // its square is: outside for certain
+            light->light_side[i] = light->directional || beyond ? 1 : sign(exact_c(f, prim));
         }
     }
     return GLINT_OK;

@@ -145,9 +145,11 @@ do
     scene:add(light)
     return scene:render(size)
   end
-  local _, worst = difference(lit(glint.point_light { position = { 1e30, 2e30, 0 }, intensity = 0.5 }),
-    lit(glint.directional_light { direction = { -1, -2, 0 }, intensity = 0.5 }))
-  check(worst <= 1, "L4: a light at 1e30 equals a directional light", worst .. " codes")
+  local sun = lit(glint.directional_light { direction = { -1, -2, 0 }, intensity = 0.5 })
+  for _, far in ipairs { 1e30, 1e155, 8e307 } do
+    local _, worst = difference(lit(glint.point_light { position = { far, 2 * far, 0 }, intensity = 0.5 }), sun)
+    check(worst <= 1, ("L4: a light at %g equals a directional light"):format(far), worst .. " codes")
+  end
 end
 do
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 2 }, at = origin },

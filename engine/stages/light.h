@@ -47,24 +47,20 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
         n[k] = r_load((const real *)args->normal[k] + at + i);
         l[k] = r_set(args->position[k]);
         if (!args->directional)
-            l[k] = l[k] - r_load((const real *)args->point[k] + at + i);
+            l[k] = (l[k] - r_load((const real *)args->point[k] + at + i)) * scale;
     }
     vr l2 = DOT(l, l), nl = DOT(n, l);
     const unsigned lit = rm_bits(r_lt(zero, nl)) & open >> i & ((1u << VR) - 1);
     group->lit |= lit << i;
     if (!lit)
         return;
-    if (args->directional) {
-        r_store_f(group->along + i, nl);
-    } else {
-        r_store_f(group->along + i, nl * scale);
-        r_store_f(group->distance2 + i, l2 * (scale * scale));
-    }
+    r_store_f(group->along + i, nl);
+    r_store_f(group->distance2 + i, l2);
     if (args->attenuated) {
         const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]),
                  c2 = r_set(args->coefficients[2]);
-        vr distance = r_sqrt(l2);
-        r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * l2)));
+        vr distance = r_sqrt(l2) / scale;
+        r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance))));
     }
     const unsigned phong = group->phong >> i & lit, blinn = group->blinn >> i & lit;
     if (!(phong | blinn))

@@ -15,9 +15,9 @@ static inline void R(shadow_rays)(const glint_occlude_args *args, size_t at, R(s
         for (int k = 0; k < 3; k++) {
             vr d = r_set(args->position[k]);
             if (!args->directional)
-                d = d - r_load((const real *)args->point[k] + at + i);
+                d = (d - r_load((const real *)args->point[k] + at + i)) * r_set(args->scale);
             r_store(rays->to_light[k] + i, d);
-            r_store_f(rays->to_light_f[k] + i, d * r_set(args->scale));
+            r_store_f(rays->to_light_f[k] + i, d);
         }
     R(filter_origins)(args->point, at, args->reference, args->filter_scale, rays->local);
 }
@@ -37,7 +37,7 @@ static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_pr
     vr a = DOT(d, d), b = -DOT(f, d);
     rm blocked = rm_and(r_lt(zero, b), r_le(zero, R(discriminant)(f, d, a, b, c, r_set(prim->r2))));
     if (!args->directional)
-        blocked = rm_and(blocked, r_lt(b, a * scale));
+        blocked = rm_and(blocked, r_lt(b * r_set(args->scale), a * scale));
     const rm inside = r_lt(c, zero);
     return light_side > 0 ? rm_or(inside, blocked) : rm_andnot(blocked, inside);
 }

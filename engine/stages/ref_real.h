@@ -274,7 +274,8 @@ static float NAME(highlight)(bool phong, REAL l2, REAL nl, NAME(vec3) l, NAME(ve
 static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t i)
 {
     NAME(vec3) position = NAME(rounded)(args->position);
-    return args->directional ? position : NAME(sub)(position, NAME(load)(args->point, i));
+    return args->directional ? position
+                             : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
 }
 
 static bool NAME(is_lit)(const glint_light_args *args, uint32_t i)
@@ -289,17 +290,16 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
     NAME(vec3) normal = NAME(load)(args->normal, i);
     NAME(vec3) l = NAME(to_light)(args, i);
     REAL l2 = NAME(length2)(l), nl = NAME(dot)(normal, l);
-    REAL scale = (REAL)args->scale;
     if (args->directional) {
         args->cosine[i] = min_float((float)nl, 1);
     } else {
-        float q = (float)(l2 * (scale * scale)), m = (float)(nl * scale);
+        float q = (float)l2, m = (float)nl;
         args->cosine[i] = min_float(m / sqrtf(q), 1);
     }
     if (args->attenuated) {
         NAME(vec3) k = NAME(rounded)(args->coefficients);
-        REAL d = NAME(square_root)(l2);
-        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * l2))), GLINT_ATTENUATION_MAX);
+        REAL d = NAME(square_root)(l2) / (REAL)args->scale;
+        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * (d * d)))), GLINT_ATTENUATION_MAX);
     }
     if (args->blinn_end) {
         uint32_t material = args->material[i];
@@ -343,7 +343,7 @@ static bool NAME(sphere_blocks)(const glint_occlude_args *args, uint32_t index, 
     const glint_prim *prim = &args->prims[index];
     int light_side = args->light_side[index];
     NAME(vec3) position = NAME(rounded)(args->position);
-    NAME(vec3) d = args->directional ? position : NAME(sub)(position, point);
+    NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(vec3) f = NAME(from_center)(point, prim);
     REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
     if (light_side < 0)
@@ -353,7 +353,7 @@ static bool NAME(sphere_blocks)(const glint_occlude_args *args, uint32_t index, 
     REAL a = NAME(length2)(d);
     REAL b = -NAME(dot)(f, d);
     REAL disc = NAME(discriminant)(f, d, a, b, c, (REAL)prim->r2);
-    return b > 0 && disc >= 0 && (args->directional || b < a * (REAL)prim->scale);
+    return b > 0 && disc >= 0 && (args->directional || b * (REAL)args->scale < a * (REAL)prim->scale);
 }
 
 static bool NAME(plane_blocks)(const glint_occlude_args *args, uint32_t index, NAME(vec3) point)

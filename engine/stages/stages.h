@@ -179,11 +179,11 @@ typedef struct glint_light_args {
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
-// l = position - point (directional: l = position); l2 = length2(l); nl = dot(normal, l)
+// l = (position - point) scale (directional: l = position); l2 = length2(l); nl = dot(normal, l)
 // lit = hit and nl > 0 and not side & GLINT_SIDE_UNLIT
-// cosine:      point light: q = (float)(l2 (scale scale)), m = (float)(nl scale), min(m / sqrt(q), 1) in float
+// cosine:      point light: q = (float)l2, m = (float)nl, min(m / sqrt(q), 1) in float
 //              directional: min((float)nl, 1)
-// attenuation: d = sqrt(l2); min((float)(1 / (c0 + (c1 d + c2 l2))), GLINT_ATTENUATION_MAX)
+// attenuation: d = sqrt(l2) / scale; min((float)(1 / (c0 + (c1 d + c2 (d d)))), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
@@ -212,11 +212,11 @@ typedef struct glint_occlude_args {
     uint64_t *rays; ///< added to: lit lanes
 } glint_occlude_args;
 // A lane is blocked where any candidate other than its own (candidate.coincident == coincident) blocks it:
-// sphere: d = position - point (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
+// sphere: d = (position - point) scale (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
 //         a = length2(d), b = -dot(f, d)
 //         light_side < 0: blocked = c > 0
 //         else c < 0:     blocked = light_side > 0
-//         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b < a scale_of_prim)
+//         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b scale < a scale_of_prim)
 // plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
 // The own sphere, when it is a candidate: blocked where side & GLINT_SIDE_BACK and light_side > 0. The own plane never blocks.
 
