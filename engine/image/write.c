@@ -190,7 +190,7 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
 glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
                                 glint_error *error)
 {
-    glint_file_kind kind;
+    glint_file_kind kind = GLINT_FILE_PNG;
     glint_status status = glint_file_kind_of(desc->path, &kind, error);
     if (status)
         return status;
