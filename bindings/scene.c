@@ -99,6 +99,8 @@ static void add_member(lua_State *L, int index, int value, const char *path)
 static int add(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
+    if (lua_gettop(L) > 2) // an object that is passed over would be missing from the picture
+        return glintL_error(L, "scene.add: one object expected, got %d", lua_gettop(L) - 1);
     lua_settop(L, 2);
     add_member(L, 1, 2, "scene.add");
     return 1; // the object, for `local ball = scene:add(glint.sphere{...})`
