@@ -12,8 +12,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#define DEPTH_NEAR 1.0 // what the nearest and the farthest depth look like; the background is 0
-#define DEPTH_FAR 0.1
 #define KEY_FILE_LIMIT ((size_t)1 << 34)
 
 /// What a row of codes is made from.
@@ -22,7 +20,7 @@ typedef struct picture {
     float *const *plane;
     glint_tone_desc tone; ///< of the file
     const glint_tone_table *table; ///< colour passes
-    double nearest, depth_scale; ///< depth
+    double nearest; ///< of all depths
 } picture;
 
 /// A pipe or a device: what has no ending to go by is written as PNG there.
@@ -79,13 +77,15 @@ static void put_linear(const picture *p, void *codes, size_t at, double value)
         ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
 }
 
+/// Nearest over distance: white at the nearest point, half as bright at twice its distance, and a horizon far away
+/// leaves the objects in front their contrast. The background, at infinity, is black.
 static const void *row_of_depth(const void *user, int y, void *scratch)
 {
     const picture *p = user;
     size_t width = (size_t)p->image->width;
     const float *depth = p->plane[0] + (size_t)y * width;
     for (size_t x = 0; x < width; x++) {
-        double value = isfinite(depth[x]) ? DEPTH_NEAR - (depth[x] - p->nearest) * p->depth_scale : 0;
+        double value = depth[x] > 0 ? p->nearest / depth[x] : 1;
         for (size_t c = 0; c < 3; c++)
             put_linear(p, scratch, 3 * x + c, value);
     }
@@ -129,19 +129,14 @@ static const void *row_of_ids(const void *user, int y, void *scratch)
 
 // ---- Which rows ---------------------------------------------------------------------------------------------------
 
-static void find_depths(picture *p)
+static void find_nearest(picture *p)
 {
     size_t count = (size_t)p->image->width * (size_t)p->image->height;
-    double nearest = INFINITY, farthest = -INFINITY;
-    for (size_t i = 0; i < count; i++) {
-        float depth = p->plane[0][i];
-        if (!isfinite(depth))
-            continue;
-        nearest = depth < nearest ? depth : nearest;
-        farthest = depth > farthest ? depth : farthest;
-    }
-    p->nearest = nearest;
-    p->depth_scale = farthest > nearest ? (DEPTH_NEAR - DEPTH_FAR) / (farthest - nearest) : 0;
+    p->nearest = HUGE_VAL;
+    for (size_t i = 0; i < count; i++)
+        p->nearest = p->plane[0][i] < p->nearest ? p->plane[0][i] : p->nearest;
+    if (isinf(p->nearest))
+        p->nearest = 0; // nothing but background
 }
 
 static bool same_tone(const glint_tone_desc *a, const glint_tone_desc *b)
@@ -179,7 +174,7 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
         status = glint_tone_table_shared(&desc->tone, &p.table, error);
         source.row = row_of_color;
     } else if (desc->pass == GLINT_PASS_DEPTH) {
-        find_depths(&p);
+        find_nearest(&p);
         source.row = row_of_depth;
     } else {
         source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
