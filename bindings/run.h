@@ -134,7 +134,6 @@ typedef struct glintL_work {
     glint_frame_stats stats;
     int file_count;
     glintL_file files[GLINT_PASS_COUNT];
-    char naming_pattern[GLINTL_PATH_SIZE]; ///< of a frame whose name is not settled yet
 } glintL_work;
 
 // ---- run.c ----

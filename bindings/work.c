@@ -4,9 +4,15 @@
 #include <string.h>
 
 #include "bindings/run.h"
-#include "engine/base/status.h"
 
 #define TEXT_MAX 65000 // a PNG text takes 64 KiB
+
+static glint_status fail(glint_error *error, glint_status status, const char *what, const char *text, const char *rest)
+{
+    error->status = status;
+    snprintf(error->message, sizeof error->message, "%s%.100s%s", what, text, rest);
+    return status;
+}
 
 static bool ends_in_pfm(const glintL_render *render) { return glintL_name_is_pfm(render->output); }
 
@@ -15,7 +21,7 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
 {
     glintL_work *work = calloc(1, sizeof *work);
     if (!work)
-        return glint_fail_nomem(error);
+        return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
     bool is_pfm = writes && ends_in_pfm(render);
     work->index = index;
     work->render = *render;
@@ -62,8 +68,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
             continue;
         file->pass = (glint_pass)pass;
         if (!glintL_name_file(naming, work->index, file->pass, file->path))
-            return glint_fail(error, GLINT_ERR_INVALID, "output: the file name '%.100s...' is too long",
-                              naming->pattern);
+            return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
         file->key[0] = '\0';
         if (!glintL_name_is_pfm(file->path) && !glintL_name_is_special(file->path)) {
             glint_write_desc desc = write_desc(work, file);
