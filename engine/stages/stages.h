@@ -53,6 +53,16 @@ typedef struct glint_bundle_prim {
     float filter_limit2; ///< sphere: (radius scale (1 + 1e-6) + 8 * 2^-24 |f|)^2, rounded up; plane: +inf
 } glint_bundle_prim;
 
+#define GLINT_NODE_WIDTH 16
+#define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the rest is the index of a primitive, not of a node
+#define GLINT_BVH_DEPTH 32 ///< nodes on the longest path from the root
+
+/// Sixteen boxes of the spatial index, a lane each. An empty slot has lower = +inf, upper = -inf.
+typedef struct glint_node {
+    float lower[3][GLINT_NODE_WIDTH], upper[3][GLINT_NODE_WIDTH];
+    uint32_t child[GLINT_NODE_WIDTH];
+} glint_node;
+
 /// Materials are sorted by what their highlight needs: Phong first, then Blinn-Phong, then those without one.
 typedef struct glint_shade_material {
     double diffuse[3], specular[3];
