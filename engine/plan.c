@@ -1,4 +1,5 @@
 #include "engine/plan.h"
+#include "engine/base/alloc.h"
 #include "engine/base/status.h"
 
 #include <stdlib.h>
@@ -6,18 +7,6 @@
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "light",
                                                            "occlude", "shade", "resolve", "tone" };
-
-void *glint_alloc(size_t count, size_t size)
-{
-    size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 64)
-        return NULL;
-    bytes = (bytes + 63) / 64 * 64;
-    void *memory = aligned_alloc(64, bytes ? bytes : 64);
-    if (memory)
-        memset(memory, 0, bytes);
-    return memory;
-}
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {

@@ -85,8 +85,6 @@ struct glint_plan {
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);
-/// Zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees it.
-void *glint_alloc(size_t count, size_t size);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
 /// All that a primitive's place is made of, for keys.

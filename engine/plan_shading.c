@@ -1,3 +1,4 @@
+#include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/plan.h"

@@ -1,4 +1,5 @@
 /// One ray, one reflection: the answers of the frame's own kernels for people who debug, and for tests.
+#include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/plan.h"

@@ -1,4 +1,5 @@
 /// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
+#include "engine/base/alloc.h"
 #include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/image/image.h"
