@@ -3,7 +3,6 @@
 #include "engine/base/status.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "light",
                                                            "occlude", "shade", "resolve", "tone" };
