@@ -1,4 +1,5 @@
 #include "engine/bvh.h"
+#include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/bvh_split.h"
 
@@ -43,12 +44,12 @@ typedef struct node_plan {
     uint32_t count;
 } node_plan;
 
-typedef struct node_slot {
-    glint_bounds box;
-    float place; ///< on the node's widest axis
-    uint32_t prim; ///< index, or
-    const glint_record_set *set; ///< NULL: a primitive
-} node_slot;
+/// A node's slots in the order of its sets.
+typedef struct node_slots {
+    const glint_bounds *boxes[GLINT_NODE_WIDTH];
+    const glint_record_set *sets[GLINT_NODE_WIDTH]; ///< NULL: the box is a record
+    uint32_t count;
+} node_slots;
 
 /// Makes room for `count` more nodes; UINT32_MAX: out of memory, else the index of the first.
 static uint32_t nodes_add(node_list *list, uint32_t count)
@@ -146,44 +147,70 @@ static int widest_axis(const glint_bounds *box)
     return widest;
 }
 
-/// Puts a slot into its place by the widest axis; equal ones stay in the order they came.
-static void insert_slot(node_slot *slots, uint32_t count, node_slot slot)
+/// Returns how many of the slots are sets.
+static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *slots)
 {
-    while (count > 0 && slots[count - 1].place > slot.place) {
-        slots[count] = slots[count - 1];
-        count--;
-    }
-    slots[count] = slot;
-}
-
-static uint32_t plan_slots(const builder *b, const node_plan *plan, int axis, node_slot slots[GLINT_NODE_WIDTH])
-{
-    uint32_t count = 0;
+    uint32_t count = 0, sets = 0;
     for (uint32_t i = 0; i < plan->count; i++) {
-        const glint_record_set *set = &plan->sets[i];
-        const glint_record *records = glint_records_of(&b->records, set);
-        for (uint32_t k = 0; k < (plan->open[i] ? set->count : 1); k++) {
-            node_slot slot = { .box = set->box, .set = set };
-            if (plan->open[i]) {
-                slot.box = records[k];
-                slot.set = NULL;
-                memcpy(&slot.prim, (const char *)&records[k].lower + 3 * sizeof(float), sizeof slot.prim);
-            }
-            slot.place = slot.box.lower[axis] * 0.5f + slot.box.upper[axis] * 0.5f;
-            insert_slot(slots, count++, slot);
+        const glint_record *records = glint_records_of(&b->records, &plan->sets[i]);
+        for (uint32_t k = 0; plan->open[i] && k < plan->sets[i].count; k++) {
+            slots->boxes[count] = &records[k];
+            slots->sets[count++] = NULL;
+        }
+        if (!plan->open[i]) {
+            slots->boxes[count] = &plan->sets[i].box;
+            slots->sets[count++] = &plan->sets[i];
+            sets++;
         }
     }
-    return count;
+    slots->count = count;
+    return sets;
 }
 
-static void fill_node(glint_node *node, const node_slot *slots, uint32_t count, uint32_t first_child)
+/// Where each slot goes: by the centres along an axis, equal ones in the order they came.
+static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_NODE_WIDTH])
 {
-    for (uint32_t i = 0; i < GLINT_NODE_WIDTH; i++) {
-        for (int axis = 0; axis < 3; axis++) {
-            node->lower[axis][i] = i < count ? slots[i].box.lower[axis] : INFINITY;
-            node->upper[axis][i] = i < count ? slots[i].box.upper[axis] : -INFINITY;
+    typedef int32_t int4 __attribute__((vector_size(16)));
+    glint_float4 places[GLINT_NODE_WIDTH / 4];
+    for (uint32_t i = 0; i < GLINT_NODE_WIDTH; i++)
+        places[i / 4][i % 4] =
+            i < slots->count ? slots->boxes[i]->lower[axis] * 0.5f + slots->boxes[i]->upper[axis] * 0.5f : INFINITY;
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const float place = places[i / 4][i % 4];
+        int4 before = { 0 };
+        for (int32_t k = 0; k < GLINT_NODE_WIDTH / 4; k++) {
+            const int4 index = (int4) { 0, 1, 2, 3 } + 4 * k;
+            before -= (places[k] < place) | ((places[k] == place) & (index < (int32_t)i));
         }
-        node->child[i] = i >= count ? 0 : slots[i].set ? first_child++ : GLINT_NODE_PRIM | slots[i].prim;
+        ranks[i] = (uint32_t)(before[0] + before[1] + before[2] + before[3]);
+    }
+}
+
+static uint32_t record_index(const glint_record *record)
+{
+    uint32_t index;
+    memcpy(&index, (const char *)&record->lower + 3 * sizeof(float), sizeof index);
+    return index;
+}
+
+static void fill_node(glint_node *node, const node_slots *slots, int axis, uint32_t child)
+{
+    uint32_t ranks[GLINT_NODE_WIDTH];
+    rank_slots(slots, axis, ranks);
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const glint_bounds *box = slots->boxes[i];
+        for (int k = 0; k < 3; k++) {
+            node->lower[k][ranks[i]] = box->lower[k];
+            node->upper[k][ranks[i]] = box->upper[k];
+        }
+        node->child[ranks[i]] = slots->sets[i] ? child++ : GLINT_NODE_PRIM | record_index(box);
+    }
+    for (uint32_t i = slots->count; i < GLINT_NODE_WIDTH; i++) {
+        for (int k = 0; k < 3; k++) {
+            node->lower[k][i] = INFINITY;
+            node->upper[k][i] = -INFINITY;
+        }
+        node->child[i] = 0;
     }
 }
 
@@ -207,19 +234,16 @@ static bool build_node(builder *b, node_list *list, uint32_t at, const glint_rec
 {
     const bool top = list == &b->top;
     node_plan plan;
-    node_slot slots[GLINT_NODE_WIDTH];
+    node_slots slots;
     plan_sets(b, set, depth, top, &plan);
     plan_open(&plan);
-    const uint32_t count = plan_slots(b, &plan, widest_axis(&set->box), slots);
-    uint32_t children = 0;
-    for (uint32_t i = 0; i < count; i++)
-        children += slots[i].set != NULL;
+    const uint32_t children = plan_slots(b, &plan, &slots);
     uint32_t child = nodes_add(list, children);
     if (child == UINT32_MAX)
         return false;
-    fill_node(&list->nodes[at], slots, count, child);
-    for (uint32_t i = 0; i < count; i++) {
-        const glint_record_set *below = slots[i].set;
+    fill_node(&list->nodes[at], &slots, widest_axis(&set->box), child);
+    for (uint32_t i = 0; i < slots.count; i++) {
+        const glint_record_set *below = slots.sets[i];
         if (!below)
             continue;
         const bool is_task = top && below->count >= TASK_MIN && below->count <= b->task_max;
@@ -274,7 +298,7 @@ static bool join(builder *b, glint_bvh *out)
         b->tasks[i].base = count;
         count += b->tasks[i].list.count - 1;
     }
-    b->nodes = aligned_alloc(64, count * sizeof *b->nodes);
+    b->nodes = glint_alloc_large(count, sizeof *b->nodes);
     if (!b->nodes)
         return false;
     memcpy(b->nodes, b->top.nodes, b->top.count * sizeof *b->nodes);

@@ -1,4 +1,5 @@
 #include "engine/bvh_split.h"
+#include "engine/base/alloc.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,10 +34,11 @@ typedef struct cut {
     int bin; ///< first of the upper part
 } cut;
 
-/// What one worker does of a split.
+/// What one worker does of a split, or of loading the boxes.
 typedef struct glint_chunk {
     bins bins;
-    bounds center[2]; ///< of the lower and the upper part
+    bounds box; ///< loading: of the boxes
+    bounds center[2]; ///< of the lower and the upper part; loading: of all, in the first
     uint32_t begin, count; ///< in the set
     uint32_t to[2]; ///< where in the other buffer the parts go
 } chunk;
@@ -111,6 +113,12 @@ static inline v4i bins_of(grid g, v4 center)
     return __builtin_convertvector(min4((center - g.origin) * g.scale, last), v4i);
 }
 
+static inline void bins_add(bins *b, int axis, int bin, const bounds *box)
+{
+    bounds_add(&b->box[axis][bin], box);
+    b->count[axis][bin]++;
+}
+
 static void bin_chunk(void *context, size_t index, int worker)
 {
     (void)worker;
@@ -125,10 +133,9 @@ static void bin_chunk(void *context, size_t index, int worker)
     for (uint32_t i = 0; i < c->count; i++) {
         const bounds box = record_box(&records[i]);
         const v4i bin = bins_of(g, box_center(box));
-        for (int axis = 0; axis < 3; axis++) {
-            bounds_add(&c->bins.box[axis][bin[axis]], &box);
-            c->bins.count[axis][bin[axis]]++;
-        }
+        bins_add(&c->bins, 0, bin[0], &box);
+        bins_add(&c->bins, 1, bin[1], &box);
+        bins_add(&c->bins, 2, bin[2], &box);
     }
 }
 
@@ -260,16 +267,29 @@ static void part(const bins *b, cut where, glint_record_set *set, glint_record_s
         bounds_add(bin < where.bin ? &set->box : &above->box, &b->box[where.axis][bin]);
 }
 
+static size_t chunk_count(uint32_t records)
+{
+    const size_t count = records / CHUNK;
+    return count < 1 ? 1 : count < CHUNKS_MAX ? count : CHUNKS_MAX;
+}
+
+/// Shares `total` records out to `count` chunks, and returns `count`.
+static size_t cut_chunks(chunk *chunks, size_t count, uint32_t total)
+{
+    for (size_t i = 0; i < count; i++) {
+        chunks[i].begin = (uint32_t)((uint64_t)total * i / count);
+        chunks[i].count = (uint32_t)((uint64_t)total * (i + 1) / count) - chunks[i].begin;
+    }
+    return count;
+}
+
 static void split_chunks(const glint_records *records, chunk *chunks, size_t count, glint_record_set *set,
                          glint_record_set *above)
 {
     split_work work = {
         glint_records_of(records, set), records->buffers[!set->buffer], chunks, grid_of(set), { -1, 0 }
     };
-    for (size_t i = 0; i < count; i++) {
-        chunks[i].begin = (uint32_t)((uint64_t)set->count * i / count);
-        chunks[i].count = (uint32_t)((uint64_t)set->count * (i + 1) / count) - chunks[i].begin;
-    }
+    cut_chunks(chunks, count, set->count);
     glint_run(records->pool, count, bin_chunk, &work);
     const bins sum = add_bins(chunks, count);
     work.cut = find_cut(&sum, set);
@@ -299,23 +319,22 @@ void glint_records_split(const glint_records *records, glint_record_set *set, gl
         glint_records_halve(records, set, above);
         return;
     }
-    const size_t count = set->count / CHUNK;
+    const size_t count = chunk_count(set->count);
     if (shared && records->pool && count > 1) {
-        split_chunks(records, records->chunks, count < CHUNKS_MAX ? count : CHUNKS_MAX, set, above);
+        split_chunks(records, records->chunks, count, set, above);
         return;
     }
     chunk whole;
     split_chunks(records, &whole, 1, set, above);
 }
 
-static void measure(const glint_records *records, glint_record_set *set)
+static void measure(const glint_record *records, size_t count, bounds *box, bounds *center)
 {
-    const glint_record *record = glint_records_of(records, set);
-    set->box = set->center = empty;
-    for (uint32_t i = 0; i < set->count; i++) {
-        const bounds box = record_box(&record[i]);
-        bounds_add(&set->box, &box);
-        bounds_add_point(&set->center, box_center(box));
+    *box = *center = empty;
+    for (size_t i = 0; i < count; i++) {
+        const bounds b = record_box(&records[i]);
+        bounds_add(box, &b);
+        bounds_add_point(center, box_center(b));
     }
 }
 
@@ -326,8 +345,28 @@ void glint_records_halve(const glint_records *records, glint_record_set *set, gl
     set->count = (set->count + pair - 1) / pair * GLINT_NODE_WIDTH;
     above->begin += set->count;
     above->count -= set->count;
-    measure(records, set);
-    measure(records, above);
+    measure(glint_records_of(records, set), set->count, &set->box, &set->center);
+    measure(glint_records_of(records, above), above->count, &above->box, &above->center);
+}
+
+typedef struct load_work {
+    const glint_box *boxes;
+    glint_record *to;
+    chunk *chunks;
+} load_work;
+
+static void load_chunk(void *context, size_t index, int worker)
+{
+    (void)worker;
+    const load_work *work = context;
+    chunk *c = &work->chunks[index];
+    for (uint32_t i = c->begin; i < c->begin + c->count; i++) {
+        const float *l = work->boxes[i].lower, *u = work->boxes[i].upper;
+        glint_record record = { { l[0], l[1], l[2], 0 }, { u[0], u[1], u[2], 0 } };
+        record.lower = (v4)((v4i)record.lower | (v4i) { 0, 0, 0, (int32_t)i });
+        work->to[i] = record;
+    }
+    measure(work->to + c->begin, c->count, &c->box, &c->center[0]);
 }
 
 bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t count, glint_pool *pool,
@@ -335,18 +374,18 @@ bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t
 {
     *records = (glint_records) { .pool = pool };
     for (int i = 0; i < 2; i++)
-        records->buffers[i] = aligned_alloc(64, ((size_t)count * sizeof(glint_record) + 63) / 64 * 64);
-    records->chunks = aligned_alloc(64, (CHUNKS_MAX * sizeof *records->chunks + 63) / 64 * 64);
+        records->buffers[i] = glint_alloc_large(count, sizeof(glint_record));
+    records->chunks = glint_alloc(CHUNKS_MAX, sizeof *records->chunks);
     if (!records->buffers[0] || !records->buffers[1] || !records->chunks)
         return false;
-    for (uint32_t i = 0; i < count; i++) {
-        const float *l = boxes[i].lower, *u = boxes[i].upper;
-        glint_record record = { { l[0], l[1], l[2], 0 }, { u[0], u[1], u[2], 0 } };
-        memcpy((char *)&record.lower + 3 * sizeof(float), &i, sizeof i);
-        records->buffers[0][i] = record;
+    load_work work = { boxes, records->buffers[0], records->chunks };
+    const size_t chunks = cut_chunks(records->chunks, chunk_count(count), count);
+    glint_run(pool, chunks, load_chunk, &work);
+    *root = (glint_record_set) { .box = empty, .center = empty, .count = count };
+    for (size_t i = 0; i < chunks; i++) {
+        bounds_add(&root->box, &work.chunks[i].box);
+        bounds_add(&root->center, &work.chunks[i].center[0]);
     }
-    *root = (glint_record_set) { .count = count };
-    measure(records, root);
     return true;
 }
 

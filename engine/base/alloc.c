@@ -3,15 +3,39 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+#define LARGE_PAGE ((size_t)2 << 20)
+
+/// Bytes of count * size, at least one, rounded up to whole units of `alignment`; 0: too many.
+static size_t whole_bytes(size_t count, size_t size, size_t alignment)
+{
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - alignment)
+        return 0;
+    return bytes ? (bytes + alignment - 1) / alignment * alignment : alignment;
+}
 
 void *glint_alloc(size_t count, size_t size)
 {
-    size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - 64)
-        return NULL;
-    bytes = (bytes + 63) / 64 * 64;
-    void *memory = aligned_alloc(64, bytes ? bytes : 64);
+    const size_t bytes = whole_bytes(count, size, 64);
+    void *memory = bytes ? aligned_alloc(64, bytes) : NULL;
     if (memory)
         memset(memory, 0, bytes);
+    return memory;
+}
+
+void *glint_alloc_large(size_t count, size_t size)
+{
+    const size_t bytes = whole_bytes(count, size, 64);
+    if (bytes < 2 * LARGE_PAGE)
+        return bytes ? aligned_alloc(64, bytes) : NULL;
+    const size_t whole = whole_bytes(count, size, LARGE_PAGE);
+    void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
+#ifdef MADV_HUGEPAGE
+    // advice: refused, the pages are small
+    if (memory)
+        madvise(memory, whole, MADV_HUGEPAGE);
+#endif
     return memory;
 }

@@ -6,5 +6,7 @@
 
 /// Zeroed memory, 64-byte aligned, of count * size bytes (at least one), checked for overflow; free() frees it.
 void *glint_alloc(size_t count, size_t size);
+/// The same but not zeroed, and of large pages where the system has them: for megabytes that are written at once.
+void *glint_alloc_large(size_t count, size_t size);
 
 #endif
