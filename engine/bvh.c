@@ -283,7 +283,7 @@ static bool build_lists(builder *b, const glint_record_set *root)
 {
     if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH))
         return false;
-    glint_run(b->records.pool, b->task_count, build_task, b);
+    glint_run_items(b->records.pool, b->task_count, build_task, b);
     for (size_t i = 0; i < b->task_count; i++)
         if (b->tasks[i].failed)
             return false;
@@ -302,7 +302,7 @@ static bool join(builder *b, glint_bvh *out)
     if (!b->nodes)
         return false;
     memcpy(b->nodes, b->top.nodes, b->top.count * sizeof *b->nodes);
-    glint_run(b->records.pool, b->task_count, join_task, b);
+    glint_run_items(b->records.pool, b->task_count, join_task, b);
     *out = (glint_bvh) { b->nodes, count };
     return true;
 }

@@ -19,7 +19,8 @@ typedef struct glint_bvh {
 
 /// Builds the tree over boxes[0 .. count); leaf slots hold the index of the box. Binned SAH, collapsed 16 wide. The
 /// tree is a function of the boxes alone, not of the threads. No path is longer than GLINT_BVH_DEPTH nodes, whatever the
-/// boxes: a million at one place are halved by number.
+/// boxes: a million at one place are halved by number. A node fills its slots from the first on, in the order of their
+/// centres along its widest axis; the child of an empty one is 0.
 ///
 /// boxes  any finite boxes, degenerate ones too; count below 2^31.
 /// pool   subtrees are built on its workers; NULL: on the calling thread.

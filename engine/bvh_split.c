@@ -143,7 +143,7 @@ static void bin_chunk(void *context, size_t index, int worker)
 static inline float half_area(bounds box, float scale)
 {
     const v4 size = max4(box.upper * scale - box.lower * scale, (v4) { 0 });
-    const v4 sides = size * (__builtin_shuffle(size, (v4i) { 1, 2, 0, 3 }) + 0x1p-20f);
+    const v4 sides = size * ((v4) { size[1], size[2], size[0], 0 } + 0x1p-20f);
     return sides[0] + sides[1] + sides[2];
 }
 
@@ -222,7 +222,7 @@ static void move_chunk(void *context, size_t index, int worker)
     c->center[1] = upper;
 }
 
-void glint_run(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
+void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
 {
     if (pool && count > 1) {
         glint_pool_run(pool, count, item, context);
@@ -290,7 +290,7 @@ static void split_chunks(const glint_records *records, chunk *chunks, size_t cou
         glint_records_of(records, set), records->buffers[!set->buffer], chunks, grid_of(set), { -1, 0 }
     };
     cut_chunks(chunks, count, set->count);
-    glint_run(records->pool, count, bin_chunk, &work);
+    glint_run_items(records->pool, count, bin_chunk, &work);
     const bins sum = add_bins(chunks, count);
     work.cut = find_cut(&sum, set);
     if (work.cut.axis < 0) {
@@ -306,7 +306,7 @@ static void split_chunks(const glint_records *records, chunk *chunks, size_t cou
         to_lower += below;
         to_upper += chunks[i].count - below;
     }
-    glint_run(records->pool, count, move_chunk, &work);
+    glint_run_items(records->pool, count, move_chunk, &work);
     for (size_t i = 0; i < count; i++) {
         bounds_add(&set->center, &chunks[i].center[0]);
         bounds_add(&above->center, &chunks[i].center[1]);
@@ -380,7 +380,7 @@ bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t
         return false;
     load_work work = { boxes, records->buffers[0], records->chunks };
     const size_t chunks = cut_chunks(records->chunks, chunk_count(count), count);
-    glint_run(pool, chunks, load_chunk, &work);
+    glint_run_items(pool, chunks, load_chunk, &work);
     *root = (glint_record_set) { .box = empty, .center = empty, .count = count };
     for (size_t i = 0; i < chunks; i++) {
         bounds_add(&root->box, &work.chunks[i].box);

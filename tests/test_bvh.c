@@ -293,19 +293,27 @@ static void test_one_node(void **unused)
     free(boxes);
 }
 
-/// Children stand in the order of their centres along the node's widest axis.
+/// Slots are filled from the first on, in the order of their centres along the node's widest axis.
 static void test_order(void **unused)
 {
     (void)unused;
-    glint_box *boxes = make_boxes(scattered, 5000);
-    for (uint32_t i = 0; i < 5000; i++) {
+    const uint32_t count = 5000;
+    glint_box *boxes = make_boxes(scattered, count);
+    for (uint32_t i = 0; i < count; i++) {
         boxes[i].lower[1] *= 100;
         boxes[i].upper[1] *= 100;
     }
-    glint_bvh bvh = build(boxes, 5000, NULL);
-    for (int slot = 1; slot < GLINT_NODE_WIDTH && bvh.nodes->lower[1][slot] < INFINITY; slot++)
-        assert_true(bvh.nodes->lower[1][slot] + bvh.nodes->upper[1][slot] >=
-                    bvh.nodes->lower[1][slot - 1] + bvh.nodes->upper[1][slot - 1]);
+    glint_bvh bvh = build(boxes, count, NULL);
+    for (uint32_t n = 0; n < bvh.node_count; n++) {
+        const float *lower = bvh.nodes[n].lower[1], *upper = bvh.nodes[n].upper[1];
+        for (int slot = 1; slot < GLINT_NODE_WIDTH; slot++) {
+            const bool filled = lower[slot] <= upper[slot];
+            assert_true(!filled || lower[slot - 1] <= upper[slot - 1]);
+            assert_true(filled || bvh.nodes[n].child[slot] == 0);
+            if (n == 0 && filled)
+                assert_true(lower[slot - 1] + upper[slot - 1] <= lower[slot] + upper[slot]);
+        }
+    }
     glint_bvh_free(&bvh);
     free(boxes);
 }
