@@ -316,6 +316,7 @@ double glint_renderer_progress(const glint_renderer *renderer);
 #define GLINT_STAGE_MAX 16
 
 typedef struct glint_frame_stats {
+    double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
     double render_ms; ///< wall time of the stages up to the film
     double tone_ms; ///< wall time of making codes
     int stage_count; ///< the plan's stages, in its order

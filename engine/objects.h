@@ -22,6 +22,7 @@ struct glint_camera {
 
 struct glint_shape {
     size_t references;
+    uint64_t revision; ///< another one after every change; no two shapes ever have the same
     glint_shape_desc desc;
     size_t count; ///< spheres; 1 for other kinds
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
@@ -30,10 +31,13 @@ struct glint_shape {
     size_t material_count;
 };
 
+typedef struct glint_geometry glint_geometry;
+
 struct glint_scene {
     size_t references;
     glint_scene_desc desc;
     glint_list shapes, lights;
+    glint_geometry *geometry; ///< made from the shapes by the last plan; a cache, see geometry.h
 };
 
 static inline glint_shape *glint_scene_shape(const glint_scene *scene, size_t i) { return scene->shapes.items[i]; }

@@ -51,7 +51,7 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 /// Lists the stages this frame needs.
 static void choose_stages(glint_plan *plan)
 {
-    const bool surfaces = plan->prim_count > 0, lit = surfaces && plan->light_count > 0;
+    const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
     plan->accumulate = plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK;
     plan->runs[GLINT_STAGE_CAMERA] = plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
@@ -62,110 +62,17 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
 }
 
-#define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
-
-static glint_key camera_key(const glint_plan *plan)
-{
-    glint_key key = { 0 };
-    const glint_plan_camera *c = &plan->camera;
-    const double frame[] = { plan->desc.width,     plan->desc.height, plan->desc.samples, plan->desc.seed,
-                             plan->desc.precision, c->orthographic,   c->pixel_offset };
-    ADD(key, frame);
-    ADD(key, c->eye);
-    ADD(key, c->forward);
-    ADD(key, c->right);
-    ADD(key, c->up);
-    return key;
-}
-
-/// Where the primitives are, and (second) what they look like.
-static void geometry_keys(const glint_plan *plan, glint_key *where, glint_key *look)
-{
-    for (uint32_t i = 0; i < plan->prim_count; i++) {
-        const glint_prim *p = &plan->prims[i];
-        const uint32_t shown[] = { p->two_sided, p->material };
-        double place[8];
-        glint_prim_place(p, place);
-        ADD(*where, place);
-        ADD(*look, shown);
-    }
-}
-
-/// Keys of each light's own results, and of all of them together.
-static void light_keys(glint_plan *plan)
-{
-    glint_key base = plan->keys[GLINT_STAGE_SURFACE];
-    const uint32_t highlights[] = { plan->phong_end, plan->blinn_end };
-    ADD(base, highlights);
-    glint_key all = base;
-    for (uint32_t i = 0; i < plan->light_count; i++) {
-        glint_plan_light *l = &plan->lights[i];
-        const double numbers[] = { l->directional,     l->position[0],     l->position[1],    l->position[2],
-                                   l->coefficients[0], l->coefficients[1], l->coefficients[2] };
-        l->key = glint_key_add(base, numbers, sizeof numbers);
-        ADD(all, l->key);
-    }
-    plan->keys[GLINT_STAGE_LIGHT] = all;
-    for (uint32_t i = 0; i < plan->light_count; i++)
-        ADD(all, plan->lights[i].shadows);
-    plan->keys[GLINT_STAGE_OCCLUDE] = all;
-}
-
-static glint_key shade_key(const glint_plan *plan, glint_key key)
-{
-    ADD(key, plan->background);
-    for (uint32_t i = 0; i < plan->material_count; i++) {
-        const glint_shade_material *m = &plan->materials[i];
-        const double exponent[] = { m->shininess, m->has_specular };
-        ADD(key, m->diffuse);
-        ADD(key, m->specular);
-        ADD(key, m->ambient);
-        ADD(key, exponent);
-    }
-    for (uint32_t i = 0; i < plan->light_count; i++) {
-        ADD(key, plan->lights[i].diffuse);
-        ADD(key, plan->lights[i].specular);
-    }
-    return key;
-}
-
-static void make_keys(glint_plan *plan)
-{
-    glint_key *keys = plan->keys, where = { 0 }, look = { 0 };
-    geometry_keys(plan, &where, &look);
-    keys[GLINT_STAGE_CAMERA] = camera_key(plan);
-    keys[GLINT_STAGE_CAST] = glint_key_add(keys[GLINT_STAGE_CAMERA], &where, sizeof where);
-    keys[GLINT_STAGE_SURFACE] = glint_key_add(keys[GLINT_STAGE_CAST], &look, sizeof look);
-    light_keys(plan);
-    keys[GLINT_STAGE_SHADE] = shade_key(plan, keys[GLINT_STAGE_OCCLUDE]);
-    keys[GLINT_STAGE_RESOLVE] = keys[GLINT_STAGE_SHADE];
-    ADD(keys[GLINT_STAGE_RESOLVE], plan->desc.passes);
-    const int tone[] = { plan->desc.tone.curve, plan->desc.tone.transfer, plan->desc.tone.rounding,
-                         plan->desc.tone.bits };
-    keys[GLINT_STAGE_TONE] = glint_key_add(keys[GLINT_STAGE_RESOLVE], tone, sizeof tone);
-}
-
 static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
-    glint_list materials = { 0 };
-    const glint_camera_desc *camera = glint_camera_get(scene->desc.camera);
-    glint_plan_camera_init(&plan->camera, camera, &plan->desc);
-    glint_status status = glint_plan_prims(plan, scene, &materials, error);
+    glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
+    glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
-        status = glint_plan_shading(plan, scene, &materials, error);
-    glint_list_free(&materials);
+        status = glint_plan_shading(plan, scene, error);
     if (status)
         return status;
-    if (!plan->camera.orthographic) {
-        plan->bundle = glint_alloc(plan->prim_count, sizeof *plan->bundle);
-        plan->cones = glint_alloc(plan->prim_count, sizeof *plan->cones);
-        if (!plan->bundle || !plan->cones)
-            return glint_fail_nomem(error);
-        glint_plan_bundle(plan, plan->camera.eye, plan->bundle, plan->cones);
-    }
     choose_stages(plan);
-    make_keys(plan);
-    return glint_plan_explain(plan, scene, error);
+    status = glint_plan_keys(plan, error);
+    return status ? status : glint_plan_explain(plan, scene, error);
 }
 
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
@@ -193,14 +100,10 @@ void glint_plan_destroy(glint_plan *plan)
 {
     if (!plan)
         return;
-    for (uint32_t i = 0; i < plan->light_count; i++)
-        free(plan->lights[i].light_side);
+    glint_geometry_release(plan->geometry);
     free(plan->lights);
     free(plan->materials);
-    free(plan->bundle);
-    free(plan->cones);
-    free(plan->prims);
-    free(plan->prim_shape);
+    free(plan->material_keys);
     free(plan->lines);
     free(plan->effects);
     free(plan);

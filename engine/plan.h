@@ -1,16 +1,15 @@
 /// A frame's plan: the tables its stages read, which stages there are, and the key of each. Internal.
 ///
-///   plan.c            puts it together; keys
-///   plan_geometry.c   camera, primitives, what each light and the eye know of each primitive
+///   plan.c            puts it together
+///   plan_keys.c       what each stage reads, hashed
+///   geometry.c        what rays meet, shared by the plans of one scene
+///   plan_camera.c     the view
 ///   plan_shading.c    materials and lights
 ///   plan_explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
 
-#include "engine/base/hash.h"
-#include "engine/glint.h"
-#include "engine/objects.h"
-#include "engine/stages/stages.h"
+#include "engine/geometry.h"
 
 /// In the order a frame runs them.
 typedef enum glint_stage_id {
@@ -40,15 +39,9 @@ typedef struct glint_plan_light {
     double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
-    int8_t *light_side; ///< per primitive, when it casts shadows; owned
     glint_key key; ///< of what `light` reads for this light; `occlude` reads the same
+    glint_key place_key, look_key; ///< of that and whether it casts shadows; of the place and the colours
 } glint_plan_light;
-
-/// The cone of directions in which a sphere is seen from an origin; for culling.
-typedef struct glint_cone {
-    double axis[3]; ///< unit, towards the sphere
-    double cosine, sine; ///< of its half angle; the origin is inside: cosine = -1
-} glint_cone;
 
 typedef struct glint_text_line {
     char effect[48];
@@ -59,21 +52,19 @@ struct glint_plan {
     glint_render_desc desc;
     glint_plan_camera camera;
 
-    glint_prim *prims; ///< in order of definition: index + 1 is the object id
-    uint32_t prim_count;
-    uint32_t *prim_shape; ///< which shape of the scene each is of
-    glint_bundle_prim *bundle; ///< NULL for an orthographic camera
-    glint_cone *cones; ///< with bundle
-    double reference[3], filter_scale;
-
-    glint_shade_material *materials;
-    uint32_t material_count, phong_end, blinn_end;
+    glint_geometry *geometry;
+    glint_shade_material *materials; ///< in the geometry's order
+    uint32_t material_count;
+    bool highlights; ///< some material and some light make one
     glint_plan_light *lights;
     uint32_t light_count, shadow_count;
     double ambient[3], background[3];
 
     bool runs[GLINT_STAGE_COUNT];
     glint_key keys[GLINT_STAGE_COUNT];
+    glint_key *material_keys; ///< of each row of materials
+    glint_key all_materials_key, all_lights_key, background_key;
+    glint_key output_key; ///< of what pictures are made of pixels
     bool accumulate; ///< sums over samples or over chunks of lights
 
     glint_stage_info stage_list[GLINT_STAGE_COUNT];
@@ -87,20 +78,12 @@ struct glint_plan {
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
-/// All that a primitive's place is made of, for keys.
-void glint_prim_place(const glint_prim *prim, double out[8]);
-/// Fills prims, prim_shape, and with `materials` (scene order) the unsorted material index of each.
-glint_status glint_plan_prims(glint_plan *plan, const glint_scene *scene, glint_list *materials, glint_error *error);
-/// What rays from `origin` know of every primitive. Either output may be NULL.
-void glint_plan_bundle(const glint_plan *plan, const double origin[3], glint_bundle_prim *bundle, glint_cone *cones);
-glint_status glint_plan_light_sides(const glint_plan *plan, glint_plan_light *light, glint_error *error);
-
-/// Sorts materials by highlight, renumbers the primitives' and fills the lights that give light.
-glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, const glint_list *materials,
-                                glint_error *error);
+/// Fills materials and the lights that give light.
+glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
+glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 
 #endif

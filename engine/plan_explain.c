@@ -134,7 +134,7 @@ static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 static void list_effects(explainer *e, const glint_scene *scene)
 {
     const glint_plan *plan = e->plan;
-    const bool surfaces = plan->prim_count > 0;
+    const bool surfaces = plan->geometry->table.prim_count > 0;
     one(e, plan->camera.orthographic, "orthographic projection", "camera");
     one(e, any(scene->desc.background), "background", "scene.background");
     if (surfaces) {
@@ -145,7 +145,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "distance fall-off", falls_off);
         lights(e, scene, "hard shadow", casts_shadows);
     }
-    if (plan->blinn_end) {
+    if (plan->highlights) {
         highlights(e, scene, "Phong highlight", GLINT_MODEL_PHONG);
         highlights(e, scene, "Blinn-Phong highlight", GLINT_MODEL_BLINN_PHONG);
     }

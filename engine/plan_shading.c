@@ -4,7 +4,6 @@
 #include "engine/plan.h"
 
 #include <float.h>
-#include <stdlib.h>
 
 /// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
 #define STRENGTH_MAX 1e150
@@ -25,9 +24,10 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
     const double *ka = desc->has_ambient ? desc->ambient : desc->diffuse;
     for (int c = 0; c < 3; c++)
         out->ambient[c] = ka[c] == 0 ? 0 : fmin(ka[c] * ambient[c], STRENGTH_MAX);
-    out->has_specular = desc->model != GLINT_MODEL_LAMBERT && !is_black(out->specular);
-    if (!out->has_specular)
+    if (desc->model == GLINT_MODEL_LAMBERT)
         vec_scale(out->specular, out->specular, 0);
+    else if (!is_black(out->specular))
+        out->highlight = desc->model == GLINT_MODEL_PHONG ? GLINT_HIGHLIGHT_PHONG : GLINT_HIGHLIGHT_BLINN;
 }
 
 static void light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
@@ -54,41 +54,6 @@ static void light_init(glint_plan_light *out, const glint_light_desc *desc, cons
         out->scale = power_of_two_scale(distance);
 }
 
-/// 0 Phong, 1 Blinn-Phong, 2 none: the order of the material table.
-static int highlight_class(const glint_material *material)
-{
-    if (material->desc.model == GLINT_MODEL_LAMBERT || is_black(material->desc.specular))
-        return 2;
-    return material->desc.model == GLINT_MODEL_PHONG ? 0 : 1;
-}
-
-static glint_status sort_materials(glint_plan *plan, const glint_list *materials, glint_error *error)
-{
-    uint32_t *place = malloc((materials->count + 1) * sizeof *place);
-    plan->materials = glint_alloc(materials->count, sizeof *plan->materials);
-    if (!place || !plan->materials) {
-        free(place);
-        return glint_fail_nomem(error);
-    }
-    uint32_t ends[3] = { 0 };
-    for (int class = 0; class < 3; class ++) {
-        for (size_t i = 0; i < materials->count; i++) {
-            const glint_material *material = materials->items[i];
-            if (highlight_class(material) != class)
-                continue;
-            place[i] = plan->material_count;
-            glint_shade_material_init(&plan->materials[plan->material_count++], &material->desc, plan->ambient);
-        }
-        ends[class] = plan->material_count;
-    }
-    plan->phong_end = ends[0];
-    plan->blinn_end = ends[1];
-    for (uint32_t i = 0; i < plan->prim_count; i++)
-        plan->prims[i].material = place[plan->prims[i].material];
-    free(place);
-    return GLINT_OK;
-}
-
 /// Ia: the scene's ambient light and every light's.
 static void total_ambient(glint_plan *plan, const glint_scene *scene)
 {
@@ -102,31 +67,39 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
     bounded(plan->background, scene->desc.background, 1);
 }
 
-glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, const glint_list *materials,
-                                glint_error *error)
+static glint_status make_materials(glint_plan *plan, bool *highlights, glint_error *error)
 {
+    const glint_list *list = &plan->geometry->materials;
+    plan->materials = glint_alloc(list->count, sizeof *plan->materials);
+    if (!plan->materials)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < list->count; i++) {
+        glint_shade_material *material = &plan->materials[plan->material_count++];
+        glint_shade_material_init(material, &((const glint_material *)list->items[i])->desc, plan->ambient);
+        *highlights = *highlights || material->highlight;
+    }
+    return GLINT_OK;
+}
+
+glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    bool shiny = false, glossy_light = false;
     total_ambient(plan, scene);
-    glint_status status = sort_materials(plan, materials, error);
+    glint_status status = make_materials(plan, &shiny, error);
     if (status)
         return status;
     plan->lights = glint_alloc(scene->lights.count, sizeof *plan->lights);
     if (!plan->lights)
         return glint_fail_nomem(error);
-    bool highlights = false;
     for (size_t i = 0; i < scene->lights.count; i++) {
         glint_plan_light light;
         light_init(&light, &glint_scene_light(scene, i)->desc, plan->camera.eye);
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
-        highlights = highlights || !is_black(light.specular);
+        glossy_light = glossy_light || !is_black(light.specular);
         plan->shadow_count += light.shadows;
         plan->lights[plan->light_count++] = light;
-        if (light.shadows)
-            status = glint_plan_light_sides(plan, &plan->lights[plan->light_count - 1], error);
-        if (status)
-            return status;
     }
-    if (!highlights)
-        plan->phong_end = plan->blinn_end = 0;
+    plan->highlights = shiny && glossy_light;
     return GLINT_OK;
 }

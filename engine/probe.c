@@ -11,75 +11,45 @@ typedef struct lane_group {
     _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP],
         normal[3][GLINT_GROUP];
     _Alignas(64) double t[GLINT_GROUP];
-    _Alignas(64) float direction_f[3][GLINT_GROUP];
-    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP], coincident[GLINT_GROUP], side[GLINT_GROUP];
+    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP];
     _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
-    uint16_t active, hits, lit;
+    uint16_t active, hits, lit, back, dark;
 } lane_group;
 
-static void cast_lane(const glint_stages *stages, const glint_plan *plan, const uint32_t *candidates, lane_group *g)
+static void cast_lane(const glint_stages *stages, const glint_geometry_table *geometry, lane_group *g)
 {
-    glint_cast_args cast = { .group_count = 1,
-                             .active = &g->active,
-                             .prims = plan->prims,
-                             .bundle = plan->bundle,
-                             .candidates = candidates,
-                             .candidate_count = plan->prim_count,
-                             .t = g->t,
-                             .prim = g->prim,
-                             .hits = &g->hits };
+    glint_cast_args cast = {
+        .group_count = 1, .active = &g->active, .geometry = geometry, .t = g->t, .prim = g->prim, .hits = &g->hits
+    };
     glint_surface_args surface = { .group_count = 1,
                                    .hits = &g->hits,
                                    .prim = g->prim,
-                                   .prims = plan->prims,
-                                   .bundle = plan->bundle,
+                                   .prims = geometry->prims,
                                    .t = g->t,
                                    .material = g->material,
-                                   .coincident = g->coincident,
-                                   .side = g->side };
-    vec_copy(surface.eye, plan->camera.eye);
+                                   .back = &g->back,
+                                   .dark = &g->dark };
     for (int c = 0; c < 3; c++) {
         cast.origin[c] = surface.origin[c] = g->origin[c];
         cast.direction[c] = surface.direction[c] = g->direction[c];
-        cast.direction_f[c] = g->direction_f[c];
         surface.point[c] = g->point[c];
         surface.normal[c] = g->normal[c];
     }
-    stages->geometry[GLINT_DOUBLE].cast_bundle(&cast);
+    stages->geometry[GLINT_DOUBLE].cast_rays(&cast);
     if (g->hits & 1)
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-/// The parts of a plan that a ray needs, without a camera.
-static glint_status plan_for_ray(const glint_scene *scene, const double origin[3], glint_plan *plan,
-                                 uint32_t **candidates, glint_error *error)
-{
-    glint_list materials = { 0 };
-    vec_copy(plan->camera.eye, origin);
-    glint_status status = glint_plan_prims(plan, scene, &materials, error);
-    glint_list_free(&materials);
-    if (status)
-        return status;
-    plan->bundle = glint_alloc(plan->prim_count, sizeof *plan->bundle);
-    *candidates = glint_alloc(plan->prim_count, sizeof **candidates);
-    if (!plan->bundle || !*candidates)
-        return glint_fail_nomem(error);
-    glint_plan_bundle(plan, origin, plan->bundle, NULL);
-    for (uint32_t i = 0; i < plan->prim_count; i++)
-        (*candidates)[i] = i;
-    return GLINT_OK;
-}
-
-static void read_hit(const glint_scene *scene, const glint_plan *plan, const lane_group *g, double scale,
+static void read_hit(const glint_scene *scene, const uint32_t *prim_shape, const lane_group *g, double scale,
                      glint_hit *out)
 {
-    const uint32_t id = g->prim[0], shape = plan->prim_shape[id];
+    const uint32_t id = g->prim[0], shape = prim_shape[id];
     uint32_t first = id;
-    while (first > 0 && plan->prim_shape[first - 1] == shape)
+    while (first > 0 && prim_shape[first - 1] == shape)
         first--;
     *out = (glint_hit) { .t = g->t[0] * scale, .shape = glint_scene_shape(scene, shape), .element = id - first };
-    const double turn = g->side[0] & GLINT_SIDE_BACK ? -1 : 1;
+    const double turn = g->back & 1 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         out->point[c] = g->point[c][0];
         out->normal[c] = g->normal[c][0] * turn;
@@ -100,24 +70,26 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     double scaled[3];
     const double scale = vec_rescale(scaled, direction);
     lane_group *g = glint_alloc(1, sizeof *g);
-    glint_plan *plan = calloc(1, sizeof *plan);
-    uint32_t *candidates = NULL;
-    status = g && plan ? plan_for_ray(scene, origin, plan, &candidates, error) : glint_fail_nomem(error);
+    if (!g)
+        return glint_fail_nomem(error);
+    glint_geometry *geometry = NULL;
+    glint_geometry_table table;
+    status = glint_geometry_of(scene, &geometry, error);
+    if (!status)
+        status = glint_geometry_index(geometry, NULL, &table, error);
     if (!status) {
         g->active = 1;
         for (int i = 0; i < GLINT_GROUP; i++)
             for (int c = 0; c < 3; c++) {
                 g->origin[c][i] = origin[c];
                 g->direction[c][i] = scaled[c];
-                g->direction_f[c][i] = (float)scaled[c];
             }
-        cast_lane(stages, plan, candidates, g);
+        cast_lane(stages, &table, g);
         *hit = g->hits & 1;
         if (*hit)
-            read_hit(scene, plan, g, scale, out);
+            read_hit(scene, geometry->prim_shape, g, scale, out);
     }
-    free(candidates);
-    glint_plan_destroy(plan);
+    glint_geometry_release(geometry);
     free(g);
     return status;
 }
@@ -131,11 +103,11 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
     glint_light_args light = { .group_count = 1,
                                .hits = &g->hits,
                                .material = g->material,
-                               .side = g->side,
+                               .materials = &material,
+                               .dark = &g->dark,
                                .directional = true,
                                .scale = 1,
-                               .phong_end = material.has_specular && desc->model == GLINT_MODEL_PHONG,
-                               .blinn_end = material.has_specular,
+                               .highlights = material.highlight,
                                .lit = &g->lit,
                                .cosine = g->cosine,
                                .log2_specular = g->log2_specular };
@@ -148,7 +120,7 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
                                .hits = &g->hits,
                                .material = g->material,
                                .materials = &material,
-                               .has_specular = material.has_specular,
+                               .highlights = material.highlight,
                                .first = true,
                                .lights = &strength,
                                .light_count = 1 };

@@ -62,11 +62,8 @@ void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
         return;
-    for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++) {
-        if (renderer->tiles[i])
-            free(renderer->tiles[i]->candidates);
+    for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
         free(renderer->tiles[i]);
-    }
     free(renderer->tiles);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
@@ -101,24 +98,6 @@ static double now_ms(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
-/// Gives every worker candidate lists long enough for this plan, and clears its counts.
-static glint_status prepare_tiles(glint_renderer *renderer, const glint_plan *plan, glint_error *error)
-{
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
-        glint_tile *tile = renderer->tiles[i];
-        tile->counts = (glint_tile_counts) { 0 };
-        if (tile->candidate_capacity >= plan->prim_count)
-            continue;
-        free(tile->candidates);
-        tile->candidate_capacity = 0;
-        tile->candidates = glint_alloc(plan->prim_count, sizeof *tile->candidates);
-        if (!tile->candidates)
-            return glint_fail_nomem(error);
-        tile->candidate_capacity = plan->prim_count;
-    }
-    return GLINT_OK;
 }
 
 static void collect_stats(glint_renderer *renderer, const glint_plan *plan, double wall_ms, glint_frame_stats *stats)
@@ -157,27 +136,33 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
 static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, glint_tone_table *table,
                         glint_frame_stats *stats, glint_error *error)
 {
-    glint_status status = prepare_tiles(renderer, plan, error);
-    if (status)
-        return status;
     frame f = { .renderer = renderer,
                 .shared = { .plan = plan,
                             .stages = renderer->stages,
                             .image = image,
+                            .last = renderer->last,
                             .tone_table = table,
                             .reuse = &renderer->reuse,
                             .cancelled = &renderer->cancelled,
                             .time_stages = renderer->time_stages } };
+    const double begin = now_ms();
+    glint_status status = glint_geometry_index(plan->geometry, renderer->pool, &f.shared.geometry, error);
+    if (status)
+        return status;
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_reuse_begin(&renderer->reuse, plan, (size_t)f.across * down);
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
+        renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
     atomic_store(&renderer->tiles_done, 0);
     atomic_store(&renderer->tile_count, (size_t)f.across * down);
     const double start = now_ms();
     glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
     collect_stats(renderer, plan, now_ms() - start, stats);
+    stats->build_ms = start - begin;
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
+    glint_reuse_end(&renderer->reuse);
     return GLINT_OK;
 }
 

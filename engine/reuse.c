@@ -16,7 +16,6 @@ void glint_reuse_clear(glint_reuse *reuse)
     for (size_t i = 0; i < reuse->tile_count; i++) {
         glint_kept_tile *tile = &reuse->tiles[i];
         free(tile->t);
-        free(tile->material);
         for (uint32_t k = 0; k < reuse->light_count; k++) {
             free(tile->lights[k].cosine);
             free(tile->lights[k].open);
@@ -65,14 +64,42 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         make_slots(reuse, plan, tile_count, lights);
     }
     reuse->keep_cast = glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
-    reuse->keep_surface = glint_key_equal(reuse->surface, plan->keys[GLINT_STAGE_SURFACE]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
-    reuse->surface = plan->keys[GLINT_STAGE_SURFACE];
     for (uint32_t i = 0; i < lights; i++) {
         const glint_plan_light *light = &plan->lights[i];
         reuse->keep_light[i] = glint_key_equal(reuse->light[i], light->key);
         reuse->light[i] = light->key;
     }
+}
+
+void glint_reuse_end(glint_reuse *reuse) { reuse->picture = !reuse->picture; }
+
+glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan)
+{
+    glint_key parts[GLINT_SHOWN_MAX + GLINT_KEPT_LIGHTS + 4];
+    size_t count = 0;
+    if (!glint_key_equal(tile->seen, plan->keys[GLINT_STAGE_SURFACE]))
+        return (glint_key) { 0 };
+    parts[count++] = plan->keys[GLINT_STAGE_SURFACE];
+    parts[count++] = plan->output_key;
+    if (tile->background)
+        parts[count++] = plan->background_key;
+    if (tile->shown_count == 0)
+        return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
+    if (tile->shown_count > GLINT_SHOWN_MAX)
+        parts[count++] = plan->all_materials_key;
+    for (uint32_t i = 0; i < tile->shown_count && tile->shown_count <= GLINT_SHOWN_MAX; i++)
+        parts[count++] = plan->material_keys[tile->shown[i]];
+    for (uint32_t i = 0; i < reuse->light_count; i++) {
+        const glint_kept_light *light = &tile->lights[i];
+        if (!glint_key_equal(light->place, plan->lights[i].place_key))
+            return (glint_key) { 0 };
+        if (light->reaches)
+            parts[count++] = plan->lights[i].look_key;
+    }
+    if (plan->light_count > reuse->light_count)
+        parts[count++] = plan->all_lights_key;
+    return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
 }
 
 /// A block of memory within the budget, or NULL; its contents do not matter yet. Nothing is booked that does not fit:
@@ -102,13 +129,6 @@ bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile)
         tile->hits = (uint16_t *)(tile->prim + samples);
     }
     return true;
-}
-
-bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile)
-{
-    if (!tile->material)
-        tile->material = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES * sizeof *tile->material);
-    return tile->material != NULL;
 }
 
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light)

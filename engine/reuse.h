@@ -3,6 +3,9 @@
 /// Every stage has a key of exactly what it reads (plan.c). A result is kept per tile from the second frame on that
 /// has its key: a stage that differs in every frame is not worth the memory it would write. A kept result is used
 /// where its key equals the plan's, so the reused frame has the fresh frame's bits.
+///
+/// A tile as a whole has a key too, of what its pixels were made from: the materials it shows and the lights that reach
+/// it, and no others. Where that is the last frame's, its pixels are copied from the last picture.
 #ifndef GLINT_REUSE_H
 #define GLINT_REUSE_H
 
@@ -18,15 +21,25 @@ typedef struct glint_kept_light {
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
     uint16_t *open; ///< its own block: lit lanes that the light reaches
+    glint_key place; ///< the light's place and shadows when `reaches` was found; all zero: never
+    bool reaches; ///< some lane
 } glint_kept_light;
 
+#define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart
+
 typedef struct glint_kept_tile {
-    glint_key cast, surface;
+    glint_key cast;
     void *t; ///< doubles or floats; in one block with prim and hits
     uint32_t *prim;
     uint16_t *hits;
-    uint32_t *material; ///< its own block
     glint_kept_light *lights;
+    // what the tile's pixels show, as far as known
+    glint_key seen; ///< the surfaces' key when that was found; all zero: never
+    uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
+    bool background; ///< some sample hits nothing
+    glint_key film[2]; ///< of the pixels in the last picture and in the one being made: see glint_reuse.picture
+    uint64_t clipped, nonfinite; ///< pixels in the last picture
+    bool changed; ///< the picture being made differs here
 } glint_kept_tile;
 
 typedef struct glint_reuse {
@@ -38,9 +51,10 @@ typedef struct glint_reuse {
     glint_kept_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
-    glint_key cast, surface, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    glint_key cast, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
     // which results this frame has in common with the last, and therefore keeps
-    bool keep_cast, keep_surface, keep_light[GLINT_KEPT_LIGHTS];
+    bool keep_cast, keep_light[GLINT_KEPT_LIGHTS];
+    int picture; ///< which entry of glint_kept_tile.film is of the last picture
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -49,9 +63,14 @@ void glint_reuse_clear(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory nothing is kept.
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
 
+/// The frame is done and its picture is the last one now.
+void glint_reuse_end(glint_reuse *reuse);
+
+/// The key of a tile's pixels, from what is known of it; all zero where that is not of this plan's surfaces.
+glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan);
+
 /// Blocks for a tile, made at first use within the budget. False: do without. Any worker, one at a time for a tile.
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
-bool glint_reuse_hold_surface(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
 

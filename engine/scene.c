@@ -1,4 +1,5 @@
 #include "engine/base/status.h"
+#include "engine/geometry.h"
 #include "engine/objects.h"
 
 #include <stdlib.h>
@@ -44,6 +45,7 @@ void glint_scene_release(glint_scene *scene)
     for (size_t i = 0; i < scene->lights.count; i++)
         glint_light_release(glint_scene_light(scene, i));
     glint_camera_release(scene->desc.camera);
+    glint_geometry_release(scene->geometry);
     glint_list_free(&scene->shapes);
     glint_list_free(&scene->lights);
     free(scene);

@@ -2,6 +2,7 @@
 #include "engine/objects.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,12 @@ static glint_status check(const glint_shape_desc *desc, glint_error *error)
     return GLINT_OK;
 }
 
+static uint64_t next_revision(void)
+{
+    static atomic_uint_least64_t last;
+    return atomic_fetch_add(&last, 1) + 1;
+}
+
 /// Takes a reference to `material`, or makes one with default fields.
 static glint_material *material_or_default(glint_material *material, glint_error *error)
 {
@@ -44,6 +51,7 @@ static glint_shape *shape_alloc(const glint_shape_desc *desc, size_t material_co
     if (!shape)
         return NULL;
     shape->references = 1;
+    shape->revision = next_revision();
     shape->desc = *desc;
     shape->count = 1;
     shape->materials = calloc(material_count, sizeof *shape->materials);
@@ -89,6 +97,7 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     shape->materials[0] = material;
     shape->desc = *desc;
     shape->desc.material = material;
+    shape->revision = next_revision();
     return GLINT_OK;
 }
 

@@ -1,6 +1,5 @@
 /// The walk of a tile: which stages run, in what order, and where their results go.
 #include "engine/tile.h"
-#include "engine/cull.h"
 
 #include <string.h>
 
@@ -23,28 +22,22 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
-/// asked for at the first sample alone: all samples of a tile are kept, or none.
-static void find_geometry_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, bool *cast_known,
-                                 bool *surface_known)
+/// asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
+static bool find_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
-    const glint_plan *plan = frame->plan;
     glint_reuse *reuse = frame->reuse;
     glint_kept_tile *kept = tile->kept;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    *cast_known = kept && glint_key_equal(kept->cast, plan->keys[GLINT_STAGE_CAST]);
-    *surface_known = kept && glint_key_equal(kept->surface, plan->keys[GLINT_STAGE_SURFACE]);
+    const bool known = kept && glint_key_equal(kept->cast, frame->plan->keys[GLINT_STAGE_CAST]);
     tile->at.t = tile->t;
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;
-    tile->at.material = tile->material;
-    if (*cast_known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
+    if (known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
         tile->at.t = (char *)kept->t + first * reuse->real_size;
         tile->at.prim = kept->prim + first;
         tile->at.hits = kept->hits + first / GLINT_GROUP;
     }
-    if (*surface_known ||
-        (kept && reuse->keep_surface && (k ? kept->material != NULL : glint_reuse_hold_surface(reuse, kept))))
-        tile->at.material = kept->material + first;
+    return known;
 }
 
 static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
@@ -84,8 +77,6 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
         return;
     if (reuse->keep_cast && kept->t)
         kept->cast = plan->keys[GLINT_STAGE_CAST];
-    if (reuse->keep_surface && kept->material)
-        kept->surface = plan->keys[GLINT_STAGE_SURFACE];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         if (reuse->keep_light[i] && kept->lights[i].cosine)
             kept->lights[i].light = plan->lights[i].key;
@@ -93,6 +84,61 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
             kept->lights[i].occlude = plan->lights[i].key;
     }
 }
+
+// ---- What the tile shows ----
+
+static void note_material(glint_kept_tile *kept, uint32_t material)
+{
+    for (uint32_t i = 0; i < kept->shown_count && i < GLINT_SHOWN_MAX; i++)
+        if (kept->shown[i] == material)
+            return;
+    if (kept->shown_count < GLINT_SHOWN_MAX)
+        kept->shown[kept->shown_count] = material;
+    if (kept->shown_count <= GLINT_SHOWN_MAX)
+        kept->shown_count++;
+}
+
+/// Notes a sample's materials, and whether there is background among it.
+static void note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_kept_tile *kept = tile->kept;
+    if (k == 0) {
+        kept->shown_count = 0;
+        kept->background = false;
+    }
+    uint32_t last = GLINT_MISS;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const uint32_t prim = tile->at.prim[i];
+        if (prim == last)
+            continue;
+        if (prim != GLINT_MISS)
+            note_material(kept, frame->geometry.prims[prim].material);
+        last = prim;
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        kept->background = kept->background || tile->at.hits[g] != tile->active[g];
+}
+
+/// Notes whether a light reaches any point of a sample.
+static void note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
+{
+    glint_kept_light *kept = &tile->kept->lights[index];
+    const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= lanes[g];
+    kept->reaches = (k && kept->reaches) || any;
+}
+
+/// The same where nothing is hit.
+static void note_nothing(const glint_tile *tile, uint32_t k)
+{
+    if (k == 0)
+        tile->kept->shown_count = 0;
+    tile->kept->background = true;
+}
+
+// ---- A sample ----
 
 static bool any_hit(const glint_tile *tile)
 {
@@ -111,7 +157,7 @@ typedef struct walk {
 static void need_rays(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     if (!w->rays)
-        glint_tile_make_rays(tile, frame, w->sample);
+        glint_tile_make_rays(tile, frame);
     w->rays = true;
 }
 
@@ -128,25 +174,25 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     const glint_plan *plan = frame->plan;
-    bool cast_known, surface_known;
-    find_geometry_memory(tile, frame, w->sample, &cast_known, &surface_known);
+    const bool known = find_hit_memory(tile, frame, w->sample);
     if (!plan->runs[GLINT_STAGE_CAST]) {
-        memset(tile->at.hits, 0, sizeof tile->hits);
-    } else if (cast_known) {
+        memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
+    } else if (known) {
         glint_tile_book(tile, frame, GLINT_STAGE_CAST, true);
     } else {
-        const double x[2] = { tile->x0, tile->x0 + tile->width }, y[2] = { tile->y0, tile->y0 + tile->height };
-        need_rays(tile, frame, w);
-        tile->candidate_count = glint_cull_primary(plan, x, y, tile->candidates);
-        glint_tile_cast(tile, frame);
+        const bool in_sight = glint_tile_in_sight(tile, frame);
+        if (in_sight)
+            need_rays(tile, frame, w);
+        glint_tile_cast(tile, frame, in_sight);
     }
     const bool any = any_hit(tile);
-    if (any && (!surface_known || (w->sample == 0 && glint_tile_wants_geometry(plan))))
-        need_points(tile, frame, w);
-    else if (any)
-        glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
+    if (tile->kept && any)
+        note_surfaces(tile, frame, w->sample);
+    else if (tile->kept)
+        note_nothing(tile, w->sample);
     if (w->sample == 0 && glint_tile_wants_geometry(plan)) {
-        need_rays(tile, frame, w);
+        if (any)
+            need_points(tile, frame, w);
         glint_tile_store_geometry(tile, frame);
     }
     return any;
@@ -164,39 +210,78 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
         need_points(tile, frame, w);
         glint_tile_shine(tile, frame, light, slot);
     }
-    if (!light->shadows)
-        return;
-    if (occlude_known) {
+    if (light->shadows && occlude_known) {
         glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, true);
-    } else {
+    } else if (light->shadows) {
         need_points(tile, frame, w);
         glint_tile_occlude(tile, frame, light, slot);
     }
+    if (tile->kept && index < frame->reuse->light_count)
+        note_light(tile, index, slot, light->shadows, w->sample);
 }
 
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
-    const uint32_t lights = find_hits(tile, frame, &w) ? frame->plan->light_count : 0;
+    glint_tile_aim(tile, frame, k);
+    const bool any = find_hits(tile, frame, &w);
+    const uint32_t lights = any ? frame->plan->light_count : 0;
     uint32_t from = 0;
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count; i++)
             find_light(tile, frame, &w, from + i, i);
+        if (from == 0 && any && !w.points) {
+            glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
+            glint_tile_name_materials(tile, frame);
+        }
         glint_tile_shade(tile, frame, from, count);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
 }
 
-void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
+/// Whether the tile's pixels are those of the last picture; then they are copied.
+static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_kept_tile *kept = tile->kept;
+    const glint_plan *plan = frame->plan;
+    if (!kept)
+        return false;
+    const int picture = frame->reuse->picture;
+    const glint_key key = glint_reuse_film_key(frame->reuse, kept, plan), none = { 0 };
+    kept->changed = !frame->last || glint_key_equal(key, none) || !glint_key_equal(key, kept->film[picture]);
+    kept->film[!picture] = key;
+    if (kept->changed)
+        return false;
+    glint_tile_copy(tile, frame);
+    tile->counts.clipped += kept->clipped;
+    tile->counts.nonfinite += kept->nonfinite;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id])
+            tile->counts.reuses[id] += id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_OCCLUDE ? plan->light_count : 1;
+    return true;
+}
+
+/// Writes down what the tile shows now.
+static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t clipped, uint64_t nonfinite)
+{
+    glint_kept_tile *kept = tile->kept;
+    if (!kept)
+        return;
+    kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
+    for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
+        kept->lights[i].place = frame->plan->lights[i].place_key;
+    kept->film[!frame->reuse->picture] = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    kept->clipped = tile->counts.clipped - clipped;
+    kept->nonfinite = tile->counts.nonfinite - nonfinite;
+}
+
+/// Every stage that the tile needs.
+static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const uint64_t start = glint_tile_now_ns();
-    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
-    tile->clock = start;
-    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[(size_t)row * across + column] : NULL;
-    place(tile, plan, column, row);
+    const uint64_t clipped = tile->counts.clipped, nonfinite = tile->counts.nonfinite;
     if (plan->accumulate)
         memset(tile->sum, 0, sizeof tile->sum);
     for (uint32_t k = 0; k < (uint32_t)plan->desc.samples; k++) {
@@ -213,7 +298,19 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
         glint_tile_tone(tile, frame);
         tile->counts.runs[GLINT_STAGE_TONE]++;
     }
-    const uint64_t done = glint_tile_now_ns();
-    tile->counts.ns[GLINT_STAGE_TONE] += done - rendered;
-    tile->counts.tile_ns += done - start;
+    tile->counts.ns[GLINT_STAGE_TONE] += glint_tile_now_ns() - rendered;
+    sign_film(tile, frame, clipped, nonfinite);
+}
+
+void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
+{
+    const glint_plan *plan = frame->plan;
+    const uint64_t start = glint_tile_now_ns();
+    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    tile->clock = start;
+    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[(size_t)row * across + column] : NULL;
+    place(tile, plan, column, row);
+    if (!unchanged(tile, frame))
+        run_stages(tile, frame);
+    tile->counts.tile_ns += glint_tile_now_ns() - start;
 }

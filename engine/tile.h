@@ -17,6 +17,8 @@ typedef struct glint_tile_counts {
 /// What all tiles of a frame share.
 typedef struct glint_tile_frame {
     const glint_plan *plan;
+    const glint_image *last; ///< the last picture, of the same format, or NULL
+    glint_geometry_table geometry; ///< the plan's, with its index
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no codes
@@ -36,7 +38,7 @@ typedef struct glint_tile_light {
 /// Where the results of the current sample are: in the tile's own memory or in what is kept between frames.
 typedef struct glint_tile_sample {
     void *t;
-    uint32_t *prim, *material;
+    uint32_t *prim;
     uint16_t *hits;
     struct {
         float *cosine, *attenuation, *log2_specular;
@@ -48,28 +50,24 @@ typedef struct glint_tile_sample {
 typedef struct glint_tile {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double across[3][GLINT_TILE_WIDTH / 4][GLINT_GROUP], down[3][GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) float direction_f[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t coincident[GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t side[GLINT_TILE_SAMPLES];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t rgb[GLINT_TILE_SAMPLES];
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
-    uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS];
-    double lower[3], upper[3]; ///< box around the points
+    uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+    glint_camera_args camera; ///< of the current sample
     glint_tile_sample at;
     glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
-    uint32_t *candidates;
-    uint32_t candidate_count, candidate_capacity;
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
 } glint_tile;
@@ -83,8 +81,12 @@ static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
 /// tile_stages.c: each calls one stage for the current sample, and books it.
-void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
-void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame);
+/// False: no ray of the tile hits anything. Not booked.
+bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
+/// `in_sight` false: nothing is hit, and no rays need to have been made.
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 /// slot: where in the chunk the light's results go.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot);
@@ -95,10 +97,15 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
 
+/// Names the material of each hit, where no surfaces were found.
+void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
+
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
+/// Takes the tile's pixels from the last picture.
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame);
 
 #endif

@@ -32,6 +32,17 @@ static double real_at(const void *array, glint_precision precision, uint32_t i)
     return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
 }
 
+static double direction_at(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
+{
+    if (tile->camera.orthographic)
+        return real_at(tile->direction[c], precision, i);
+    const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
+    const uint32_t lane = i % GLINT_GROUP;
+    const double d = real_at(tile->across[c], precision, x * GLINT_GROUP + lane) +
+                     real_at(tile->down[c], precision, y * GLINT_GROUP + lane);
+    return precision == GLINT_FLOAT ? (float)d : d;
+}
+
 bool glint_tile_wants_geometry(const glint_plan *plan)
 {
     return plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
@@ -50,7 +61,7 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
         for (int c = 0; c < 3; c++) {
             normal[c][i] = hit ? (float)real_at(tile->normal[c], precision, i) : 0;
             if (hit)
-                d[c] = real_at(tile->direction[c], precision, i);
+                d[c] = direction_at(tile, precision, c, i);
         }
         if (hit)
             depth[i] = (float)(real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
@@ -121,4 +132,21 @@ void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
         args.beauty[c] = tile->beauty[c];
     frame->stages->tone(&args);
     store_codes8(tile, frame->image->codes, frame->image->width);
+}
+
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_image *from = frame->last;
+    const size_t stride = (size_t)from->width, at = (size_t)tile->y0 * stride + tile->x0;
+    const size_t pixel = from->codes ? 3 * (size_t)from->code_tone.bits / 8 : 0;
+    for (size_t y = 0; y < tile->height; y++) {
+        const size_t row = at + y * stride;
+        if (pixel)
+            memcpy((char *)frame->image->codes + row * pixel, (const char *)from->codes + row * pixel,
+                   tile->width * pixel);
+        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+            for (int c = 0; c < 3; c++)
+                if (from->plane[pass][c])
+                    memcpy(frame->image->plane[pass][c] + row, from->plane[pass][c] + row, tile->width * sizeof(float));
+    }
 }

@@ -1,8 +1,8 @@
 /// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
 #include "engine/tile.h"
 #include "engine/base/vec.h"
-#include "engine/cull.h"
 
+#include <string.h>
 #include <time.h>
 
 uint64_t glint_tile_now_ns(void)
@@ -66,89 +66,124 @@ static void sample_offset(const glint_plan *plan, uint32_t k, double out[2])
         out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
 }
 
-void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_camera *camera = &plan->camera;
-    glint_camera_args args = { .group_count = tile->group_count,
-                               .groups_across = tile->groups_across,
-                               .x0 = tile->x0,
-                               .y0 = tile->y0,
-                               .width = plan->desc.width,
-                               .height = plan->desc.height,
-                               .orthographic = camera->orthographic };
-    sample_offset(plan, k, args.offset);
-    vec_copy(args.eye, camera->eye);
-    vec_copy(args.forward, camera->forward);
-    vec_copy(args.right, camera->right);
-    vec_copy(args.up, camera->up);
+    glint_camera_args *args = &tile->camera;
+    *args = (glint_camera_args) { .group_count = tile->group_count,
+                                  .groups_across = tile->groups_across,
+                                  .x0 = tile->x0,
+                                  .y0 = tile->y0,
+                                  .width = plan->desc.width,
+                                  .height = plan->desc.height,
+                                  .orthographic = camera->orthographic };
+    sample_offset(plan, k, args->offset);
+    vec_copy(args->eye, camera->eye);
+    vec_copy(args->forward, camera->forward);
+    vec_copy(args->right, camera->right);
+    vec_copy(args->up, camera->up);
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->origin[c];
-        args.direction[c] = tile->direction[c];
-        args.direction_f[c] = tile->direction_f[c];
+        args->across[c] = tile->across[c];
+        args->down[c] = tile->down[c];
+        args->origin[c] = tile->origin[c];
+        args->direction[c] = tile->direction[c];
     }
-    frame->stages->geometry[plan->desc.precision].camera(&args);
+}
+
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame)
+{
+    frame->stages->geometry[frame->plan->desc.precision].camera(&tile->camera);
     glint_tile_book(tile, frame, GLINT_STAGE_CAMERA, false);
 }
 
-void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
+static glint_cast_args cast_args(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_plan *plan = frame->plan;
-    const struct glint_geometry_stages *stages = &frame->stages->geometry[plan->desc.precision];
     glint_cast_args args = { .group_count = tile->group_count,
                              .active = tile->active,
-                             .prims = plan->prims,
-                             .bundle = plan->bundle,
-                             .candidates = tile->candidates,
-                             .candidate_count = tile->candidate_count,
-                             .filter_scale = plan->filter_scale,
+                             .geometry = &frame->geometry,
+                             .camera = &tile->camera,
+                             .parallel = frame->plan->camera.orthographic,
                              .t = tile->at.t,
                              .prim = tile->at.prim,
                              .hits = tile->at.hits };
-    vec_copy(args.reference, plan->reference);
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
-        args.direction_f[c] = tile->direction_f[c];
     }
-    if (plan->bundle)
-        stages->cast_bundle(&args);
-    else
+    return args;
+}
+
+bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_cast_args args = cast_args(tile, frame);
+    return frame->plan->camera.orthographic || frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
+}
+
+static void hit_nothing(glint_tile *tile, glint_precision precision)
+{
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        if (precision == GLINT_FLOAT)
+            ((float *)tile->at.t)[i] = HUGE_VALF;
+        else
+            ((double *)tile->at.t)[i] = HUGE_VAL;
+        tile->at.prim[i] = GLINT_MISS;
+    }
+    memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
+}
+
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight)
+{
+    const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
+    const glint_cast_args args = cast_args(tile, frame);
+    if (!in_sight)
+        hit_nothing(tile, frame->plan->desc.precision);
+    else if (frame->plan->camera.orthographic)
         stages->cast_rays(&args);
+    else
+        stages->cast_bundle(&args);
     tile->counts.primary += (uint64_t)tile->width * tile->height;
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
+}
+
+/// The camera, where the rays are not in arrays.
+static const glint_camera_args *rays_of(const glint_tile *tile)
+{
+    return tile->camera.orthographic ? NULL : &tile->camera;
 }
 
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const struct glint_geometry_stages *stages = &frame->stages->geometry[plan->desc.precision];
     glint_surface_args args = { .group_count = tile->group_count,
                                 .hits = tile->at.hits,
                                 .prim = tile->at.prim,
-                                .prims = plan->prims,
-                                .bundle = plan->bundle,
+                                .prims = frame->geometry.prims,
+                                .camera = rays_of(tile),
                                 .t = tile->at.t,
-                                .material = tile->at.material,
-                                .coincident = tile->coincident,
-                                .side = tile->side };
-    vec_copy(args.eye, plan->camera.eye);
+                                .material = tile->material,
+                                .back = tile->back,
+                                .dark = tile->dark };
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
         args.point[c] = tile->point[c];
         args.normal[c] = tile->normal[c];
     }
-    stages->surface(&args);
-    if (plan->runs[GLINT_STAGE_OCCLUDE]) {
-        glint_bounds_args box = { .group_count = tile->group_count, .hits = tile->at.hits };
-        for (int c = 0; c < 3; c++)
-            box.point[c] = tile->point[c];
-        stages->bounds(&box);
-        vec_copy(tile->lower, box.lower);
-        vec_copy(tile->upper, box.upper);
-    }
+    frame->stages->geometry[plan->desc.precision].surface(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+}
+
+void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_prim *prims = frame->geometry.prims;
+    uint32_t last = GLINT_MISS, material = 0;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const uint32_t prim = tile->at.prim[i];
+        if (prim != last && prim != GLINT_MISS)
+            material = prims[last = prim].material;
+        tile->material[i] = material;
+    }
 }
 
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
@@ -156,13 +191,14 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const gli
     const glint_plan *plan = frame->plan;
     glint_light_args args = { .group_count = tile->group_count,
                               .hits = tile->at.hits,
-                              .material = tile->at.material,
-                              .side = tile->side,
+                              .camera = rays_of(tile),
+                              .material = tile->material,
+                              .materials = plan->materials,
+                              .dark = tile->dark,
                               .directional = light->directional,
                               .scale = light->scale,
                               .attenuated = light->attenuated,
-                              .phong_end = plan->phong_end,
-                              .blinn_end = plan->blinn_end,
+                              .highlights = plan->highlights,
                               .lit = tile->at.light[slot].lit,
                               .cosine = tile->at.light[slot].cosine,
                               .attenuation = tile->at.light[slot].attenuation,
@@ -180,25 +216,19 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const gli
 
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
 {
-    const glint_plan *plan = frame->plan;
     glint_occlude_args args = { .group_count = tile->group_count,
                                 .lit = tile->at.light[slot].lit,
-                                .coincident = tile->coincident,
-                                .side = tile->side,
+                                .prim = tile->at.prim,
+                                .back = tile->back,
                                 .directional = light->directional,
                                 .scale = light->scale,
-                                .prims = plan->prims,
-                                .light_side = light->light_side,
-                                .candidates = tile->candidates,
-                                .filter_scale = plan->filter_scale,
+                                .geometry = &frame->geometry,
                                 .open = tile->at.light[slot].open,
                                 .rays = &tile->counts.shadow };
-    args.candidate_count = glint_cull_shadow(plan, light, tile->lower, tile->upper, tile->candidates);
     vec_copy(args.position, light->position);
-    vec_copy(args.reference, plan->reference);
     for (int c = 0; c < 3; c++)
         args.point[c] = tile->point[c];
-    frame->stages->geometry[plan->desc.precision].occlude(&args);
+    frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
 }
 
@@ -218,9 +248,9 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
                               .hits = tile->at.hits,
-                              .material = tile->at.material,
+                              .material = tile->material,
                               .materials = plan->materials,
-                              .has_specular = plan->blinn_end > 0,
+                              .highlights = plan->highlights,
                               .first = from == 0,
                               .lights = lights,
                               .light_count = count };

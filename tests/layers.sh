@@ -17,6 +17,6 @@ forbid engine '#include "(bindings|tests)/' 'the engine includes nothing above i
 forbid engine/stages "\\b$scene\\b" 'stages take plain arrays, not scenes'
 forbid engine/stages '#include "engine/([a-z_]+\.h|image/)' 'stages include stages and base only'
 forbid engine/base '#include "engine/(stages|image)/' 'base includes base and glint.h only'
-forbid engine/base '#include "engine/(scene|plan|render|tile|cull|material|light|camera|shape|reuse)' 'base is below the scene'
+forbid engine/base '#include "engine/(scene|plan|render|tile|geometry|bvh|material|light|camera|shape|reuse)' 'base is below the scene'
 forbid bindings '#include "(engine/([^g]|g[^l]|[a-z]+/)|tests/)' 'bindings use the public API, engine/glint.h'
 exit $bad

@@ -17,36 +17,79 @@ static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], d
     }
 }
 
-static void R(camera)(const glint_camera_args *args)
+/// out = start + s * along, a component at a time.
+static inline void R(axis_vectors)(const double start[3], const double along[3], const real s[GLINT_GROUP],
+                                   void *const out[3], size_t at)
 {
-    static const _Alignas(64) double lane_x[GLINT_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
-    static const _Alignas(64) double lane_y[GLINT_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
-    _Alignas(64) real sx[GLINT_GROUP], sy[GLINT_GROUP];
-    vr base[3], right[3], up[3], forward[3];
-    for (int c = 0; c < 3; c++) {
-        right[c] = r_set(args->right[c]);
-        up[c] = r_set(args->up[c]);
-        forward[c] = r_set(args->forward[c]);
-        base[c] = forward[c];
-        if (args->orthographic)
-            base[c] = r_set(args->eye[c]);
-    }
-    for (uint32_t g = 0, column = 0, row = 0; g < args->group_count; g++, column++) {
-        if (column == args->groups_across)
-            column = 0, row++;
-        R(pixel_axis)(args->x0 + 4 * column, lane_x, args->offset[0], args->width, false, sx);
-        if (column == 0)
-            R(pixel_axis)(args->y0 + 4 * row, lane_y, args->offset[1], args->height, true, sy);
-        const size_t at = (size_t)g * GLINT_GROUP;
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VR)
-            for (int c = 0; c < 3; c++) {
-                vr v = (base[c] + r_load(sx + i) * right[c]) + r_load(sy + i) * up[c], d = v;
-                if (args->orthographic) {
-                    r_store((real *)args->origin[c] + at + i, v);
-                    d = forward[c];
-                }
-                r_store((real *)args->direction[c] + at + i, d);
-                r_store_f(args->direction_f[c] + at + i, d);
+            r_store((real *)out[c] + at + i, r_set(start[c]) + r_load(s + i) * r_set(along[c]));
+}
+
+static const _Alignas(64) double R(lane_x)[GLINT_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
+static const _Alignas(64) double R(lane_y)[GLINT_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
+
+/// Directions from one eye are sums of what the column says and what the row says.
+static void R(camera_perspective)(const glint_camera_args *args)
+{
+    _Alignas(64) real s[GLINT_GROUP];
+    for (uint32_t x = 0; x < args->groups_across; x++) {
+        R(pixel_axis)(args->x0 + 4 * x, R(lane_x), args->offset[0], args->width, false, s);
+        R(axis_vectors)(args->forward, args->right, s, args->across, (size_t)x * GLINT_GROUP);
+    }
+    for (uint32_t y = 0; y < args->group_count / args->groups_across; y++) {
+        R(pixel_axis)(args->y0 + 4 * y, R(lane_y), args->offset[1], args->height, true, s);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                r_store((real *)args->down[c] + (size_t)y * GLINT_GROUP + i, r_load(s + i) * r_set(args->up[c]));
+    }
+}
+
+static void R(camera_orthographic)(const glint_camera_args *args)
+{
+    _Alignas(64) real s[GLINT_GROUP], t[GLINT_GROUP];
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        R(pixel_axis)(args->x0 + 4 * (g % args->groups_across), R(lane_x), args->offset[0], args->width, false, s);
+        R(pixel_axis)(args->y0 + 4 * (g / args->groups_across), R(lane_y), args->offset[1], args->height, true, t);
+        R(axis_vectors)(args->eye, args->right, s, args->origin, at);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < GLINT_GROUP; i += VR) {
+                real *origin = (real *)args->origin[c] + at + i;
+                r_store(origin, r_load(origin) + r_load(t + i) * r_set(args->up[c]));
+                r_store((real *)args->direction[c] + at + i, r_set(args->forward[c]));
             }
     }
+}
+
+static void R(camera)(const glint_camera_args *args)
+{
+    if (args->orthographic)
+        R(camera_orthographic)(args);
+    else
+        R(camera_perspective)(args);
+}
+
+/// Directions of some lanes of group (x, y) of a perspective camera.
+static inline void R(camera_direction)(const glint_camera_args *camera, uint32_t x, uint32_t y, int i, vr out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = r_load((const real *)camera->across[k] + (size_t)x * GLINT_GROUP + i) +
+                 r_load((const real *)camera->down[k] + (size_t)y * GLINT_GROUP + i);
+}
+
+static inline void R(load3)(const void *const v[3], size_t at, vr out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = r_load((const real *)v[k] + at);
+}
+
+/// The same of group g, or of rays in arrays where `camera` is NULL.
+static inline void R(ray_direction)(const glint_camera_args *camera, const void *const direction[3], uint32_t g, int i,
+                                    vr out[3])
+{
+    if (camera)
+        R(camera_direction)(camera, g % camera->groups_across, g / camera->groups_across, i, out);
+    else
+        R(load3)(direction, (size_t)g * GLINT_GROUP + i, out);
 }

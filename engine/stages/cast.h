@@ -18,9 +18,12 @@ static inline vr R(exact_c)(const vr f[3], const glint_prim *prim)
 /// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
 static inline vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 {
+    vr bb = b * b, ar2 = a * r2, inner = bb - a * c;
+    const rm near = r_lt(bb, ar2);
+    if (rm_bits(near) == (1u << VR) - 1) // a ground seen from above it: the cross product is not needed
+        return inner;
     vr x = f[1] * d[2] - f[2] * d[1], y = f[2] * d[0] - f[0] * d[2], z = f[0] * d[1] - f[1] * d[0];
-    vr bb = b * b, ar2 = a * r2;
-    return r_select(r_lt(bb, ar2), bb - a * c, ar2 - ((x * x + y * y) + z * z));
+    return r_select(near, inner, ar2 - ((x * x + y * y) + z * z));
 }
 
 static inline rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
@@ -44,173 +47,556 @@ static inline rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim
     return rm_and(r_le(r_set(GLINT_PARALLEL) * a, nd * nd), r_lt(r_set(0), *t));
 }
 
+// ---- The filter of rays that have their own origins ----
+
 /// Which lanes of a group come near the sphere, `f` from its centre to the ray's origin: the distance of the ray is
 /// |f x d| / |d|. Written so that NaN and infinity keep the lane.
-static inline unsigned R(near_lanes)(const vf f[3], const float *const direction_f[3], size_t at, vf limit2)
+static inline unsigned R(near_lanes)(const vf f[3], const vf d[3], vf limit2)
 {
-    vf d[3] = { f_load(direction_f[0] + at), f_load(direction_f[1] + at), f_load(direction_f[2] + at) };
     vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
     return ~fm_bits(f_lt(limit2 * DOT(d, d), DOT(x, x))) & ((1u << VF) - 1);
 }
 
-static unsigned R(near_bundle)(const glint_cast_args *args, const glint_bundle_prim *seen, size_t at)
-{
-    const vf f[3] = { f_set(seen->filter_f[0]), f_set(seen->filter_f[1]), f_set(seen->filter_f[2]) };
-    const vf limit2 = f_set(seen->filter_limit2);
-    unsigned near = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        near |= R(near_lanes)(f, args->direction_f, at + i, limit2) << i;
-    return near;
-}
-
-#if GLINT_REAL == 64
-/// Origins of a group for the filter: around the reference, in its units; and, last, the bound 8 * 2^-24 |origin| (by
-/// the sum of the components, which is larger).
-static void R(filter_origins)(const void *const point[3], size_t at, const double reference[3], double filter_scale,
-                              float (*local)[GLINT_GROUP])
+/// Points of a group in the index's frame.
+static inline void R(index_frame)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
+                                  float (*local)[GLINT_GROUP])
 {
     for (int i = 0; i < GLINT_GROUP; i += VR)
-        for (int c = 0; c < 3; c++)
-            r_store_f(local[c] + i,
-                      (r_load((const real *)point[c] + at + i) - r_set(reference[c])) * r_set(filter_scale));
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        f_store(local[3] + i, f_set(8 * 0x1p-24f) * ((f_abs(f_load(local[0] + i)) + f_abs(f_load(local[1] + i))) +
-                                                     f_abs(f_load(local[2] + i))));
+        for (int k = 0; k < 3; k++)
+            r_store_f(local[k] + i, (r_load((const real *)point[k] + at + i) - r_set(geometry->reference[k])) *
+                                        r_set(geometry->scale));
 }
 
-static inline vf R(filter_limit)(const vf f[3], const float *bound, const glint_prim *prim)
+/// A group of rays as filter and walk see them.
+typedef struct R(ray_group) {
+    const float (*local)[GLINT_GROUP]; ///< origins, in the index's frame
+    _Alignas(64) float direction[3][GLINT_GROUP];
+    _Alignas(64) float bound[GLINT_GROUP]; ///< what the rounding of `local` may add to a distance
+    const float *origin[3]; ///< --precision float: the origins themselves
+} R(ray_group);
+
+/// Fills all but `direction`. `local`: of these origins, by index_frame.
+static inline void R(set_origins)(const void *const point[3], size_t at, const float (*local)[GLINT_GROUP],
+                                  R(ray_group) * rays)
 {
-    (void)f;
-    return f_set(prim->filter_bound) + f_load(bound);
+    rays->local = local;
+    for (int i = 0; i < GLINT_GROUP; i += VF) // by the sum of the components, which is larger than the length
+        f_store(rays->bound + i,
+                f_set(GLINT_FILTER_SLACK) * ((f_abs(f_load(rays->local[0] + i)) + f_abs(f_load(rays->local[1] + i))) +
+                                             f_abs(f_load(rays->local[2] + i))));
+    for (int k = 0; k < 3; k++)
+        rays->origin[k] = (const float *)point[k] + (GLINT_REAL == 32 ? at : 0);
 }
 
-static inline vf R(filter_offset)(const float *origin, const glint_prim *prim, int c)
+/// From the sphere's centre to the rays' origins, and how near a ray may pass without being kept.
+static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_prim *prim, vf f[3])
 {
-    return f_load(origin) - f_set(prim->filter_center[c]);
-}
-#else
-/// Where float decides, the filter must see what it sees: the same f, with all its error.
-static void R(filter_origins)(const void *const point[3], size_t at, const double reference[3], double filter_scale,
-                              float (*local)[GLINT_GROUP])
-{
-    (void)reference, (void)filter_scale;
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i += VF)
-            f_store(local[c] + i, f_load((const float *)point[c] + at + i));
-}
-
-static inline vf R(filter_limit)(const vf f[3], const float *bound, const glint_prim *prim)
-{
-    (void)bound;
+#if GLINT_REAL == 64
+    for (int k = 0; k < 3; k++)
+        f[k] = f_load(rays->local[k] + i) - f_set(prim->filter_center[k]);
+    return f_set(prim->filter_bound) + f_load(rays->bound + i);
+#else // where float decides, the filter must see what it sees: the same f, with all its error
+    for (int k = 0; k < 3; k++)
+        f[k] = (f_load(rays->origin[k] + i) - f_set((float)prim->center[k])) * f_set((float)prim->scale);
     if (prim->kind != GLINT_PRIM_SPHERE)
         return f_set(HUGE_VALF);
-    const vf reach = f_set((float)(prim->radius * prim->scale * (1 + 1e-6)));
-    return reach + f_set(8 * 0x1p-24f) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
-}
-
-static inline vf R(filter_offset)(const float *origin, const glint_prim *prim, int c)
-{
-    return (f_load(origin) - f_set((float)prim->center[c])) * f_set((float)prim->scale);
-}
+    return f_set((float)(prim->radius * prim->scale * (1 + 2e-6))) +
+           f_set(GLINT_FILTER_SLACK) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
 #endif
+}
 
-/// The filter of rays that have their own origins, `local` of them by filter_origins.
-static unsigned R(near_rays)(const float *const direction_f[3], size_t at, const float (*local)[GLINT_GROUP],
-                             const glint_prim *prim)
+/// Lanes of the group that pass near the primitive.
+static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 {
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf f[3];
-        for (int c = 0; c < 3; c++)
-            f[c] = R(filter_offset)(local[c] + i, prim, c);
-        const vf limit = R(filter_limit)(f, local[3] + i, prim);
-        near |= R(near_lanes)(f, direction_f, at + i, limit * limit) << i;
+        vf f[3], d[3];
+        for (int k = 0; k < 3; k++)
+            d[k] = f_load(rays->direction[k] + i);
+        const vf limit = R(filter_offset)(rays, i, prim, f);
+        near |= R(near_lanes)(f, d, limit * limit) << i;
     }
     return near;
 }
 
-/// Decides one candidate for the lanes of a group in `near`, and keeps the nearest.
-static inline void R(decide)(const glint_cast_args *args, size_t at, uint32_t id, unsigned near, bool bundle)
+// ---- The decision ----
+
+/// Keeps the nearest of what was and `t` in the lanes of `hit`.
+static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
 {
-    const glint_prim *prim = &args->prims[id];
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
-    const vr index = r_index(id);
+    const vr old_t = r_load(best_t);
+    const rm tie = rm_and(hit, r_eq(t, old_t));
+    hit = rm_and(hit, r_lt(t, old_t));
+    if (rm_bits(tie))
+        hit = rm_or(hit, rm_and(tie, r_index_lt(r_index(id), r_load_index(best_id))));
+    r_store(best_t, r_select(hit, t, old_t));
+    r_put_index(best_id, hit, id);
+}
+
+/// From the ray's origin to the primitive: f of a sphere, scaled; of a plane, not.
+static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3])
+{
+    for (int k = 0; k < 3; k++) {
+        f[k] = origin[k] - r_set(prim->center[k]);
+        if (prim->kind == GLINT_PRIM_SPHERE)
+            f[k] = f[k] * r_set(prim->scale);
+    }
+}
+
+/// What all rays from one origin know of a primitive: f, and c of a sphere or the height over a plane.
+static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
+{
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return R(exact_c)(f, prim);
+    const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
+    return DOT(n, f);
+}
+
+static inline rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
+{
+    const vr a = DOT(d, d);
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return R(meet_sphere)(f, d, a, c, prim, t);
+    return R(meet_plane)(d, a, c, prim, t);
+}
+
+/// Starts a group: nothing hit; and nothing that could be nearer where no pixel is.
+static inline void R(start_group)(const glint_cast_args *args, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const rm active = rm_from_bits(args->active[g] >> i & ((1u << VR) - 1));
+        r_store((real *)args->t + at + i, r_select(active, r_set(HUGE_VAL), r_set(-HUGE_VAL)));
+    }
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        i_store(args->prim + at + i, i_set(GLINT_MISS));
+}
+
+/// Writes the group's hit mask, and makes lanes outside the image misses like all others.
+static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    args->hits[g] = (uint16_t)~lanes_equal(args->prim + at, GLINT_MISS);
+    for (int i = 0; args->active[g] != 0xffff && i < GLINT_GROUP; i += VR) {
+        const rm active = rm_from_bits(args->active[g] >> i & ((1u << VR) - 1));
+        real *t = (real *)args->t + at + i;
+        r_store(t, r_select(active, r_load(t), r_set(HUGE_VAL)));
+    }
+}
+
+/// The farthest hit of a group in the index's units, rounded up; infinite while a ray has none.
+static inline float R(farthest)(const glint_cast_args *args, size_t at)
+{
+    _Alignas(64) float t[GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        r_store_f(t + i, r_load((const real *)args->t + at + i) * r_set(args->geometry->scale));
+    return group_highest(t) * (1 + 0x1p-22f);
+}
+
+/// What float arithmetic adds to the rounding of the walk, in the index's units.
+static inline float R(walk_slack)(const glint_geometry_table *geometry)
+{
+#if GLINT_REAL == 64
+    (void)geometry;
+    return 0;
+#else
+    return (float)(GLINT_FILTER_SLACK * geometry->extent * geometry->scale);
+#endif
+}
+
+// ---- Rays from the eye: the tile walks the index once, nearest boxes first ----
+
+/// The tile's pixels as the filter sees them, and what is hit so far.
+typedef struct R(tile_cast) {
+    const glint_cast_args *args;
+    tile_view view;
+    int across, down;
+    bool scaled; ///< the arrays below are filled
+    bool deep; ///< the index has more than one node: worth knowing what hides what
+    _Alignas(64) float s[GLINT_TILE_WIDTH / 4][GLINT_GROUP], t[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
+    _Alignas(64) float ss[GLINT_TILE_WIDTH / 4][GLINT_GROUP], tt[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
+    ///< |direction|^2 = ss + tt
+    _Alignas(64) float far[GLINT_TILE_GROUPS]; ///< depth of the farthest hit of each group, in the index's units
+    uint64_t stale; ///< groups whose `far` is not up to date, a bit each
+    float far_of_all;
+} R(tile_cast);
+
+/// A primitive that some of the tile's rays may hit, and what it is to all of them.
+typedef struct R(candidate) {
+    const glint_prim *prim;
+    uint32_t id;
+    float depth; ///< where its box begins
+    unsigned columns, rows; ///< of groups that it may show in, a bit each
+    real f[3], c; ///< see R(offset) and R(offset_constant)
+    float base[3], along_s[3], along_t[3], limit2; ///< the filter of a sphere: f x d is linear in s and t
+} R(candidate);
+
+/// Which way the planes' corner rays run decides whether a ray between them can meet it.
+static inline bool R(plane_ahead)(const glint_camera_args *camera, const tile_view *view, const glint_prim *prim)
+{
+    double e[3], away = 0;
+    for (int k = 0; k < 3; k++) {
+        e[k] = camera->eye[k] - prim->center[k];
+        away = fmax(away, fabs(e[k]));
+    }
+    const double height = DOT(prim->normal, e);
+    if (!(fabs(height) > (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
+        return true;
+    for (int corner = 0; corner < 4; corner++) {
+        const double s = view->s[corner & 1], t = view->t[corner >> 1];
+        double d[3], size = 0;
+        for (int k = 0; k < 3; k++) {
+            d[k] = (camera->forward[k] + s * camera->right[k]) + t * camera->up[k];
+            size += fabs(d[k]);
+        }
+        if (!(DOT(prim->normal, d) * (height > 0 ? 1 : -1) > 1e-5 * size))
+            return true;
+    }
+    return false;
+}
+
+static void R(scale_tile)(R(tile_cast) * tile)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    const vf rr = f_set((float)DOT(camera->right, camera->right)), uu = f_set((float)DOT(camera->up, camera->up));
+    for (int x = 0; x < tile->across; x++)
+        for (int i = 0; i < GLINT_GROUP; i++)
+            tile->s[x][i] = (float)(2 * ((camera->x0 + 4 * x + i % 4) + camera->offset[0]) - camera->width);
+    for (int y = 0; y < tile->down; y++)
+        for (int i = 0; i < GLINT_GROUP; i++)
+            tile->t[y][i] = (float)(camera->height - 2 * ((camera->y0 + 4 * y + i / 4) + camera->offset[1]));
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        for (int x = 0; x < tile->across; x++)
+            f_store(tile->ss[x] + i, f_load(tile->s[x] + i) * f_load(tile->s[x] + i) * rr);
+        for (int y = 0; y < tile->down; y++)
+            f_store(tile->tt[y] + i, f_set(1) + f_load(tile->t[y] + i) * f_load(tile->t[y] + i) * uu);
+    }
+    tile->scaled = true;
+}
+
+static inline void R(make_filter)(const glint_camera_args *camera, R(candidate) * candidate)
+{
+    const glint_prim *prim = candidate->prim;
+    double f[3], x[3][3];
+    const double *axis[3] = { camera->forward, camera->right, camera->up };
+    for (int k = 0; k < 3; k++)
+        f[k] = candidate->f[k];
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            x[j][k] = f[(k + 1) % 3] * axis[j][(k + 2) % 3] - f[(k + 2) % 3] * axis[j][(k + 1) % 3];
+    for (int k = 0; k < 3; k++) {
+        candidate->base[k] = (float)x[0][k];
+        candidate->along_s[k] = (float)x[1][k];
+        candidate->along_t[k] = (float)x[2][k];
+    }
+    const double limit = prim->radius * prim->scale * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(DOT(f, f));
+    candidate->limit2 = (float)(limit * limit * (1 + 1e-6));
+}
+
+static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
+{
+    const glint_cast_args *args = tile->args;
+    const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
+    const double *eye = args->camera->eye;
+    const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    _Alignas(64) real lanes[VR];
+    vr f[3];
+    candidate->id = id;
+    R(offset)(origin, prim, f);
+    for (int k = 0; k < 3; k++) {
+        r_store(lanes, f[k]);
+        candidate->f[k] = lanes[0];
+    }
+    r_store(lanes, R(offset_constant)(f, prim));
+    candidate->c = lanes[0];
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return;
+    if (!tile->scaled)
+        R(scale_tile)(tile);
+    R(make_filter)(args->camera, candidate);
+}
+
+/// Lanes of group (x, y) that pass near the candidate.
+static inline unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
+{
+    if (candidate->prim->kind != GLINT_PRIM_SPHERE)
+        return 0xffff;
+    unsigned near = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const vf s = f_load(tile->s[x] + i), t = f_load(tile->t[y] + i);
+        vf v[3];
+        for (int k = 0; k < 3; k++)
+            v[k] = (f_set(candidate->base[k]) + s * f_set(candidate->along_s[k])) + t * f_set(candidate->along_t[k]);
+        const vf reach2 = f_set(candidate->limit2) * (f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i));
+        near |= (~fm_bits(f_lt(reach2, DOT(v, v))) & ((1u << VF) - 1)) << i;
+    }
+    return near;
+}
+
+/// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.
+static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y,
+                                    unsigned near)
+{
+    const glint_cast_args *args = tile->args;
+    const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
+    const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
+    bool any = false;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
-        const vr d[3] = { r_load((const real *)args->direction[0] + at + i),
-                          r_load((const real *)args->direction[1] + at + i),
-                          r_load((const real *)args->direction[2] + at + i) };
-        const vr a = DOT(d, d);
-        const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-        vr f[3], c, t;
-        if (bundle) {
-            const glint_bundle_prim *seen = &args->bundle[id];
-            for (int k = 0; k < 3; k++)
-                f[k] = r_set(seen->f[k]);
-            c = r_set(seen->c);
-        } else {
-            for (int k = 0; k < 3; k++) {
-                f[k] = r_load((const real *)args->origin[k] + at + i) - r_set(prim->center[k]);
-                if (sphere)
-                    f[k] = f[k] * r_set(prim->scale);
-            }
-            const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
-            c = DOT(n, f);
-            if (sphere)
-                c = R(exact_c)(f, prim);
-        }
-        rm hit = sphere ? R(meet_sphere)(f, d, a, c, prim, &t) : R(meet_plane)(d, a, c, prim, &t);
-        const vr old_t = r_load(best_t + i), old_id = r_load_index(best_id + i);
-        rm tie = rm_and(r_eq(t, old_t), r_index_lt(index, old_id));
-        hit = rm_and(hit, rm_or(r_lt(t, old_t), tie));
+        vr d[3], t;
+        R(camera_direction)(args->camera, (uint32_t)x, (uint32_t)y, i, d);
+        const rm hit = R(meet)(f, r_set(candidate->c), d, candidate->prim, &t);
         if (!rm_bits(hit))
             continue;
-        r_store(best_t + i, r_select(hit, t, old_t));
-        r_store_index(best_id + i, r_select(hit, index, old_id));
+        R(keep_nearest)(args, at + i, candidate->id, hit, t);
+        any = true;
+    }
+    return any;
+}
+
+static inline float R(far_of_group)(R(tile_cast) * tile, int g)
+{
+    if (tile->stale >> g & 1)
+        tile->far[g] = R(farthest)(tile->args, (size_t)g * GLINT_GROUP);
+    tile->stale &= ~((uint64_t)1 << g);
+    return tile->far[g];
+}
+
+static inline float R(far_of_tile)(R(tile_cast) * tile)
+{
+    if (!tile->stale)
+        return tile->far_of_all;
+    while (tile->stale)
+        R(far_of_group)(tile, __builtin_ctzll(tile->stale));
+    vf far = f_set(0);
+    for (int g = 0; g < GLINT_TILE_GROUPS; g += VF)
+        far = f_max(far, f_load(tile->far + g));
+    return tile->far_of_all = f_max_all(far);
+}
+
+/// Tests candidates, group by group.
+static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candidates, int count)
+{
+    unsigned columns = 0, rows = 0;
+    for (int k = 0; k < count; k++) {
+        columns |= candidates[k].columns;
+        rows |= candidates[k].rows;
+    }
+    for (; rows; rows &= rows - 1)
+        for (unsigned left = columns; left; left &= left - 1) {
+            const int x = __builtin_ctz(left), y = __builtin_ctz(rows), g = y * tile->across + x;
+            for (int k = 0; k < count; k++) {
+                const R(candidate) *candidate = &candidates[k];
+                if (!(candidate->columns >> x & candidate->rows >> y & 1) ||
+                    (tile->deep && R(far_of_group)(tile, g) < candidate->depth))
+                    continue;
+                const unsigned near = R(near_pixels)(tile, candidate, x, y);
+                if (near && R(decide_pixels)(tile, candidate, x, y, near))
+                    tile->stale |= (uint64_t)1 << g;
+            }
+        }
+}
+
+static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
+{
+    tile->args = args;
+    tile->scaled = false;
+    tile->stale = 0;
+    tile->far_of_all = HUGE_VALF;
+    for (uint32_t g = 0; g < GLINT_TILE_GROUPS; g++)
+        tile->far[g] = g < args->group_count ? HUGE_VALF : 0;
+    tile->deep = false;
+    for (int i = 0; args->geometry->nodes && i < GLINT_NODE_WIDTH; i++)
+        tile->deep = tile->deep || (args->geometry->nodes->lower[0][i] <= args->geometry->nodes->upper[0][i] &&
+                                    !(args->geometry->nodes->child[i] & GLINT_NODE_PRIM));
+    tile->across = (int)args->camera->groups_across;
+    tile->down = (int)args->group_count / tile->across;
+    make_tile_view(args->camera, args->geometry, R(walk_slack)(args->geometry), &tile->view);
+}
+
+static bool R(in_sight)(const glint_cast_args *args)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    _Alignas(64) float depth[GLINT_NODE_WIDTH];
+    tile_view view;
+    make_tile_view(args->camera, geometry, R(walk_slack)(geometry), &view);
+    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
+        if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))
+            return true;
+    return geometry->nodes && boxes_in_tile(geometry->nodes, &view, HUGE_VALF, depth);
+}
+
+/// One node: its primitives are cast at once, its nodes go on the stack, the nearest on top.
+static void R(cast_node)(R(tile_cast) * tile, const glint_node *node, float far, walk_entry *stack, int *height)
+{
+    _Alignas(64) float depth[GLINT_NODE_WIDTH];
+    int order[GLINT_NODE_WIDTH], found = 0;
+    R(candidate) candidates[GLINT_NODE_WIDTH];
+    node_on_screen screen;
+    const int count = sort_slots(boxes_in_tile(node, &tile->view, far, depth), depth, order);
+    bool known = false;
+    for (int i = 0; i < count; i++) {
+        const uint32_t child = node->child[order[i]];
+        if (!(child & GLINT_NODE_PRIM))
+            continue;
+        if (!known)
+            boxes_on_screen(node, &tile->view, &screen);
+        known = true;
+        const group_rect rect = groups_of(&screen, order[i], &tile->view, tile->across, tile->down);
+        R(candidate) *candidate = &candidates[found];
+        candidate->columns = bit_range(rect.first[0], rect.last[0]);
+        candidate->rows = bit_range(rect.first[1], rect.last[1]);
+        candidate->depth = depth[order[i]];
+        if (!candidate->columns || !candidate->rows)
+            continue;
+        R(make_candidate)(tile, child & ~GLINT_NODE_PRIM, candidate);
+        found++;
+    }
+    R(cast_candidates)(tile, candidates, found);
+    for (int i = count; i-- > 0;)
+        if (!(node->child[order[i]] & GLINT_NODE_PRIM))
+            stack[(*height)++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
+}
+
+static void R(cast_planes)(R(tile_cast) * tile)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    for (uint32_t i = 0; i < geometry->unbounded_count; i++) {
+        const uint32_t id = geometry->unbounded[i];
+        R(candidate) candidate = { .columns = bit_range(0, tile->across - 1), .rows = bit_range(0, tile->down - 1) };
+        if (!R(plane_ahead)(tile->args->camera, &tile->view, &geometry->prims[id]))
+            continue;
+        R(make_candidate)(tile, id, &candidate);
+        R(cast_candidates)(tile, &candidate, 1);
     }
 }
 
-/// Makes lanes outside the image misses and writes the group's hit mask.
-static inline void R(collect_hits)(const glint_cast_args *args, uint32_t g)
+static void R(cast_bundle)(const glint_cast_args *args)
 {
-    real *t = (real *)args->t + (size_t)g * GLINT_GROUP;
-    uint32_t *prim = args->prim + (size_t)g * GLINT_GROUP;
-    unsigned misses = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VR)
-        misses |= rm_bits(r_index_eq(r_load_index(prim + i), r_index(GLINT_MISS))) << i;
-    for (unsigned outside = ~misses & ~(unsigned)args->active[g] & 0xffff; outside; outside &= outside - 1) {
-        int i = __builtin_ctz(outside);
-        t[i] = (real)HUGE_VAL;
-        prim[i] = GLINT_MISS;
+    R(tile_cast) tile;
+    walk_entry stack[WALK_STACK];
+    int height = 0;
+    R(begin_tile)(args, &tile);
+    for (uint32_t g = 0; g < args->group_count; g++)
+        R(start_group)(args, g);
+    R(cast_planes)(&tile);
+    if (args->geometry->nodes)
+        stack[height++] = (walk_entry) { 0, -HUGE_VALF };
+    while (height > 0) {
+        const walk_entry top = stack[--height];
+        const float far = tile.deep ? R(far_of_tile)(&tile) : HUGE_VALF;
+        if (!(far < top.depth))
+            R(cast_node)(&tile, &args->geometry->nodes[top.node], far, stack, &height);
     }
-    args->hits[g] = (uint16_t)(~misses & args->active[g]);
+    for (uint32_t g = 0; g < args->group_count; g++)
+        R(finish_group)(args, g);
 }
 
-static inline void R(cast)(const glint_cast_args *args, bool bundle)
+// ---- Rays of their own ----
+
+/// Tests one primitive against all rays of a group.
+static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, uint32_t id)
 {
+    const glint_prim *prim = &args->geometry->prims[id];
+    const size_t at = (size_t)g * GLINT_GROUP;
+    const unsigned near = R(near_rays)(rays, prim);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        vr o[3], d[3], f[3], t;
+        R(load3)(args->origin, at + i, o);
+        R(load3)(args->direction, at + i, d);
+        R(offset)(o, prim, f);
+        const rm hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
+        if (rm_bits(hit))
+            R(keep_nearest)(args, at + i, id, hit, t);
+    }
+}
+
+/// Walks the index with one ray; what it may meet is tested against its whole group, whose rays are often alike.
+static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, int lane)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const real *t = (const real *)args->t + (size_t)g * GLINT_GROUP + lane;
+    ray_view ray = { .slack = R(walk_slack)(geometry) };
+    for (int k = 0; k < 3; k++) {
+        ray.origin[k] = rays->local[k][lane];
+        ray.inverse[k] = inverse_of(rays->direction[k][lane]);
+    }
+    walk_entry stack[WALK_STACK];
+    int height = 0;
+    stack[height++] = (walk_entry) { 0, 0 };
+    while (height > 0) {
+        const walk_entry top = stack[--height];
+        const float far = (float)(*t * (real)geometry->scale) * (1 + 0x1p-22f);
+        if (far < top.depth)
+            continue;
+        _Alignas(64) float depth[GLINT_NODE_WIDTH];
+        int order[GLINT_NODE_WIDTH];
+        const glint_node *node = &geometry->nodes[top.node];
+        const int count = sort_slots(boxes_on_ray(node, &ray, far, depth), depth, order);
+        for (int i = 0; i < count; i++)
+            if (node->child[order[i]] & GLINT_NODE_PRIM)
+                R(cast_on_group)(args, g, rays, node->child[order[i]] & ~GLINT_NODE_PRIM);
+        for (int i = count; i-- > 0;)
+            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
+                stack[height++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
+    }
+}
+
+/// Walks the index once for a group of parallel rays.
+static void R(walk_parallel)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    float lower[3], upper[3], direction[3];
+    light_shaft shaft;
+    for (int k = 0; k < 3; k++) {
+        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
+        widen(rays->local[k], args->active[g], &least, &most);
+        direction[k] = rays->direction[k][0];
+        lower[k] = f_min_all(least);
+        upper[k] = f_max_all(most);
+    }
+    loosen(lower, upper, R(walk_slack)(geometry));
+    make_shaft(lower, upper, direction, true, &shaft);
+    uint32_t stack[WALK_STACK];
+    int height = 0;
+    stack[height++] = 0;
+    while (height > 0) {
+        const glint_node *node = &geometry->nodes[stack[--height]];
+        for (unsigned mask = boxes_in_shaft(node, &shaft); mask; mask &= mask - 1) {
+            const uint32_t child = node->child[__builtin_ctz(mask)];
+            if (child & GLINT_NODE_PRIM)
+                R(cast_on_group)(args, g, rays, child & ~GLINT_NODE_PRIM);
+            else
+                stack[height++] = child;
+        }
+    }
+}
+
+static void R(cast_rays)(const glint_cast_args *args)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
-        _Alignas(64) float local[4][GLINT_GROUP];
-        if (!bundle)
-            R(filter_origins)((const void *const *)args->origin, at, args->reference, args->filter_scale, local);
-        for (int i = 0; i < GLINT_GROUP; i += VR) {
-            r_store((real *)args->t + at + i, r_set(HUGE_VAL));
-            r_store_index(args->prim + at + i, r_index(GLINT_MISS));
-        }
-        const unsigned active = args->active[g];
-        for (uint32_t k = 0; k < args->candidate_count; k++) {
-            const uint32_t id = args->candidates[k];
-            unsigned near = active & (bundle ? R(near_bundle)(args, &args->bundle[id], at)
-                                             : R(near_rays)(args->direction_f, at, (const float(*)[GLINT_GROUP])local,
-                                                            &args->prims[id]));
-            if (near)
-                R(decide)(args, at, id, near, bundle);
-        }
-        R(collect_hits)(args, g);
+        R(start_group)(args, g);
+        R(index_frame)((const void *const *)args->origin, at, geometry, local);
+        R(set_origins)((const void *const *)args->origin, at, (const float(*)[GLINT_GROUP])local, &rays);
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                r_store_f(rays.direction[k] + i, r_load((const real *)args->direction[k] + at + i));
+        for (uint32_t i = 0; i < geometry->unbounded_count; i++)
+            R(cast_on_group)(args, g, &rays, geometry->unbounded[i]);
+        if (geometry->nodes && args->parallel)
+            R(walk_parallel)(args, g, &rays);
+        else if (geometry->nodes)
+            for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
+                R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+        R(finish_group)(args, g);
     }
 }
-
-static void R(cast_bundle)(const glint_cast_args *args) { R(cast)(args, true); }
-static void R(cast_rays)(const glint_cast_args *args) { R(cast)(args, false); }

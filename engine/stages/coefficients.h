@@ -4,6 +4,7 @@
 #define GLINT_COEFFICIENTS_H
 
 #define GLINT_SQRT2 0x1.6a09e667f3bcdp+0
+#define GLINT_SQRT1_2 0x1.6a09e667f3bcdp-1
 #define GLINT_EXP2_LOWEST (-40.0f) ///< below it a highlight is 0: it could not change a 16-bit code
 
 // log2(1 + f) / f for f in [sqrt(1/2) - 1, sqrt(2) - 1]

@@ -28,6 +28,17 @@ static inline vf f_log2_of_parts(vf e, vf f)
     return e + f * p;
 }
 
+/// log2 of x in [2^-126, 1]; `less_1` is x - 1, from a better x where there is one.
+static inline vf f_log2(vf x, vf less_1)
+{
+    const fm near_1 = f_le(f_set((float)GLINT_SQRT1_2), x);
+    vf m = f_mantissa(x), e = f_exponent(x);
+    const fm upper = f_le(f_set((float)GLINT_SQRT2), m);
+    m = f_select(upper, f_set(0.5f) * m, m);
+    e = f_select(upper, e + f_set(1), e);
+    return f_log2_of_parts(f_select(near_1, f_set(0), e), f_select(near_1, less_1, m - f_set(1)));
+}
+
 /// 2^y for y <= 0; 0 below GLINT_EXP2_LOWEST.
 static inline vf f_exp2(vf y)
 {
@@ -85,6 +96,25 @@ static inline void lanes_put(uint32_t *to, unsigned bits, uint32_t value)
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm mask = fm_from_bits(bits >> i & ((1u << VF) - 1));
         i_store(to + i, f_bits(f_select(mask, f_from_bits(i_set(value)), f_from_bits(i_load(to + i)))));
+    }
+}
+
+/// The largest number of a group.
+static inline float group_highest(const float x[GLINT_GROUP])
+{
+    vf most = f_load(x);
+    for (int i = VF; i < GLINT_GROUP; i += VF)
+        most = f_max(most, f_load(x + i));
+    return f_max_all(most);
+}
+
+/// Widens an interval of lanes by those of `bits`.
+static inline void widen(const float x[GLINT_GROUP], unsigned bits, vf *least, vf *most)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(bits >> i & ((1u << VF) - 1));
+        *least = f_select(mask, f_min(f_load(x + i), *least), *least);
+        *most = f_select(mask, f_max(f_load(x + i), *most), *most);
     }
 }
 

@@ -8,12 +8,13 @@
 #include "engine/stages/elementary.h"
 #include "engine/stages/stages.h"
 
+#include "engine/stages/walk.h"
+
 #define GLINT_REAL 64
 #include "engine/stages/real.h"
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
-#include "engine/stages/bounds.h"
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
 
@@ -23,7 +24,6 @@
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
-#include "engine/stages/bounds.h"
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
 
@@ -33,8 +33,8 @@
 
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
-    .geometry = { { camera_f64, cast_bundle_f64, cast_rays_f64, surface_f64, bounds_f64, light_f64, occlude_f64 },
-                  { camera_f32, cast_bundle_f32, cast_rays_f32, surface_f32, bounds_f32, light_f32, occlude_f32 } },
+    .geometry = { { camera_f64, in_sight_f64, cast_bundle_f64, cast_rays_f64, surface_f64, light_f64, occlude_f64 },
+                  { camera_f32, in_sight_f32, cast_bundle_f32, cast_rays_f32, surface_f32, light_f32, occlude_f32 } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

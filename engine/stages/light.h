@@ -1,23 +1,10 @@
 // light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
 // float (square root, division, logarithm) follows in float over the whole group. Contract: stages.h.
 
-/// The argument of the highlight's logarithm as mantissa - 1 and exponent, and which lanes have a highlight.
-static inline rm R(highlight)(vr x, rm some, float *fraction, float *exponent)
-{
-    some = rm_and(some, r_le(r_set(sizeof(real) == 8 ? 0x1p-1022 : 0x1p-126), x));
-    x = r_select(some, x, r_set(1));
-    vr m = r_mantissa(x), e = r_exponent(x);
-    rm upper = r_le(r_set(GLINT_SQRT2), m);
-    r_store_f(fraction, r_select(upper, r_set(0.5) * m, m) - r_set(1));
-    r_store_f(exponent, r_select(upper, e + r_set(1), e));
-    return some;
-}
-
 typedef struct R(lit_group) {
     _Alignas(64) float along[GLINT_GROUP]; ///< n.l, in the light's units
     _Alignas(64) float distance2[GLINT_GROUP];
-    _Alignas(64) float fraction[GLINT_GROUP];
-    _Alignas(64) float exponent[GLINT_GROUP];
+    _Alignas(64) float x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
     unsigned phong, blinn; ///< lanes by the highlight of their material
     unsigned lit, shiny; ///< out
 } R(lit_group);
@@ -66,8 +53,7 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
     if (!(phong | blinn))
         return;
     vr d[3];
-    for (int k = 0; k < 3; k++)
-        d[k] = r_load((const real *)args->direction[k] + at + i);
+    R(ray_direction)(args->camera, args->direction, (uint32_t)(at / GLINT_GROUP), i, d);
     vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
     rm some = rm_from_bits(0);
     if (phong)
@@ -77,8 +63,9 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
         some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn)(nl, nv, lv, l2, a, &xb)));
         x = r_select(rm_from_bits(blinn), xb, x);
     }
-    some = R(highlight)(x, some, group->fraction + i, group->exponent + i);
-    group->shiny |= rm_bits(some) << i;
+    r_store_f(group->x + i, x);
+    r_store_f(group->x_less_1 + i, x - r_set(1));
+    group->shiny |= rm_bits(rm_and(some, r_le(r_set(0x1p-126), x))) << i;
 }
 
 /// The float part of one group.
@@ -94,11 +81,26 @@ static inline void R(finish_light)(const glint_light_args *args, size_t at, cons
             vf attenuation = f_min(f_load(args->attenuation + at + i), f_set(GLINT_ATTENUATION_MAX));
             f_store(args->attenuation + at + i, f_select(lit, attenuation, f_set(0)));
         }
-        if (args->blinn_end) {
+        if (args->highlights) {
             const fm shiny = fm_from_bits(group->shiny >> i & ((1u << VF) - 1));
-            vf log2 = f_log2_of_parts(f_load(group->exponent + i), f_load(group->fraction + i));
+            vf log2 = f_log2(f_select(shiny, f_load(group->x + i), f_set(1)), f_load(group->x_less_1 + i));
             f_store(args->log2_specular + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
         }
+    }
+}
+
+/// Lanes by the highlight of their material.
+static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_group) * group)
+{
+    group->phong = group->blinn = 0;
+    while (args->highlights && left) {
+        const uint32_t material = args->material[at + (unsigned)__builtin_ctz(left)];
+        const unsigned lanes = lanes_equal(args->material + at, material);
+        if (args->materials[material].highlight == GLINT_HIGHLIGHT_PHONG)
+            group->phong |= lanes;
+        else if (args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
+            group->blinn |= lanes;
+        left &= ~lanes;
     }
 }
 
@@ -107,11 +109,10 @@ static void R(light)(const glint_light_args *args)
     R(lit_group) group = { .lit = 0 };
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
+        const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
         group.lit = group.shiny = 0;
-        if (args->hits[g]) {
-            const unsigned open = args->hits[g] & lanes_below(args->side + at, GLINT_SIDE_UNLIT);
-            group.phong = lanes_below(args->material + at, args->phong_end);
-            group.blinn = lanes_below(args->material + at, args->blinn_end) & ~group.phong;
+        if (open) {
+            R(sort_highlights)(args, at, open, &group);
             for (int i = 0; i < GLINT_GROUP; i += VR)
                 R(light_lanes)(args, at, i, open, &group);
         }

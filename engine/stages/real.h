@@ -24,9 +24,8 @@
 #undef r_exponent
 #undef r_mantissa
 #undef r_load_index
-#undef r_store_index
 #undef r_index
-#undef r_index_eq
+#undef r_put_index
 #undef r_index_lt
 #undef GLINT_PARALLEL
 
@@ -55,9 +54,8 @@
 #define r_exponent d_exponent
 #define r_mantissa d_mantissa
 #define r_load_index d_load_index
-#define r_store_index d_store_index
 #define r_index(i) d_set((double)(int32_t)(i))
-#define r_index_eq(a, b) d_eq(a, b)
+#define r_put_index d_put_index
 #define r_index_lt(a, b) d_lt(a, b)
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #else
@@ -85,9 +83,8 @@
 #define r_exponent f_exponent
 #define r_mantissa f_mantissa
 #define r_load_index(p) f_from_bits(i_load(p))
-#define r_store_index(p, x) i_store(p, f_bits(x))
 #define r_index(i) f_from_bits(i_set(i))
-#define r_index_eq(a, b) i_eq(f_bits(a), f_bits(b))
+#define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
 #define r_index_lt(a, b) i_lt(f_bits(a), f_bits(b))
 #define GLINT_PARALLEL 1e-30
 #endif

@@ -13,7 +13,7 @@
 
 // ---- elementary functions ----------------------------------------------------------------------------------------
 
-/// log2 of m 2^e for m in [1, 2), f being m - 1; or of 2 m 2^(e-1) when f is m / 2 - 1.
+/// log2 of (1 + f) 2^e for f in [sqrt(1/2) - 1, sqrt(2) - 1].
 static float log2_of_parts(float f, int e)
 {
     static const float c[10] = { GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
@@ -24,20 +24,11 @@ static float log2_of_parts(float f, int e)
     return (float)e + f * p;
 }
 
-/// log2(x) for x from the smallest normal number to 1.
-static float log2_of_double(double x)
+/// log2 of x in [2^-126, 1], already rounded; `less_1` is x - 1, from before that.
+static float log2_of(float x, float less_1)
 {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    int e = (int)(bits >> 52) - 1023;
-    bits = (bits & 0x000fffffffffffffu) | 0x3ff0000000000000u;
-    double m;
-    memcpy(&m, &bits, sizeof m);
-    return m >= GLINT_SQRT2 ? log2_of_parts((float)(0.5 * m - 1), e + 1) : log2_of_parts((float)(m - 1), e);
-}
-
-static float log2_of_float(float x)
-{
+    if (x >= (float)GLINT_SQRT1_2)
+        return log2_of_parts(less_1, 0);
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
     int e = (int)(bits >> 23) - 127;
@@ -106,6 +97,38 @@ static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
     return ((fx * fx + fy * fy) + fz * fz) - (float)prim->r2;
 }
 
+// ---- On which side of a primitive a light is ----------------------------------------------------------------------
+
+static int sign_of(double x) { return (x > 0) - (x < 0); }
+
+static double dot_of(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+
+static int light_side_of_plane(const glint_occlude_args *args, const glint_prim *prim)
+{
+    if (args->directional)
+        return sign_of(dot_of(prim->normal, args->position));
+    double away[3];
+    for (int k = 0; k < 3; k++)
+        away[k] = args->position[k] - prim->center[k];
+    return sign_of(dot_of(prim->normal, away));
+}
+
+static int light_side_of_sphere(const glint_occlude_args *args, const glint_prim *prim)
+{
+    if (args->directional)
+        return 1;
+    double f[3];
+    for (int k = 0; k < 3; k++)
+        f[k] = (args->position[k] - prim->center[k]) * prim->scale;
+    return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
+}
+
+/// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
+static int light_side(const glint_occlude_args *args, const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(args, prim) : light_side_of_plane(args, prim);
+}
+
 // ---- geometry, in float and in double ----------------------------------------------------------------------------
 
 static float square_root_float(float x) { return sqrtf(x); }
@@ -114,8 +137,6 @@ static double square_root_double(double x) { return sqrt(x); }
 
 #define PLANE_GRAZING_float 1e-30f
 #define PLANE_GRAZING_double 1e-60
-#define SMALLEST_NORMAL_float FLT_MIN
-#define SMALLEST_NORMAL_double DBL_MIN
 
 #define REAL float
 #define NAME(x) x##_float
@@ -141,19 +162,27 @@ static float highlight_strength(float shininess, float log2_specular)
     return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
 }
 
+/// A light's share of a term is float; the term is a sum in double.
+static void add_share(double *term, float factor, double color)
+{
+    float share = factor * (float)color;
+    *term += (double)share;
+}
+
 static void add_light(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, terms *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
     float w = light->attenuation ? light->attenuation[i] : 1;
     float diffuse = w * light->cosine[i];
     for (int c = 0; c < 3; c++)
-        sum->value[GLINT_TERM_DIFFUSE][c] += (double)diffuse * (material->diffuse[c] * light->diffuse[c]);
+        add_share(&sum->value[GLINT_TERM_DIFFUSE][c], diffuse, material->diffuse[c] * light->diffuse[c]);
 
-    if (!args->has_specular || !material->has_specular || !(light->log2_specular[i] > GLINT_NO_SPECULAR))
+    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE ||
+        !(light->log2_specular[i] > GLINT_NO_SPECULAR))
         return;
     float specular = w * highlight_strength(material->shininess, light->log2_specular[i]);
     for (int c = 0; c < 3; c++)
-        sum->value[GLINT_TERM_SPECULAR][c] += (double)specular * (material->specular[c] * light->specular[c]);
+        add_share(&sum->value[GLINT_TERM_SPECULAR][c], specular, material->specular[c] * light->specular[c]);
 }
 
 /// Rounds the terms into the film and adds them up into the beauty.
@@ -268,9 +297,9 @@ static void tone(const glint_tone_args *args)
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = { { camera_double, cast_bundle_double, cast_rays_double, surface_double, bounds_double, light_double,
+    .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, light_double,
                     occlude_double },
-                  { camera_float, cast_bundle_float, cast_rays_float, surface_float, bounds_float, light_float,
+                  { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, light_float,
                     occlude_float } },
     .shade = shade,
     .resolve = resolve,

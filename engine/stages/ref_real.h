@@ -1,7 +1,6 @@
 // The reference of the geometry stages, for one type of real. ref.c includes this twice, with
 //   REAL      the type: double or float
-//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c, log2_of, PLANE_GRAZING and
-//             SMALLEST_NORMAL for each type
+//   NAME(x)   x_double or x_float; ref.c defines square_root, exact_c and PLANE_GRAZING for each type
 // Every function is one line of stages.h after the other, for one sample; the loops over samples come last.
 
 typedef struct NAME(vec3) {
@@ -57,32 +56,39 @@ static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 
 static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
 {
-    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
-    uint32_t column = 4 * (group % args->groups_across) + lane % 4;
-    uint32_t row = 4 * (group / args->groups_across) + lane / 4;
-    double px = (args->x0 + column) + args->offset[0];
-    double py = (args->y0 + row) + args->offset[1];
+    uint32_t lane = i % GLINT_GROUP, column = i / GLINT_GROUP % args->groups_across;
+    uint32_t row = i / GLINT_GROUP / args->groups_across;
+    double px = (args->x0 + 4 * column + lane % 4) + args->offset[0];
+    double py = (args->y0 + 4 * row + lane / 4) + args->offset[1];
     REAL sx = (REAL)(2 * px - args->width);
     REAL sy = (REAL)(args->height - 2 * py);
     NAME(vec3) across = NAME(times)(NAME(rounded)(args->right), sx);
     NAME(vec3) upward = NAME(times)(NAME(rounded)(args->up), sy);
     NAME(vec3) forward = NAME(rounded)(args->forward);
-    NAME(vec3) direction = forward;
-    if (args->orthographic)
+    if (args->orthographic) {
         NAME(store)(args->origin, i, NAME(add)(NAME(add)(NAME(rounded)(args->eye), across), upward));
-    else
-        direction = NAME(add)(NAME(add)(forward, across), upward);
-    NAME(store)(args->direction, i, direction);
-
-    args->direction_f[0][i] = (float)direction.x;
-    args->direction_f[1][i] = (float)direction.y;
-    args->direction_f[2][i] = (float)direction.z;
+        NAME(store)(args->direction, i, forward);
+    } else {
+        NAME(store)(args->across, column * GLINT_GROUP + lane, NAME(add)(forward, across));
+        NAME(store)(args->down, row * GLINT_GROUP + lane, upward);
+    }
 }
 
 static void NAME(camera)(const glint_camera_args *args)
 {
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
         NAME(camera_sample)(args, i);
+}
+
+/// The direction of ray i: of the camera, or from arrays.
+static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void *const direction[3], uint32_t i)
+{
+    if (!camera)
+        return NAME(load)(direction, i);
+    uint32_t lane = i % GLINT_GROUP, group = i / GLINT_GROUP;
+    return NAME(add)(
+        NAME(load)((const void *const *)camera->across, group % camera->groups_across * GLINT_GROUP + lane),
+        NAME(load)((const void *const *)camera->down, group / camera->groups_across * GLINT_GROUP + lane));
 }
 
 // ---- cast --------------------------------------------------------------------------------------------------------
@@ -116,32 +122,28 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
     return nd * nd >= NAME(PLANE_GRAZING) * NAME(length2)(direction) && t > 0 ? t : 0;
 }
 
-/// Likewise for one ray and any primitive. The ray starts at the bundle's origin, or without a bundle at `origin`.
-static REAL NAME(prim_t)(const glint_cast_args *args, uint32_t index, const glint_bundle_prim *bundle,
-                         NAME(vec3) origin, NAME(vec3) direction)
+/// Likewise for any primitive.
+static REAL NAME(prim_t)(const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
-    const glint_prim *prim = &args->prims[index];
     if (prim->kind == GLINT_PRIM_PLANE) {
-        NAME(vec3) normal = NAME(rounded)(prim->normal), point = NAME(rounded)(prim->center);
-        REAL h = bundle ? (REAL)bundle[index].c : NAME(dot)(normal, NAME(sub)(origin, point));
-        return NAME(plane_t)(h, direction, prim);
+        NAME(vec3) away = NAME(sub)(origin, NAME(rounded)(prim->center));
+        return NAME(plane_t)(NAME(dot)(NAME(rounded)(prim->normal), away), direction, prim);
     }
-    NAME(vec3) f = bundle ? NAME(rounded)(bundle[index].f) : NAME(from_center)(origin, prim);
-    REAL c = bundle ? (REAL)bundle[index].c : NAME(exact_c)(f.x, f.y, f.z, prim);
-    return NAME(sphere_t)(f, c, direction, prim);
+    NAME(vec3) f = NAME(from_center)(origin, prim);
+    return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
-static void NAME(cast_sample)(const glint_cast_args *args, const glint_bundle_prim *bundle, uint32_t i)
+/// `eye`: where all rays start; NULL: each has its own origin.
+static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, uint32_t i)
 {
     REAL best = INFINITY;
     uint32_t best_prim = GLINT_MISS;
     if (args->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) {
-        NAME(vec3) direction = NAME(load)(args->direction, i);
-        NAME(vec3) origin = bundle ? NAME(vec)(0, 0, 0) : NAME(load)(args->origin, i);
-        for (uint32_t k = 0; k < args->candidate_count; k++) {
-            uint32_t index = args->candidates[k];
-            REAL t = NAME(prim_t)(args, index, bundle, origin, direction);
-            if (t > 0 && t < INFINITY && (t < best || (t == best && index < best_prim))) {
+        NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
+        NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
+        for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
+            REAL t = NAME(prim_t)(&args->geometry->prims[index], origin, direction);
+            if (t > 0 && t < INFINITY && t < best) { // of equal ones the first stays
                 best = t;
                 best_prim = index;
             }
@@ -153,15 +155,18 @@ static void NAME(cast_sample)(const glint_cast_args *args, const glint_bundle_pr
         args->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
-static void NAME(cast)(const glint_cast_args *args, const glint_bundle_prim *bundle)
+static void NAME(cast)(const glint_cast_args *args, const double *eye)
 {
     for (uint32_t group = 0; group < args->group_count; group++)
         args->hits[group] = 0;
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
-        NAME(cast_sample)(args, bundle, i);
+        NAME(cast_sample)(args, eye, i);
 }
 
-static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->bundle); }
+/// The reference never rules a tile out but where there is nothing at all.
+static bool NAME(in_sight)(const glint_cast_args *args) { return args->geometry->prim_count > 0; }
+
+static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->camera->eye); }
 
 static void NAME(cast_rays)(const glint_cast_args *args) { NAME(cast)(args, NULL); }
 
@@ -195,17 +200,16 @@ static NAME(vec3) NAME(sphere_normal)(NAME(vec3) f, NAME(vec3) direction, REAL t
     return NAME(times)(n, (REAL)1.5 - (REAL)0.5 * NAME(length2)(n));
 }
 
-static void NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
+/// Returns whether the surface is seen from behind.
+static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
 {
-    uint32_t index = args->prim[i];
-    const glint_prim *prim = &args->prims[index];
-    NAME(vec3) direction = NAME(load)(args->direction, i);
-    NAME(vec3) origin = args->bundle ? NAME(rounded)(args->eye) : NAME(load)(args->origin, i);
+    const glint_prim *prim = &args->prims[args->prim[i]];
+    NAME(vec3) direction = NAME(direction_of)(args->camera, args->direction, i);
+    NAME(vec3) origin = args->camera ? NAME(rounded)(args->camera->eye) : NAME(load)(args->origin, i);
     REAL t = ((const REAL *)args->t)[i];
     NAME(vec3) n, point;
     if (prim->kind == GLINT_PRIM_SPHERE) {
-        NAME(vec3) f = args->bundle ? NAME(rounded)(args->bundle[index].f) : NAME(from_center)(origin, prim);
-        n = NAME(sphere_normal)(f, direction, t, prim);
+        n = NAME(sphere_normal)(NAME(from_center)(origin, prim), direction, t, prim);
         point = NAME(add)(NAME(rounded)(prim->center), NAME(times)(n, (REAL)prim->radius));
     } else {
         n = NAME(rounded)(prim->normal);
@@ -215,51 +219,49 @@ static void NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
     NAME(store)(args->point, i, point);
     NAME(store)(args->normal, i, back ? NAME(negated)(n) : n);
     args->material[i] = prim->material;
-    args->coincident[i] = prim->coincident;
-    args->side[i] = (back ? GLINT_SIDE_BACK : 0) | (back && !prim->two_sided ? GLINT_SIDE_UNLIT : 0);
+    return back;
+}
+
+static void NAME(surface_miss)(const glint_surface_args *args, uint32_t i)
+{
+    NAME(store)(args->point, i, NAME(vec)(0, 0, 0));
+    NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
+    args->material[i] = 0;
+}
+
+static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
+{
+    uint32_t hits = args->hits[group], back = 0, dark = 0;
+    for (uint32_t lane = 0; hits && lane < GLINT_GROUP; lane++) {
+        uint32_t i = group * GLINT_GROUP + lane;
+        if (!(hits >> lane & 1)) {
+            NAME(surface_miss)(args, i);
+        } else if (NAME(surface_hit)(args, i)) {
+            back |= 1u << lane;
+            if (!args->prims[args->prim[i]].two_sided)
+                dark |= 1u << lane;
+        }
+    }
+    args->back[group] = (uint16_t)back;
+    args->dark[group] = (uint16_t)dark;
 }
 
 static void NAME(surface)(const glint_surface_args *args)
 {
-    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
-        uint32_t hits = args->hits[i / GLINT_GROUP];
-        if (hits >> i % GLINT_GROUP & 1) {
-            NAME(surface_hit)(args, i);
-        } else if (hits) {
-            NAME(store)(args->point, i, NAME(vec)(0, 0, 0));
-            NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
-            args->material[i] = args->coincident[i] = args->side[i] = 0;
-        }
-    }
-}
-
-// ---- bounds ---------------------------------------------------------------------------------------------------------
-
-static void NAME(bounds)(glint_bounds_args *args)
-{
-    for (int c = 0; c < 3; c++) {
-        args->lower[c] = HUGE_VAL;
-        args->upper[c] = -HUGE_VAL;
-        for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
-            if (!(args->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
-                continue;
-            double x = ((const REAL *)args->point[c])[i] + (REAL)0;
-            args->lower[c] = x < args->lower[c] ? x : args->lower[c];
-            args->upper[c] = x > args->upper[c] ? x : args->upper[c];
-        }
-    }
+    for (uint32_t group = 0; group < args->group_count; group++)
+        NAME(surface_group)(args, group);
 }
 
 // ---- light -------------------------------------------------------------------------------------------------------
 
 /// log2 of r.v (Phong) or n.h (Blinn-Phong).
-static float NAME(highlight)(bool phong, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal, NAME(vec3) direction)
+static float NAME(highlight)(uint32_t kind, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal, NAME(vec3) direction)
 {
     REAL a = NAME(length2)(direction);
     REAL nv = -NAME(dot)(normal, direction);
     REAL lv = -NAME(dot)(l, direction);
     REAL x;
-    if (phong) {
+    if (kind == GLINT_HIGHLIGHT_PHONG) {
         REAL rv = (2 * nl) * nv - lv;
         x = rv > 0 ? NAME(min)((rv * rv) / (l2 * a), 1) : 0;
     } else {
@@ -268,7 +270,7 @@ static float NAME(highlight)(bool phong, REAL l2, REAL nl, NAME(vec3) l, NAME(ve
         REAL den = (2 * w) * (w + lv);
         x = num > 0 && den > 0 ? NAME(min)(num / den, 1) : 0;
     }
-    return x >= NAME(SMALLEST_NORMAL) ? 0.5f * NAME(log2_of)(x) : GLINT_NO_SPECULAR;
+    return x >= (REAL)0x1p-126 ? 0.5f * log2_of((float)x, (float)(x - 1)) : GLINT_NO_SPECULAR;
 }
 
 static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t i)
@@ -280,7 +282,8 @@ static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t i)
 
 static bool NAME(is_lit)(const glint_light_args *args, uint32_t i)
 {
-    if (!(args->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) || args->side[i] & GLINT_SIDE_UNLIT)
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    if (!(args->hits[group] >> lane & 1) || args->dark[group] >> lane & 1)
         return false;
     return NAME(dot)(NAME(load)(args->normal, i), NAME(to_light)(args, i)) > 0;
 }
@@ -301,12 +304,12 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
         REAL d = NAME(square_root)(l2) / (REAL)args->scale;
         args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * (d * d)))), GLINT_ATTENUATION_MAX);
     }
-    if (args->blinn_end) {
-        uint32_t material = args->material[i];
-        NAME(vec3) direction = NAME(load)(args->direction, i);
-        args->log2_specular[i] = material < args->blinn_end
-                                     ? NAME(highlight)(material < args->phong_end, l2, nl, l, normal, direction)
-                                     : GLINT_NO_SPECULAR;
+    if (args->highlights) {
+        uint32_t kind = args->materials[args->material[i]].highlight;
+        args->log2_specular[i] =
+            kind == GLINT_HIGHLIGHT_NONE
+                ? GLINT_NO_SPECULAR
+                : NAME(highlight)(kind, l2, nl, l, normal, NAME(direction_of)(args->camera, args->direction, i));
     }
 }
 
@@ -325,7 +328,7 @@ static void NAME(light_group)(const glint_light_args *args, uint32_t group)
         args->cosine[i] = 0;
         if (args->attenuated)
             args->attenuation[i] = 0;
-        if (args->blinn_end)
+        if (args->highlights)
             args->log2_specular[i] = GLINT_NO_SPECULAR;
     }
 }
@@ -338,39 +341,36 @@ static void NAME(light)(const glint_light_args *args)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-static bool NAME(sphere_blocks)(const glint_occlude_args *args, uint32_t index, NAME(vec3) point)
+static bool NAME(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, int side, NAME(vec3) point)
 {
-    const glint_prim *prim = &args->prims[index];
-    int light_side = args->light_side[index];
     NAME(vec3) position = NAME(rounded)(args->position);
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(vec3) f = NAME(from_center)(point, prim);
     REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
-    if (light_side < 0)
+    if (side < 0)
         return c > 0;
     if (c < 0)
-        return light_side > 0;
+        return side > 0;
     REAL a = NAME(length2)(d);
     REAL b = -NAME(dot)(f, d);
     REAL disc = NAME(discriminant)(f, d, a, b, c, (REAL)prim->r2);
     return b > 0 && disc >= 0 && (args->directional || b * (REAL)args->scale < a * (REAL)prim->scale);
 }
 
-static bool NAME(plane_blocks)(const glint_occlude_args *args, uint32_t index, NAME(vec3) point)
+static bool NAME(plane_blocks)(const glint_prim *prim, int side, NAME(vec3) point)
 {
-    const glint_prim *prim = &args->prims[index];
-    int light_side = args->light_side[index];
     REAL h = NAME(dot)(NAME(rounded)(prim->normal), NAME(sub)(point, NAME(rounded)(prim->center)));
-    return (light_side > 0 && h < 0) || (light_side < 0 && h > 0);
+    return (side > 0 && h < 0) || (side < 0 && h > 0);
 }
 
-static bool NAME(prim_blocks)(const glint_occlude_args *args, uint32_t index, uint32_t i)
+static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *prim, uint32_t i)
 {
-    bool sphere = args->prims[index].kind == GLINT_PRIM_SPHERE;
-    if (args->prims[index].coincident == args->coincident[i])
-        return sphere && args->side[i] & GLINT_SIDE_BACK && args->light_side[index] > 0;
+    bool sphere = prim->kind == GLINT_PRIM_SPHERE;
+    int side = light_side(args, prim);
+    if (prim->coincident == args->geometry->prims[args->prim[i]].coincident)
+        return sphere && args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 && side > 0;
     NAME(vec3) point = NAME(load)(args->point, i);
-    return sphere ? NAME(sphere_blocks)(args, index, point) : NAME(plane_blocks)(args, index, point);
+    return sphere ? NAME(sphere_blocks)(args, prim, side, point) : NAME(plane_blocks)(prim, side, point);
 }
 
 static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t i)
@@ -378,8 +378,8 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t i)
     bool blocked = !(args->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
     if (!blocked)
         ++*args->rays;
-    for (uint32_t k = 0; k < args->candidate_count && !blocked; k++)
-        blocked = NAME(prim_blocks)(args, args->candidates[k], i);
+    for (uint32_t k = 0; k < args->geometry->prim_count && !blocked; k++)
+        blocked = NAME(prim_blocks)(args, &args->geometry->prims[k], i);
     if (!blocked)
         args->open[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }

@@ -37,21 +37,15 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
     }
 }
 
-/// Adds the lights to one vector of lanes.
-static inline void add_lights(const light_factors *factors, const glint_shade_material *material, bool specular, int i,
-                              vd diffuse[3], vd highlight[3])
+/// One light's share of a term in float, for a group: factor times kd Id or ks Is.
+static inline void light_share(const light_factors *factors, const glint_shade_material *material, uint32_t k, int term,
+                               int c, float share[GLINT_GROUP])
 {
-    for (uint32_t k = 0; k < factors->count; k++) {
-        const glint_shade_light *light = factors->light[k];
-        const vd fd = d_load_f(factors->diffuse[k] + i);
-        for (int c = 0; c < 3; c++)
-            diffuse[c] = diffuse[c] + fd * d_set(material->diffuse[c] * light->diffuse[c]);
-        if (!specular)
-            continue;
-        const vd fs = d_load_f(factors->specular[k] + i);
-        for (int c = 0; c < 3; c++)
-            highlight[c] = highlight[c] + fs * d_set(material->specular[c] * light->specular[c]);
-    }
+    const glint_shade_light *light = factors->light[k];
+    const double color = term ? material->specular[c] * light->specular[c] : material->diffuse[c] * light->diffuse[c];
+    const float *factor = term ? factors->specular[k] : factors->diffuse[k];
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        f_store(share + i, f_load(factor + i) * f_set((float)color));
 }
 
 /// A group's terms in float, before they are added up.
@@ -62,25 +56,41 @@ typedef struct group_terms {
 /// Writes `x` where the mask is set.
 static inline void put_float(float *to, fm mask, vf x) { f_store(to, f_select(mask, x, f_load(to))); }
 
+/// The sum of all lights' shares, in double, rounded. Of one light it is the share itself.
+static inline void add_shares(const light_factors *factors, const glint_shade_material *material, int term, int c,
+                              float sum[GLINT_GROUP])
+{
+    _Alignas(64) double total[GLINT_GROUP];
+    _Alignas(64) float share[GLINT_GROUP];
+    light_share(factors, material, 0, term, c, sum);
+    if (factors->count == 1)
+        return;
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        d_store(total + i, d_load_f(sum + i));
+    for (uint32_t k = 1; k < factors->count; k++) {
+        light_share(factors, material, k, term, c, share);
+        for (int i = 0; i < GLINT_GROUP; i += VD)
+            d_store(total + i, d_load(total + i) + d_load_f(share + i));
+    }
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        d_store_f(sum + i, d_load(total + i));
+}
+
 /// One material's lanes of a group whose terms are final: no sums in memory.
 static inline void shade_direct(const glint_shade_material *material, bool specular, const light_factors *factors,
                                 unsigned lanes, group_terms *terms)
 {
     _Alignas(64) float light[2][3][GLINT_GROUP];
-    for (int i = 0; i < GLINT_GROUP; i += VD) {
-        vd diffuse[3] = { d_set(0), d_set(0), d_set(0) }, highlight[3] = { d_set(0), d_set(0), d_set(0) };
-        add_lights(factors, material, specular, i, diffuse, highlight);
-        for (int c = 0; c < 3; c++) {
-            d_store_f(light[0][c] + i, diffuse[c]);
-            d_store_f(light[1][c] + i, highlight[c]);
-        }
-    }
+    const int kinds = factors->count == 0 ? 0 : specular ? 2 : 1;
+    for (int k = 0; k < kinds; k++)
+        for (int c = 0; c < 3; c++)
+            add_shares(factors, material, k, c, light[k][c]);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
         for (int c = 0; c < 3; c++) {
             put_float(terms->term[GLINT_TERM_AMBIENT][c] + i, mask, f_set((float)material->ambient[c]));
-            put_float(terms->term[GLINT_TERM_DIFFUSE][c] + i, mask, f_load(light[0][c] + i));
-            put_float(terms->term[GLINT_TERM_SPECULAR][c] + i, mask, f_load(light[1][c] + i));
+            for (int k = 0; k < kinds; k++)
+                put_float(terms->term[GLINT_TERM_DIFFUSE + k][c] + i, mask, f_load(light[k][c] + i));
         }
     }
 }
@@ -97,20 +107,17 @@ static inline void add_where(double *to, dm mask, vd x)
 static inline void shade_sums(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                               const light_factors *factors, size_t at, unsigned lanes)
 {
-    const int kinds = specular ? 2 : 1;
-    for (int i = 0; i < GLINT_GROUP; i += VD) {
-        const dm mask = lane_mask(lanes, i);
-        vd old[2][3], sum[2][3];
-        for (int c = 0; c < 3; c++) {
-            if (args->first)
-                add_where(args->sum[GLINT_TERM_AMBIENT][c] + at + i, mask, d_set(material->ambient[c]));
-            for (int k = 0; k < kinds; k++)
-                old[k][c] = sum[k][c] = d_load(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i);
-        }
-        add_lights(factors, material, specular, i, sum[0], sum[1]);
-        for (int c = 0; c < 3; c++)
-            for (int k = 0; k < kinds; k++)
-                d_store(args->sum[GLINT_TERM_DIFFUSE + k][c] + at + i, d_select(mask, sum[k][c], old[k][c]));
+    _Alignas(64) float share[GLINT_GROUP];
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
+            add_where(args->sum[GLINT_TERM_AMBIENT][c] + at + i, lane_mask(lanes, i), d_set(material->ambient[c]));
+        for (int kind = 0; kind < (specular ? 2 : 1); kind++)
+            for (uint32_t k = 0; k < factors->count; k++) {
+                light_share(factors, material, k, kind, c, share);
+                for (int i = 0; i < GLINT_GROUP; i += VD)
+                    add_where(args->sum[GLINT_TERM_DIFFUSE + kind][c] + at + i, lane_mask(lanes, i),
+                              d_load_f(share + i));
+            }
     }
 }
 
@@ -144,33 +151,80 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
+/// A group that shows one material in every lane and is lit by one light at most, with no term asked for: the common
+/// case, in registers.
+static inline void shade_whole(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                               const light_factors *factors, size_t at)
+{
+    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vf sum = f_set((float)material->ambient[c]);
+            if (light)
+                sum = sum + f_load(factors->diffuse[0] + i) * f_set((float)(material->diffuse[c] * light->diffuse[c]));
+            if (light && specular)
+                sum =
+                    sum + f_load(factors->specular[0] + i) * f_set((float)(material->specular[c] * light->specular[c]));
+            f_store(args->beauty[c] + at + i, sum);
+        }
+}
+
+/// A group without any surface.
+static inline void shade_background(const glint_shade_args *args, size_t at)
+{
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            f_store(args->beauty[c] + at + i, f_set((float)args->background[c]));
+}
+
+static inline bool wants_terms(const glint_shade_args *args)
+{
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        if (args->film[k][0])
+            return true;
+    return false;
+}
+
 static inline void shade_groups(const glint_shade_args *args, bool direct)
 {
+    const bool simple = direct && !wants_terms(args);
     light_factors factors;
     group_terms terms;
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         unsigned left = args->hits[g];
-        if (direct)
+        if (simple && !left && args->active[g] == 0xffff) {
+            shade_background(args, at);
+            continue;
+        }
+        if (direct && left != 0xffff)
             start_direct(args, g, &terms);
-        else if (args->first)
+        else if (!direct && args->first)
             for (int c = 0; c < 3; c++)
                 for (int i = 0; i < GLINT_GROUP; i += VD)
                     add_where(args->sum[GLINT_TERM_BACKGROUND][c] + at + i, lane_mask(args->active[g] & ~left, i),
                               d_set(args->background[c]));
+        bool done = false;
         while (left) {
             const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
             const glint_shade_material *material = &args->materials[index];
-            const bool specular = args->has_specular && material->has_specular;
+            const bool specular = args->highlights && material->highlight;
             const unsigned lanes = lanes_equal(args->material + at, index) & left;
-            left &= ~lanes;
             find_factors(args, material, specular, g, &factors);
+            if (simple && lanes == 0xffff && factors.count <= 1) {
+                shade_whole(args, material, specular, &factors, at);
+                done = true;
+                break;
+            }
+            if (direct && left == 0xffff)
+                start_direct(args, g, &terms);
+            left &= ~lanes;
             if (direct)
                 shade_direct(material, specular, &factors, lanes, &terms);
             else
                 shade_sums(args, material, specular, &factors, at, lanes);
         }
-        if (direct)
+        if (direct && !done)
             finish_terms(&terms, args->film, args->beauty, at);
     }
 }

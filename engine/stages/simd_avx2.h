@@ -19,6 +19,18 @@ static inline void f_store(float *p, vf x) { _mm256_store_ps(p, x); }
 static inline vf f_sqrt(vf x) { return _mm256_sqrt_ps(x); }
 static inline vf f_min(vf a, vf b) { return _mm256_min_ps(a, b); }
 static inline vf f_max(vf a, vf b) { return _mm256_max_ps(a, b); }
+static inline float f_max_all(vf x)
+{
+    __m128 y = _mm_max_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+    y = _mm_max_ps(y, _mm_movehl_ps(y, y));
+    return _mm_cvtss_f32(_mm_max_ss(y, _mm_shuffle_ps(y, y, 1)));
+}
+static inline float f_min_all(vf x)
+{
+    __m128 y = _mm_min_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+    y = _mm_min_ps(y, _mm_movehl_ps(y, y));
+    return _mm_cvtss_f32(_mm_min_ss(y, _mm_shuffle_ps(y, y, 1)));
+}
 static inline vf f_abs(vf x) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), x); }
 static inline fm f_lt(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
 static inline fm f_le(vf a, vf b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
@@ -75,7 +87,14 @@ static inline dm dm_from_bits(unsigned bits)
 static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
 static inline vd d_load_index(const uint32_t *p) { return _mm256_cvtepi32_pd(_mm_load_si128((const __m128i *)p)); }
-static inline void d_store_index(uint32_t *p, vd x) { _mm_store_si128((__m128i *)p, _mm256_cvttpd_epi32(x)); }
+
+/// p = i in the lanes of the mask.
+static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
+{
+    const __m128 low = _mm_castpd_ps(_mm256_castpd256_pd128(mask)),
+                 high = _mm_castpd_ps(_mm256_extractf128_pd(mask, 1));
+    _mm_maskstore_epi32((int *)p, _mm_castps_si128(_mm_shuffle_ps(low, high, 0x88)), _mm_set1_epi32((int)i));
+}
 
 static inline vd d_exponent(vd x)
 {

@@ -23,6 +23,8 @@ static inline void f_store(float *p, vf x) { _mm512_store_ps(p, x); }
 static inline vf f_sqrt(vf x) { return _mm512_sqrt_ps(x); }
 static inline vf f_min(vf a, vf b) { return _mm512_min_ps(a, b); }
 static inline vf f_max(vf a, vf b) { return _mm512_max_ps(a, b); }
+static inline float f_max_all(vf x) { return _mm512_reduce_max_ps(x); }
+static inline float f_min_all(vf x) { return _mm512_reduce_min_ps(x); }
 static inline vf f_abs(vf x) { return _mm512_abs_ps(x); }
 static inline fm f_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline fm f_le(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
@@ -68,7 +70,12 @@ static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
 static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
 static inline vd d_load_index(const uint32_t *p) { return _mm512_cvtepi32_pd(_mm256_load_si256((const __m256i *)p)); }
-static inline void d_store_index(uint32_t *p, vd x) { _mm256_store_si256((__m256i *)p, _mm512_cvttpd_epi32(x)); }
+
+/// p = i in the lanes of the mask.
+static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
+{
+    _mm256_mask_store_epi32(p, mask, _mm256_set1_epi32((int)i));
+}
 
 /// The biased exponent, as a number; and the mantissa, in [1, 2). For normal numbers > 0.
 static inline vd d_exponent(vd x)

@@ -19,6 +19,16 @@ static inline void f_store(float *p, vf x) { _mm_store_ps(p, x); }
 static inline vf f_sqrt(vf x) { return _mm_sqrt_ps(x); }
 static inline vf f_min(vf a, vf b) { return _mm_min_ps(a, b); }
 static inline vf f_max(vf a, vf b) { return _mm_max_ps(a, b); }
+static inline float f_max_all(vf x)
+{
+    x = _mm_max_ps(x, _mm_movehl_ps(x, x));
+    return _mm_cvtss_f32(_mm_max_ss(x, _mm_shuffle_ps(x, x, 1)));
+}
+static inline float f_min_all(vf x)
+{
+    x = _mm_min_ps(x, _mm_movehl_ps(x, x));
+    return _mm_cvtss_f32(_mm_min_ss(x, _mm_shuffle_ps(x, x, 1)));
+}
 static inline vf f_abs(vf x) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), x); }
 static inline fm f_lt(vf a, vf b) { return _mm_cmplt_ps(a, b); }
 static inline fm f_le(vf a, vf b) { return _mm_cmple_ps(a, b); }
@@ -79,7 +89,14 @@ static inline vd d_load_f(const float *p)
 }
 static inline void d_store_f(float *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_castps_si128(_mm_cvtpd_ps(x))); }
 static inline vd d_load_index(const uint32_t *p) { return _mm_cvtepi32_pd(_mm_loadl_epi64((const __m128i *)p)); }
-static inline void d_store_index(uint32_t *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_cvttpd_epi32(x)); }
+
+/// p = i in the lanes of the mask.
+static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
+{
+    for (int lane = 0; lane < VD; lane++)
+        if (_mm_movemask_pd(mask) >> lane & 1)
+            p[lane] = i;
+}
 
 static inline vd d_exponent(vd x)
 {

@@ -24,6 +24,7 @@
 #define GLINT_TILE_GROUPS (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT / GLINT_GROUP)
 #define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
 #define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
+#define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< what float rounding may add to a distance, of the lengths it came from
 #define GLINT_LIGHT_CHUNK 8 ///< lights one call of shade takes at most
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
@@ -41,17 +42,10 @@ typedef struct glint_prim {
     double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
     double radius; ///< sphere, world units
     double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
-    float filter_center[3]; ///< sphere: (center - reference) * filter_scale
-    float filter_bound; ///< sphere: >= radius (1 + 1e-6) + 8 * 2^-24 |filter_center|, in filter units; plane: +inf
+    float filter_center[3]; ///< sphere: (center - reference) * scale, in the index's frame
+    float
+        filter_bound; ///< sphere: >= radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
 } glint_prim;
-
-/// The same, seen from an origin that many rays share.
-typedef struct glint_bundle_prim {
-    double f[3]; ///< sphere: (origin - center) * scale
-    double c; ///< sphere: |f|^2 - (radius scale)^2, rounded once; plane: dot(normal, origin - point)
-    float filter_f[3]; ///< sphere: f rounded
-    float filter_limit2; ///< sphere: (radius scale (1 + 1e-6) + 8 * 2^-24 |f|)^2, rounded up; plane: +inf
-} glint_bundle_prim;
 
 #define GLINT_NODE_WIDTH 16
 #define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the rest is the index of a primitive, not of a node
@@ -63,12 +57,25 @@ typedef struct glint_node {
     uint32_t child[GLINT_NODE_WIDTH];
 } glint_node;
 
-/// Materials are sorted by what their highlight needs: Phong first, then Blinn-Phong, then those without one.
+/// What rays meet: the surfaces, and the index over those that have an end. Its frame is (x - reference) * scale.
+typedef struct glint_geometry_table {
+    const glint_prim *prims; ///< in order of definition
+    uint32_t prim_count;
+    bool duplicates; ///< some primitive is not its own `coincident`
+    const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
+    const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
+    uint32_t unbounded_count;
+    double reference[3], scale; ///< scale is a power of two
+    double extent; ///< bound of every coordinate and radius, world units
+} glint_geometry_table;
+
+typedef enum glint_highlight { GLINT_HIGHLIGHT_NONE, GLINT_HIGHLIGHT_PHONG, GLINT_HIGHLIGHT_BLINN } glint_highlight;
+
 typedef struct glint_shade_material {
     double diffuse[3], specular[3];
     double ambient[3]; ///< ka * Ia
     float shininess;
-    uint32_t has_specular;
+    uint32_t highlight; ///< glint_highlight: what its specular term is of
 } glint_shade_material;
 
 // ---- camera: rays of one sample of each pixel ----
@@ -80,36 +87,32 @@ typedef struct glint_camera_args {
     double width, height; ///< of the image
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
-    void *origin[3]; ///< out, real; written only when orthographic
-    void *direction[3]; ///< out, real
-    float *direction_f[3]; ///< out: direction rounded to float, for the filter of cast
+    void *across[3], *down[3]; ///< out, real, perspective: 16 numbers a column and a row of groups; see below
+    void *origin[3], *direction[3]; ///< out, real, orthographic: one a ray
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 // sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
-// perspective:  direction = (forward + sx right) + sy up            orthographic: direction = forward,
-//                                                                   origin = (eye + sx right) + sy up
+// perspective:  direction = (forward + sx right) + sy up, of which across is the first term and down the second:
+//               the direction of lane i of group (gx, gy) is across[16 gx + i] + down[16 gy + i]
+// orthographic: direction = forward, origin = (eye + sx right) + sy up
 
 // ---- cast: the nearest hit of each ray ----
 
 typedef struct glint_cast_args {
     uint32_t group_count;
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
-    const glint_prim *prims;
-    const glint_bundle_prim *bundle; ///< cast_bundle only
-    const uint32_t *candidates;
-    uint32_t candidate_count; ///< primitives that the rays may meet, in any order
-    const void *origin[3]; ///< cast_rays only: real, one a ray
-    const void *direction[3];
-    const float *direction_f[3];
-    double reference[3];
-    double filter_scale; ///< cast_rays only: frame of the filter
+    const glint_geometry_table *geometry;
+    const glint_camera_args *camera; ///< cast_bundle only: the rays
+    bool parallel; ///< cast_rays only: the directions of a group are all the same
+    const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
 } glint_cast_args;
-// The best hit starts as t = +inf, GLINT_MISS. A candidate replaces it where 0 < t < inf and (t < best, or t == best and its
-// index is lower). The filter is free to reject what the decision below would miss, and no more.
-// sphere, real:   f, c from the bundle, or f = (origin - center) * scale and c = exact_c(f, prim)
+// in_sight reads active, geometry and camera alone: false: no ray of the camera's tile can hit anything.
+// The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
+// index is lower). Index and filter are free to reject what the decision below would miss, and no more.
+// sphere, real:   f = (origin - center) * scale (a bundle's origin is the eye), c = exact_c(f, prim)
 //                 a = length2(direction), b = -dot(f, direction)
 //                 near = b*b < a*r2
 //                 disc = near ? b*b - a*c : a*r2 - length2(cross(f, direction))
@@ -121,32 +124,29 @@ typedef struct glint_cast_args {
 // exact_c, double: p_i = f_i f_i with error e_i (two_prod); x = two_sum(p_0, p_1, x_e), y = two_sum(x, p_2, y_e),
 //                 z = two_sum(y, -r2, z_e); c = z + (((x_e + y_e) + z_e) + (((e_0 + e_1) + e_2) - r2_low))
 //          float: c = dot(f, f) - (float)r2
-// plane, real:    h = bundle c, or dot(normal, origin - center); nd = dot(normal, direction)
+// plane, real:    h = dot(normal, origin - center); nd = dot(normal, direction)
 //                 t = -h / nd; a hit where nd nd >= 1e-60 length2(direction) (float: 1e-30) and t > 0
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
 // ---- surface: point, normal and material of each hit ----
 
-#define GLINT_SIDE_BACK 1u ///< seen from behind (from inside): the normal was turned to the viewer
-#define GLINT_SIDE_UNLIT 2u ///< and the surface is one-sided: ambient only
-
 typedef struct glint_surface_args {
     uint32_t group_count;
     const uint16_t *hits;
     const uint32_t *prim;
     const glint_prim *prims;
-    const glint_bundle_prim *bundle; ///< NULL: each ray has its own origin
-    const void *origin[3]; ///< real; read only where bundle is NULL
-    double eye[3]; ///< the shared origin; read only with a bundle
-    const void *direction[3], *t;
+    const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: they are in origin and direction
+    const void *origin[3], *direction[3]; ///< real, one a ray
+    const void *t;
     void *point[3], *normal[3]; ///< out, real; the normal is unit and turned to the viewer
-    uint32_t *material, *coincident; ///< out
-    uint32_t *side; ///< out: GLINT_SIDE_ bits
+    uint32_t *material; ///< out
+    uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
+    uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
 } glint_surface_args;
-// Groups without a hit are not written; of other groups, lanes without a hit get point = normal = 0 and
-// material = coincident = side = 0.
-// sphere: f from the bundle, or (origin - center) * scale; ts = t scale; r = radius scale
+// Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
+// and material = 0.
+// sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
 //         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
 //         where length2(f) < 2^40: n = n (1.5 - 0.5 length2(n))
 //         elsewhere: a = length2(direction), b = -dot(f, direction), w = b / a, l = f + w direction,
@@ -154,43 +154,35 @@ typedef struct glint_surface_args {
 //                 with c = length2(f) - r2;  m = length2(n); n = n / sqrt(m) (each component divided);
 //                 where not m > 0: n = -direction / sqrt(a)
 //         point = center + radius n
-// plane:  n = normal; with a bundle point = eye + t direction, else origin + t direction
+// plane:  n = normal; point = origin + t direction
 // then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
-
-// ---- bounds: the box around a tile's points, for culling ----
-
-typedef struct glint_bounds_args {
-    uint32_t group_count;
-    const uint16_t *hits;
-    const void *point[3];
-    double lower[3], upper[3]; ///< out; +inf and -inf when nothing is hit
-} glint_bounds_args;
-// Over the lanes hit: lower = min(x + 0.0, lower), upper = max(x + 0.0, upper), from lower = +inf, upper = -inf.
 
 // ---- light: what one light does at each point, before shadows and colours ----
 
 typedef struct glint_light_args {
     uint32_t group_count;
     const uint16_t *hits;
+    const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: their directions are in direction
     const void *point[3], *normal[3], *direction[3];
-    const uint32_t *material, *side;
+    const uint32_t *material;
+    const glint_shade_material *materials; ///< of which `highlight` is read
+    const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it
     double scale; ///< a power of two that brings distances to the light near 1
     bool attenuated; ///< false: attenuation is not written
     double coefficients[3]; ///< c0, c1, c2
-    uint32_t phong_end, blinn_end; ///< materials < phong_end are Phong, < blinn_end Blinn-Phong; both 0: no highlight
+    bool highlights; ///< false: log2_specular is not written
     uint16_t *lit; ///< out: a bit a lane where the light is above the surface's horizon
     float *cosine; ///< out: n.l in 0 .. 1; 0 where unlit
     float *attenuation; ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
-    float *
-        log2_specular; ///< out, unless blinn_end is 0: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
+    float *log2_specular; ///< out: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
 // l = (position - point) scale (directional: l = position); l2 = length2(l); nl = dot(normal, l)
-// lit = hit and nl > 0 and not side & GLINT_SIDE_UNLIT
+// lit = hit and nl > 0 and not dark
 // cosine:      point light: q = (float)l2, m = (float)nl, min(m / sqrt(q), 1) in float
 //              directional: min((float)nl, 1)
 // attenuation: d = sqrt(l2) / scale; min((float)(1 / (c0 + (c1 d + c2 (d d)))), GLINT_ATTENUATION_MAX)
@@ -198,7 +190,7 @@ typedef struct glint_light_args {
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
 //              x = min(num / den, 1);  there is one where num > 0 and den > 0
-//   log2_specular = 0.5 log2(x), see elementary functions below; x below the smallest normal number: none
+//   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
 // In --precision float all of this is float, l2 a included.
 
 // ---- occlude: which points a light reaches ----
@@ -207,28 +199,26 @@ typedef struct glint_occlude_args {
     uint32_t group_count;
     const uint16_t *lit;
     const void *point[3];
-    const uint32_t *coincident, *side;
+    const uint32_t *prim; ///< on which the points are
+    const uint16_t *back;
     bool directional;
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
-    const glint_prim *prims;
-    const int8_t *light_side; ///< per primitive: sphere: the sign of |light - c|^2 - r^2 (directional: 1)
-        ///< plane: the sign of dot(normal, light - point) (directional: of dot(normal, position))
-    const uint32_t *candidates;
-    uint32_t candidate_count; ///< in any order
-    double reference[3];
-    double filter_scale;
+    const glint_geometry_table *geometry;
     uint16_t *open; ///< out: the lit lanes that nothing blocks
     uint64_t *rays; ///< added to: lit lanes
 } glint_occlude_args;
-// A lane is blocked where any candidate other than its own (candidate.coincident == coincident) blocks it:
+// light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1
+//         where length2(f) overflows; directional: 1.  plane: the sign of dot(normal, position - center); directional: of
+//         dot(normal, position)
+// A lane is blocked where any primitive other than its own (of another coincident) blocks it:
 // sphere: d = (position - point) scale (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
 //         a = length2(d), b = -dot(f, d)
 //         light_side < 0: blocked = c > 0
 //         else c < 0:     blocked = light_side > 0
 //         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b scale < a scale_of_prim)
 // plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
-// The own sphere, when it is a candidate: blocked where side & GLINT_SIDE_BACK and light_side > 0. The own plane never blocks.
+// The own sphere: blocked where `back` and its light_side > 0. The own plane never blocks.
 
 // ---- shade: the terms of each sample ----
 
@@ -252,24 +242,24 @@ typedef struct glint_shade_args {
     const uint32_t *material;
     const glint_shade_material *materials;
     double background[3];
-    bool has_specular; ///< false: the term is not computed
+    bool highlights; ///< false: the specular term is not computed
     bool first; ///< also the terms that no light makes: background and ambient
     const glint_shade_light *lights;
     uint32_t light_count; ///< at most GLINT_LIGHT_CHUNK
     double *sum
         [GLINT_TERM_COUNT]
-        [3]; ///< in and out: added to (specular: if has_specular); NULL: the frame has one sample and these are all lights
+        [3]; ///< in and out: added to (specular: if highlights); NULL: the frame has one sample and these are all lights
     float *film[GLINT_TERM_COUNT][3]; ///< out when sum is NULL: the terms; NULL where nobody asked for one
     float *beauty[3]; ///< out when sum is NULL
 } glint_shade_args;
-// For each lane, double unless said otherwise:
+// What a light adds to a term is float; terms are added up in double:
 //   background += background where active and not hit; ambient += materials[m].ambient where hit
 //   for each light where its lit bit is set, in order:
-//     w = attenuation (float; NULL: 1)
-//     diffuse[c]  += (double)(w cosine)_float * (kd[c] diffuse[c])
-//     where the material has a specular term and log2_specular > GLINT_NO_SPECULAR:
-//     y = shininess log2_specular (float), S = y < -40 ? 0 : exp2(y)
-//     specular[c] += (double)(w S)_float * (ks[c] specular[c])
+//     w = attenuation (NULL: 1); all of this in float:
+//     diffuse[c]  += (w cosine) (kd[c] diffuse[c]), the product of the colours made in double and rounded
+//     where the material has a highlight, highlights is true and log2_specular > GLINT_NO_SPECULAR:
+//     y = shininess log2_specular, S = y < -40 ? 0 : exp2(y)
+//     specular[c] += (w S) (ks[c] specular[c])
 // Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 
@@ -305,8 +295,10 @@ typedef struct glint_tone_args {
 // else entry = table[(bits >> 16) - GLINT_TONE_FIRST], code = (entry & 255) + ((bits & 0xffff) >= entry >> 8)
 
 // ---- elementary functions, elementary.h and ref.c ----
-// log2(x), x > 0 and at most 1, real; result float:
-//   x = m 2^e with m in [1, 2); m >= GLINT_SQRT2: m = 0.5 m, e = e + 1; f = (float)(m - 1) (m - 1 is exact)
+// log2(x), 2^-126 <= x <= 1, real; result float: y = (float)x
+//   y >= GLINT_SQRT1_2: e = 0, f = (float)(x - 1), the difference in real
+//   else y = m 2^e with m in [1, 2); m >= GLINT_SQRT2: m = 0.5 m, e = e + 1; f = m - 1 (exact)
+//   (both constants rounded to float)
 //   p = C9; p = p f + C8 ... p = p f + C0; log2 = (float)e + f p
 // exp2(y), float, -40 <= y <= 0: n = (y + 12582912) - 12582912, f = y - n,
 //   p = D6; p = p f + D5 ... p = p f + D0; exp2 = p 2^n
@@ -317,10 +309,10 @@ typedef struct glint_stages {
     const char *name;
     struct glint_geometry_stages {
         void (*camera)(const glint_camera_args *args);
+        bool (*in_sight)(const glint_cast_args *args);
         void (*cast_bundle)(const glint_cast_args *args);
         void (*cast_rays)(const glint_cast_args *args);
         void (*surface)(const glint_surface_args *args);
-        void (*bounds)(glint_bounds_args *args);
         void (*light)(const glint_light_args *args);
         void (*occlude)(const glint_occlude_args *args);
     } geometry[2]; ///< by glint_precision: double, float

@@ -52,34 +52,30 @@ static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 /// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
 /// is seen from behind.
 static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id,
-                                                                       size_t at, unsigned lanes)
+                                                                       uint32_t g, int i, unsigned lanes)
 {
+    const size_t at = (size_t)g * GLINT_GROUP + (size_t)i;
     const glint_prim *prim = &args->prims[id];
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
     vr d[3], n[3], p[3], from[3];
-    for (int k = 0; k < 3; k++) {
-        d[k] = r_load((const real *)args->direction[k] + at);
-        if (args->bundle)
-            from[k] = r_set(args->eye[k]);
-        else
-            from[k] = r_load((const real *)args->origin[k] + at);
-    }
+    R(ray_direction)(args->camera, args->direction, g, i, d);
+    if (args->camera)
+        for (int k = 0; k < 3; k++)
+            from[k] = r_set(args->camera->eye[k]);
+    else
+        R(load3)(args->origin, at, from);
     const vr t = r_load((const real *)args->t + at);
     if (prim->kind == GLINT_PRIM_SPHERE) {
         vr f[3];
         bool near = false;
-        if (args->bundle) {
-            const double *e = args->bundle[id].f;
-            const real x = (real)e[0], y = (real)e[1], z = (real)e[2];
-            near = (x * x + y * y) + z * z < (real)0x1p40;
+        if (args->camera) {
+            real e[3];
+            for (int k = 0; k < 3; k++)
+                e[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
+            near = (e[0] * e[0] + e[1] * e[1]) + e[2] * e[2] < (real)0x1p40;
         }
-        for (int k = 0; k < 3; k++) {
-            if (args->bundle)
-                f[k] = r_set(args->bundle[id].f[k]);
-            else
-                f[k] = (from[k] - r_set(prim->center[k])) * r_set(prim->scale);
-        }
+        R(offset)(from, prim, f);
         R(sphere_surface)(f, d, t, prim, near, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
@@ -104,32 +100,30 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
             r_store((real *)args->normal[k] + at + i, r_set(0));
         }
     lanes_put(args->material + at, 0xffff, 0);
-    lanes_put(args->coincident + at, 0xffff, 0);
-    lanes_put(args->side + at, 0xffff, 0);
 }
 
 static void R(surface)(const glint_surface_args *args)
 {
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
-        unsigned left = args->hits[g];
+        unsigned left = args->hits[g], back = 0, dark = 0;
         if (left && left != 0xffff)
             R(clear_surface)(args, at);
         while (left) {
             const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
             const glint_prim *prim = &args->prims[id];
             const unsigned lanes = lanes_equal(args->prim + at, id);
-            unsigned back = 0;
+            unsigned behind = 0;
             for (int i = 0; i < GLINT_GROUP; i += VR)
                 if (lanes >> i & ((1u << VR) - 1))
-                    back |= R(surface_lanes)(args, id, at + i, lanes >> i & ((1u << VR) - 1)) << i;
+                    behind |= R(surface_lanes)(args, id, g, i, lanes >> i & ((1u << VR) - 1)) << i;
             lanes_put(args->material + at, lanes, prim->material);
-            lanes_put(args->coincident + at, lanes, prim->coincident);
-            lanes_put(args->side + at, lanes, 0);
-            if (back)
-                lanes_put(args->side + at, back,
-                          prim->two_sided ? GLINT_SIDE_BACK : GLINT_SIDE_BACK | GLINT_SIDE_UNLIT);
+            back |= behind;
+            if (!prim->two_sided)
+                dark |= behind;
             left &= ~lanes;
         }
+        args->back[g] = (uint16_t)back;
+        args->dark[g] = (uint16_t)dark;
     }
 }

@@ -1,0 +1,151 @@
+/// The keys of a plan: what each stage declares to read, hashed. A stage's key holds the keys of the stages before it,
+/// whose results it reads too. A new stage gets reuse by a row in `stages`; tests/test_reuse.c changes every field of
+/// every description and finds what a row forgets.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/plan.h"
+
+/// What there is to read, described or derived.
+typedef enum input {
+    INPUT_VIEW, ///< camera, picture size, samples
+    INPUT_PLACES, ///< where the surfaces are
+    INPUT_LOOKS, ///< which material each has, and its sides
+    INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
+    INPUT_LIGHT_PLACES, ///< kind, position, fall-off
+    INPUT_SHADOWS, ///< which lights cast them
+    INPUT_LIGHT_COLORS,
+    INPUT_MATERIALS, ///< reflectances, exponents
+    INPUT_BACKGROUND,
+    INPUT_PASSES,
+    INPUT_TONE
+} input;
+
+#define READS(what) (1u << INPUT_##what)
+
+static const uint32_t stages[GLINT_STAGE_COUNT] = {
+    [GLINT_STAGE_CAMERA] = READS(VIEW),
+    [GLINT_STAGE_CAST] = READS(PLACES),
+    [GLINT_STAGE_SURFACE] = READS(LOOKS),
+    [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
+    [GLINT_STAGE_OCCLUDE] = READS(SHADOWS),
+    [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
+    [GLINT_STAGE_RESOLVE] = READS(PASSES),
+    [GLINT_STAGE_TONE] = READS(TONE),
+};
+
+#define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
+
+static glint_key view_key(const glint_plan *plan, glint_key key)
+{
+    const glint_plan_camera *c = &plan->camera;
+    const double frame[] = { plan->desc.width,     plan->desc.height, plan->desc.samples, plan->desc.seed,
+                             plan->desc.precision, c->orthographic,   c->pixel_offset };
+    ADD(key, frame);
+    ADD(key, c->eye);
+    ADD(key, c->forward);
+    ADD(key, c->right);
+    ADD(key, c->up);
+    return key;
+}
+
+static glint_key light_place_key(const glint_plan_light *l, glint_key key)
+{
+    const double numbers[] = { l->directional,     l->position[0],     l->position[1],    l->position[2],
+                               l->coefficients[0], l->coefficients[1], l->coefficients[2] };
+    return glint_key_add(key, numbers, sizeof numbers);
+}
+
+static glint_key light_color_key(const glint_plan_light *l, glint_key key)
+{
+    ADD(key, l->diffuse);
+    ADD(key, l->specular);
+    return key;
+}
+
+static glint_key highlights_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->highlights);
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        ADD(key, plan->materials[i].highlight);
+    return key;
+}
+
+static glint_key material_key(const glint_shade_material *m, glint_key key)
+{
+    const double exponent[] = { m->shininess, m->highlight };
+    ADD(key, m->diffuse);
+    ADD(key, m->specular);
+    ADD(key, m->ambient);
+    ADD(key, exponent);
+    return key;
+}
+
+static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key key)
+{
+    const glint_tone_desc *tone = &plan->desc.tone;
+    const int numbers[] = { plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits };
+    if (which & READS(PASSES))
+        ADD(key, plan->desc.passes);
+    if (which & READS(TONE))
+        ADD(key, numbers);
+    return key;
+}
+
+/// Continues a key with everything in `which`.
+static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key key)
+{
+    const glint_geometry *geometry = plan->geometry;
+    if (which & READS(VIEW))
+        key = view_key(plan, key);
+    if (which & READS(PLACES))
+        ADD(key, geometry->where);
+    if (which & READS(LOOKS))
+        ADD(key, geometry->look);
+    if (which & READS(HIGHLIGHTS))
+        key = highlights_key(plan, key);
+    for (uint32_t i = 0; i < plan->light_count; i++) {
+        if (which & READS(LIGHT_PLACES))
+            key = light_place_key(&plan->lights[i], key);
+        if (which & READS(SHADOWS))
+            ADD(key, plan->lights[i].shadows);
+        if (which & READS(LIGHT_COLORS))
+            key = light_color_key(&plan->lights[i], key);
+    }
+    for (uint32_t i = 0; i < plan->material_count && which & READS(MATERIALS); i++)
+        key = material_key(&plan->materials[i], key);
+    if (which & READS(BACKGROUND))
+        ADD(key, plan->background);
+    return output_key(plan, which, key);
+}
+
+/// The keys of the parts that a tile may depend on alone.
+static glint_status part_keys(glint_plan *plan, glint_error *error)
+{
+    const glint_key none = { 0 };
+    const glint_key light_base =
+        add_inputs(plan, stages[GLINT_STAGE_LIGHT] & ~READS(LIGHT_PLACES), plan->keys[GLINT_STAGE_SURFACE]);
+    for (uint32_t i = 0; i < plan->light_count; i++) {
+        glint_plan_light *light = &plan->lights[i];
+        light->key = light_place_key(light, light_base);
+        light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
+        light->look_key = light_color_key(light, light->place_key);
+    }
+    plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
+    if (!plan->material_keys)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        plan->material_keys[i] = material_key(&plan->materials[i], none);
+    plan->all_materials_key = add_inputs(plan, READS(MATERIALS), none);
+    plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
+    plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
+    plan->output_key = add_inputs(plan, READS(PASSES) | READS(TONE), none);
+    return GLINT_OK;
+}
+
+glint_status glint_plan_keys(glint_plan *plan, glint_error *error)
+{
+    glint_key key = { 0 };
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        plan->keys[id] = key = add_inputs(plan, stages[id], key);
+    return part_keys(plan, error);
+}

@@ -1,0 +1,285 @@
+// walk: which boxes of the index a tile, a shaft or a ray may touch, sixteen at a time. Everything here is float and
+// conservative: a box is left out only where that is certain, rounding and NaN included. What is decided on these boxes
+// never shows in a picture.
+
+#define WALK_SLACK 0x1p-21f ///< of the numbers that went into a difference; their rounding is at most 2^-24 each
+#define WALK_STACK (GLINT_BVH_DEPTH * (GLINT_NODE_WIDTH - 1) + 1)
+
+static inline float larger(float a, float b) { return a > b ? a : b; }
+static inline float smaller(float a, float b) { return a < b ? a : b; }
+
+/// Middle and half width of boxes in one axis, the half width with all the rounding there may be in `middle - from`.
+static inline void box_axis(const glint_node *node, int k, int i, float from, float slack, vf *middle, vf *half)
+{
+    const vf lower = f_load(node->lower[k] + i), upper = f_load(node->upper[k] + i);
+    *middle = f_set(0.5f) * (lower + upper);
+    vf reach = upper - *middle;
+    *half = reach + (f_set(WALK_SLACK) * ((f_abs(*middle) + reach) + f_set(fabsf(from))) + f_set(slack));
+    *middle = *middle - f_set(from);
+}
+
+static inline fm box_exists(const glint_node *node, int i)
+{
+    return f_le(f_load(node->lower[0] + i), f_load(node->upper[0] + i));
+}
+
+/// The interval of dot(axis, x) over boxes.
+static inline void box_along(const vf middle[3], const vf half[3], const float axis[3], vf *low, vf *high)
+{
+    vf at = (f_set(axis[0]) * middle[0] + f_set(axis[1]) * middle[1]) + f_set(axis[2]) * middle[2];
+    vf reach = (f_set(fabsf(axis[0])) * half[0] + f_set(fabsf(axis[1])) * half[1]) + f_set(fabsf(axis[2])) * half[2];
+    *low = at - reach;
+    *high = at + reach;
+}
+
+// ---- A tile's rays: the pyramid between four planes through the eye ----
+
+typedef struct tile_view {
+    float eye[3], slack; ///< in the index's frame
+    float side[4][3]; ///< the normals of the planes, inwards
+    float forward[3], right[3], up[3]; ///< forward . x is the depth, right . x / depth and up . x / depth are s, t
+    float s[2], t[2]; ///< of the tile's edges, rising
+} tile_view;
+
+/// `slack`: what the caller's arithmetic adds to the rounding here, in the index's units.
+static void make_tile_view(const glint_camera_args *camera, const glint_geometry_table *geometry, float slack,
+                           tile_view *view)
+{
+    const uint32_t rows = (camera->group_count + camera->groups_across - 1) / camera->groups_across;
+    const double s[2] = { 2 * camera->x0 - camera->width,
+                          2 * (camera->x0 + 4 * camera->groups_across) - camera->width };
+    const double t[2] = { camera->height - 2 * (camera->y0 + 4 * rows), camera->height - 2 * camera->y0 };
+    const double rr = DOT(camera->right, camera->right), uu = DOT(camera->up, camera->up);
+    for (int k = 0; k < 3; k++) {
+        const double f = camera->forward[k], r = camera->right[k] / rr, u = camera->up[k] / uu;
+        view->eye[k] = (float)((camera->eye[k] - geometry->reference[k]) * geometry->scale);
+        view->forward[k] = (float)f;
+        view->right[k] = (float)r;
+        view->up[k] = (float)u;
+        view->side[0][k] = (float)(r - s[0] * f);
+        view->side[1][k] = (float)(s[1] * f - r);
+        view->side[2][k] = (float)(u - t[0] * f);
+        view->side[3][k] = (float)(t[1] * f - u);
+    }
+    for (int i = 0; i < 2; i++) {
+        view->s[i] = (float)s[i];
+        view->t[i] = (float)t[i];
+    }
+    view->slack = slack;
+}
+
+/// Which boxes are within the pyramid and begin before `far`, and the depth at which each begins.
+static unsigned boxes_in_tile(const glint_node *node, const tile_view *view, float far, float depth[GLINT_NODE_WIDTH])
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3], low, high;
+        for (int k = 0; k < 3; k++)
+            box_axis(node, k, i, view->eye[k], view->slack, &middle[k], &half[k]);
+        box_along(middle, half, view->forward, &low, &high);
+        f_store(depth + i, low);
+        fm out = fm_or(f_lt(high, f_set(0)), f_lt(f_set(far), low));
+        for (int p = 0; p < 4; p++) {
+            box_along(middle, half, view->side[p], &low, &high);
+            out = fm_or(out, f_lt(high, f_set(0)));
+        }
+        inside |= fm_bits(fm_andnot(box_exists(node, i), out)) << i;
+    }
+    return inside;
+}
+
+/// What a node's boxes may cover of the picture, in the units of s and t.
+typedef struct node_on_screen {
+    _Alignas(64) float low[2][GLINT_NODE_WIDTH], high[2][GLINT_NODE_WIDTH];
+} node_on_screen;
+
+static inline void interval_on_screen(const vf middle[3], const vf half[3], const float axis[3], vf near, vf far,
+                                      float low_out[], float high_out[])
+{
+    vf low, high;
+    box_along(middle, half, axis, &low, &high);
+    const fm ahead = f_lt(f_set(0), near); // else the box reaches the eye's plane and may be seen anywhere
+    f_store(low_out, f_select(ahead, f_min(low / near, low / far), f_set(-HUGE_VALF)));
+    f_store(high_out, f_select(ahead, f_max(high / near, high / far), f_set(HUGE_VALF)));
+}
+
+static void boxes_on_screen(const glint_node *node, const tile_view *view, node_on_screen *out)
+{
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3], near, far;
+        for (int k = 0; k < 3; k++)
+            box_axis(node, k, i, view->eye[k], view->slack, &middle[k], &half[k]);
+        box_along(middle, half, view->forward, &near, &far);
+        interval_on_screen(middle, half, view->right, near, far, out->low[0] + i, out->high[0] + i);
+        interval_on_screen(middle, half, view->up, near, far, out->low[1] + i, out->high[1] + i);
+    }
+}
+
+/// Groups of 4 x 4 pixels: columns first[0] .. last[0], rows first[1] .. last[1]; empty where last < first.
+typedef struct group_rect {
+    int first[2], last[2];
+} group_rect;
+
+/// Groups are 8 units of s or t wide; a hundredth of a unit is far above the rounding. NaN keeps the group.
+static inline int first_group(float units, float slack)
+{
+    const float group = floorf((units - slack) * 0.125f);
+    return group > 0 ? (int)smaller(group, 1000) : 0;
+}
+
+static inline int last_group(float units, float slack, int count)
+{
+    const float group = floorf((units + slack) * 0.125f);
+    return group < (float)count ? (int)larger(group, -1) : count - 1;
+}
+
+/// The groups that one slot of a node may show in, of across x down. s runs along the columns, t against the rows.
+static inline group_rect groups_of(const node_on_screen *boxes, int slot, const tile_view *view, int across, int down)
+{
+    const float s = view->s[0], t = view->t[1];
+    const float slack_s = 0.01f + 1e-5f * fabsf(s), slack_t = 0.01f + 1e-5f * fabsf(t);
+    return (group_rect) {
+        { first_group(boxes->low[0][slot] - s, slack_s), first_group(t - boxes->high[1][slot], slack_t) },
+        { last_group(boxes->high[0][slot] - s, slack_s, across), last_group(t - boxes->low[1][slot], slack_t, down) }
+    };
+}
+
+/// Bits first .. last.
+static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
+
+// ---- A shaft: all segments from a box of points to one light, or along one direction ----
+
+/// Grows a box by the rounding of its points and by `slack`.
+static inline void loosen(float lower[3], float upper[3], float slack)
+{
+    for (int k = 0; k < 3; k++) {
+        const float more = WALK_SLACK * larger(fabsf(lower[k]), fabsf(upper[k])) + slack;
+        lower[k] -= more;
+        upper[k] += more;
+    }
+}
+
+typedef struct light_shaft {
+    float lower[3], upper[3]; ///< the box around all of it; infinite where it runs on
+    int plane_count;
+    int axis[6][2]; ///< the planes' normals lie in one coordinate plane each:
+    float normal[6][2], bound[6]; ///< inside, normal . x <= bound
+} light_shaft;
+
+/// The planes of one pair of axes: the lines from the light that touch the rectangle of the points.
+static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const float lower[3], const float upper[3],
+                                    const float light[3], bool directional)
+{
+    for (int corner = 0; corner < 4; corner++) {
+        const float x = corner & 1 ? upper[a] : lower[a], y = corner & 2 ? upper[b] : lower[b];
+        const float ex = directional ? light[a] : light[a] - x, ey = directional ? light[b] : light[b] - y;
+        // the rectangle on one side of the line through the corner: its extent along the line's normal
+        const float left_x = -ey * (lower[a] - x), right_x = -ey * (upper[a] - x);
+        const float left_y = ex * (lower[b] - y), right_y = ex * (upper[b] - y);
+        const float most = larger(left_x, right_x) + larger(left_y, right_y);
+        const float least = smaller(left_x, right_x) + smaller(left_y, right_y);
+        if (!(most <= 0 || least >= 0) || shaft->plane_count == 6)
+            continue;
+        const float sign = most <= 0 ? 1 : -1;
+        const int p = shaft->plane_count++;
+        const float nx = -ey * sign, ny = ex * sign;
+        const float size =
+            fabsf(nx) * larger(fabsf(lower[a]), fabsf(upper[a])) + fabsf(ny) * larger(fabsf(lower[b]), fabsf(upper[b]));
+        shaft->axis[p][0] = a;
+        shaft->axis[p][1] = b;
+        shaft->normal[p][0] = nx;
+        shaft->normal[p][1] = ny;
+        // the light itself is on the line up to rounding, which grows with how far it is
+        const float far = directional ? 0 : fabsf(nx * light[a]) + fabsf(ny * light[b]);
+        shaft->bound[p] =
+            larger(nx * lower[a], nx * upper[a]) + larger(ny * lower[b], ny * upper[b]) + WALK_SLACK * (size + far);
+    }
+}
+
+/// lower, upper: box of the points; light: the position, or the direction towards it; in the index's frame.
+static void make_shaft(const float lower[3], const float upper[3], const float light[3], bool directional,
+                       light_shaft *shaft)
+{
+    shaft->plane_count = 0;
+    for (int k = 0; k < 3; k++) {
+        const float slack = WALK_SLACK * fabsf(light[k]);
+        shaft->lower[k] = directional ? (light[k] < 0 ? -HUGE_VALF : lower[k]) : smaller(lower[k], light[k] - slack);
+        shaft->upper[k] = directional ? (light[k] > 0 ? HUGE_VALF : upper[k]) : larger(upper[k], light[k] + slack);
+    }
+    for (int a = 0; a < 2; a++)
+        for (int b = a + 1; b < 3; b++)
+            add_shaft_planes(shaft, a, b, lower, upper, light, directional);
+}
+
+static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3];
+        fm out = f_lt(f_set(1), f_set(0));
+        for (int k = 0; k < 3; k++) {
+            box_axis(node, k, i, 0, 0, &middle[k], &half[k]);
+            out = fm_or(out, fm_or(f_lt(f_set(shaft->upper[k]), middle[k] - half[k]),
+                                   f_lt(middle[k] + half[k], f_set(shaft->lower[k]))));
+        }
+        for (int p = 0; p < shaft->plane_count; p++) {
+            const int a = shaft->axis[p][0], b = shaft->axis[p][1];
+            const float x = shaft->normal[p][0], y = shaft->normal[p][1];
+            vf low =
+                (f_set(x) * middle[a] + f_set(y) * middle[b]) - (f_set(fabsf(x)) * half[a] + f_set(fabsf(y)) * half[b]);
+            out = fm_or(out, f_lt(f_set(shaft->bound[p]), low));
+        }
+        inside |= fm_bits(fm_andnot(box_exists(node, i), out)) << i;
+    }
+    return inside;
+}
+
+// ---- One ray ----
+
+typedef struct ray_view {
+    float origin[3], slack; ///< in the index's frame
+    float inverse[3]; ///< 1 / direction; a component that is next to nothing counts as 1e-30
+} ray_view;
+
+static inline float inverse_of(float d) { return fabsf(d) < 1e-30f ? copysignf(1e30f, d) : 1 / d; }
+
+/// Which boxes the ray may enter before `far` (in units of its direction), and where it enters each.
+static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float far, float depth[GLINT_NODE_WIDTH])
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf enter = f_set(0), leave = f_set(far);
+        for (int k = 0; k < 3; k++) {
+            vf middle, half;
+            box_axis(node, k, i, ray->origin[k], ray->slack, &middle, &half);
+            vf x = (middle - half) * f_set(ray->inverse[k]), y = (middle + half) * f_set(ray->inverse[k]);
+            enter = f_max(f_min(x, y), enter); // NaN keeps what there was
+            leave = f_min(f_max(x, y), leave);
+        }
+        f_store(depth + i, enter);
+        const fm out = f_lt(leave * f_set(1 + WALK_SLACK), enter);
+        inside |= fm_bits(fm_andnot(box_exists(node, i), out)) << i;
+    }
+    return inside;
+}
+
+// ---- The order of a walk ----
+
+typedef struct walk_entry {
+    uint32_t node;
+    float depth;
+} walk_entry;
+
+/// The slots of `mask` in `order`, nearest first. Returns how many.
+static inline int sort_slots(unsigned mask, const float depth[GLINT_NODE_WIDTH], int order[GLINT_NODE_WIDTH])
+{
+    int count = 0;
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        int at = count++;
+        for (; at > 0 && depth[slot] < depth[order[at - 1]]; at--)
+            order[at] = order[at - 1];
+        order[at] = slot;
+    }
+    return count;
+}
