@@ -70,26 +70,52 @@ static void R(camera)(const glint_camera_args *args)
         R(camera_perspective)(args);
 }
 
-/// Directions of some lanes of group (x, y) of a perspective camera.
-static inline void R(camera_direction)(const glint_camera_args *camera, uint32_t x, uint32_t y, int i, vr out[3])
-{
-    for (int k = 0; k < 3; k++)
-        out[k] = r_load((const real *)camera->across[k] + (size_t)x * GLINT_GROUP + i) +
-                 r_load((const real *)camera->down[k] + (size_t)y * GLINT_GROUP + i);
-}
-
 static inline void R(load3)(const void *const v[3], size_t at, vr out[3])
 {
     for (int k = 0; k < 3; k++)
         out[k] = r_load((const real *)v[k] + at);
 }
 
-/// The same of group g, or of rays in arrays where `camera` is NULL.
-static inline void R(ray_direction)(const glint_camera_args *camera, const void *const direction[3], uint32_t g, int i,
-                                    vr out[3])
+/// A group, and where it stands among the camera's.
+typedef struct R(group_place) {
+    uint32_t g, x, y;
+} R(group_place);
+
+static inline void R(next_group)(const glint_camera_args *camera, R(group_place) * place)
 {
-    if (camera)
-        R(camera_direction)(camera, g % camera->groups_across, g / camera->groups_across, i, out);
-    else
-        R(load3)(direction, (size_t)g * GLINT_GROUP + i, out);
+    place->g++;
+    if (camera && ++place->x == camera->groups_across) {
+        place->x = 0;
+        place->y++;
+    }
+}
+
+/// Where the directions of one group are: the sum of two arrays, or one.
+typedef struct R(group_directions) {
+    const real *a[3], *b[3];
+    bool sum;
+} R(group_directions);
+
+/// `direction` is read where `camera` is NULL.
+static inline R(group_directions)
+    R(directions_of)(const glint_camera_args *camera, const void *const direction[3], R(group_place) place)
+{
+    R(group_directions) out = { .sum = camera != NULL };
+    for (int k = 0; k < 3; k++)
+        if (camera) {
+            out.a[k] = (const real *)camera->across[k] + (size_t)place.x * GLINT_GROUP;
+            out.b[k] = (const real *)camera->down[k] + (size_t)place.y * GLINT_GROUP;
+        } else {
+            out.a[k] = out.b[k] = (const real *)direction[k] + (size_t)place.g * GLINT_GROUP;
+        }
+    return out;
+}
+
+static inline void R(load_direction)(const R(group_directions) * directions, int i, vr out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        out[k] = r_load(directions->a[k] + i);
+        if (directions->sum)
+            out[k] = out[k] + r_load(directions->b[k] + i);
+    }
 }

@@ -231,6 +231,7 @@ typedef struct R(candidate) {
     unsigned columns, rows; ///< of groups that it may show in, a bit each
     real f[3], c; ///< see R(offset) and R(offset_constant)
     float base[3], along_s[3], along_t[3], limit2; ///< the filter of a sphere: f x d is linear in s and t
+    _Alignas(64) float row[3][GLINT_GROUP]; ///< base and along_t for the row of groups at hand
 } R(candidate);
 
 /// Which way the planes' corner rays run decides whether a ray between them can meet it.
@@ -325,10 +326,10 @@ static inline unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candida
         return 0xffff;
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf s = f_load(tile->s[x] + i), t = f_load(tile->t[y] + i);
+        const vf s = f_load(tile->s[x] + i);
         vf v[3];
         for (int k = 0; k < 3; k++)
-            v[k] = (f_set(candidate->base[k]) + s * f_set(candidate->along_s[k])) + t * f_set(candidate->along_t[k]);
+            v[k] = f_load(candidate->row[k] + i) + s * f_set(candidate->along_s[k]);
         const vf reach2 = f_set(candidate->limit2) * (f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i));
         near |= (~fm_bits(f_lt(reach2, DOT(v, v))) & ((1u << VF) - 1)) << i;
     }
@@ -342,12 +343,14 @@ static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate
     const glint_cast_args *args = tile->args;
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
+    const R(group_directions) directions =
+        R(directions_of)(args->camera, args->direction, (R(group_place)) { 0, (uint32_t)x, (uint32_t)y });
     bool any = false;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
         vr d[3], t;
-        R(camera_direction)(args->camera, (uint32_t)x, (uint32_t)y, i, d);
+        R(load_direction)(&directions, i, d);
         const rm hit = R(meet)(f, r_set(candidate->c), d, candidate->prim, &t);
         if (!rm_bits(hit))
             continue;
@@ -377,17 +380,28 @@ static inline float R(far_of_tile)(R(tile_cast) * tile)
     return tile->far_of_all = f_max_all(far);
 }
 
+static inline void R(begin_row)(const R(tile_cast) * tile, R(candidate) * candidates, int count, int y)
+{
+    for (int j = 0; j < count && tile->scaled; j++)
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i += VF)
+                f_store(candidates[j].row[k] + i,
+                        f_set(candidates[j].base[k]) + f_load(tile->t[y] + i) * f_set(candidates[j].along_t[k]));
+}
+
 /// Tests candidates, group by group.
-static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candidates, int count)
+static void R(cast_candidates)(R(tile_cast) * tile, R(candidate) * candidates, int count)
 {
     unsigned columns = 0, rows = 0;
     for (int k = 0; k < count; k++) {
         columns |= candidates[k].columns;
         rows |= candidates[k].rows;
     }
-    for (; rows; rows &= rows - 1)
+    for (; rows; rows &= rows - 1) {
+        const int y = __builtin_ctz(rows);
+        R(begin_row)(tile, candidates, count, y);
         for (unsigned left = columns; left; left &= left - 1) {
-            const int x = __builtin_ctz(left), y = __builtin_ctz(rows), g = y * tile->across + x;
+            const int x = __builtin_ctz(left), g = y * tile->across + x;
             for (int k = 0; k < count; k++) {
                 const R(candidate) *candidate = &candidates[k];
                 if (!(candidate->columns >> x & candidate->rows >> y & 1) ||
@@ -398,6 +412,7 @@ static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candida
                     tile->stale |= (uint64_t)1 << g;
             }
         }
+    }
 }
 
 static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)

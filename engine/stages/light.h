@@ -26,8 +26,10 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 }
 
 /// The real part of one vector of lanes.
-static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i, unsigned open, R(lit_group) * group)
+static inline void R(light_lanes)(const glint_light_args *args, R(group_place) place,
+                                  const R(group_directions) * directions, int i, unsigned open, R(lit_group) * group)
 {
+    const size_t at = (size_t)place.g * GLINT_GROUP;
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr n[3], l[3];
     for (int k = 0; k < 3; k++) {
@@ -53,7 +55,7 @@ static inline void R(light_lanes)(const glint_light_args *args, size_t at, int i
     if (!(phong | blinn))
         return;
     vr d[3];
-    R(ray_direction)(args->camera, args->direction, (uint32_t)(at / GLINT_GROUP), i, d);
+    R(load_direction)(directions, i, d);
     vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
     rm some = rm_from_bits(0);
     if (phong)
@@ -107,14 +109,16 @@ static inline void R(sort_highlights)(const glint_light_args *args, size_t at, u
 static void R(light)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
-    for (uint32_t g = 0; g < args->group_count; g++) {
+    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
+        const uint32_t g = place.g;
         const size_t at = (size_t)g * GLINT_GROUP;
         const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
         group.lit = group.shiny = 0;
         if (open) {
+            const R(group_directions) directions = R(directions_of)(args->camera, args->direction, place);
             R(sort_highlights)(args, at, open, &group);
             for (int i = 0; i < GLINT_GROUP; i += VR)
-                R(light_lanes)(args, at, i, open, &group);
+                R(light_lanes)(args, place, &directions, i, open, &group);
         }
         args->lit[g] = (uint16_t)group.lit;
         if (group.lit)

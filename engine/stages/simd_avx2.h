@@ -91,9 +91,11 @@ static inline vd d_load_index(const uint32_t *p) { return _mm256_cvtepi32_pd(_mm
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
+    float *to = (float *)p;
     const __m128 low = _mm_castpd_ps(_mm256_castpd256_pd128(mask)),
                  high = _mm_castpd_ps(_mm256_extractf128_pd(mask, 1));
-    _mm_maskstore_epi32((int *)p, _mm_castps_si128(_mm_shuffle_ps(low, high, 0x88)), _mm_set1_epi32((int)i));
+    const __m128 index = _mm_castsi128_ps(_mm_set1_epi32((int)i));
+    _mm_store_ps(to, _mm_blendv_ps(_mm_load_ps(to), index, _mm_shuffle_ps(low, high, 0x88)));
 }
 
 static inline vd d_exponent(vd x)

@@ -74,7 +74,8 @@ static inline vd d_load_index(const uint32_t *p) { return _mm512_cvtepi32_pd(_mm
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {
-    _mm256_mask_store_epi32(p, mask, _mm256_set1_epi32((int)i));
+    __m256i *to = (__m256i *)p;
+    _mm256_store_si256(to, _mm256_mask_blend_epi32(mask, _mm256_load_si256(to), _mm256_set1_epi32((int)i)));
 }
 
 /// The biased exponent, as a number; and the mantissa, in [1, 2). For normal numbers > 0.

@@ -49,44 +49,58 @@ static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
     r_store(to, x);
 }
 
+/// A primitive as all rays of a camera see it.
+typedef struct R(seen_prim) {
+    uint32_t id; ///< GLINT_MISS: none yet
+    const glint_prim *prim;
+    bool near; ///< see sphere_surface
+    real f[3];
+} R(seen_prim);
+
+static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen)
+{
+    const glint_prim *prim = &args->prims[id];
+    *seen = (R(seen_prim)) { .id = id, .prim = prim };
+    if (!args->camera || prim->kind != GLINT_PRIM_SPHERE)
+        return;
+    for (int k = 0; k < 3; k++)
+        seen->f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
+    seen->near = (seen->f[0] * seen->f[0] + seen->f[1] * seen->f[1]) + seen->f[2] * seen->f[2] < (real)0x1p40;
+}
+
 /// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
 /// is seen from behind.
-static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args, uint32_t id,
-                                                                       uint32_t g, int i, unsigned lanes)
+static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
+                                                                       const R(seen_prim) * seen,
+                                                                       const R(group_directions) * directions,
+                                                                       size_t at, int i, unsigned lanes)
 {
-    const size_t at = (size_t)g * GLINT_GROUP + (size_t)i;
-    const glint_prim *prim = &args->prims[id];
+    const glint_prim *prim = seen->prim;
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
-    vr d[3], n[3], p[3], from[3];
-    R(ray_direction)(args->camera, args->direction, g, i, d);
-    if (args->camera)
-        for (int k = 0; k < 3; k++)
-            from[k] = r_set(args->camera->eye[k]);
-    else
-        R(load3)(args->origin, at, from);
-    const vr t = r_load((const real *)args->t + at);
+    vr d[3], n[3], p[3], from[3], f[3];
+    R(load_direction)(directions, i, d);
+    if (!args->camera)
+        R(load3)(args->origin, at + i, from);
+    const vr t = r_load((const real *)args->t + at + i);
     if (prim->kind == GLINT_PRIM_SPHERE) {
-        vr f[3];
-        bool near = false;
-        if (args->camera) {
-            real e[3];
-            for (int k = 0; k < 3; k++)
-                e[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
-            near = (e[0] * e[0] + e[1] * e[1]) + e[2] * e[2] < (real)0x1p40;
-        }
-        R(offset)(from, prim, f);
-        R(sphere_surface)(f, d, t, prim, near, n, p);
+        for (int k = 0; k < 3; k++)
+            f[k] = r_set(seen->f[k]);
+        if (!args->camera)
+            R(offset)(from, prim, f);
+        R(sphere_surface)(f, d, t, prim, seen->near, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
+            if (args->camera)
+                from[k] = r_set(args->camera->eye[k]);
             n[k] = r_set(prim->normal[k]);
             p[k] = from[k] + t * d[k];
         }
     }
     rm back = r_lt(r_set(0), DOT(n, d));
     for (int k = 0; k < 3; k++) {
-        R(put)(args->point[k], at, whole, mask, p[k]);
-        R(put)(args->normal[k], at, whole, mask, r_select(back, -n[k], n[k]));
+        R(put)(args->point[k], at + i, whole, mask, p[k]);
+        R(put)(args->normal[k], at + i, whole, mask, r_select(back, -n[k], n[k]));
     }
     return rm_bits(back) & lanes;
 }
@@ -104,22 +118,26 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 
 static void R(surface)(const glint_surface_args *args)
 {
-    for (uint32_t g = 0; g < args->group_count; g++) {
+    R(seen_prim) seen = { .id = GLINT_MISS };
+    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
+        const uint32_t g = place.g;
         const size_t at = (size_t)g * GLINT_GROUP;
+        const R(group_directions) directions = R(directions_of)(args->camera, args->direction, place);
         unsigned left = args->hits[g], back = 0, dark = 0;
         if (left && left != 0xffff)
             R(clear_surface)(args, at);
         while (left) {
             const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-            const glint_prim *prim = &args->prims[id];
             const unsigned lanes = lanes_equal(args->prim + at, id);
             unsigned behind = 0;
+            if (seen.id != id)
+                R(see_prim)(args, id, &seen);
             for (int i = 0; i < GLINT_GROUP; i += VR)
                 if (lanes >> i & ((1u << VR) - 1))
-                    behind |= R(surface_lanes)(args, id, g, i, lanes >> i & ((1u << VR) - 1)) << i;
-            lanes_put(args->material + at, lanes, prim->material);
+                    behind |= R(surface_lanes)(args, &seen, &directions, at, i, lanes >> i & ((1u << VR) - 1)) << i;
+            lanes_put(args->material + at, lanes, seen.prim->material);
             back |= behind;
-            if (!prim->two_sided)
+            if (!seen.prim->two_sided)
                 dark |= behind;
             left &= ~lanes;
         }
