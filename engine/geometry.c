@@ -80,6 +80,7 @@ static glint_status add_shape(glint_geometry *geometry, const glint_shape *shape
             sphere_init(prim, desc->center, desc->radius);
         else
             plane_init(prim, desc->point, desc->normal);
+        prim->id = at;
         prim->two_sided = desc->two_sided;
         prim->material = numbers[shape->index ? shape->index[i] : 0];
         geometry->prim_shape[at] = number;
@@ -243,27 +244,84 @@ static void index_release(glint_index *index)
     glint_bvh_free(&index->bvh);
     free(index->boxes);
     free(index->bounded);
+    free(index->order);
     pthread_mutex_destroy(&index->lock);
     free(index);
 }
 
-static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+/// Numbers the primitives in the order in which the tree's nodes name them, and has the nodes say so.
+static void order_by_tree(glint_index *index)
 {
-    glint_status status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
-    if (status)
-        return status;
+    uint32_t next = 0;
     for (uint32_t n = 0; n < index->bvh.node_count; n++) {
         glint_node *node = &index->bvh.nodes[n];
         for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
-            if (node->lower[0][i] <= node->upper[0][i] && node->child[i] & GLINT_NODE_PRIM)
-                node->child[i] = GLINT_NODE_PRIM | index->bounded[node->child[i] & ~GLINT_NODE_PRIM];
+            if (!(node->lower[0][i] <= node->upper[0][i]) || !(node->child[i] & GLINT_NODE_PRIM))
+                continue;
+            index->order[next] = index->bounded[node->child[i] & ~GLINT_NODE_PRIM];
+            node->child[i] = GLINT_NODE_PRIM | next++;
         }
     }
+}
+
+static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+{
+    index->order = malloc((index->box_count + 1) * sizeof *index->order);
+    if (!index->order)
+        return glint_fail_nomem(error);
+    glint_status status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
+    if (status) {
+        free(index->order);
+        index->order = NULL;
+        return status;
+    }
+    order_by_tree(index);
     free(index->boxes);
     free(index->bounded);
     index->boxes = NULL;
     index->bounded = NULL;
     index->built = true;
+    return GLINT_OK;
+}
+
+typedef struct arranging {
+    const glint_index *index;
+    const glint_prim *from;
+    glint_prim *to;
+} arranging;
+
+#define ARRANGE_CHUNK 16384u
+
+static void arrange_chunk(void *context, size_t chunk, int worker)
+{
+    const arranging *a = context;
+    const uint32_t from = (uint32_t)chunk * ARRANGE_CHUNK, rest = a->index->box_count - from;
+    (void)worker;
+    for (uint32_t i = from; i < from + (rest < ARRANGE_CHUNK ? rest : ARRANGE_CHUNK); i++)
+        a->to[i] = a->from[a->index->order[i]];
+}
+
+/// Puts the primitives into the order of the index, those without an end last.
+static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_error *error)
+{
+    const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
+    arranging a = { geometry->index, geometry->prims, glint_alloc_large(count, sizeof *geometry->prims) };
+    if (!a.to)
+        return glint_fail_nomem(error);
+    const size_t chunks = (bounded + ARRANGE_CHUNK - 1) / ARRANGE_CHUNK;
+    if (pool && chunks > 1)
+        glint_pool_run(pool, chunks, arrange_chunk, &a);
+    else
+        for (size_t i = 0; i < chunks; i++)
+            arrange_chunk(&a, i, 0);
+    for (uint32_t i = 0; i < geometry->table.unbounded_count; i++) {
+        a.to[bounded + i] = geometry->prims[geometry->unbounded[i]];
+        geometry->unbounded[i] = bounded + i;
+    }
+    free(geometry->prims);
+    geometry->table.prims = geometry->prims = a.to;
+    geometry->table.nodes = geometry->index->bvh.nodes;
+    geometry->arranged = true;
     return GLINT_OK;
 }
 
@@ -273,9 +331,10 @@ glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, gl
     glint_index *index = geometry->index;
     pthread_mutex_lock(&index->lock);
     glint_status status = index->built ? GLINT_OK : index_build(index, pool, error);
+    if (!status && !geometry->arranged)
+        status = arrange(geometry, pool, error);
     pthread_mutex_unlock(&index->lock);
     *table = geometry->table;
-    table->nodes = index->bvh.nodes;
     return status;
 }
 

@@ -18,13 +18,15 @@ typedef struct glint_index {
     glint_box *boxes; ///< of the bounded primitives, until the index is built
     uint32_t *bounded; ///< the primitive of each box, likewise
     uint32_t box_count;
+    uint32_t *order; ///< the primitive in each place of the tree's order, once built
     glint_bvh bvh;
 } glint_index;
 
 struct glint_geometry {
     atomic_size_t references;
     glint_key revision; ///< of the shapes it was made from
-    glint_prim *prims; ///< in order of definition: index + 1 is the object id
+    glint_prim *prims; ///< in order of definition, and in that of the index once it is built
+    bool arranged; ///< the latter
     uint32_t *prim_shape; ///< which shape of the scene each is of
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them

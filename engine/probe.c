@@ -41,10 +41,10 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-static void read_hit(const glint_scene *scene, const uint32_t *prim_shape, const lane_group *g, double scale,
-                     glint_hit *out)
+static void read_hit(const glint_scene *scene, const uint32_t *prim_shape, uint32_t id, const lane_group *g,
+                     double scale, glint_hit *out)
 {
-    const uint32_t id = g->prim[0], shape = prim_shape[id];
+    const uint32_t shape = prim_shape[id];
     uint32_t first = id;
     while (first > 0 && prim_shape[first - 1] == shape)
         first--;
@@ -87,7 +87,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
         cast_lane(stages, &table, g);
         *hit = g->hits & 1;
         if (*hit)
-            read_hit(scene, geometry->prim_shape, g, scale, out);
+            read_hit(scene, geometry->prim_shape, table.prims[g->prim[0]].id, g, scale, out);
     }
     glint_geometry_release(geometry);
     free(g);

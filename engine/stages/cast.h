@@ -121,6 +121,16 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 
 // ---- The decision ----
 
+/// Of equal hits the one defined first stays. Returns the lanes of `tied` in which that is `id`.
+static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t *best, unsigned tied)
+{
+    unsigned wins = 0;
+    for (; tied; tied &= tied - 1)
+        if (prims[id].id < prims[best[__builtin_ctz(tied)]].id)
+            wins |= tied & -tied;
+    return wins;
+}
+
 /// Keeps the nearest of what was and `t` in the lanes of `hit`.
 static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
 {
@@ -130,7 +140,7 @@ static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint3
     const rm tie = rm_and(hit, r_eq(t, old_t));
     hit = rm_and(hit, r_lt(t, old_t));
     if (rm_bits(tie))
-        hit = rm_or(hit, rm_and(tie, r_index_lt(r_index(id), r_load_index(best_id))));
+        hit = rm_or(hit, rm_from_bits(R(wins_tie)(args->geometry->prims, id, best_id, rm_bits(tie))));
     r_store(best_t, r_select(hit, t, old_t));
     r_put_index(best_id, hit, id);
 }
@@ -444,6 +454,18 @@ static bool R(in_sight)(const glint_cast_args *args)
     return geometry->nodes && boxes_in_tile(geometry->nodes, &view, HUGE_VALF, depth);
 }
 
+/// Whether every group that the candidate may show in has hits in front of its box.
+static bool R(hidden)(R(tile_cast) * tile, const R(candidate) * candidate)
+{
+    for (unsigned rows = candidate->rows; tile->deep && rows; rows &= rows - 1)
+        for (unsigned columns = candidate->columns; columns; columns &= columns - 1) {
+            const int g = __builtin_ctz(rows) * tile->across + __builtin_ctz(columns);
+            if (!(R(far_of_group)(tile, g) < candidate->depth))
+                return false;
+        }
+    return tile->deep;
+}
+
 /// One node: its primitives are cast at once, its nodes go on the stack, the nearest on top.
 static void R(cast_node)(R(tile_cast) * tile, const glint_node *node, float far, walk_entry *stack, int *height)
 {
@@ -465,7 +487,7 @@ static void R(cast_node)(R(tile_cast) * tile, const glint_node *node, float far,
         candidate->columns = bit_range(rect.first[0], rect.last[0]);
         candidate->rows = bit_range(rect.first[1], rect.last[1]);
         candidate->depth = depth[order[i]];
-        if (!candidate->columns || !candidate->rows)
+        if (!candidate->columns || !candidate->rows || R(hidden)(tile, candidate))
             continue;
         R(make_candidate)(tile, child & ~GLINT_NODE_PRIM, candidate);
         found++;

@@ -23,10 +23,7 @@
 #undef r_store_f
 #undef r_exponent
 #undef r_mantissa
-#undef r_load_index
-#undef r_index
 #undef r_put_index
-#undef r_index_lt
 #undef GLINT_PARALLEL
 
 #if GLINT_REAL == 64
@@ -53,10 +50,7 @@
 #define r_store_f d_store_f
 #define r_exponent d_exponent
 #define r_mantissa d_mantissa
-#define r_load_index d_load_index
-#define r_index(i) d_set((double)(int32_t)(i))
 #define r_put_index d_put_index
-#define r_index_lt(a, b) d_lt(a, b)
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #else
 #define real float
@@ -82,9 +76,6 @@
 #define r_store_f f_store
 #define r_exponent f_exponent
 #define r_mantissa f_mantissa
-#define r_load_index(p) f_from_bits(i_load(p))
-#define r_index(i) f_from_bits(i_set(i))
 #define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
-#define r_index_lt(a, b) i_lt(f_bits(a), f_bits(b))
 #define GLINT_PARALLEL 1e-30
 #endif

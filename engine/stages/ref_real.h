@@ -143,7 +143,9 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
             REAL t = NAME(prim_t)(&args->geometry->prims[index], origin, direction);
-            if (t > 0 && t < INFINITY && t < best) { // of equal ones the first stays
+            bool first = t == best && best_prim != GLINT_MISS &&
+                         args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
+            if (t > 0 && t < INFINITY && (t < best || first)) {
                 best = t;
                 best_prim = index;
             }

@@ -86,7 +86,6 @@ static inline dm dm_from_bits(unsigned bits)
 
 static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
-static inline vd d_load_index(const uint32_t *p) { return _mm256_cvtepi32_pd(_mm_load_si128((const __m128i *)p)); }
 
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)

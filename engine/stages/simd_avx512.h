@@ -69,7 +69,6 @@ static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
 
 static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
-static inline vd d_load_index(const uint32_t *p) { return _mm512_cvtepi32_pd(_mm256_load_si256((const __m256i *)p)); }
 
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)

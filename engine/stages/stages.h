@@ -33,10 +33,11 @@ typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE } glint_prim_
 
 /// One surface, as far as no ray is concerned.
 typedef struct glint_prim {
-    uint32_t kind;
+    uint16_t kind;
+    uint16_t two_sided; ///< 0: seen from behind it gets ambient light only
+    uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
-    uint32_t coincident; ///< the first primitive with bit-equal geometry: what a leaving ray skips
-    uint32_t two_sided; ///< 0: seen from behind it gets ambient light only
+    uint32_t coincident; ///< id of the first primitive with bit-equal geometry: what a leaving ray skips
     double center[3]; ///< sphere: centre; plane: a point of it
     double normal[3]; ///< plane: unit
     double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
@@ -59,7 +60,7 @@ typedef struct glint_node {
 
 /// What rays meet: the surfaces, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
-    const glint_prim *prims; ///< in order of definition
+    const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
     uint32_t prim_count;
     bool duplicates; ///< some primitive is not its own `coincident`
     const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
@@ -111,7 +112,7 @@ typedef struct glint_cast_args {
 } glint_cast_args;
 // in_sight reads active, geometry and camera alone: false: no ray of the camera's tile can hit anything.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
-// index is lower). Index and filter are free to reject what the decision below would miss, and no more.
+// id is lower). Index and filter are free to reject what the decision below would miss, and no more.
 // sphere, real:   f = (origin - center) * scale (a bundle's origin is the eye), c = exact_c(f, prim)
 //                 a = length2(direction), b = -dot(f, direction)
 //                 near = b*b < a*r2
