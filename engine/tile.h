@@ -59,7 +59,6 @@ typedef struct glint_tile {
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t rgb[GLINT_TILE_SAMPLES];
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample

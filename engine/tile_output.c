@@ -1,7 +1,6 @@
 #include "engine/tile.h"
 #include "engine/base/vec.h"
 
-#include <endian.h>
 #include <string.h>
 
 /// Copies a group-ordered array of a tile into an image plane.
@@ -78,30 +77,6 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
         store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);
 }
 
-/// Three bytes a pixel from the kernel's four.
-static void store_codes8(const glint_tile *tile, uint8_t *codes, int stride)
-{
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
-        const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
-        const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
-        for (uint32_t r = 0; r < rows; r++) {
-            const uint32_t *p = tile->rgb + g * GLINT_GROUP + 4 * r;
-            uint8_t *to = codes + 3 * ((size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x);
-            const uint64_t first = htole64(p[0] | (uint64_t)p[1] << 24 | (uint64_t)p[2] << 48);
-            const uint32_t last = htole32(p[2] >> 16 | p[3] << 8);
-            if (columns == 4) {
-                memcpy(to, &first, 8);
-                memcpy(to + 8, &last, 4);
-            } else {
-                memcpy(to, &first, columns == 1 ? 3 : columns == 2 ? 6 : 8);
-                if (columns == 3)
-                    memcpy(to + 8, &last, 1);
-            }
-        }
-    }
-}
-
 static void tone16(glint_tile *tile, const glint_tile_frame *frame)
 {
     float row[3][GLINT_TILE_WIDTH];
@@ -122,16 +97,19 @@ void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
         tone16(tile, frame);
         return;
     }
+    const size_t stride = 3 * (size_t)frame->image->width;
     glint_tone_args args = { .group_count = tile->group_count,
+                             .groups_across = tile->groups_across,
                              .active = tile->active,
                              .table = frame->tone_table->lut,
-                             .rgb = tile->rgb,
+                             .fit = &frame->tone_table->fit,
+                             .codes = (uint8_t *)frame->image->codes + tile->y0 * stride + 3 * (size_t)tile->x0,
+                             .stride = stride,
                              .clipped = &tile->counts.clipped,
                              .nonfinite = &tile->counts.nonfinite };
     for (int c = 0; c < 3; c++)
         args.beauty[c] = tile->beauty[c];
     frame->stages->tone(&args);
-    store_codes8(tile, frame->image->codes, frame->image->width);
 }
 
 void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)

@@ -11,6 +11,7 @@
 typedef struct glint_tone_table {
     glint_tone_desc desc;
     uint32_t lut[GLINT_TONE_ENTRIES]; ///< 8 bits: the table of the tone stage, see stages.h
+    glint_tone_fit fit; ///< 8 bits: likewise
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf
     float guess[GLINT_TONE16_ENTRIES][2]; ///< 16 bits: buckets of 2^15 floats: code at the first float, codes a step
 } glint_tone_table;

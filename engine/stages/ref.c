@@ -272,19 +272,19 @@ static uint32_t tone_code(const uint32_t *table, float value)
 
 static void tone_sample(const glint_tone_args *args, uint32_t i)
 {
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    size_t x = group % args->groups_across * 4 + lane % 4, y = group / args->groups_across * 4 + lane / 4;
     bool clipped = false, finite = true;
-    uint32_t rgb = 0;
-    for (int c = 0; c < 3; c++) {
+    if (!(args->active[group] >> lane & 1))
+        return;
+    for (size_t c = 0; c < 3; c++) {
         float value = args->beauty[c][i];
         clipped = clipped || value > 1;
         finite = finite && isfinite(value);
-        rgb |= tone_code(args->table, value) << 8 * c;
+        args->codes[y * args->stride + 3 * x + c] = (uint8_t)tone_code(args->table, value);
     }
-    args->rgb[i] = rgb;
-    if (args->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) {
-        *args->clipped += clipped;
-        *args->nonfinite += !finite;
-    }
+    *args->clipped += clipped;
+    *args->nonfinite += !finite;
 }
 
 static void tone(const glint_tone_args *args)

@@ -3,7 +3,10 @@
 #define GLINT_SIMD_H
 
 #include <immintrin.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define VF 8
 #define VD 4
@@ -62,6 +65,42 @@ static inline void i_store(uint32_t *p, vi x) { _mm256_store_si256((__m256i *)p,
 static inline vi i_gather(const uint32_t *table, vi index)
 {
     return _mm256_i32gather_epi32((const int *)table, index, 4);
+}
+
+static inline fm i_any_above(vi a, vi b, vi c, vi limit)
+{
+    const vi most = _mm256_max_epu32(_mm256_max_epu32(a, b), c);
+    return f_from_bits(_mm256_xor_si256(_mm256_cmpeq_epi32(_mm256_max_epu32(most, limit), limit), i_set(0xffffffff)));
+}
+static inline vi i_min(vi a, vi b) { return _mm256_min_epi32(a, b); }
+static inline vf f_fma(vf a, vf b, vf c) { return _mm256_fmadd_ps(a, b, c); }
+
+static inline vf f_load_any(const float *p) { return _mm256_loadu_ps(p); }
+static inline vi i_merge(vi mask, vi a, vi b) { return _mm256_blendv_epi8(b, a, mask); }
+
+#define F_EXPONENTS 16
+static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
+{
+    const vi exponent = i_shr(f_bits(x), 23);
+    const vf low = _mm256_permutevar8x32_ps(table[0], exponent), high = _mm256_permutevar8x32_ps(table[1], exponent);
+    return _mm256_blendv_ps(low, high, f_from_bits(i_shl(f_bits(x), 5))); // bit 3 of the exponent decides
+}
+#define f_by_exponent f_by_exponent
+
+static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
+{
+    const __m128i bytes = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
+    const __m256i packed = _mm256_shuffle_epi8(rgb, _mm256_broadcastsi128_si256(bytes));
+    const __m128i row[2] = { _mm256_castsi256_si128(packed), _mm256_extracti128_si256(packed, 1) };
+    for (int i = 0; i < 2; i++, to += stride) {
+        if (spill) {
+            _mm_storeu_si128((__m128i *)to, row[i]);
+        } else {
+            _mm_storel_epi64((__m128i *)to, row[i]);
+            const int last = _mm_extract_epi32(row[i], 2);
+            memcpy(to + 8, &last, sizeof last);
+        }
+    }
 }
 
 static inline vd d_set(double x) { return _mm256_set1_pd(x); }

@@ -2,12 +2,16 @@
 ///
 /// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     fm, dm  masks of vf and vd
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
-/// bits in vf. Arithmetic is written with operators. fma appears in two_prod alone.
+/// bits in vf. Arithmetic is written with operators. fma appears in two_prod, and in the estimate of tone, whose rounding
+/// nobody sees.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
 #include <immintrin.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define VF 16
 #define VD 8
@@ -50,6 +54,47 @@ static inline fm i_eq(vi a, vi b) { return _mm512_cmpeq_epi32_mask(a, b); }
 static inline vi i_load(const uint32_t *p) { return _mm512_load_si512(p); }
 static inline void i_store(uint32_t *p, vi x) { _mm512_store_si512(p, x); }
 static inline vi i_gather(const uint32_t *table, vi index) { return _mm512_i32gather_epi32(index, table, 4); }
+
+static inline vi i_min(vi a, vi b) { return _mm512_min_epi32(a, b); }
+static inline vf f_fma(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
+
+static inline vf f_load_any(const float *p) { return _mm512_loadu_ps(p); }
+
+/// The bytes of a where the mask's are 255, of b where they are 0.
+static inline vi i_merge(vi mask, vi a, vi b) { return _mm512_ternarylogic_epi32(mask, a, b, 0xca); }
+
+/// Lanes where the bits of a, b or c, as numbers without sign, are above the limit.
+static inline fm i_any_above(vi a, vi b, vi c, vi limit)
+{
+    return _mm512_cmpgt_epu32_mask(_mm512_max_epu32(_mm512_max_epu32(a, b), c), limit);
+}
+
+/// table[biased exponent & 15], the table being F_EXPONENTS floats in registers.
+#define F_EXPONENTS 16
+static inline vf f_by_exponent(const vf table[F_EXPONENTS / VF], vf x)
+{
+    return _mm512_permutexvar_ps(i_shr(f_bits(x), 23), table[0]);
+}
+#define f_by_exponent f_by_exponent
+
+/// Stores pixels, one a lane as red | green << 8 | blue << 16, as rows of four: 12 bytes, `stride` apart. `spill`: the
+/// four bytes after each row may be overwritten.
+static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
+{
+    const __m128i bytes = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
+    const __m512i packed = _mm512_shuffle_epi8(rgb, _mm512_broadcast_i32x4(bytes));
+    const __m128i row[4] = { _mm512_castsi512_si128(packed), _mm512_extracti32x4_epi32(packed, 1),
+                             _mm512_extracti32x4_epi32(packed, 2), _mm512_extracti32x4_epi32(packed, 3) };
+    for (int i = 0; i < 4; i++, to += stride) {
+        if (spill) {
+            _mm_storeu_si128((__m128i *)to, row[i]);
+        } else {
+            _mm_storel_epi64((__m128i *)to, row[i]);
+            const int last = _mm_extract_epi32(row[i], 2);
+            memcpy(to + 8, &last, sizeof last);
+        }
+    }
+}
 
 static inline vd d_set(double x) { return _mm512_set1_pd(x); }
 static inline vd d_load(const double *p) { return _mm512_load_pd(p); }

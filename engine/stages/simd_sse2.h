@@ -3,7 +3,10 @@
 #define GLINT_SIMD_H
 
 #include <emmintrin.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define VF 4
 #define VD 2
@@ -62,6 +65,23 @@ static inline vi i_gather(const uint32_t *table, vi index)
     uint32_t i[4];
     _mm_storeu_si128((__m128i *)i, index);
     return _mm_setr_epi32((int)table[i[0]], (int)table[i[1]], (int)table[i[2]], (int)table[i[3]]);
+}
+
+static inline fm i_any_above(vi a, vi b, vi c, vi limit)
+{
+    const vi far = i_or(i_or(i_sub(limit, a), i_sub(limit, b)), i_sub(limit, c)); // below 0 where above or negative
+    return i_lt(i_or(far, i_or(i_or(a, b), c)), i_set(0));
+}
+
+static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
+{
+    (void)stride, (void)spill;
+    const __m128i pair = _mm_or_si128(_mm_and_si128(rgb, _mm_set1_epi64x(0xffffff)),
+                                      _mm_and_si128(_mm_srli_epi64(rgb, 8), _mm_set1_epi64x(0xffffff000000)));
+    const __m128i packed = _mm_or_si128(_mm_move_epi64(pair), _mm_slli_si128(_mm_srli_si128(pair, 8), 6));
+    _mm_storel_epi64((__m128i *)to, packed);
+    const int last = _mm_cvtsi128_si32(_mm_srli_si128(packed, 8));
+    memcpy(to + 8, &last, sizeof last);
 }
 
 static inline vd d_set(double x) { return _mm_set1_pd(x); }

@@ -16,6 +16,7 @@
 #define GLINT_STAGES_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define GLINT_GROUP 16
@@ -275,7 +276,7 @@ typedef struct glint_resolve_args {
 } glint_resolve_args;
 // term = (float)(sum / samples); beauty as in shade
 
-// ---- tone: 8-bit codes ----
+// ---- tone: 8-bit codes, written into the image ----
 
 /// Any rising map of 0 .. 1 to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the floats
 /// that agree in their upper 16 bits; its entry is code | threshold << 8: the code of its first float, and from which
@@ -284,12 +285,23 @@ typedef struct glint_resolve_args {
 #define GLINT_TONE_LAST 0x3f80u ///< upper bits of 1
 #define GLINT_TONE_ENTRIES (GLINT_TONE_LAST - GLINT_TONE_FIRST + 1)
 
+/// What spares most look-ups: an estimate of the code with a fraction, and how far it is to be trusted.
+typedef struct glint_tone_fit {
+    float knee, slope, base; ///< x < knee: v = slope x + base
+    float scale[16], power[6], offset; ///< others: v = scale[e & 15] P(m) + offset; x = m 2^(e - 127), m in [1, 2),
+        ///< P(m) = power[0] + power[1] m + ... + power[5] m^5
+    uint32_t doubt; ///< v is in [256, 512), so that its lower 15 bits are the fraction. Where they are >= doubt, the
+        ///< 8 bits above them are the table's code, however the estimate is rounded, with or without FMA
+} glint_tone_fit;
+
 typedef struct glint_tone_args {
-    uint32_t group_count;
-    const uint16_t *active;
+    uint32_t group_count, groups_across; ///< as in glint_camera_args; group_count is a multiple of groups_across
+    const uint16_t *active; ///< a bit a lane: pixels inside the image
     const float *beauty[3];
     const uint32_t *table;
-    uint32_t *rgb; ///< out: red | green << 8 | blue << 16
+    const glint_tone_fit *fit; ///< NULL: the table alone. The codes are the same with either
+    uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
+    size_t stride; ///< bytes from a row of pixels to the next. No byte but those of active lanes is written
     uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > 1; with one that is not finite
 } glint_tone_args;
 // x = max(x, 0) (NaN gives 0), x = min(x, 1); bits of x below GLINT_TONE_FIRST << 16: code 0;

@@ -1,34 +1,137 @@
-// tone: float light to 8-bit codes by one look-up and one comparison, exact for every float. Contract: stages.h.
+// tone: float light to 8-bit codes, exact for every float. Where the instruction set has f_by_exponent, an estimate
+// gives the code and only vectors with a lane in doubt look it up. Contract: stages.h.
+
+/// One look-up and one comparison; x in 0 .. 1.
+static inline vi tone_look_up(const uint32_t *table, vf x)
+{
+    const vi lowest = i_set(GLINT_TONE_FIRST << 16);
+    fm dark = i_lt(f_bits(x), lowest);
+    vi bits = f_bits(f_select(dark, f_from_bits(lowest), x));
+    vi entry = i_gather(table, i_sub(i_shr(bits, 16), i_set(GLINT_TONE_FIRST)));
+    fm below = i_lt(i_and(bits, i_set(0xffff)), i_shr(entry, 8));
+    vi code = i_and(entry, i_set(255));
+    code = f_bits(f_select(below, f_from_bits(code), f_from_bits(i_add(code, i_set(1)))));
+    return f_bits(f_select(dark, f_set(0), f_from_bits(code)));
+}
+
+static inline vi tone_exact(const uint32_t *table, const vf x[3])
+{
+    vi rgb = tone_look_up(table, x[0]);
+    rgb = i_or(rgb, i_shl(tone_look_up(table, x[1]), 8));
+    return i_or(rgb, i_shl(tone_look_up(table, x[2]), 16));
+}
+
+/// The fit in registers. `table`: without instructions for the fit, or without a fit, all is looked up.
+typedef struct tone_fit {
+    bool table;
+#ifdef f_by_exponent
+    vf knee, slope, base, scale[F_EXPONENTS / VF], power[6], offset;
+    vi doubt;
+#endif
+} tone_fit;
+
+#ifdef f_by_exponent
+static inline tone_fit tone_load_fit(const glint_tone_fit *fit)
+{
+    tone_fit f = { .table = !fit };
+    if (!fit)
+        return f;
+    f.knee = f_set(fit->knee), f.slope = f_set(fit->slope), f.base = f_set(fit->base), f.offset = f_set(fit->offset);
+    for (int i = 0; i < 6; i++)
+        f.power[i] = f_set(fit->power[i]);
+    for (int i = 0; i < F_EXPONENTS; i += VF)
+        f.scale[i / VF] = f_load_any(fit->scale + i);
+    f.doubt = i_set(fit->doubt);
+    return f;
+}
+
+static inline vi tone_estimate(const tone_fit *fit, vf x)
+{
+    const vf *p = fit->power;
+    const vf m = f_mantissa(x);
+    vf v = f_fma(f_fma(f_fma(f_fma(f_fma(p[5], m, p[4]), m, p[3]), m, p[2]), m, p[1]), m, p[0]);
+    v = f_fma(v, f_by_exponent(fit->scale, x), fit->offset);
+    return f_bits(f_select(f_lt(x, fit->knee), f_fma(x, fit->slope, fit->base), v));
+}
+
+static inline vi tone_codes(const uint32_t *table, const tone_fit *fit, const vf x[3])
+{
+    if (fit->table)
+        return tone_exact(table, x);
+    const vi fraction = i_set(0x7fff);
+    vi r = tone_estimate(fit, x[0]), g = tone_estimate(fit, x[1]), b = tone_estimate(fit, x[2]);
+    vi least = i_min(i_min(i_and(r, fraction), i_and(g, fraction)), i_and(b, fraction));
+    if (fm_bits(i_lt(least, fit->doubt)))
+        return tone_exact(table, x);
+    return i_merge(i_set(0xffff), i_merge(i_set(0xff), i_shr(r, 15), i_shr(g, 7)), i_shl(b, 1));
+}
+#else
+static inline tone_fit tone_load_fit(const glint_tone_fit *fit)
+{
+    (void)fit;
+    return (tone_fit) { true };
+}
+
+static inline vi tone_codes(const uint32_t *table, const tone_fit *fit, const vf x[3])
+{
+    (void)fit;
+    return tone_exact(table, x);
+}
+#endif
+
+/// Brings three vectors that are not all in 0 .. 1 there, and counts their pixels; `active`: of their lanes.
+static inline void tone_clamp(const glint_tone_args *args, vf x[3], unsigned active)
+{
+    const vf zero = f_set(0), one = f_set(1), infinity = f_set(HUGE_VALF);
+    fm over = f_lt(one, zero), sound = f_lt(zero, one);
+    for (int c = 0; c < 3; c++) {
+        over = fm_or(over, f_lt(one, x[c]));
+        sound = fm_and(sound, f_lt(f_abs(x[c]), infinity));
+        x[c] = f_min(f_max(x[c], zero), one);
+    }
+    *args->clipped += (unsigned)__builtin_popcount(fm_bits(over) & active);
+    *args->nonfinite += (unsigned)__builtin_popcount(~fm_bits(sound) & active);
+}
+
+/// Whether a lane is negative (-0 too), above 1 or NaN: as a number without sign its bits are above those of 1.
+static inline bool tone_is_outside(const vf x[3])
+{
+    return fm_bits(i_any_above(f_bits(x[0]), f_bits(x[1]), f_bits(x[2]), f_bits(f_set(1)))) != 0;
+}
+
+static void tone_store_some(uint8_t *to, size_t stride, vi rgb, unsigned active)
+{
+    _Alignas(64) uint32_t word[VF];
+    i_store(word, rgb);
+    for (size_t i = 0; i < VF; i++)
+        for (size_t c = 0; c < 3; c++)
+            if (active >> i & 1)
+                to[i / 4 * stride + i % 4 * 3 + c] = (uint8_t)(word[i] >> 8 * c);
+}
 
 static void tone(const glint_tone_args *args)
 {
-    const vf zero = f_set(0), one = f_set(1), infinity = f_set(HUGE_VALF);
-    const vi lowest = i_set(GLINT_TONE_FIRST << 16);
+    const unsigned all = (1u << VF) - 1;
+    const tone_fit fit = tone_load_fit(args->fit);
+    uint32_t column = 0;
+    uint8_t *codes = args->codes;
     for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t at = (size_t)g * GLINT_GROUP;
-        unsigned above = 0, finite = 0;
+        const bool last = ++column == args->groups_across;
+        const bool spill = !last && args->active[g + 1] == 0xffff; // the next group is yet to be written, over it
         for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vi rgb = i_set(0);
-            fm over = f_lt(one, zero), sound = f_lt(zero, one);
-            for (int c = 0; c < 3; c++) {
-                vf x = f_load(args->beauty[c] + at + i);
-                over = fm_or(over, f_lt(one, x));
-                sound = fm_and(sound, f_lt(f_abs(x), infinity));
-                vi bits = f_bits(f_min(f_max(x, zero), one));
-                fm dark = i_lt(bits, lowest);
-                bits = f_bits(f_select(dark, f_from_bits(lowest), f_from_bits(bits)));
-                vi entry = i_gather(args->table, i_sub(i_shr(bits, 16), i_set(GLINT_TONE_FIRST)));
-                fm below = i_lt(i_and(bits, i_set(0xffff)), i_shr(entry, 8));
-                vi code = i_and(entry, i_set(255));
-                code = f_bits(f_select(below, f_from_bits(code), f_from_bits(i_add(code, i_set(1)))));
-                code = f_bits(f_select(dark, zero, f_from_bits(code)));
-                rgb = i_or(rgb, c == 0 ? code : c == 1 ? i_shl(code, 8) : i_shl(code, 16));
-            }
-            i_store(args->rgb + at + i, rgb);
-            above |= fm_bits(over) << i;
-            finite |= fm_bits(sound) << i;
+            const unsigned active = args->active[g] >> i & all;
+            vf x[3];
+            for (int c = 0; c < 3; c++)
+                x[c] = f_load(args->beauty[c] + (size_t)g * GLINT_GROUP + i);
+            if (tone_is_outside(x))
+                tone_clamp(args, x, active);
+            vi rgb = tone_codes(args->table, &fit, x);
+            if (active == all)
+                i_store_rgb(codes + (size_t)(i / 4) * args->stride, args->stride, rgb, spill);
+            else
+                tone_store_some(codes + (size_t)(i / 4) * args->stride, args->stride, rgb, active);
         }
-        *args->clipped += (unsigned)__builtin_popcount(above & args->active[g]);
-        *args->nonfinite += (unsigned)__builtin_popcount(~finite & args->active[g]);
+        codes += last ? 4 * args->stride - 12 * (size_t)(args->groups_across - 1) : 12;
+        column = last ? 0 : column;
     }
 }
