@@ -133,8 +133,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
     }
 }
 
-static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, glint_tone_table *table,
-                        glint_frame_stats *stats, glint_error *error)
+static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                        const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
     frame f = { .renderer = renderer,
                 .shared = { .plan = plan,
@@ -207,7 +207,7 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
 {
     const glint_render_desc *desc = &plan->desc;
     glint_image *image = NULL;
-    glint_tone_table *table = NULL;
+    const glint_tone_table *table = NULL;
     glint_frame_stats counted;
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
@@ -216,10 +216,9 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
                                              desc->codes ? &desc->tone : NULL, &image, error);
     if (!status && desc->codes)
-        status = glint_tone_table_create(&desc->tone, &table, error);
+        status = glint_tone_table_shared(&desc->tone, &table, error);
     if (!status)
         status = run(renderer, plan, image, table, &counted, error);
-    glint_tone_table_destroy(table);
     if (status) {
         glint_image_release(image);
         return status;
