@@ -21,10 +21,17 @@ static void test_image_sizes(void **state) // I4
     assert_int_equal(glint_image_pixel(thin, GLINT_PASS_DEPTH, 1, 0, out, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_image_pixel(thin, GLINT_PASS_COUNT, 0, 0, out, &error), GLINT_ERR_INVALID);
     assert_true((uintptr_t)thin->plane[0][0] % 64 == 0);
+    assert_null(thin->row_stamp);
     assert_ptr_equal(glint_image_retain(thin), thin);
     glint_image_release(thin);
     glint_image_release(thin);
     glint_image_release(NULL);
+    glint_tone_desc tone = glint_tone_desc_default();
+    glint_image *coded = make_image(3, 2 * GLINT_TILE_HEIGHT + 1, &tone);
+    assert_int_equal(glint_image_stamps(coded), 3);
+    for (size_t i = 0; i < 3; i++)
+        assert_int_equal(coded->row_stamp[i], 0);
+    glint_image_release(coded);
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         assert_int_equal(glint_pass_from_name(glint_pass_name((glint_pass)pass)), pass);
     assert_int_equal(glint_pass_from_name("nothing"), GLINT_PASS_COUNT);

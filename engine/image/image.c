@@ -50,7 +50,8 @@ static bool allocate_all(glint_image *image, uint32_t passes, const glint_tone_d
         return true;
     image->code_tone = *codes_tone;
     image->codes = malloc(pixels * 3 * (codes_tone->bits == 16 ? 2 : 1));
-    return image->codes != NULL;
+    image->row_stamp = calloc(glint_image_stamps(image), sizeof *image->row_stamp);
+    return image->codes && image->row_stamp;
 }
 
 glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
@@ -95,6 +96,7 @@ void glint_image_release(glint_image *image)
         for (int c = 0; c < 3; c++)
             free(image->plane[pass][c]);
     free(image->codes);
+    free(image->row_stamp);
     free(image);
 }
 

@@ -3,6 +3,7 @@
 #define GLINT_IMAGE_IMAGE_H
 
 #include "engine/glint.h"
+#include "engine/stages/stages.h"
 
 #include <stdatomic.h>
 
@@ -13,9 +14,17 @@ struct glint_image {
         ///< One-channel passes have [0] only
     void *codes; ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
     glint_tone_desc code_tone; ///< how the codes were made
+    uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
+        ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
 };
 
-/// Makes an image with one reference; its planes and codes are not initialised.
+/// Stamps of an image: how many rows of tiles it has.
+static inline size_t glint_image_stamps(const glint_image *image)
+{
+    return ((size_t)image->height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+}
+
+/// Makes an image with one reference; its planes and codes are not initialised, its stamps are 0.
 ///
 /// width, height  1 .. GLINT_SIDE_MAX, else GLINT_ERR_INVALID, before anything is allocated.
 /// passes         bits 1u << GLINT_PASS_...
