@@ -64,6 +64,7 @@ static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *ou
     if (!stream)
         return 0;
     isal_deflate_stateless_init(stream);
+    stream->hist_bits = 0; // the whole window: init leaves what was in memory
     stream->level = 1;
     stream->level_buf = (uint8_t *)(stream + 1);
     stream->level_buf_size = ISAL_DEF_LVL1_DEFAULT;
