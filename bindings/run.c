@@ -199,6 +199,9 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
     if (run->renderer && run->renderer_threads != run->asked.threads) {
         glint_renderer_destroy(run->renderer);
         run->renderer = NULL;
+        glintL_run_collect(run, true); // the writer may only go when nothing is left at it
+        glint_writer_destroy(run->writer);
+        run->writer = NULL;
     }
     if (run->renderer && run->writer)
         return true;
@@ -209,7 +212,7 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
     if (!run->renderer)
         status = open_renderer(run, error);
     if (status == GLINT_OK && !run->writer)
-        status = glint_writer_create(QUEUE_DEPTH, &run->writer, error);
+        status = glint_writer_create(QUEUE_DEPTH, run->asked.threads, &run->writer, error);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return status == GLINT_OK;
 }

@@ -378,7 +378,8 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 /// Whether `path` is a whole PNG (every chunk's CRC right, IEND at the end) whose tEXt "glint:key" equals key.
 bool glint_file_has_key(const char *path, const char *key);
 
-/// Writes images on a thread of its own, in the order submitted, so that encoding overlaps rendering.
+/// Writes images on threads of its own, in the order submitted, so that encoding overlaps rendering. It remembers the
+/// last picture deflated, about the size of its file, so as not to deflate again what has not changed.
 typedef struct glint_writer glint_writer;
 
 typedef struct glint_write_result {
@@ -386,11 +387,14 @@ typedef struct glint_write_result {
     char message[512];
     double encode_ms; ///< codes to bytes
     double write_ms; ///< bytes to a synced, renamed file
+    double reused; ///< share of the deflated bytes, in bands of rows, that the file before had already, 0 .. 1
     void *user; ///< as submitted
 } glint_write_result;
 
 /// queue_depth  images that may wait, >= 1; a further submit blocks.
-glint_status glint_writer_create(int queue_depth, glint_writer **out, glint_error *error);
+/// threads      that encode an image together, 1 .. 1024; 0: one per processor; 1: the writer's own. Files do not
+///              depend on it.
+glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error);
 /// Finishes what is queued, then frees. Results not collected are lost.
 void glint_writer_destroy(glint_writer *writer);
 /// Retains the image and copies `desc` with its strings. `user` comes back with the result.

@@ -93,7 +93,7 @@ static void test_png_speed(void **state)
         desc.path = in_folder("speed.png");
         glint_writer *writer;
         glint_write_result result;
-        assert_int_equal(glint_writer_create(2, &writer, NULL), GLINT_OK);
+        assert_int_equal(glint_writer_create(2, 1, &writer, NULL), GLINT_OK);
         for (int i = 0; i < 7; i++) {
             assert_int_equal(glint_writer_submit(writer, image, &desc, NULL, NULL), GLINT_OK);
             assert_true(glint_writer_collect(writer, true, &result));
@@ -269,8 +269,10 @@ static void test_writer_order(void **state)
     glint_writer *writer;
     glint_write_result result;
     static int number[20];
-    assert_int_equal(glint_writer_create(0, &writer, NULL), GLINT_ERR_INVALID);
-    assert_int_equal(glint_writer_create(3, &writer, NULL), GLINT_OK);
+    assert_int_equal(glint_writer_create(0, 1, &writer, NULL), GLINT_ERR_INVALID);
+    assert_int_equal(glint_writer_create(3, -1, &writer, NULL), GLINT_ERR_INVALID);
+    assert_int_equal(glint_writer_create(3, 1025, &writer, NULL), GLINT_ERR_INVALID);
+    assert_int_equal(glint_writer_create(3, 0, &writer, NULL), GLINT_OK);
     assert_false(glint_writer_collect(writer, true, &result));
     int collected = 0;
     for (int i = 0; i < 20; i++) {
@@ -303,7 +305,7 @@ static void test_writer_cancel(void **state)
     glint_image *image = make_image(640, 480, NULL);
     glint_writer *writer;
     glint_write_result result;
-    assert_int_equal(glint_writer_create(100, &writer, NULL), GLINT_OK);
+    assert_int_equal(glint_writer_create(100, 1, &writer, NULL), GLINT_OK);
     for (int i = 0; i < 50; i++) {
         char name[32];
         snprintf(name, sizeof name, "c%02d.png", i);
@@ -325,13 +327,44 @@ static void test_writer_cancel(void **state)
     glint_image_release(image);
 }
 
+/// A picture that has not changed is written again, not deflated again; threads do not show in the file.
+static void test_writer_reuse(void **state)
+{
+    (void)state;
+    glint_tone_desc tone = glint_tone_desc_default();
+    glint_image *image = make_image(1000, 500, &tone);
+    for (size_t i = 0; i < glint_image_stamps(image); i++)
+        image->row_stamp[i] = i + 1;
+    write_ok(image, &(glint_write_desc){.path = in_folder("want.png"), .tone = tone});
+    glint_bytes want = read_ok(in_folder("want.png"));
+    for (int threads = 1; threads <= 3; threads++) {
+        glint_writer *writer;
+        assert_int_equal(glint_writer_create(1, threads, &writer, NULL), GLINT_OK);
+        for (int i = 0; i < 3; i++) {
+            glint_write_result result;
+            glint_write_desc desc = {.path = in_folder("got.png"), .tone = tone};
+            assert_int_equal(glint_writer_submit(writer, image, &desc, NULL, NULL), GLINT_OK);
+            assert_true(glint_writer_collect(writer, true, &result));
+            assert_int_equal(result.status, GLINT_OK);
+            assert_true(result.reused == (i ? 1 : 0));
+            glint_bytes got = read_ok(desc.path);
+            assert_int_equal(got.size, want.size);
+            assert_memory_equal(got.data, want.data, got.size);
+            free(got.data);
+        }
+        glint_writer_destroy(writer);
+    }
+    free(want.data);
+    glint_image_release(image);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(test_png_round_trip), WITH_FOLDER(test_png_bytes_repeat), WITH_FOLDER(test_png_speed),
         WITH_FOLDER(test_png_spoilt),     WITH_FOLDER(test_png_text),         WITH_FOLDER(test_file_write),
         WITH_FOLDER(test_file_pipe),      WITH_FOLDER(test_file_limit),       WITH_FOLDER(test_writer_order),
-        WITH_FOLDER(test_writer_cancel),
+        WITH_FOLDER(test_writer_cancel),  WITH_FOLDER(test_writer_reuse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,124 +1,13 @@
 #include "engine/image/png.h"
 
 #include "engine/base/status.h"
-#include "engine/image/deflate.h"
+#include "engine/image/bands.h"
 
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
 
-#define FILTER_SUB 1
-#define BAND_BYTES ((size_t)1 << 18) // of filtered rows; fixed, so that no setting changes the file
 #define CHUNK_BYTES ((size_t)1 << 20) // of one IDAT
-#define VECTOR 16
-
-typedef uint8_t vector8 __attribute__((vector_size(VECTOR)));
-typedef uint16_t vector16 __attribute__((vector_size(VECTOR)));
-
-// ---- Rows ---------------------------------------------------------------------------------------------------------
-
-/// Filter SUB: each byte less the one `step` bytes before it.
-static void filter_sub(const uint8_t *row, size_t bytes, size_t step, uint8_t *out)
-{
-    *out++ = FILTER_SUB;
-    memcpy(out, row, step);
-    size_t i = step;
-    for (; i + VECTOR <= bytes; i += VECTOR) {
-        vector8 here, before;
-        memcpy(&here, row + i, VECTOR);
-        memcpy(&before, row + i - step, VECTOR);
-        here -= before;
-        memcpy(out + i, &here, VECTOR);
-    }
-    for (; i < bytes; i++)
-        out[i] = (uint8_t)(row[i] - row[i - step]);
-}
-
-/// Native 16-bit codes to the file's order, high byte first; `out` may be `codes`.
-static void swap_to_file(const uint16_t *codes, size_t count, uint8_t *out)
-{
-    size_t i = 0;
-#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
-    for (; i + VECTOR / 2 <= count; i += VECTOR / 2) {
-        vector16 v;
-        memcpy(&v, codes + i, VECTOR);
-        v = v << 8 | v >> 8;
-        memcpy(out + 2 * i, &v, VECTOR);
-    }
-#endif
-    for (; i < count; i++) {
-        uint16_t code = codes[i];
-        out[2 * i] = (uint8_t)(code >> 8);
-        out[2 * i + 1] = (uint8_t)code;
-    }
-}
-
-typedef struct rows {
-    const glint_png_source *source;
-    size_t row_bytes; ///< without the filter's byte
-    void *scratch, *swapped; ///< a row each; swapped for 16 bits only
-} rows;
-
-static void filter_rows(const rows *r, int first, int count, uint8_t *out)
-{
-    const glint_png_source *source = r->source;
-    for (int y = first; y < first + count; y++) {
-        const void *codes = source->row(source->user, y, r->scratch);
-        if (source->bits == 16) {
-            swap_to_file(codes, r->row_bytes / 2, r->swapped);
-            codes = r->swapped;
-        }
-        filter_sub(codes, r->row_bytes, source->bits == 16 ? 6 : 3, out);
-        out += r->row_bytes + 1;
-    }
-}
-
-// ---- Bands --------------------------------------------------------------------------------------------------------
-
-/// Rows in one band; every band of a picture but the last has this many.
-static int rows_a_band(const rows *r, glint_encode encode)
-{
-    if (!glint_deflate_has_bands(encode))
-        return r->source->height;
-    size_t count = BAND_BYTES / (r->row_bytes + 1);
-    return count < 1 ? 1 : count > (size_t)r->source->height ? r->source->height : (int)count;
-}
-
-/// The zlib stream of the whole picture, band by band.
-static glint_status deflate_bands(const rows *r, glint_encode encode, glint_bytes *stream, glint_error *error)
-{
-    int height = r->source->height, step = rows_a_band(r, encode);
-    uint8_t *raw = malloc((r->row_bytes + 1) * (size_t)step); // at most 2^35
-    if (!raw)
-        return glint_fail_nomem(error);
-    glint_status status = glint_deflate_begin(stream) ? GLINT_OK : glint_fail_nomem(error);
-    uint32_t sum = 1;
-    for (int y = 0; y < height && !status; y += step) {
-        int count = height - y < step ? height - y : step;
-        size_t size = (r->row_bytes + 1) * (size_t)count;
-        uint32_t band_sum = 1;
-        filter_rows(r, y, count, raw);
-        status = glint_deflate_band(encode, raw, size, y + count == height, stream, &band_sum, error);
-        sum = glint_deflate_join(sum, band_sum, size);
-    }
-    free(raw);
-    if (!status && !glint_deflate_end(stream, sum))
-        status = glint_fail_nomem(error);
-    return status;
-}
-
-static glint_status deflate_picture(const glint_png_source *source, glint_encode encode, glint_bytes *stream,
-                                    glint_error *error)
-{
-    size_t row_bytes = (size_t)source->width * 3 * (source->bits == 16 ? 2 : 1);
-    rows r = { source, row_bytes, malloc(row_bytes), source->bits == 16 ? malloc(row_bytes) : NULL };
-    glint_status status = r.scratch && (r.swapped || source->bits == 8) ? GLINT_OK : glint_fail_nomem(error);
-    if (!status)
-        status = deflate_bands(&r, encode, stream, error);
-    free(r.scratch);
-    free(r.swapped);
-    return status;
-}
 
 // ---- Text ---------------------------------------------------------------------------------------------------------
 
@@ -219,9 +108,9 @@ static bool write_container(container *c)
         return false;
     const glint_png_source *source = c->source;
     png_set_write_fn(c->png, c->out, take_bytes, nothing_to_flush);
-    png_set_IHDR(c->png, c->info, (png_uint_32)source->width, (png_uint_32)source->height, source->bits,
+    png_set_IHDR(c->png, c->info, (png_uint_32)source->width, (png_uint_32)source->height, source->tone.bits,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (source->transfer == GLINT_TRANSFER_SRGB)
+    if (source->tone.transfer == GLINT_TRANSFER_SRGB)
         png_set_sRGB(c->png, c->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else
         png_set_gAMA_fixed(c->png, c->info, 100000);
@@ -252,16 +141,18 @@ static glint_status put_in_container(container *c, glint_error *error)
     return done ? GLINT_OK : glint_fail_nomem(error);
 }
 
-glint_status glint_png_encode(const glint_png_source *source, glint_encode encode, const glint_text *text,
-                              size_t text_count, glint_bytes *out, glint_error *error)
+glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc,
+                              glint_bytes *out, double *reused, glint_error *error)
 {
-    glint_status status = check_text(text, text_count, error);
+    glint_status status = check_text(desc->text, desc->text_count, error);
     if (status)
         return status;
     glint_bytes stream = { 0 };
-    status = deflate_picture(source, encode, &stream, error);
+    status = glint_bands_deflate(bands, source, desc->encode, &stream, reused, error);
     if (!status) {
-        container c = { .source = source, .text = text, .text_count = text_count, .stream = &stream, .out = out };
+        container c = {
+            .source = source, .text = desc->text, .text_count = desc->text_count, .stream = &stream, .out = out
+        };
         status = put_in_container(&c, error);
     }
     free(stream.data);

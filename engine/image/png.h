@@ -11,18 +11,27 @@
 /// Where the codes of an RGB picture come from, a row at a time.
 typedef struct glint_png_source {
     int width, height; ///< 1 .. GLINT_SIDE_MAX
-    int bits; ///< 8 or 16
-    glint_transfer transfer; ///< sRGB: an sRGB chunk; linear: gAMA 1.0
+    glint_tone_desc tone; ///< bits: 8 or 16; sRGB: an sRGB chunk; linear: gAMA 1.0
     /// The 3 * width codes (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
-    /// large enough, or where they already are. Rows may be asked for in any order.
+    /// large enough, or where they already are. Rows may be asked for in any order and by several threads.
     const void *(*row)(const void *user, int y, void *scratch);
     const void *user;
+    const uint64_t *stamp; ///< of the rows of tiles, as in glint_image; NULL: nothing is known of the codes
 } glint_png_source;
 
-/// Appends a whole PNG to `out`. The bytes depend on the arguments and the deflate library alone; no dates.
+typedef struct glint_bands glint_bands; ///< bands.h
+
+typedef struct glint_png_desc {
+    glint_encode encode;
+    const glint_text *text;
+    size_t text_count;
+} glint_png_desc;
+
+/// Appends a whole PNG to `out`. The bytes depend on source and desc and the deflate library alone; no dates.
+/// bands and reused are those of glint_bands_deflate.
 /// GLINT_ERR_INVALID for a bad keyword or a value that is too long; GLINT_ERR_NOMEM. `out` may have grown on failure.
-glint_status glint_png_encode(const glint_png_source *source, glint_encode encode, const glint_text *text,
-                              size_t text_count, glint_bytes *out, glint_error *error);
+glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc,
+                              glint_bytes *out, double *reused, glint_error *error);
 
 typedef struct glint_png {
     int width, height;

@@ -28,6 +28,11 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
     return GLINT_OK;
 }
 
+bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b)
+{
+    return a->curve == b->curve && a->transfer == b->transfer && a->rounding == b->rounding && a->bits == b->bits;
+}
+
 // ---- By definition ------------------------------------------------------------------------------------------------
 
 static double clamp_to_unit(double x)

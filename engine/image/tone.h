@@ -19,6 +19,8 @@ typedef struct glint_tone_table {
 /// GLINT_ERR_INVALID when a field is out of its range.
 glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error);
 
+bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b);
+
 /// The code of one value, by definition: floor(f(clamp(x)) M + 0.5) or floor(f(clamp(x)) M) in double.
 double glint_tone_value(const glint_tone_desc *desc, double linear);
 

@@ -139,11 +139,6 @@ static void find_nearest(picture *p)
         p->nearest = 0; // nothing but background
 }
 
-static bool same_tone(const glint_tone_desc *a, const glint_tone_desc *b)
-{
-    return a->curve == b->curve && a->transfer == b->transfer && a->rounding == b->rounding && a->bits == b->bits;
-}
-
 static bool is_color(glint_pass pass)
 {
     return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID;
@@ -156,18 +151,20 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
 }
 
-static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
-                               glint_error *error)
+static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                               glint_bytes *out, double *reused, glint_error *error)
 {
     picture p = { .image = image, .plane = image->plane[desc->pass], .tone = desc->tone };
     glint_status status = glint_tone_check(&desc->tone, error);
     if (status)
         return status;
-    glint_png_source source = { image->width, image->height, desc->tone.bits, desc->tone.transfer, NULL, &p };
+    glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
+    glint_png_desc png = { desc->encode, desc->text, desc->text_count };
     if (!is_color(desc->pass))
-        source.transfer = GLINT_TRANSFER_LINEAR;
-    if (desc->pass == GLINT_PASS_BEAUTY && image->codes && same_tone(&image->code_tone, &desc->tone)) {
+        source.tone.transfer = GLINT_TRANSFER_LINEAR;
+    if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
         source.row = row_of_codes;
+        source.stamp = image->row_stamp;
     } else if (!p.plane[0]) {
         return fail_not_kept(image, desc->pass, error);
     } else if (is_color(desc->pass)) {
@@ -179,11 +176,11 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     } else {
         source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
     }
-    return status ? status : glint_png_encode(&source, desc->encode, desc->text, desc->text_count, out, error);
+    return status ? status : glint_png_encode(bands, &source, &png, out, reused, error);
 }
 
-glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bytes *out,
-                                glint_error *error)
+glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                                glint_bytes *out, double *reused, glint_error *error)
 {
     glint_file_kind kind = GLINT_FILE_PNG;
     glint_status status = glint_file_kind_of(desc->path, &kind, error);
@@ -196,7 +193,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
     if (desc->encode != GLINT_ENCODE_FAST && desc->encode != GLINT_ENCODE_SMALL)
         return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
     if (kind == GLINT_FILE_PNG)
-        return encode_png(image, desc, out, error);
+        return encode_png(image, desc, bands, out, reused, error);
     float *const *plane = image->plane[desc->pass];
     if (!plane[0])
         return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image",
@@ -207,7 +204,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
 {
     glint_bytes bytes = { 0 };
-    glint_status status = glint_image_encode(image, desc, &bytes, error);
+    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
     if (!status)
         status = glint_file_write(desc->path, bytes.data, bytes.size, error);
     free(bytes.data);

@@ -1,9 +1,12 @@
-/// glint_writer: one thread that encodes and writes, and one list of jobs in the order they were submitted.
+/// glint_writer: one thread that encodes (with a pool of its own, if it may use several) and writes, and one list of
+/// jobs in the order they were submitted.
+#include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/image/file.h"
 #include "engine/image/write.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +24,7 @@ typedef struct job {
 
 struct glint_writer {
     pthread_t thread;
+    glint_bands *bands; ///< the thread's
     pthread_mutex_t lock; ///< over all below; a running job's desc, image and result are the thread's meanwhile
     pthread_cond_t changed;
     job *first, **end; ///< submitted and not collected
@@ -37,12 +41,12 @@ static double now_ms(void)
 
 // ---- The thread ---------------------------------------------------------------------------------------------------
 
-static void do_job(job *j)
+static void do_job(job *j, glint_bands *bands)
 {
     glint_error error = { 0 };
     glint_bytes bytes = { 0 };
     double start = now_ms();
-    glint_status status = glint_image_encode(j->image, &j->desc, &bytes, &error);
+    glint_status status = glint_image_encode(j->image, &j->desc, bands, &bytes, &j->result.reused, &error);
     double encoded = now_ms();
     j->result.encode_ms = encoded - start;
     if (!status) {
@@ -78,7 +82,7 @@ static void *run_writer(void *user)
         writer->queued--;
         pthread_cond_broadcast(&writer->changed);
         pthread_mutex_unlock(&writer->lock);
-        do_job(j);
+        do_job(j, writer->bands);
         glint_image_release(j->image);
         pthread_mutex_lock(&writer->lock);
         j->image = NULL;
@@ -91,9 +95,30 @@ static void *run_writer(void *user)
 
 // ---- Making and ending --------------------------------------------------------------------------------------------
 
-glint_status glint_writer_create(int queue_depth, glint_writer **out, glint_error *error)
+/// Starts a thread with every signal blocked: signals are the main thread's.
+static bool start_thread(glint_writer *writer)
+{
+    sigset_t all, old;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    const bool started = pthread_create(&writer->thread, NULL, run_writer, writer) == 0;
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    return started;
+}
+
+static void free_writer(glint_writer *writer)
+{
+    pthread_cond_destroy(&writer->changed);
+    pthread_mutex_destroy(&writer->lock);
+    glint_bands_destroy(writer->bands);
+    free(writer);
+}
+
+glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error)
 {
     glint_status status = glint_check_range("queue_depth", queue_depth, 1, 1 << 20, "number 1 .. 1048576", error);
+    if (!status)
+        status = glint_check_whole("threads", threads, 0, 1024, error);
     if (status)
         return status;
     glint_writer *writer = calloc(1, sizeof *writer);
@@ -103,11 +128,12 @@ glint_status glint_writer_create(int queue_depth, glint_writer **out, glint_erro
     writer->end = &writer->first;
     pthread_mutex_init(&writer->lock, NULL);
     pthread_cond_init(&writer->changed, NULL);
-    if (pthread_create(&writer->thread, NULL, run_writer, writer) != 0) {
-        pthread_cond_destroy(&writer->changed);
-        pthread_mutex_destroy(&writer->lock);
-        free(writer);
-        return glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer");
+    status = glint_bands_create(threads ? threads : glint_pool_processors(), &writer->bands, error);
+    if (!status && !start_thread(writer))
+        status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer");
+    if (status) {
+        free_writer(writer);
+        return status;
     }
     *out = writer;
     return GLINT_OK;
@@ -127,9 +153,7 @@ void glint_writer_destroy(glint_writer *writer)
         free(j);
         j = next;
     }
-    pthread_cond_destroy(&writer->changed);
-    pthread_mutex_destroy(&writer->lock);
-    free(writer);
+    free_writer(writer);
 }
 
 // ---- Jobs ---------------------------------------------------------------------------------------------------------

@@ -294,7 +294,7 @@ static void bench_encode(glint_encode encode, const char *name)
     workshop w = make_workshop(&(setting){0}, 0);
     glint_plan *plan = make_plan(w.scene, GLINT_DOUBLE, 1);
     must(glint_renderer_create(&r, &renderer, &error), &error);
-    must(glint_writer_create(1, &writer, &error), &error);
+    must(glint_writer_create(1, 1, &writer, &error), &error);
     must(glint_render(renderer, plan, &image, NULL, &error), &error);
 
     char path[sizeof folder + 16];
@@ -335,7 +335,7 @@ static double run_job(int threads, glint_encode encode, bool no_reuse)
     workshop w = make_workshop(&(setting){0}, 0);
     double start = now_ms();
     must(glint_renderer_create(&r, &renderer, &error), &error);
-    must(glint_writer_create(2, &writer, &error), &error);
+    must(glint_writer_create(2, threads, &writer, &error), &error);
     for (int i = 0; i < JOB_FRAMES; i++) {
         glint_light_desc l = *glint_light_get(w.lamp);
         double angle = 2 * acos(-1) * i / JOB_FRAMES;
