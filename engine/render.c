@@ -100,6 +100,18 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
+/// Rows of tiles in which nothing changed keep the stamps of the last picture; the others get new ones.
+static void stamp_rows(const glint_renderer *renderer, const glint_image *last, glint_image *image, uint32_t across)
+{
+    static atomic_uint_least64_t stamps;
+    for (size_t row = 0; image->codes && row < glint_image_stamps(image); row++) {
+        bool changed = !last || !last->row_stamp || renderer->reuse.tile_count == 0;
+        for (size_t x = 0; x < across && !changed; x++)
+            changed = renderer->reuse.tiles[row * across + x].changed;
+        image->row_stamp[row] = changed ? atomic_fetch_add(&stamps, 1) + 1 : last->row_stamp[row];
+    }
+}
+
 static void collect_stats(glint_renderer *renderer, const glint_plan *plan, double wall_ms, glint_frame_stats *stats)
 {
     glint_tile_counts sum = { 0 };
@@ -162,6 +174,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     stats->build_ms = start - begin;
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
+    stamp_rows(renderer, f.shared.last, image, f.across);
     glint_reuse_end(&renderer->reuse);
     return GLINT_OK;
 }
