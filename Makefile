@@ -109,7 +109,7 @@ $(BUILD)/flags: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(BUILD)/tests/bench/bench.d
+-include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d)
 
 # ---- Tests ----
 
@@ -165,10 +165,44 @@ check-headers: ## each header compiles alone
 lint: ## luacheck and cppcheck, where installed
 	@tests/lint.sh
 
-bench: ## times the workshop frame by threads, precision and instruction set, and a whole job
-	@tests/deps.sh build
-	@$(MAKE) --no-print-directory all $(BUILD)/tests/bench/bench
-	@$(BUILD)/tests/bench/bench '$(CC) $(shell $(CC) -dumpfullversion 2>/dev/null), $(filter-out $(UNWANTED),$(CFLAGS))'
+# ---- Bench ----
+
+BENCH_H := $(wildcard tests/bench/*.h)
+bench_c  = $(addprefix tests/bench/,$(addsuffix .c,$(1)))
+# The comparators are no part of the engine: they may have all that makes them fast.
+FAST    := -I. -std=c11 -D_GNU_SOURCE $(WARN) -O3 -march=native -ffast-math -ffp-contract=fast -pthread
+# Asked when the bench is made: may this machine run AVX-512, and is Embree there?
+NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
+EMBREE   = $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E - >/dev/null 2>&1 && echo embree)
+PACKETS  = $(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE))),hand $(EMBREE))
+
+$(BUILD)/tests/bench/glint_side: $(call bench_c,glint_main glint_scene glint_frame glint_job options scenes)
+$(BUILD)/tests/bench/hand:       $(call bench_c,hand packet picture options scenes)
+$(BUILD)/tests/bench/embree:     $(call bench_c,embree packet picture options scenes)
+$(BUILD)/tests/bench/peers:      $(call bench_c,peers options scenes)
+
+$(BUILD)/tests/bench/glint_side: $(BENCH_H) $(BUILD)/libglint.a $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(filter %.c,$^) $(LINK) $(BUILD)/libglint.a $(LIBS) -o $@
+
+$(addprefix $(BUILD)/tests/bench/,hand embree peers): $(BENCH_H)
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(FAST) $(filter %.c,$^) -Wl,--as-needed $(if $(filter %/embree,$@),-lembree3) -lpng -lz -lm -o $@
+
+.PHONY: bench-run bench-programs
+bench: ## glint beside a hand-written program, Embree, POV-Ray and Tachyon: one table; BENCH=frame,jobs picks parts, RUNS=7
+	@tests/deps.sh build bench
+	@$(MAKE) --no-print-directory bench-run
+
+bench-programs: $(PROGRAMS)
+	@:
+
+bench-run: all
+	@$(MAKE) --no-print-directory bench-programs PROGRAMS='$(addprefix $(BUILD)/tests/bench/,glint_side peers $(PACKETS))'
+	@$(LUA) tests/bench/bench.lua $(BUILD) '$(CC) $(shell $(CC) -dumpfullversion 2>/dev/null), $(filter-out $(UNWANTED),$(CFLAGS))' \
+	    '$(BENCH)' '$(RUNS)'
 
 # ---- Use ----
 

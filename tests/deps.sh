@@ -1,7 +1,7 @@
 #!/bin/sh
 # What glint needs on Debian, and how to get it.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
-#   deps.sh build test    installs what is missing for building, for testing or for both, through apt
+#   deps.sh build test bench    installs what is missing for building, testing, comparing speeds, through apt
 set -eu
 
 # package  how to tell that it is there
@@ -27,9 +27,19 @@ cppcheck        command:cppcheck
 povray          command:povray
 '
 
+bench_required='
+lua5.4          command:lua5.4
+'
+bench_optional='
+libembree-dev   header:embree3/rtcore.h
+povray          command:povray
+tachyon         command:tachyon
+'
+
 present() {
     case $1 in
     command:*) command -v "${1#command:}" >/dev/null 2>&1 ;;
+    header:*) echo "#include <${1#header:}>" | "${CC:-cc}" -E - >/dev/null 2>&1 ;;
     module:*) pkg-config --exists "${1#module:}" 2>/dev/null ;;
     esac
 }
@@ -102,8 +112,12 @@ for what in "$@"; do
         require "$test_required"
         prefer "$test_optional" "the tests that need it will be skipped"
         ;;
+    bench)
+        require "$bench_required"
+        prefer "$bench_optional" "their rows will be empty"
+        ;;
     *)
-        echo "usage: deps.sh need | build | test ..." >&2
+        echo "usage: deps.sh need | build | test | bench ..." >&2
         exit 2
         ;;
     esac

@@ -1,0 +1,172 @@
+-- make bench: all sides in turn, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
+--
+-- Parts: frame reuse jobs many encode stages peers, and slow (minutes), which runs only when named. At least 7 runs of
+-- everything but the slow renderers, in an order shuffled anew for each round; medians, with quartiles.
+package.path = "tests/bench/?.lua;" .. package.path
+local cases, measure = require "cases", require "measure"
+
+local build, compiler, selection, runs = arg[1], arg[2], arg[3] or "", tonumber(arg[4] or "") or 7
+local default_parts = "frame,reuse,jobs,many,encode,stages,peers"
+local labels = { g = "glint", h = "hand-written", e = "Embree", p = "POV-Ray", t = "Tachyon" }
+
+local function die(message)
+  io.stderr:write("bench: ", message, "\n")
+  os.exit(2)
+end
+
+local function parts_of(text)
+  local known, parts = {}, {}
+  for _, m in ipairs(cases.measurements) do known[m[2]] = true end
+  for part in (text == "" and default_parts or text):gmatch "[^,%s]+" do
+    if not known[part] then die(("BENCH: no part '%s'; there are %s, slow"):format(part, default_parts)) end
+    parts[part] = true
+  end
+  return parts
+end
+
+local function output_of(command)
+  local pipe = assert(io.popen(command))
+  local text = pipe:read "a"
+  pipe:close()
+  return (text:gsub("%s+$", ""))
+end
+
+local function machine()
+  local model = output_of "sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1"
+  local isa = output_of(build .. "/tests/bench/glint_side isa")
+  return model ~= "" and model or output_of "uname -m", isa
+end
+
+-- ---- The table ----
+
+local by_id = {}
+for _, m in ipairs(cases.measurements) do by_id[m[1]] = m end
+
+-- "id:name" -> samples, or nil and why there are none
+local function samples_of(name)
+  local id, value = name:match "^(.-):(.+)$"
+  local m = assert(by_id[id], name)
+  if m.refused then return nil, m.refused end
+  return assert(m.samples[value], name)
+end
+
+local function number(x)
+  if x >= 1000 then return ("%.0f"):format(x) end
+  return ("%.3g"):format(x)
+end
+
+-- Median (lower .. upper quartile)
+local function cell(samples)
+  if not samples then return "-" end
+  local low, median, high = measure.quartiles(samples)
+  if #samples == 1 then return number(median) .. " (1 run)" end
+  local runs_note = #samples < 7 and (", %d runs"):format(#samples) or ""
+  return ("%s (%s..%s%s)"):format(number(median), number(low), number(high), runs_note)
+end
+
+local function median(samples)
+  local _, m = measure.quartiles(samples)
+  return m
+end
+
+local function verdict(row, ratio)
+  if not row.bar then return "" end
+  local met = row.more and ratio >= row.bar or not row.more and ratio <= row.bar
+  return ("%s %-5s %s"):format(row.more and ">=" or "<=", number(row.bar), met and "met" or "MISSED")
+end
+
+local function print_line(...) print((("%-43s %-6s %-26s %-13s %-26s %8s  %s"):format(...):gsub("%s+$", ""))) end
+
+local function selected(row, parts)
+  return parts[row[1]]
+end
+
+local function print_row(row)
+  local ours, theirs, why
+  if row[3] then ours, why = samples_of(row[3]) end
+  if ours and row.needs then
+    local _, refused = samples_of(row.needs)
+    if refused then ours, why = nil, refused end
+  end
+  local their_why
+  if row[4] then theirs, their_why = samples_of(row[4]) end
+  local label = row[4] and labels[row[4]:sub(1, 1)] or ""
+  local unit = (ours or theirs or { unit = "" }).unit
+  local note = row.note or why or their_why
+  if ours and theirs then
+    local ratio = row.more and median(theirs) / median(ours) or median(ours) / median(theirs)
+    print_line(row[2], unit, cell(ours), label, cell(theirs), ("%.2f"):format(ratio), verdict(row, ratio))
+  elseif ours and not row[4] then
+    print_line(row[2], unit, cell(ours), "", "", "", verdict(row, median(ours)))
+  else
+    local bar = row.bar and ("%s %s: "):format(row.more and ">=" or "<=", number(row.bar)) or ""
+    print_line(row[2], unit, cell(ours), label, cell(theirs), "", bar .. (note or ""))
+  end
+end
+
+local function print_rows(parts)
+  print_line("", "unit", "glint: median (quartiles)", "beside", "median (quartiles)", "ratio", "bar")
+  local heading
+  for _, row in ipairs(cases.rows) do
+    if #row == 1 then
+      heading = row[1]
+    elseif selected(row, parts) then
+      if heading then print("\n" .. heading) end
+      heading = nil
+      print_row(row)
+    end
+  end
+end
+
+-- Nanoseconds a pixel of every stage, one column an instruction set.
+local function print_stages()
+  local names, seen = {}, {}
+  for _, id in ipairs(cases.stage_sides) do
+    for name in pairs(by_id[id].samples) do
+      if not seen[name] then names[#names + 1] = name end
+      seen[name] = true
+    end
+  end
+  table.sort(names)
+  print(("\n%-20s"):format "Stages, ns a pixel" .. (" %22s"):rep(4):format("ref", "sse2", "avx2", "avx512"))
+  for _, name in ipairs(names) do
+    local cells = {}
+    for i, id in ipairs(cases.stage_sides) do
+      cells[i] = by_id[id].refused and "lacking" or cell(by_id[id].samples[name])
+    end
+    print(("%-20s"):format(name) .. (" %22s"):rep(4):format(table.unpack(cells)))
+  end
+end
+
+local function write_csv(path)
+  local file = assert(io.open(path, "w"))
+  file:write "name,side,unit,runs,q1,median,q3\n"
+  for _, m in ipairs(cases.measurements) do
+    local names = {}
+    for name in pairs(m.samples) do names[#names + 1] = name end
+    table.sort(names)
+    for _, name in ipairs(names) do
+      local s = m.samples[name]
+      local title = m[4]:gsub(" out=%S+", "") .. " " .. name
+      file:write(("%s,%s,%s,%d,%.6g,%.6g,%.6g\n"):format(title, m[3], s.unit, #s, measure.quartiles(s)))
+    end
+  end
+  file:close()
+  return path
+end
+
+local parts = parts_of(selection)
+local model, isa = machine()
+local folder = output_of 'mktemp -d "${TMPDIR:-/tmp}/glint-bench-XXXXXX"'
+local progress = os.execute "test -t 2" == true
+measure.run(cases.measurements, { build = build, runs = runs, parts = parts, folder = folder, progress = progress })
+os.execute(("rm -rf '%s'"):format(folder))
+
+print(("%s, %s processors; glint in %s; %s"):format(model, output_of "nproc", isa, compiler))
+print(("1920x1080; %d runs where not told, all sides in every round, in random order; files in %s\n"):format(runs,
+  folder:match "^(.*)/"))
+print_rows(parts)
+if parts.stages then print_stages() end
+
+local file = ("%s-%s.csv"):format(model:lower():gsub("%W+", "-"):gsub("^-+", ""):gsub("-+$", ""), isa)
+print("\nCSV: " .. write_csv(selection == "" and "tests/bench/results/" .. file or build .. "/tests/bench/" .. file))

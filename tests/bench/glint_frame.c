@@ -1,0 +1,161 @@
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "tests/bench/glint_side.h"
+
+enum { ROUNDS = 15, LIMIT_S = 20 };
+
+typedef struct frame_state {
+    const bench_options *options;
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_frame_stats stats; ///< of the last frame
+} frame_state;
+
+static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats)
+{
+    glint_error error;
+    glint_image *image;
+    side_must(glint_render(renderer, plan, &image, stats, &error), &error);
+    glint_image_release(image);
+    return stats->render_ms;
+}
+
+static double time_render(void *state)
+{
+    frame_state *f = state;
+    return render(f->renderer, f->plan, &f->stats);
+}
+
+static double time_codes(void *state)
+{
+    frame_state *f = state;
+    return render(f->renderer, f->plan, &f->stats) + f->stats.tone_ms;
+}
+
+static glint_renderer *renderer_or_exit(const bench_options *options)
+{
+    glint_renderer *renderer = side_renderer_create(options);
+    if (!renderer) {
+        bench_say("lacks_isa", "-", 0);
+        exit(0);
+    }
+    return renderer;
+}
+
+/// What takes this long need not be measured: the driver reads that and goes on.
+static void give_up(int signal)
+{
+    (void)signal;
+    static const char late[] = "late s 20\n";
+    ssize_t written = write(1, late, sizeof late - 1);
+    _exit(written > 0 ? 0 : 1);
+}
+
+void side_run_frame(const bench_options *options)
+{
+    bench_options fresh = *options;
+    fresh.no_reuse = true;
+    side_scene scene = side_scene_create(options);
+    frame_state f = { .options = options, .renderer = renderer_or_exit(&fresh) };
+    signal(SIGALRM, give_up);
+    alarm(LIMIT_S);
+    f.plan = side_plan_create(&scene, options);
+    time_render(&f);
+    alarm(0);
+    double ms = bench_median(time_render, &f);
+    double rays = (double)(f.stats.rays.primary + f.stats.rays.shadow);
+    bench_say("render", "ms", ms);
+    bench_say("codes", "ms", bench_median(time_codes, &f));
+    bench_say("rays", "M/s", rays / ms / 1e3);
+    bench_say("shadow_rays", "rays", (double)f.stats.rays.shadow);
+    glint_plan_destroy(f.plan);
+    glint_renderer_destroy(f.renderer);
+    side_scene_free(&scene);
+}
+
+/// The index is built by the first frame of a scene, or its plan: a small frame's first time less its second.
+static double time_build(void *state)
+{
+    frame_state *f = state;
+    glint_error error;
+    side_scene scene = side_scene_create(f->options);
+    glint_renderer *renderer = renderer_or_exit(f->options);
+    double ms[2];
+    for (int time = 0; time < 2; time++) {
+        glint_render_desc d = glint_render_desc_default();
+        glint_plan *plan;
+        d.width = d.height = 16;
+        double start = bench_now_ms();
+        side_must(glint_plan_create(scene.scene, &d, &plan, &error), &error);
+        render(renderer, plan, &f->stats);
+        ms[time] = bench_now_ms() - start;
+        glint_plan_destroy(plan);
+    }
+    glint_renderer_destroy(renderer);
+    side_scene_free(&scene);
+    return ms[0] - ms[1];
+}
+
+void side_run_build(const bench_options *options)
+{
+    frame_state f = { .options = options };
+    signal(SIGALRM, give_up);
+    alarm(LIMIT_S);
+    bench_say("build", "ms", bench_median(time_build, &f));
+}
+
+/// Nanoseconds a pixel of each stage, on one thread.
+void side_run_stages(const bench_options *options)
+{
+    bench_options fresh = *options;
+    fresh.no_reuse = true;
+    side_scene scene = side_scene_create(options);
+    frame_state f = { .options = options, .renderer = renderer_or_exit(&fresh) };
+    f.plan = side_plan_create(&scene, options);
+    static double ms[GLINT_STAGE_MAX][ROUNDS];
+    static double tone[ROUNDS];
+    for (int round = -1; round < ROUNDS; round++) {
+        render(f.renderer, f.plan, &f.stats);
+        for (int k = 0; k < f.stats.stage_count && round >= 0; k++)
+            ms[k][round] = f.stats.stage_ms[k];
+        if (round >= 0)
+            tone[round] = f.stats.tone_ms;
+    }
+    const double ns_a_pixel = 1e6 / (BENCH_WIDTH * BENCH_HEIGHT);
+    for (int k = 0; k < f.stats.stage_count; k++)
+        if (strcmp(f.stats.stage_name[k], "tone") != 0)
+            bench_say(f.stats.stage_name[k], "ns/px", bench_median_of(ms[k], ROUNDS) * ns_a_pixel);
+    bench_say("tone", "ns/px", bench_median_of(tone, ROUNDS) * ns_a_pixel);
+    glint_plan_destroy(f.plan);
+    glint_renderer_destroy(f.renderer);
+    side_scene_free(&scene);
+}
+
+/// Frames of a job in a row, each rendered anew by one renderer and with what it kept by another.
+void side_run_reuse(const bench_options *options)
+{
+    bench_options fresh_options = *options;
+    fresh_options.no_reuse = true;
+    side_scene scene = side_scene_create(options);
+    glint_renderer *fresh = renderer_or_exit(&fresh_options), *keeping = renderer_or_exit(options);
+    double fresh_ms[ROUNDS], kept_ms[ROUNDS];
+    for (int round = -2; round < ROUNDS; round++) {
+        glint_frame_stats stats;
+        side_scene_set_frame(&scene, options->change, round + 2);
+        glint_plan *plan = side_plan_create(&scene, options);
+        double f = render(fresh, plan, &stats), k = render(keeping, plan, &stats);
+        if (round >= 0) {
+            fresh_ms[round] = f;
+            kept_ms[round] = k;
+        }
+        glint_plan_destroy(plan);
+    }
+    bench_say("fresh", "ms", bench_median_of(fresh_ms, ROUNDS));
+    bench_say("kept", "ms", bench_median_of(kept_ms, ROUNDS));
+    glint_renderer_destroy(fresh);
+    glint_renderer_destroy(keeping);
+    side_scene_free(&scene);
+}

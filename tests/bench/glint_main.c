@@ -1,0 +1,72 @@
+/// glint, measured by its public API: what a program that links it gets, in its default double precision.
+///
+///   glint_side frame scene=workshop|1k|1M [threads=N] [samples=N] [shadows=0] [isa=NAME] [float=1]
+///   glint_side build scene=1M [threads=N]                ms before the first ray of a scene
+///   glint_side stages [isa=NAME]                         ns a pixel
+///   glint_side reuse change=light|shininess              ms of a frame anew, and of one from what was kept
+///   glint_side job change=light|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
+///   glint_side encode out=FOLDER
+///   glint_side picture out=FILE [scene=...]
+///   glint_side isa                                       the best this machine has
+///   glint_side compare out=A with=B                      how many pixels differ by more than two 8-bit codes
+#include <stdio.h>
+#include <string.h>
+
+#include "tests/bench/glint_side.h"
+
+static void run_picture(const bench_options *options)
+{
+    glint_error error;
+    side_scene scene = side_scene_create(options);
+    glint_renderer *renderer = side_renderer_create(options);
+    glint_plan *plan = side_plan_create(&scene, options);
+    glint_image *image;
+    side_must(glint_render(renderer, plan, &image, NULL, &error), &error);
+    glint_write_desc d = { .path = options->out, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    side_must(glint_image_write(image, &d, &error), &error);
+    glint_image_release(image);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    side_scene_free(&scene);
+}
+
+static void run_compare(const bench_options *options)
+{
+    glint_error error;
+    glint_compare_desc d = { .fail = 2.5 / 255, .warn = 2.5 / 255 };
+    glint_compare_result result;
+    side_must(glint_compare_files(options->out, options->with, &d, &result, &error), &error);
+    bench_say("differ", "pixels", (double)result.failed);
+}
+
+static void run_isa(const bench_options *options)
+{
+    glint_renderer *renderer = side_renderer_create(options);
+    puts(glint_renderer_isa(renderer));
+    glint_renderer_destroy(renderer);
+}
+
+typedef struct mode {
+    const char *name;
+    void (*run)(const bench_options *options);
+    bool writes;
+} mode;
+
+static const mode modes[] = {
+    { "frame", side_run_frame, false }, { "build", side_run_build, false }, { "stages", side_run_stages, false },
+    { "reuse", side_run_reuse, false }, { "job", side_run_job, true },      { "encode", side_run_encode, true },
+    { "compare", run_compare, true },   { "picture", run_picture, true },   { "isa", run_isa, false },
+};
+
+int main(int argc, char **argv)
+{
+    bench_options options = bench_options_read(argc, argv);
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++)
+        if (strcmp(modes[i].name, options.mode) == 0) {
+            if (modes[i].writes && !options.out)
+                bench_fail(options.mode, "out=... expected");
+            modes[i].run(&options);
+            return 0;
+        }
+    bench_fail(options.mode, "no such mode");
+}

@@ -1,0 +1,161 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/bench/glint_side.h"
+
+#define PI 3.14159265358979323846
+
+void side_must(glint_status status, const glint_error *error)
+{
+    if (status != GLINT_OK)
+        bench_fail("glint", error->message);
+}
+
+static void widen(const float from[3], double to[3])
+{
+    for (int c = 0; c < 3; c++)
+        to[c] = (double)from[c];
+}
+
+static void make_materials(side_scene *s)
+{
+    glint_error error;
+    for (int m = 0; m < s->plain.material_count; m++) {
+        const bench_material *p = &s->plain.materials[m];
+        glint_material_desc d = glint_material_desc_default();
+        widen(p->diffuse, d.diffuse);
+        for (int c = 0; c < 3; c++)
+            d.specular[c] = (double)p->specular;
+        d.shininess = (double)p->shininess;
+        side_must(glint_material_create(&d, &s->materials[m], &error), &error);
+    }
+}
+
+static void add_shape(side_scene *s, glint_shape *shape)
+{
+    glint_error error;
+    side_must(glint_scene_add_shape(s->scene, shape, &error), &error);
+    glint_shape_release(shape);
+}
+
+/// A few spheres are shapes of their own, as a script would have them; many are one shape.
+static void add_spheres(side_scene *s)
+{
+    const bench_scene *p = &s->plain;
+    glint_error error;
+    glint_shape *shape;
+    if (p->sphere_count > 100) {
+        glint_spheres_desc d = { .data = p->spheres,
+                                 .count = p->sphere_count,
+                                 .is_float = true,
+                                 .materials = s->materials,
+                                 .material_count = (size_t)p->material_count,
+                                 .material_index = p->sphere_material,
+                                 .two_sided = true };
+        side_must(glint_spheres_create(&d, &shape, &error), &error);
+        add_shape(s, shape);
+        return;
+    }
+    for (size_t i = 0; i < p->sphere_count; i++) {
+        glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+        widen(p->spheres + 4 * i, d.center);
+        d.radius = (double)p->spheres[4 * i + 3];
+        d.material = s->materials[p->sphere_material[i]];
+        side_must(glint_shape_create(&d, &shape, &error), &error);
+        add_shape(s, shape);
+    }
+}
+
+static void set_camera(side_scene *s)
+{
+    glint_error error;
+    glint_camera_desc c = glint_camera_desc_default();
+    widen(s->plain.eye, c.eye);
+    widen(s->plain.at, c.at);
+    c.fov_y_rad = (double)s->plain.fov_y_degrees * PI / 180;
+    glint_camera *camera;
+    side_must(glint_camera_create(&c, &camera, &error), &error);
+    glint_scene_desc d = *glint_scene_get(s->scene);
+    d.camera = camera;
+    widen(s->plain.ambient, d.ambient);
+    widen(s->plain.background, d.background);
+    side_must(glint_scene_set(s->scene, &d, &error), &error);
+    glint_camera_release(camera);
+}
+
+side_scene side_scene_create(const bench_options *options)
+{
+    glint_error error;
+    side_scene s = { 0 };
+    if (!bench_scene_create(options->scene, &s.plain))
+        bench_fail(options->scene, "no such scene");
+    side_must(glint_scene_create(&s.scene, &error), &error);
+    make_materials(&s);
+    add_spheres(&s);
+    glint_light_desc l = glint_light_desc_default(GLINT_LIGHT_POINT);
+    widen(s.plain.light, l.position);
+    l.shadows = options->shadows;
+    side_must(glint_light_create(&l, &s.lamp, &error), &error);
+    side_must(glint_scene_add_light(s.scene, s.lamp, &error), &error);
+    set_camera(&s);
+    return s;
+}
+
+void side_scene_free(side_scene *s)
+{
+    for (int m = 0; m < s->plain.material_count; m++)
+        glint_material_release(s->materials[m]);
+    glint_light_release(s->lamp);
+    glint_scene_release(s->scene);
+    bench_scene_free(&s->plain);
+}
+
+void side_scene_set_frame(side_scene *s, const char *change, int frame)
+{
+    glint_error error;
+    if (strcmp(change, "light") == 0) {
+        glint_light_desc l = *glint_light_get(s->lamp);
+        bench_job_light(frame, l.position);
+        side_must(glint_light_set(s->lamp, &l, &error), &error);
+        return;
+    }
+    for (int m = 0; m < s->plain.material_count; m++) {
+        glint_material_desc d = *glint_material_get(s->materials[m]);
+        if (d.specular[0] <= 0)
+            continue;
+        d.shininess = bench_job_shininess(frame);
+        side_must(glint_material_set(s->materials[m], &d, &error), &error);
+    }
+}
+
+glint_renderer *side_renderer_create(const bench_options *options)
+{
+    glint_error error;
+    glint_renderer *renderer;
+    glint_renderer_desc d = glint_renderer_desc_default();
+    d.threads = options->threads;
+    d.isa = options->isa;
+    d.no_reuse = options->no_reuse;
+    d.time_stages = strcmp(options->mode, "stages") == 0;
+    glint_status status = glint_renderer_create(&d, &renderer, &error);
+    if (status == GLINT_ERR_UNSUPPORTED)
+        return NULL;
+    side_must(status, &error);
+    return renderer;
+}
+
+glint_plan *side_plan_create(const side_scene *s, const bench_options *options)
+{
+    glint_error error;
+    glint_render_desc d = glint_render_desc_default();
+    d.width = BENCH_WIDTH;
+    d.height = BENCH_HEIGHT;
+    d.samples = options->samples;
+    d.precision = options->is_float ? GLINT_FLOAT : GLINT_DOUBLE;
+    d.passes = 0;
+    d.codes = true;
+    glint_plan *plan;
+    side_must(glint_plan_create(s->scene, &d, &plan, &error), &error);
+    return plan;
+}

@@ -1,0 +1,37 @@
+/// glint's side of the table, by its public API alone.
+#ifndef GLINT_BENCH_GLINT_SIDE_H
+#define GLINT_BENCH_GLINT_SIDE_H
+
+#include "engine/glint.h"
+#include "tests/bench/options.h"
+#include "tests/bench/scenes.h"
+
+/// One of the scenes, described to glint.
+typedef struct side_scene {
+    bench_scene plain;
+    glint_scene *scene;
+    glint_light *lamp;
+    glint_material *materials[BENCH_MATERIALS];
+} side_scene;
+
+/// Ends the program with the message unless the status is GLINT_OK.
+void side_must(glint_status status, const glint_error *error);
+
+side_scene side_scene_create(const bench_options *options);
+void side_scene_free(side_scene *scene);
+/// Frame `frame` of a job: moves the lamp, or changes the shininess of every material that shines.
+void side_scene_set_frame(side_scene *scene, const char *change, int frame);
+
+/// NULL when this machine lacks the instruction set the options name.
+glint_renderer *side_renderer_create(const bench_options *options);
+/// 1920 x 1080, codes and no passes.
+glint_plan *side_plan_create(const side_scene *scene, const bench_options *options);
+
+void side_run_frame(const bench_options *options);
+void side_run_build(const bench_options *options);
+void side_run_stages(const bench_options *options);
+void side_run_reuse(const bench_options *options);
+void side_run_encode(const bench_options *options);
+void side_run_job(const bench_options *options);
+
+#endif

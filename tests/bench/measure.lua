@@ -1,0 +1,118 @@
+-- Runs the measurements in rounds, each round in an order of its own, and keeps what their programs print.
+local M = {}
+
+local absent = {
+  hand = "not built: needs AVX-512",
+  embree = "not built: needs AVX-512 and libembree-dev",
+  povray = "povray is not installed",
+  tachyon = "tachyon is not installed",
+}
+
+local function file_exists(path)
+  local file = io.open(path, "rb")
+  if file then file:close() end
+  return file ~= nil
+end
+
+local function installed(command)
+  return os.execute("command -v " .. command .. " >/dev/null 2>&1") == true
+end
+
+-- The command of a side, or nil and why there is none.
+local function command_of(side, build)
+  if side == "povray" or side == "tachyon" then
+    if not installed(side) then return nil, absent[side] end
+    return ("BUILD='%s' tests/bench/peer.sh %s"):format(build, side)
+  end
+  local program = ("%s/tests/bench/%s"):format(build, side == "glint" and "glint_side" or side)
+  if not file_exists(program) then return nil, absent[side] or program .. " is not there" end
+  return program
+end
+
+-- The lines "name unit value" of a command; nil and why, when it fails or says that it cannot.
+local function run(command)
+  local pipe = assert(io.popen(command, "r"))
+  local values, refusal = {}, nil
+  for line in pipe:lines() do
+    local name, unit, value = line:match "^(%S+) (%S+) (%S+)$"
+    if name == "late" then
+      refusal = ("over %s s"):format(value)
+    elseif name == "lacks_isa" then
+      refusal = "this machine lacks the instruction set"
+    elseif name then
+      values[name] = { unit = unit, value = assert(tonumber(value), line) }
+    end
+  end
+  if not pipe:close() then refusal = "failed" end
+  if refusal then return nil, refusal end
+  return values
+end
+
+-- One measurement, once: its values go to the end of their samples. What refuses is not asked again.
+local function measure(m, commands, folder)
+  local arguments = m[4]:gsub("%$OUT", folder)
+  local values, why = run(commands[m[3]] .. " " .. arguments)
+  if not values then
+    m.refused = why
+    return
+  end
+  for name, v in pairs(values) do
+    local samples = m.samples[name] or { unit = v.unit }
+    samples[#samples + 1] = v.value
+    m.samples[name] = samples
+  end
+end
+
+local function shuffle(list)
+  for i = #list, 2, -1 do
+    local j = math.random(i)
+    list[i], list[j] = list[j], list[i]
+  end
+end
+
+-- Runs every measurement of the selected parts; each gets `samples` by name, and `refused` where it has none.
+-- options: build, runs, parts (set), folder (for files), progress (a line on stderr)
+function M.run(measurements, options)
+  local commands, selected = {}, {}
+  for _, m in ipairs(measurements) do
+    m.samples = {}
+    if not options.parts[m[2]] then
+      m.refused = "not run"
+    else
+      local why
+      if commands[m[3]] == nil then
+        commands[m[3]], why = command_of(m[3], options.build)
+        if not commands[m[3]] then commands[m[3]] = false end
+      end
+      if commands[m[3]] then
+        selected[#selected + 1] = m
+      else
+        m.refused = why or absent[m[3]]
+      end
+    end
+  end
+  for round = 1, options.runs do
+    local left = {}
+    for _, m in ipairs(selected) do
+      if not m.refused and round <= (m.runs or options.runs) then left[#left + 1] = m end
+    end
+    shuffle(left)
+    for i, m in ipairs(left) do
+      if options.progress then
+        io.stderr:write(("\rround %d of %d, %d of %d: %-40s"):format(round, options.runs, i, #left, m[1]))
+      end
+      measure(m, commands, options.folder)
+    end
+  end
+  if options.progress then io.stderr:write("\r", (" "):rep(72), "\r") end
+end
+
+-- Lower quartile, median and upper quartile.
+function M.quartiles(samples)
+  local sorted = table.move(samples, 1, #samples, 1, {})
+  table.sort(sorted)
+  local n = #sorted
+  return sorted[1 + n // 4], sorted[1 + n // 2], sorted[n - n // 4]
+end
+
+return M

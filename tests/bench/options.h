@@ -1,0 +1,42 @@
+/// What one run of a side measures, from words like `frame scene=1k threads=2 shadows=0`, and how it says what it found.
+#ifndef GLINT_BENCH_OPTIONS_H
+#define GLINT_BENCH_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct bench_options {
+    const char *mode; ///< "frame", "job", ...: the first word
+    const char *scene; ///< of scenes.h; default "workshop"
+    const char *isa; ///< glint alone; NULL: the best
+    const char *out; ///< a file or folder to write to
+    const char *with; ///< a file to compare with
+    const char *change; ///< of a job: "light", "shininess" or "none" (default)
+    int threads; ///< default 1
+    int samples; ///< a pixel; default 1
+    bool is_float; ///< glint alone
+    bool no_reuse; ///< glint alone
+    bool shadows; ///< default true
+    bool area; ///< 16 samples of a sphere light instead of a point light
+} bench_options;
+
+/// Ends the program with a message when a word is not understood.
+bench_options bench_options_read(int argc, char **argv);
+
+double bench_now_ms(void);
+
+/// Prints one measurement as the driver reads it: name, unit, value.
+void bench_say(const char *name, const char *unit, double value);
+
+/// Calls `measure`, whose result is in milliseconds, for a tenth of a second to warm up (at least once), and then 3 to 31
+/// times, until three tenths of a second have gone by.
+/// Returns the median.
+double bench_median(double (*measure)(void *state), void *state);
+
+/// Median of `values`, which are sorted.
+double bench_median_of(double *values, int count);
+
+/// Ends the program.
+_Noreturn void bench_fail(const char *what, const char *why);
+
+#endif

@@ -1,0 +1,57 @@
+#!/bin/sh
+# Renders a scene with POV-Ray or Tachyon, and prints what the driver reads: name, unit, value.
+#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1]
+#       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything
+#   peer.sh povray job change=light|shininess [threads=N]
+#       seconds for the job's 60 frames: its first FRAMES are rendered, and the time multiplied
+set -eu
+FRAMES=6
+program=$1 mode=$2
+shift 2
+threads=1 samples=1 shade=-fullshade
+for word in "$@"; do
+    case $word in
+    threads=*) threads=${word#*=} ;;
+    samples=*) samples=${word#*=} ;;
+    shadows=0) shade=-mediumshade ;;
+    esac
+done
+
+folder=$(mktemp -d "${TMPDIR:-/tmp}/glint-bench-peer-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+"${BUILD:-build}/tests/bench/peers" "$program" "$@" >"$folder/scene"
+
+case $program in
+povray)
+    set -- "+I$folder/scene" "+O$folder/out.png" +W1920 +H1080 +FN8 -D "+WT$threads"
+    # method 1 with threshold 0: N x N samples wherever neighbours differ at all
+    if [ "$samples" -gt 1 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
+    if [ "$mode" = job ]; then set -- "$@" +KFI1 "+KFF$FRAMES"; fi
+    ;;
+tachyon)
+    mv "$folder/scene" "$folder/scene.dat"
+    set -- "$folder/scene.dat" -numthreads "$threads" "$shade" -shade_phong -format PNG -o "$folder/out.png"
+    ;;
+*)
+    echo "usage: peer.sh povray|tachyon frame|job ..." >&2
+    exit 2
+    ;;
+esac
+
+begin=$(date +%s%N)
+"$program" "$@" >"$folder/log" 2>&1 </dev/null || {
+    tail -n 5 "$folder/log" >&2
+    exit 1
+}
+end=$(date +%s%N)
+
+if [ "$mode" = job ]; then
+    awk -v ns=$((end - begin)) -v frames=$FRAMES 'BEGIN { print "job s", ns / 1e9 * 60 / frames }'
+    exit
+fi
+# POV-Ray: "Trace Time: 0 hours 0 minutes 0 seconds (0.603 seconds)"; Tachyon: "Ray Tracing Time: 0.1595 seconds"
+tr '\r' '\n' <"$folder/log" | awk -v ns=$((end - begin)) '
+    match($0, /[0-9.]+ seconds\)?$/) { seconds = substr($0, RSTART) + 0 }
+    /Parse Time|Bounding Time|Parsing Time|Preprocessing Time/ { setup += seconds }
+    /Trace Time|Ray Tracing Time/ { render = seconds }
+    END { print "setup ms", setup * 1e3; print "render ms", render * 1e3; print "wall ms", ns / 1e6 }'

@@ -1,0 +1,120 @@
+/// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
+///
+///   peers povray|tachyon [scene=workshop|1k|1M] [shadows=0] [samples=N] [area=1] [change=light|shininess]
+///
+/// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
+/// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tests/bench/options.h"
+#include "tests/bench/scenes.h"
+
+static void print3(const char *format, const float v[3]) { printf(format, (double)v[0], (double)v[1], (double)v[2]); }
+
+// ---- POV-Ray ----
+
+static void povray_camera(const bench_scene *s)
+{
+    bench_camera c = bench_camera_of(s);
+    double forward[3], right[3], up[3];
+    for (int k = 0; k < 3; k++) {
+        right[k] = BENCH_WIDTH * c.right[k];
+        up[k] = -BENCH_HEIGHT * c.down[k];
+        forward[k] = c.corner[k] + 0.5 * right[k] - 0.5 * up[k];
+    }
+    print3("camera { perspective location <%.9g, %.9g, %.9g>", s->eye);
+    printf(" direction <%.9g, %.9g, %.9g>", forward[0], forward[1], forward[2]);
+    printf(" right <%.9g, %.9g, %.9g>", right[0], right[1], right[2]);
+    printf(" up <%.9g, %.9g, %.9g> }\n", up[0], up[1], up[2]);
+}
+
+static void povray_light(const bench_scene *s, const bench_options *o, bool moves)
+{
+    if (moves)
+        printf("light_source { <13*cos(2*pi*(frame_number-1)/%d), 20, 13*sin(2*pi*(frame_number-1)/%d)> rgb 1",
+               BENCH_FRAMES, BENCH_FRAMES);
+    else
+        print3("light_source { <%.9g, %.9g, %.9g> rgb 1", s->light);
+    double side = 2 * (double)s->light_radius;
+    if (o->area)
+        printf(" area_light <%g, 0, 0>, <0, 0, %g>, 4, 4 circular orient", side, side);
+    puts(o->shadows ? " }" : " shadowless }");
+}
+
+static void write_povray(const bench_scene *s, const bench_options *o)
+{
+    bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
+    puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 }");
+    print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
+    povray_camera(s);
+    povray_light(s, o, changes && !shines);
+    for (int m = 0; m < s->material_count; m++) {
+        const bench_material *p = &s->materials[m];
+        print3("#declare M = texture { pigment { rgb <%.9g, %.9g, %.9g> }", p->diffuse);
+        print3(" finish { ambient <%.9g, %.9g, %.9g> diffuse 1 specular 0", s->ambient);
+        if (p->specular > 0 && shines)
+            printf(" phong %.9g phong_size 8*pow(2, (frame_number-1)/10)", (double)p->specular);
+        else if (p->specular > 0)
+            printf(" phong %.9g phong_size %.9g", (double)p->specular, (double)p->shininess);
+        printf(" } }\n#declare M%d = M;\n", m);
+    }
+    for (size_t i = 0; i < s->sphere_count; i++) {
+        const float *p = s->spheres + 4 * i;
+        print3("sphere { <%.9g, %.9g, %.9g>", p);
+        printf(", %.9g texture { M%u } }\n", (double)p[3], (unsigned)s->sphere_material[i]);
+    }
+}
+
+// ---- Tachyon ----
+
+static void print_mirrored(const char *format, const float v[3])
+{
+    printf(format, (double)v[0], (double)v[1], -(double)v[2]);
+}
+
+/// Its world is left-handed: z is turned round.
+static void write_tachyon(const bench_scene *s, const bench_options *o)
+{
+    bench_camera c = bench_camera_of(s);
+    double forward[3];
+    for (int k = 0; k < 3; k++)
+        forward[k] = c.corner[k] + 0.5 * BENCH_WIDTH * c.right[k] + 0.5 * BENCH_HEIGHT * c.down[k];
+    double height = BENCH_HEIGHT * sqrt(c.down[0] * c.down[0] + c.down[1] * c.down[1] + c.down[2] * c.down[2]);
+    printf("BEGIN_SCENE\nRESOLUTION %d %d\n", BENCH_WIDTH, BENCH_HEIGHT);
+    printf("CAMERA\nPROJECTION PERSPECTIVE\nZOOM %.9g\nASPECTRATIO 1.0\nANTIALIASING %d\nRAYDEPTH 1\n", 1 / height,
+           o->samples - 1);
+    print_mirrored("CENTER %.9g %.9g %.9g\n", s->eye);
+    printf("VIEWDIR %.9g %.9g %.9g\nUPDIR 0 1 0\nEND_CAMERA\n", forward[0], forward[1], -forward[2]);
+    print3("BACKGROUND %.9g %.9g %.9g\n", s->background);
+    print_mirrored("LIGHT CENTER %.9g %.9g %.9g RAD 0.001 COLOR 1 1 1\n", s->light);
+    for (int m = 0; m < s->material_count; m++) {
+        const bench_material *p = &s->materials[m];
+        printf("TEXDEF M%d AMBIENT %.9g DIFFUSE 1 SPECULAR 0 OPACITY 1 PHONG PLASTIC %.9g PHONG_SIZE %.9g", m,
+               (double)s->ambient[1], (double)p->specular, (double)p->shininess);
+        print3(" COLOR %.9g %.9g %.9g TEXFUNC 0\n", p->diffuse);
+    }
+    for (size_t i = 0; i < s->sphere_count; i++) {
+        const float *p = s->spheres + 4 * i;
+        print_mirrored("SPHERE CENTER %.9g %.9g %.9g", p);
+        printf(" RAD %.9g M%u\n", (double)p[3], (unsigned)s->sphere_material[i]);
+    }
+    puts("END_SCENE");
+}
+
+int main(int argc, char **argv)
+{
+    bench_options options = bench_options_read(argc, argv);
+    bench_scene scene;
+    if (!bench_scene_create(options.scene, &scene))
+        bench_fail(options.scene, "no such scene");
+    if (strcmp(options.mode, "povray") == 0)
+        write_povray(&scene, &options);
+    else if (strcmp(options.mode, "tachyon") == 0)
+        write_tachyon(&scene, &options);
+    else
+        bench_fail(options.mode, "povray or tachyon expected");
+    bench_scene_free(&scene);
+    return 0;
+}

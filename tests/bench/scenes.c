@@ -1,0 +1,201 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/bench/scenes.h"
+
+#define PI 3.14159265358979323846
+
+static void *need(size_t count, size_t size)
+{
+    void *memory = calloc(count, size);
+    if (!memory) {
+        fprintf(stderr, "bench: out of memory\n");
+        exit(1);
+    }
+    return memory;
+}
+
+static void set3(float out[3], float x, float y, float z)
+{
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+static void make_spheres(bench_scene *s, size_t count)
+{
+    s->sphere_count = count;
+    s->spheres = need(count, 4 * sizeof *s->spheres);
+    s->sphere_material = need(count, sizeof *s->sphere_material);
+}
+
+// ---- The workshop: scripts/workshop.lua ----
+
+static void make_workshop(bench_scene *s)
+{
+    static const float spheres[5][4] = { { 0, -10000, 0, 10000 },
+                                         { -1, 4, -4.5F, 4 },
+                                         { 5.8F, 3, -1, 3 },
+                                         { -6.6F, 2.5F, 0.5F, 2.5F },
+                                         { 0.6F, 2, 4.2F, 2 } };
+    static const bench_material materials[5] = { { { 0.42F, 0.40F, 0.37F }, 0, 128 },
+                                                 { { 0.70F, 0.10F, 0.08F }, 0.7F, 128 },
+                                                 { { 0.85F, 0.55F, 0.10F }, 0.7F, 128 },
+                                                 { { 0.10F, 0.35F, 0.62F }, 0.7F, 128 },
+                                                 { { 0.16F, 0.48F, 0.20F }, 0.7F, 128 } };
+    make_spheres(s, 5);
+    memcpy(s->spheres, spheres, sizeof spheres);
+    memcpy(s->materials, materials, sizeof materials);
+    s->material_count = 5;
+    for (uint32_t i = 0; i < 5; i++)
+        s->sphere_material[i] = i;
+    set3(s->eye, 0, 6.2F, 20.5F);
+    set3(s->at, 0, 3.8F, 0);
+    s->fov_y_degrees = 42;
+    set3(s->light, 0, 20, 0);
+}
+
+// ---- Many spheres, in a box of 32 x 18 x 18 seen from outside ----
+
+/// splitmix64, as a number in 0 .. 1 of 24 bits.
+static float random_unit(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return (float)((z ^ (z >> 31)) >> 40) * 0x1p-24F;
+}
+
+static void make_palette(bench_scene *s, uint64_t *state)
+{
+    s->material_count = BENCH_MATERIALS;
+    for (int m = 0; m < BENCH_MATERIALS; m++) {
+        bench_material *p = &s->materials[m];
+        for (int c = 0; c < 3; c++)
+            p->diffuse[c] = 0.1F + 0.7F * random_unit(state);
+        p->specular = m % 2 ? 0.5F : 0;
+        p->shininess = (float)(8 << (m % 5));
+    }
+}
+
+/// The radii go with the mean spacing, so that a cloud of any count hides about as much.
+static void make_cloud(bench_scene *s, size_t count)
+{
+    static const float size[3] = { 32, 18, 18 };
+    uint64_t state = count;
+    make_palette(s, &state);
+    make_spheres(s, count);
+    float spacing = (float)cbrt((double)(size[0] * size[1] * size[2]) / (double)count);
+    for (size_t i = 0; i < count; i++) {
+        float *p = s->spheres + 4 * i;
+        for (int c = 0; c < 3; c++)
+            p[c] = (random_unit(&state) - 0.5F) * size[c];
+        p[3] = spacing * (0.125F + 0.25F * random_unit(&state));
+        s->sphere_material[i] = (uint32_t)i % BENCH_MATERIALS;
+    }
+    set3(s->eye, 0, 6, 42);
+    s->fov_y_degrees = 36;
+    set3(s->light, 25, 30, 30);
+}
+
+// ---- A mesh: a knobbly torus of 500 x 500 quadrangles ----
+
+static void make_mesh(bench_scene *s)
+{
+    enum { SIDE = 500 };
+    s->vertex_count = SIDE * SIDE;
+    s->triangle_count = 2 * SIDE * SIDE;
+    s->vertices = need(s->vertex_count, 3 * sizeof *s->vertices);
+    s->triangles = need(s->triangle_count, 3 * sizeof *s->triangles);
+    uint32_t *triangle = s->triangles;
+    for (uint32_t i = 0; i < SIDE; i++)
+        for (uint32_t j = 0; j < SIDE; j++) {
+            double u = 2 * PI * i / SIDE, v = 2 * PI * j / SIDE;
+            double tube = 2.5 + 0.2 * sin(24 * u) * sin(9 * v), ring = 6 + tube * cos(v);
+            set3(s->vertices + 3 * (SIDE * i + j), (float)(ring * cos(u)), (float)(tube * sin(v)),
+                 (float)(ring * sin(u)));
+            uint32_t a = SIDE * i + j, b = SIDE * i + (j + 1) % SIDE;
+            uint32_t c = SIDE * ((i + 1) % SIDE) + j, d = SIDE * ((i + 1) % SIDE) + (j + 1) % SIDE;
+            uint32_t two[6] = { a, b, c, b, d, c };
+            memcpy(triangle, two, sizeof two);
+            triangle += 6;
+        }
+    s->material_count = 1;
+    s->materials[0] = (bench_material) { { 0.6F, 0.5F, 0.4F }, 0.5F, 64 };
+    set3(s->eye, 0, 13, 17);
+    s->fov_y_degrees = 42;
+    set3(s->light, 9, 14, 4);
+}
+
+bool bench_scene_create(const char *name, bench_scene *out)
+{
+    *out = (bench_scene) { .light_radius = 2 };
+    set3(out->ambient, 0.16F, 0.17F, 0.20F);
+    set3(out->background, 0.28F, 0.45F, 0.69F);
+    if (strcmp(name, "workshop") == 0)
+        make_workshop(out);
+    else if (strcmp(name, "1k") == 0)
+        make_cloud(out, 1000);
+    else if (strcmp(name, "1M") == 0)
+        make_cloud(out, 1000000);
+    else if (strcmp(name, "mesh") == 0)
+        make_mesh(out);
+    else
+        return false;
+    return true;
+}
+
+void bench_scene_free(bench_scene *scene)
+{
+    free(scene->spheres);
+    free(scene->sphere_material);
+    free(scene->vertices);
+    free(scene->triangles);
+}
+
+// ---- Jobs and the camera ----
+
+void bench_job_light(int frame, double position[3])
+{
+    double angle = 2 * PI * frame / BENCH_FRAMES;
+    position[0] = 13 * cos(angle);
+    position[1] = 20;
+    position[2] = 13 * sin(angle);
+}
+
+double bench_job_shininess(int frame) { return 8 * exp2(frame / 10.0); }
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void normalise(double v[3])
+{
+    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int c = 0; c < 3; c++)
+        v[c] /= length;
+}
+
+bench_camera bench_camera_of(const bench_scene *scene)
+{
+    bench_camera camera;
+    double forward[3], right[3], up[3];
+    for (int c = 0; c < 3; c++)
+        forward[c] = (double)scene->at[c] - (double)scene->eye[c];
+    normalise(forward);
+    cross(forward, (double[3]) { 0, 1, 0 }, right);
+    normalise(right);
+    cross(right, forward, up);
+    double pixel = 2 * tan((double)scene->fov_y_degrees * PI / 360) / BENCH_HEIGHT;
+    for (int c = 0; c < 3; c++) {
+        camera.right[c] = pixel * right[c];
+        camera.down[c] = -pixel * up[c];
+        camera.corner[c] = forward[c] - 0.5 * BENCH_WIDTH * camera.right[c] - 0.5 * BENCH_HEIGHT * camera.down[c];
+    }
+    return camera;
+}

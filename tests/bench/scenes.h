@@ -1,0 +1,47 @@
+/// The scenes of `make bench`, as plain numbers: one generator for every side of the table.
+#ifndef GLINT_BENCH_SCENES_H
+#define GLINT_BENCH_SCENES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define BENCH_WIDTH 1920
+#define BENCH_HEIGHT 1080
+#define BENCH_FRAMES 60 ///< of a job
+#define BENCH_MATERIALS 16 ///< at most: sixteen floats are one vector register
+
+typedef struct bench_material {
+    float diffuse[3], specular, shininess;
+} bench_material;
+
+typedef struct bench_scene {
+    size_t sphere_count;
+    float *spheres; ///< x, y, z, radius of each; binary32, so that all sides have the same numbers
+    uint32_t *sphere_material;
+    size_t vertex_count, triangle_count; ///< a mesh of the first material
+    float *vertices; ///< x, y, z of each
+    uint32_t *triangles; ///< three vertices of each
+    int material_count;
+    bench_material materials[BENCH_MATERIALS];
+    float eye[3], at[3], fov_y_degrees;
+    float light[3], light_radius; ///< a white light; the radius is that of the area light
+    float ambient[3], background[3];
+} bench_scene;
+
+/// "workshop", "1k", "1M" (spheres) or "mesh" (500,000 triangles). False when there is no such scene.
+bool bench_scene_create(const char *name, bench_scene *out);
+void bench_scene_free(bench_scene *scene);
+
+/// The jobs of 60 frames, counted from 0: a lamp that goes round once, and a highlight that shrinks.
+void bench_job_light(int frame, double position[3]);
+double bench_job_shininess(int frame);
+
+/// The camera's ray through (x, y), pixels from the top left, is corner + x right + y down; not of unit length.
+typedef struct bench_camera {
+    double corner[3], right[3], down[3];
+} bench_camera;
+
+bench_camera bench_camera_of(const bench_scene *scene);
+
+#endif
