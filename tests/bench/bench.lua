@@ -5,14 +5,17 @@
 package.path = "tests/bench/?.lua;" .. package.path
 local cases, measure = require "cases", require "measure"
 
-local build, compiler, selection, runs = arg[1], arg[2], arg[3] or "", tonumber(arg[4] or "") or 7
+local build, compiler, selection = arg[1], arg[2], arg[3] or ""
+local runs = math.tointeger(tonumber(arg[4] ~= "" and arg[4] or "7"))
 local default_parts = "frame,reuse,jobs,many,encode,stages,peers"
-local labels = { g = "glint", h = "hand-written", e = "Embree", p = "POV-Ray", t = "Tachyon" }
+local labels = { glint = "glint", hand = "hand-written", embree = "Embree", povray = "POV-Ray", tachyon = "Tachyon" }
 
 local function die(message)
   io.stderr:write("bench: ", message, "\n")
   os.exit(2)
 end
+
+if not runs or runs < 1 or runs > 1000 then die(("RUNS: whole number, 1 .. 1000, expected, got '%s'"):format(arg[4])) end
 
 local function parts_of(text)
   local known, parts = {}, {}
@@ -47,7 +50,8 @@ local function samples_of(name)
   local id, value = name:match "^(.-):(.+)$"
   local m = assert(by_id[id], name)
   if m.refused then return nil, m.refused end
-  return assert(m.samples[value], name)
+  local samples = assert(m.samples[value], name)
+  return samples
 end
 
 local function number(x)
@@ -75,11 +79,7 @@ local function verdict(row, ratio)
   return ("%s %-5s %s"):format(row.more and ">=" or "<=", number(row.bar), met and "met" or "MISSED")
 end
 
-local function print_line(...) print((("%-43s %-6s %-26s %-13s %-26s %8s  %s"):format(...):gsub("%s+$", ""))) end
-
-local function selected(row, parts)
-  return parts[row[1]]
-end
+local function print_line(...) print((("%-46s %-6s %-26s %-13s %-26s %8s  %s"):format(...):gsub("%s+$", ""))) end
 
 local function print_row(row)
   local ours, theirs, why
@@ -90,9 +90,9 @@ local function print_row(row)
   end
   local their_why
   if row[4] then theirs, their_why = samples_of(row[4]) end
-  local label = row[4] and labels[row[4]:sub(1, 1)] or ""
+  local label = row[4] and labels[by_id[row[4]:match "^[^:]+"][3]:match "%S+$"] or ""
   local unit = (ours or theirs or { unit = "" }).unit
-  local note = row.note or why or their_why
+  local note = why or their_why or row.note
   if ours and theirs then
     local ratio = row.more and median(theirs) / median(ours) or median(ours) / median(theirs)
     print_line(row[2], unit, cell(ours), label, cell(theirs), ("%.2f"):format(ratio), verdict(row, ratio))
@@ -110,7 +110,7 @@ local function print_rows(parts)
   for _, row in ipairs(cases.rows) do
     if #row == 1 then
       heading = row[1]
-    elseif selected(row, parts) then
+    elseif parts[row[1]] then
       if heading then print("\n" .. heading) end
       heading = nil
       print_row(row)

@@ -21,6 +21,12 @@ local measurements = {
   { "e.4", "frame", "embree", "frame samples=4" },
   { "e.area", "frame", "embree", "frame area=1" },
 
+  -- pixels that are more than two codes from glint's
+  { "u.hand", "frame", "unlike hand", "scene=workshop", runs = 1 },
+  { "u.embree", "frame", "unlike embree", "scene=workshop", runs = 1 },
+  { "u.float", "frame", "unlike glint", "float=1", runs = 1 },
+  { "u.1k", "many", "unlike embree", "scene=1k", runs = 1 },
+
   -- render only, in one process, frame after frame of a job
   { "g.moved", "reuse", "glint", "reuse change=light" },
   { "g.shiny", "reuse", "glint", "reuse change=shininess" },
@@ -62,8 +68,8 @@ local measurements = {
   { "p.area", "peers", "povray", "frame area=1", runs = 3 },
   { "p.1k", "peers", "povray", "frame scene=1k", runs = 3 },
   { "p.1M", "peers", "povray", "frame scene=1M", runs = 1 },
-  { "p.light", "peers", "povray", "job change=light threads=2", runs = 3 },
-  { "p.shininess", "peers", "povray", "job change=shininess threads=2", runs = 3 },
+  { "p.light", "peers", "povray", "job change=light threads=2", runs = 1 },
+  { "p.shininess", "peers", "povray", "job change=shininess threads=2", runs = 1 },
   { "t.frame", "peers", "tachyon", "frame", runs = 3 },
   { "t.bare", "peers", "tachyon", "frame shadows=0", runs = 3 },
   { "t.4", "peers", "tachyon", "frame samples=4", runs = 3 },
@@ -91,6 +97,9 @@ local rows = {
   { "frame", "16-sample area light", nil, "e.area:render", note = no_area },
   { "peers", "16-sample area light", nil, "p.area:render", note = no_area },
   { "frame", "with 8-bit sRGB codes", "g.frame:codes", "h.frame:codes" },
+  { "frame", "pixels over 2 codes from glint's", nil, "u.hand:differ", note = "of 2,073,600" },
+  { "frame", "pixels over 2 codes from glint's", nil, "u.embree:differ", note = "of 2,073,600" },
+  { "frame", "pixels over 2 codes from glint's", nil, "u.float:differ", note = "of 2,073,600; glint --precision float" },
   { "frame", "shadow rays of a scene without shadows", "g.bare:shadow_rays", nil, bar = 0 },
 
   { "glint against itself" },
@@ -115,6 +124,7 @@ local rows = {
   { "many", "1,000 spheres, render", "g.1k:render", "e.1k:render", bar = 0.6 },
   { "peers", "1,000 spheres, render", "g.1k:render", "p.1k:render" },
   { "peers", "1,000 spheres, render", "g.1k:render", "t.1k:render" },
+  { "many", "1,000 spheres, pixels over 2 codes from glint's", nil, "u.1k:differ", note = "of 2,073,600" },
   { "many", "1,000,000 spheres, render", "g.1M:render", "e.1M:render", bar = 0.5 },
   { "many", "1,000,000 spheres, render, two threads", "g.1M.2:render", "e.1M.2:render", bar = 0.5 },
   { "peers", "1,000,000 spheres, render", "g.1M:render", "p.1M:render" },

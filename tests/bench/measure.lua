@@ -18,15 +18,17 @@ local function installed(command)
   return os.execute("command -v " .. command .. " >/dev/null 2>&1") == true
 end
 
--- The command of a side, or nil and why there is none.
+-- The command of a side, or nil and why there is none. "unlike SIDE" compares that side's picture with glint's.
 local function command_of(side, build)
   if side == "povray" or side == "tachyon" then
     if not installed(side) then return nil, absent[side] end
     return ("BUILD='%s' tests/bench/peer.sh %s"):format(build, side)
   end
-  local program = ("%s/tests/bench/%s"):format(build, side == "glint" and "glint_side" or side)
-  if not file_exists(program) then return nil, absent[side] or program .. " is not there" end
-  return program
+  local compared = side:match "^unlike (.+)$"
+  local name = (compared or side):gsub("^glint$", "glint_side")
+  local program = ("%s/tests/bench/%s"):format(build, name)
+  if not file_exists(program) then return nil, absent[name] or program .. " is not there" end
+  return compared and ("BUILD='%s' tests/bench/unlike.sh %s"):format(build, name) or program
 end
 
 -- The lines "name unit value" of a command; nil and why, when it fails or says that it cannot.
@@ -49,9 +51,9 @@ local function run(command)
 end
 
 -- One measurement, once: its values go to the end of their samples. What refuses is not asked again.
-local function measure(m, commands, folder)
+local function measure(m, folder)
   local arguments = m[4]:gsub("%$OUT", folder)
-  local values, why = run(commands[m[3]] .. " " .. arguments)
+  local values, why = run(m.command .. " " .. arguments)
   if not values then
     m.refused = why
     return
@@ -70,27 +72,25 @@ local function shuffle(list)
   end
 end
 
--- Runs every measurement of the selected parts; each gets `samples` by name, and `refused` where it has none.
--- options: build, runs, parts (set), folder (for files), progress (a line on stderr)
-function M.run(measurements, options)
-  local commands, selected = {}, {}
+-- The measurements of the selected parts whose side is there; `command` is set in them, `refused` in the others.
+local function selected_of(measurements, options)
+  local selected = {}
   for _, m in ipairs(measurements) do
     m.samples = {}
     if not options.parts[m[2]] then
       m.refused = "not run"
     else
-      local why
-      if commands[m[3]] == nil then
-        commands[m[3]], why = command_of(m[3], options.build)
-        if not commands[m[3]] then commands[m[3]] = false end
-      end
-      if commands[m[3]] then
-        selected[#selected + 1] = m
-      else
-        m.refused = why or absent[m[3]]
-      end
+      m.command, m.refused = command_of(m[3], options.build)
+      if m.command then selected[#selected + 1] = m end
     end
   end
+  return selected
+end
+
+-- Runs every measurement of the selected parts; each gets `samples` by name, and `refused` where it has none.
+-- options: build, runs, parts (set), folder (for files), progress (a line on stderr)
+function M.run(measurements, options)
+  local selected = selected_of(measurements, options)
   for round = 1, options.runs do
     local left = {}
     for _, m in ipairs(selected) do
@@ -101,7 +101,7 @@ function M.run(measurements, options)
       if options.progress then
         io.stderr:write(("\rround %d of %d, %d of %d: %-40s"):format(round, options.runs, i, #left, m[1]))
       end
-      measure(m, commands, options.folder)
+      measure(m, options.folder)
     end
   end
   if options.progress then io.stderr:write("\r", (" "):rep(72), "\r") end

@@ -87,7 +87,7 @@ double bench_median(double (*measure)(void *state), void *state)
     int count = 0;
     for (double start = bench_now_ms(); bench_now_ms() - start < WARM_MS;)
         measure(state);
-    for (double start = bench_now_ms(); count < 3 || (count < COUNT_MAX && bench_now_ms() - start < MEASURE_MS);)
+    for (double start = bench_now_ms(); !count || (count < COUNT_MAX && bench_now_ms() - start < MEASURE_MS);)
         values[count++] = measure(state);
     return bench_median_of(values, count);
 }

@@ -28,8 +28,8 @@ double bench_now_ms(void);
 /// Prints one measurement as the driver reads it: name, unit, value.
 void bench_say(const char *name, const char *unit, double value);
 
-/// Calls `measure`, whose result is in milliseconds, for a tenth of a second to warm up (at least once), and then 3 to 31
-/// times, until three tenths of a second have gone by.
+/// Calls `measure`, whose result is in milliseconds, for a tenth of a second to warm up (at least once), and then up to
+/// 31 times, until three tenths of a second have gone by.
 /// Returns the median.
 double bench_median(double (*measure)(void *state), void *state);
 

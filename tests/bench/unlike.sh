@@ -1,0 +1,16 @@
+#!/bin/sh
+# How many pixels of a side's picture are more than two 8-bit codes from glint's (which the tests hold to an oracle).
+#   unlike.sh hand|embree|glint_side WORDS...     prints: differ pixels COUNT
+set -eu
+programs=${BUILD:-build}/tests/bench
+side=$1
+shift
+folder=$(mktemp -d "${TMPDIR:-/tmp}/glint-bench-unlike-XXXXXX")
+trap 'rm -rf "$folder"' EXIT
+scene=scene=workshop
+for word in "$@"; do
+    case $word in scene=*) scene=$word ;; esac
+done
+"$programs/glint_side" picture "out=$folder/glint.png" "$scene"
+"$programs/$side" picture "out=$folder/side.png" "$@"
+"$programs/glint_side" compare "out=$folder/glint.png" "with=$folder/side.png"
