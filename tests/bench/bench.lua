@@ -84,10 +84,6 @@ local function print_line(...) print((("%-46s %-6s %-26s %-13s %-26s %8s  %s"):f
 local function print_row(row)
   local ours, theirs, why
   if row[3] then ours, why = samples_of(row[3]) end
-  if ours and row.needs then
-    local _, refused = samples_of(row.needs)
-    if refused then ours, why = nil, refused end
-  end
   local their_why
   if row[4] then theirs, their_why = samples_of(row[4]) end
   local label = row[4] and labels[by_id[row[4]:match "^[^:]+"][3]:match "%S+$"] or ""
