@@ -19,12 +19,25 @@ if not runs or runs < 1 or runs > 1000 then die(("RUNS: whole number, 1 .. 1000,
 
 local function parts_of(text)
   local known, parts = {}, {}
-  for _, m in ipairs(cases.measurements) do known[m[2]] = true end
+  known.stages = true
+  for _, row in ipairs(cases.rows) do known[row[1]] = #row > 1 or nil end
   for part in (text == "" and default_parts or text):gmatch "[^,%s]+" do
     if not known[part] then die(("BENCH: no part '%s'; there are %s, slow"):format(part, default_parts)) end
     parts[part] = true
   end
   return parts
+end
+
+-- The ids that the rows of these parts name.
+local function wanted_by(parts)
+  local wanted = {}
+  for _, row in ipairs(cases.rows) do
+    for column = 3, parts[row[1]] and 4 or 0 do
+      if row[column] then wanted[row[column]:match "^[^:]+"] = true end
+    end
+  end
+  for _, id in ipairs(cases.stage_sides) do wanted[id] = parts.stages end
+  return wanted
 end
 
 local function output_of(command)
@@ -86,7 +99,7 @@ local function print_row(row)
   if row[3] then ours, why = samples_of(row[3]) end
   local their_why
   if row[4] then theirs, their_why = samples_of(row[4]) end
-  local label = row[4] and labels[by_id[row[4]:match "^[^:]+"][3]:match "%S+$"] or ""
+  local label = row[4] and labels[by_id[row[4]:match "^[^:]+"][2]:match "%S+$"] or ""
   local unit = (ours or theirs or { unit = "" }).unit
   local note = why or their_why or row.note
   if ours and theirs then
@@ -134,7 +147,9 @@ local function print_stages()
   end
 end
 
-local function write_csv(path)
+local function write_csv(folder, file_name)
+  os.execute(("mkdir -p '%s'"):format(folder))
+  local path = folder .. "/" .. file_name
   local file = assert(io.open(path, "w"))
   file:write "name,side,unit,runs,q1,median,q3\n"
   for _, m in ipairs(cases.measurements) do
@@ -143,8 +158,8 @@ local function write_csv(path)
     table.sort(names)
     for _, name in ipairs(names) do
       local s = m.samples[name]
-      local title = m[4]:gsub(" out=%S+", "") .. " " .. name
-      file:write(("%s,%s,%s,%d,%.6g,%.6g,%.6g\n"):format(title, m[3], s.unit, #s, measure.quartiles(s)))
+      local title = m[3]:gsub(" out=%S+", "") .. " " .. name
+      file:write(("%s,%s,%s,%d,%.6g,%.6g,%.6g\n"):format(title, m[2], s.unit, #s, measure.quartiles(s)))
     end
   end
   file:close()
@@ -153,16 +168,17 @@ end
 
 local parts = parts_of(selection)
 local model, isa = machine()
-local folder = output_of 'mktemp -d "${TMPDIR:-/tmp}/glint-bench-XXXXXX"'
+local pictures = output_of 'mktemp -d "${TMPDIR:-/tmp}/glint-bench-XXXXXX"'
 local progress = os.execute "test -t 2" == true
-measure.run(cases.measurements, { build = build, runs = runs, parts = parts, folder = folder, progress = progress })
-os.execute(("rm -rf '%s'"):format(folder))
+measure.run(cases.measurements,
+  { build = build, runs = runs, wanted = wanted_by(parts), folder = pictures, progress = progress })
+os.execute(("rm -rf '%s'"):format(pictures))
 
 print(("%s, %s processors; glint in %s; %s"):format(model, output_of "nproc", isa, compiler))
 print(("1920x1080; %d runs where not told, all sides in every round, in random order; files in %s\n"):format(runs,
-  folder:match "^(.*)/"))
+  pictures:match "^(.*)/"))
 print_rows(parts)
 if parts.stages then print_stages() end
 
 local file = ("%s-%s.csv"):format(model:lower():gsub("%W+", "-"):gsub("^-+", ""):gsub("-+$", ""), isa)
-print("\nCSV: " .. write_csv(selection == "" and "tests/bench/results/" .. file or build .. "/tests/bench/" .. file))
+print("\nCSV: " .. write_csv(selection == "" and "tests/bench/results" or build .. "/tests/bench", file))

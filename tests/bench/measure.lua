@@ -52,7 +52,7 @@ end
 
 -- One measurement, once: its values go to the end of their samples. What refuses is not asked again.
 local function measure(m, folder)
-  local arguments = m[4]:gsub("%$OUT", folder)
+  local arguments = m[3]:gsub("%$OUT", folder)
   local values, why = run(m.command .. " " .. arguments)
   if not values then
     m.refused = why
@@ -72,23 +72,23 @@ local function shuffle(list)
   end
 end
 
--- The measurements of the selected parts whose side is there; `command` is set in them, `refused` in the others.
+-- The wanted measurements whose side is there; `command` is set in them, `refused` in the others.
 local function selected_of(measurements, options)
   local selected = {}
   for _, m in ipairs(measurements) do
     m.samples = {}
-    if not options.parts[m[2]] then
+    if not options.wanted[m[1]] then
       m.refused = "not run"
     else
-      m.command, m.refused = command_of(m[3], options.build)
+      m.command, m.refused = command_of(m[2], options.build)
       if m.command then selected[#selected + 1] = m end
     end
   end
   return selected
 end
 
--- Runs every measurement of the selected parts; each gets `samples` by name, and `refused` where it has none.
--- options: build, runs, parts (set), folder (for files), progress (a line on stderr)
+-- Runs every wanted measurement; each gets `samples` by name, and `refused` where it has none.
+-- options: build, runs, wanted (set of ids), folder (for files), progress (a line on stderr)
 function M.run(measurements, options)
   local selected = selected_of(measurements, options)
   for round = 1, options.runs do
