@@ -46,7 +46,7 @@ void side_run_encode(const bench_options *options)
     glint_plan *plan = side_plan_create(&scene, options);
     encode_state e;
     side_must(glint_render(renderer, plan, &e.image, NULL, &error), &error);
-    side_must(glint_writer_create(1, &e.writer, &error), &error);
+    side_must(glint_writer_create(1, 1, &e.writer, &error), &error);
     char path[512];
     snprintf(path, sizeof path, "%s/frame.png", options->out);
     say_encode(&e, path, GLINT_ENCODE_FAST, "fast", "fast_size");
@@ -66,7 +66,7 @@ void side_run_job(const bench_options *options)
     glint_writer *writer;
     double start = bench_now_ms();
     glint_renderer *renderer = side_renderer_create(options);
-    side_must(glint_writer_create(2, &writer, &error), &error);
+    side_must(glint_writer_create(2, options->threads, &writer, &error), &error);
     for (int frame = 0; frame < BENCH_FRAMES; frame++) {
         side_scene_set_frame(&scene, options->change, frame);
         glint_plan *plan = side_plan_create(&scene, options);
