@@ -50,7 +50,7 @@ typedef struct glint_tile_sample {
 typedef struct glint_tile {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double across[3][GLINT_TILE_WIDTH / 4][GLINT_GROUP], down[3][GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
+    _Alignas(64) double across[GLINT_TILE_WIDTH / 4][3][GLINT_GROUP], down[GLINT_TILE_HEIGHT / 4][3][GLINT_GROUP];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];

@@ -37,8 +37,8 @@ static double direction_at(const glint_tile *tile, glint_precision precision, in
         return real_at(tile->direction[c], precision, i);
     const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
     const uint32_t lane = i % GLINT_GROUP;
-    const double d = real_at(tile->across[c], precision, x * GLINT_GROUP + lane) +
-                     real_at(tile->down[c], precision, y * GLINT_GROUP + lane);
+    const double d = real_at(tile->across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
+                     real_at(tile->down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
     return precision == GLINT_FLOAT ? (float)d : d;
 }
 

@@ -83,9 +83,9 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     vec_copy(args->forward, camera->forward);
     vec_copy(args->right, camera->right);
     vec_copy(args->up, camera->up);
+    args->across = tile->across;
+    args->down = tile->down;
     for (int c = 0; c < 3; c++) {
-        args->across[c] = tile->across[c];
-        args->down[c] = tile->down[c];
         args->origin[c] = tile->origin[c];
         args->direction[c] = tile->direction[c];
     }

@@ -17,15 +17,6 @@ static inline void R(pixel_axis)(double first, const double step[GLINT_GROUP], d
     }
 }
 
-/// out = start + s * along, a component at a time.
-static inline void R(axis_vectors)(const double start[3], const double along[3], const real s[GLINT_GROUP],
-                                   void *const out[3], size_t at)
-{
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i += VR)
-            r_store((real *)out[c] + at + i, r_set(start[c]) + r_load(s + i) * r_set(along[c]));
-}
-
 static const _Alignas(64) double R(lane_x)[GLINT_GROUP] = { 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3 };
 static const _Alignas(64) double R(lane_y)[GLINT_GROUP] = { 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3 };
 
@@ -34,14 +25,18 @@ static void R(camera_perspective)(const glint_camera_args *args)
 {
     _Alignas(64) real s[GLINT_GROUP];
     for (uint32_t x = 0; x < args->groups_across; x++) {
+        real *across = (real *)args->across + (size_t)x * 3 * GLINT_GROUP;
         R(pixel_axis)(args->x0 + 4 * x, R(lane_x), args->offset[0], args->width, false, s);
-        R(axis_vectors)(args->forward, args->right, s, args->across, (size_t)x * GLINT_GROUP);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < GLINT_GROUP; i += VR)
+                r_store(across + c * GLINT_GROUP + i, r_set(args->forward[c]) + r_load(s + i) * r_set(args->right[c]));
     }
     for (uint32_t y = 0; y < args->group_count / args->groups_across; y++) {
+        real *down = (real *)args->down + (size_t)y * 3 * GLINT_GROUP;
         R(pixel_axis)(args->y0 + 4 * y, R(lane_y), args->offset[1], args->height, true, s);
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < GLINT_GROUP; i += VR)
-                r_store((real *)args->down[c] + (size_t)y * GLINT_GROUP + i, r_load(s + i) * r_set(args->up[c]));
+                r_store(down + c * GLINT_GROUP + i, r_load(s + i) * r_set(args->up[c]));
     }
 }
 
@@ -52,11 +47,11 @@ static void R(camera_orthographic)(const glint_camera_args *args)
         const size_t at = (size_t)g * GLINT_GROUP;
         R(pixel_axis)(args->x0 + 4 * (g % args->groups_across), R(lane_x), args->offset[0], args->width, false, s);
         R(pixel_axis)(args->y0 + 4 * (g / args->groups_across), R(lane_y), args->offset[1], args->height, true, t);
-        R(axis_vectors)(args->eye, args->right, s, args->origin, at);
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < GLINT_GROUP; i += VR) {
-                real *origin = (real *)args->origin[c] + at + i;
-                r_store(origin, r_load(origin) + r_load(t + i) * r_set(args->up[c]));
+                r_store((real *)args->origin[c] + at + i,
+                        (r_set(args->eye[c]) + r_load(s + i) * r_set(args->right[c])) +
+                            r_load(t + i) * r_set(args->up[c]));
                 r_store((real *)args->direction[c] + at + i, r_set(args->forward[c]));
             }
     }
@@ -90,32 +85,27 @@ static inline void R(next_group)(const glint_camera_args *camera, R(group_place)
     }
 }
 
-/// Where the directions of one group are: the sum of two arrays, or one.
+/// Where the directions of one group are: the sums of a column's and a row's numbers, or (both NULL) in arrays.
 typedef struct R(group_directions) {
-    const real *a[3], *b[3];
-    bool sum;
+    const real *across, *down;
 } R(group_directions);
 
-/// `direction` is read where `camera` is NULL.
-static inline R(group_directions)
-    R(directions_of)(const glint_camera_args *camera, const void *const direction[3], R(group_place) place)
+static inline R(group_directions) R(directions_of)(const glint_camera_args *camera, uint32_t x, uint32_t y)
 {
-    R(group_directions) out = { .sum = camera != NULL };
-    for (int k = 0; k < 3; k++)
-        if (camera) {
-            out.a[k] = (const real *)camera->across[k] + (size_t)place.x * GLINT_GROUP;
-            out.b[k] = (const real *)camera->down[k] + (size_t)place.y * GLINT_GROUP;
-        } else {
-            out.a[k] = out.b[k] = (const real *)direction[k] + (size_t)place.g * GLINT_GROUP;
-        }
-    return out;
+    if (!camera)
+        return (R(group_directions)) { NULL, NULL };
+    return (R(group_directions)) { (const real *)camera->across + (size_t)x * 3 * GLINT_GROUP,
+                                   (const real *)camera->down + (size_t)y * 3 * GLINT_GROUP };
 }
 
-static inline void R(load_direction)(const R(group_directions) * directions, int i, vr out[3])
+/// Lanes i .. of the group; `direction`, `at`: the arrays and the group's place in them, where they are needed.
+static inline void R(load_direction)(R(group_directions) from, const void *const direction[3], size_t at, int i,
+                                     vr out[3])
 {
     for (int k = 0; k < 3; k++) {
-        out[k] = r_load(directions->a[k] + i);
-        if (directions->sum)
-            out[k] = out[k] + r_load(directions->b[k] + i);
+        if (from.across)
+            out[k] = r_load(from.across + k * GLINT_GROUP + i) + r_load(from.down + k * GLINT_GROUP + i);
+        else
+            out[k] = r_load((const real *)direction[k] + at + i);
     }
 }

@@ -355,14 +355,13 @@ static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate
     const glint_cast_args *args = tile->args;
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
-    const R(group_directions) directions =
-        R(directions_of)(args->camera, args->direction, (R(group_place)) { 0, (uint32_t)x, (uint32_t)y });
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
         vr d[3], t;
-        R(load_direction)(&directions, i, d);
+        R(load_direction)(directions, args->direction, 0, i, d);
         const rm hit = R(meet)(f, r_set(candidate->c), d, candidate->prim, &t);
         if (!rm_bits(hit))
             continue;
@@ -460,8 +459,7 @@ static inline void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) *
     const uint32_t g = (uint32_t)(y * tile->across + x);
     const size_t at = (size_t)g * GLINT_GROUP;
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
-    const R(group_directions) directions =
-        R(directions_of)(args->camera, args->direction, (R(group_place)) { 0, (uint32_t)x, (uint32_t)y });
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     unsigned hits = 0;
     near &= args->active[g];
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -469,7 +467,7 @@ static inline void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) *
         vr d[3], t = r_set(HUGE_VAL);
         rm hit = rm_from_bits(0);
         if (lanes) {
-            R(load_direction)(&directions, i, d);
+            R(load_direction)(directions, args->direction, 0, i, d);
             hit = rm_and(rm_from_bits(lanes), R(meet)(f, r_set(candidate->c), d, candidate->prim, &t));
             hit = rm_and(hit, r_lt(t, r_set(HUGE_VAL)));
         }

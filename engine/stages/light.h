@@ -26,8 +26,8 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 }
 
 /// The real part of one vector of lanes.
-static inline void R(light_lanes)(const glint_light_args *args, R(group_place) place,
-                                  const R(group_directions) * directions, int i, unsigned open, R(lit_group) * group)
+static inline void R(light_lanes)(const glint_light_args *args, R(group_place) place, R(group_directions) directions,
+                                  int i, unsigned open, R(lit_group) * group)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     const vr zero = r_set(0), scale = r_set(args->scale);
@@ -55,7 +55,7 @@ static inline void R(light_lanes)(const glint_light_args *args, R(group_place) p
     if (!(phong | blinn))
         return;
     vr d[3];
-    R(load_direction)(directions, i, d);
+    R(load_direction)(directions, args->direction, at, i, d);
     vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
     rm some = rm_from_bits(0);
     if (phong)
@@ -115,10 +115,10 @@ static void R(light)(const glint_light_args *args)
         const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
         group.lit = group.shiny = 0;
         if (open) {
-            const R(group_directions) directions = R(directions_of)(args->camera, args->direction, place);
+            const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
             R(sort_highlights)(args, at, open, &group);
             for (int i = 0; i < GLINT_GROUP; i += VR)
-                R(light_lanes)(args, place, &directions, i, open, &group);
+                R(light_lanes)(args, place, directions, i, open, &group);
         }
         args->lit[g] = (uint16_t)group.lit;
         if (group.lit)

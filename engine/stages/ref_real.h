@@ -54,6 +54,21 @@ static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 
 // ---- camera ------------------------------------------------------------------------------------------------------
 
+/// A column's or a row's share of a direction.
+static void NAME(store_part)(void *parts, uint32_t group, uint32_t lane, NAME(vec3) v)
+{
+    REAL *at = (REAL *)parts + group * 3 * GLINT_GROUP + lane;
+    at[0] = v.x;
+    at[GLINT_GROUP] = v.y;
+    at[2 * GLINT_GROUP] = v.z;
+}
+
+static NAME(vec3) NAME(load_part)(const void *parts, uint32_t group, uint32_t lane)
+{
+    const REAL *at = (const REAL *)parts + group * 3 * GLINT_GROUP + lane;
+    return NAME(vec)(at[0], at[GLINT_GROUP], at[2 * GLINT_GROUP]);
+}
+
 static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
 {
     uint32_t lane = i % GLINT_GROUP, column = i / GLINT_GROUP % args->groups_across;
@@ -69,8 +84,8 @@ static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
         NAME(store)(args->origin, i, NAME(add)(NAME(add)(NAME(rounded)(args->eye), across), upward));
         NAME(store)(args->direction, i, forward);
     } else {
-        NAME(store)(args->across, column * GLINT_GROUP + lane, NAME(add)(forward, across));
-        NAME(store)(args->down, row * GLINT_GROUP + lane, upward);
+        NAME(store_part)(args->across, column, lane, NAME(add)(forward, across));
+        NAME(store_part)(args->down, row, lane, upward);
     }
 }
 
@@ -86,9 +101,8 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
     if (!camera)
         return NAME(load)(direction, i);
     uint32_t lane = i % GLINT_GROUP, group = i / GLINT_GROUP;
-    return NAME(add)(
-        NAME(load)((const void *const *)camera->across, group % camera->groups_across * GLINT_GROUP + lane),
-        NAME(load)((const void *const *)camera->down, group / camera->groups_across * GLINT_GROUP + lane));
+    return NAME(add)(NAME(load_part)(camera->across, group % camera->groups_across, lane),
+                     NAME(load_part)(camera->down, group / camera->groups_across, lane));
 }
 
 // ---- cast --------------------------------------------------------------------------------------------------------

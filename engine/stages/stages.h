@@ -89,13 +89,13 @@ typedef struct glint_camera_args {
     double width, height; ///< of the image
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
-    void *across[3], *down[3]; ///< out, real, perspective: 16 numbers a column and a row of groups; see below
+    void *across, *down; ///< out, real, perspective: 3 times 16 numbers a column and a row of groups; see below
     void *origin[3], *direction[3]; ///< out, real, orthographic: one a ray
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 // sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
 // perspective:  direction = (forward + sx right) + sy up, of which across is the first term and down the second:
-//               the direction of lane i of group (gx, gy) is across[16 gx + i] + down[16 gy + i]
+//               component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
 // orthographic: direction = forward, origin = (eye + sx right) + sy up
 
 // ---- cast: the nearest hit of each ray ----

@@ -72,14 +72,14 @@ static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim
 /// is seen from behind.
 static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
                                                                        const R(seen_prim) * seen,
-                                                                       const R(group_directions) * directions,
-                                                                       size_t at, int i, unsigned lanes)
+                                                                       R(group_directions) directions, size_t at, int i,
+                                                                       unsigned lanes)
 {
     const glint_prim *prim = seen->prim;
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
     vr d[3], n[3], p[3], from[3], f[3];
-    R(load_direction)(directions, i, d);
+    R(load_direction)(directions, args->direction, at, i, d);
     if (!args->camera)
         R(load3)(args->origin, at + i, from);
     const vr t = r_load((const real *)args->t + at + i);
@@ -122,7 +122,7 @@ static void R(surface)(const glint_surface_args *args)
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         const uint32_t g = place.g;
         const size_t at = (size_t)g * GLINT_GROUP;
-        const R(group_directions) directions = R(directions_of)(args->camera, args->direction, place);
+        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
         unsigned left = args->hits[g], back = 0, dark = 0;
         if (left && left != 0xffff)
             R(clear_surface)(args, at);
@@ -134,7 +134,7 @@ static void R(surface)(const glint_surface_args *args)
                 R(see_prim)(args, id, &seen);
             for (int i = 0; i < GLINT_GROUP; i += VR)
                 if (lanes >> i & ((1u << VR) - 1))
-                    behind |= R(surface_lanes)(args, &seen, &directions, at, i, lanes >> i & ((1u << VR) - 1)) << i;
+                    behind |= R(surface_lanes)(args, &seen, directions, at, i, lanes >> i & ((1u << VR) - 1)) << i;
             lanes_put(args->material + at, lanes, seen.prim->material);
             back |= behind;
             if (!seen.prim->two_sided)
