@@ -9,7 +9,11 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
+
+/// Pictures whose memory a renderer holds on to: as many as wait in a job's queue.
+#define GLINT_SPARE_IMAGES 4
 
 struct glint_renderer {
     glint_pool *pool;
@@ -21,6 +25,9 @@ struct glint_renderer {
     glint_tile **tiles; ///< a tile's working memory for each worker
     glint_reuse reuse;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
+    glint_image
+        *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
+        ///< them
     glint_key last_key;
     glint_frame_stats last_stats;
 };
@@ -58,6 +65,14 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     return GLINT_OK;
 }
 
+static void drop_spares(glint_renderer *renderer)
+{
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
+        glint_image_release(renderer->spare[i]);
+        renderer->spare[i] = NULL;
+    }
+}
+
 void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
@@ -67,6 +82,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     free(renderer->tiles);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
+    drop_spares(renderer);
     glint_pool_destroy(renderer->pool);
     free(renderer);
 }
@@ -100,15 +116,15 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-/// Rows of tiles in which nothing changed keep the stamps of the last picture; the others get new ones.
-static void stamp_rows(const glint_renderer *renderer, const glint_image *last, glint_image *image, uint32_t across)
+/// A row of tiles is stamped by the keys of its tiles.
+static void stamp_rows(glint_image *image, uint32_t across)
 {
-    static atomic_uint_least64_t stamps;
     for (size_t row = 0; image->codes && row < glint_image_stamps(image); row++) {
-        bool changed = !last || !last->row_stamp || renderer->reuse.tile_count == 0;
-        for (size_t x = 0; x < across && !changed; x++)
-            changed = renderer->reuse.tiles[row * across + x].changed;
-        image->row_stamp[row] = changed ? atomic_fetch_add(&stamps, 1) + 1 : last->row_stamp[row];
+        const glint_key *film = image->film + row * across;
+        bool known = true;
+        for (size_t x = 0; x < across; x++)
+            known = known && (film[x].low || film[x].high);
+        image->row_stamp[row] = known ? glint_key_add((glint_key) { 0 }, film, across * sizeof *film).low : 0;
     }
 }
 
@@ -164,6 +180,9 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_reuse_begin(&renderer->reuse, plan, (size_t)f.across * down);
+    if (renderer->reuse.tile_count && !image->film &&
+        !(image->film = calloc((size_t)f.across * down, sizeof *image->film)))
+        return glint_fail_nomem(error);
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
         renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
     atomic_store(&renderer->tiles_done, 0);
@@ -174,8 +193,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     stats->build_ms = start - begin;
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
-    stamp_rows(renderer, f.shared.last, image, f.across);
-    glint_reuse_end(&renderer->reuse);
+    if (image->film)
+        stamp_rows(image, f.across);
     return GLINT_OK;
 }
 
@@ -215,6 +234,41 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     renderer->last_stats = *stats;
 }
 
+static bool has_format(const glint_image *image, const glint_render_desc *desc)
+{
+    uint32_t passes = 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
+    return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
+           (image->codes != NULL) == desc->codes &&
+           (!desc->codes || memcmp(&image->code_tone, &desc->tone, sizeof desc->tone) == 0);
+}
+
+/// A picture to render into: one given before that nobody else holds any more, or a new one.
+static glint_status take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
+                               glint_error *error)
+{
+    int free_slot = -1;
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
+        glint_image *image = renderer->spare[i];
+        if (image && !has_format(image, desc)) {
+            drop_spares(renderer);
+            break;
+        }
+        if (image && atomic_load(&image->references) == 1) {
+            *out = glint_image_retain(image);
+            return GLINT_OK;
+        }
+    }
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
+        free_slot = renderer->spare[i] ? free_slot : i;
+    glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
+                                             desc->codes ? &desc->tone : NULL, out, error);
+    if (!status && renderer->reuse.on && free_slot >= 0)
+        renderer->spare[free_slot] = glint_image_retain(*out);
+    return status;
+}
+
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error)
 {
@@ -226,8 +280,7 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (unchanged(renderer, plan, out, stats))
         return GLINT_OK;
-    glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
-                                             desc->codes ? &desc->tone : NULL, &image, error);
+    glint_status status = take_image(renderer, desc, &image, error);
     if (!status && desc->codes)
         status = glint_tone_table_shared(&desc->tone, &table, error);
     if (!status)

@@ -72,8 +72,6 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
-void glint_reuse_end(glint_reuse *reuse) { reuse->picture = !reuse->picture; }
-
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan)
 {
     glint_key parts[GLINT_SHOWN_MAX + GLINT_KEPT_LIGHTS + 4];

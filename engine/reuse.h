@@ -37,9 +37,7 @@ typedef struct glint_kept_tile {
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
     bool background; ///< some sample hits nothing
-    glint_key film[2]; ///< of the pixels in the last picture and in the one being made: see glint_reuse.picture
-    uint64_t clipped, nonfinite; ///< pixels in the last picture
-    bool changed; ///< the picture being made differs here
+    uint64_t clipped, nonfinite; ///< pixels, when the tile was last run
 } glint_kept_tile;
 
 typedef struct glint_reuse {
@@ -54,7 +52,6 @@ typedef struct glint_reuse {
     glint_key cast, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
     // which results this frame has in common with the last, and therefore keeps
     bool keep_cast, keep_light[GLINT_KEPT_LIGHTS];
-    int picture; ///< which entry of glint_kept_tile.film is of the last picture
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -62,9 +59,6 @@ void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget);
 void glint_reuse_clear(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory nothing is kept.
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
-
-/// The frame is done and its picture is the last one now.
-void glint_reuse_end(glint_reuse *reuse);
 
 /// The key of a tile's pixels, from what is known of it; all zero where that is not of this plan's surfaces.
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan);

@@ -186,10 +186,12 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         glint_tile_cast(tile, frame, in_sight);
     }
     const bool any = any_hit(tile);
-    if (tile->kept && any)
-        note_surfaces(tile, frame, w->sample);
-    else if (tile->kept)
-        note_nothing(tile, w->sample);
+    if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
+        if (any)
+            note_surfaces(tile, frame, w->sample);
+        else
+            note_nothing(tile, w->sample);
+    }
     if (w->sample == 0 && glint_tile_wants_geometry(plan)) {
         if (any)
             need_points(tile, frame, w);
@@ -241,22 +243,24 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     } while (from < lights && !glint_tile_cancelled(frame));
 }
 
-/// Whether the tile's pixels are those of the last picture; then they are copied.
+static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
+
+/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
+/// from before.
 static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_kept_tile *kept = tile->kept;
     const glint_plan *plan = frame->plan;
-    if (!kept)
+    const glint_image *last = frame->last;
+    if (!tile->kept || !last || !last->film)
         return false;
-    const int picture = frame->reuse->picture;
-    const glint_key key = glint_reuse_film_key(frame->reuse, kept, plan), none = { 0 };
-    kept->changed = !frame->last || glint_key_equal(key, none) || !glint_key_equal(key, kept->film[picture]);
-    kept->film[!picture] = key;
-    if (kept->changed)
+    const glint_key key = glint_reuse_film_key(frame->reuse, tile->kept, plan);
+    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index]))
         return false;
-    glint_tile_copy(tile, frame);
-    tile->counts.clipped += kept->clipped;
-    tile->counts.nonfinite += kept->nonfinite;
+    if (!glint_key_equal(key, frame->image->film[tile->index]))
+        glint_tile_copy(tile, frame);
+    frame->image->film[tile->index] = key;
+    tile->counts.clipped += tile->kept->clipped;
+    tile->counts.nonfinite += tile->kept->nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id])
             tile->counts.reuses[id] += id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_OCCLUDE ? plan->light_count : 1;
@@ -272,7 +276,7 @@ static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t 
     kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
     for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
         kept->lights[i].place = frame->plan->lights[i].place_key;
-    kept->film[!frame->reuse->picture] = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    frame->image->film[tile->index] = glint_reuse_film_key(frame->reuse, kept, frame->plan);
     kept->clipped = tile->counts.clipped - clipped;
     kept->nonfinite = tile->counts.nonfinite - nonfinite;
 }
@@ -282,6 +286,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const uint64_t clipped = tile->counts.clipped, nonfinite = tile->counts.nonfinite;
+    if (tile->kept)
+        frame->image->film[tile->index] = (glint_key) { 0 };
     if (plan->accumulate)
         memset(tile->sum, 0, sizeof tile->sum);
     for (uint32_t k = 0; k < (uint32_t)plan->desc.samples; k++) {
@@ -308,7 +314,8 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
     const uint64_t start = glint_tile_now_ns();
     const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     tile->clock = start;
-    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[(size_t)row * across + column] : NULL;
+    tile->index = (size_t)row * across + column;
+    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
     place(tile, plan, column, row);
     if (!unchanged(tile, frame))
         run_stages(tile, frame);

@@ -63,6 +63,7 @@ typedef struct glint_tile {
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
     glint_tile_sample at;
+    size_t index; ///< of the tile in the picture
     glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image

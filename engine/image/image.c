@@ -97,6 +97,7 @@ void glint_image_release(glint_image *image)
             free(image->plane[pass][c]);
     free(image->codes);
     free(image->row_stamp);
+    free(image->film);
     free(image);
 }
 

@@ -2,6 +2,7 @@
 #ifndef GLINT_IMAGE_IMAGE_H
 #define GLINT_IMAGE_IMAGE_H
 
+#include "engine/base/hash.h"
 #include "engine/glint.h"
 #include "engine/stages/stages.h"
 
@@ -14,6 +15,8 @@ struct glint_image {
         ///< One-channel passes have [0] only
     void *codes; ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
     glint_tone_desc code_tone; ///< how the codes were made
+    glint_key *film; ///< one a tile, left to right, top to bottom: of what its pixels were made from. Equal keys: equal
+        ///< pixels; all zero: unknown. NULL: nobody asked. Owned
     uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
         ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
 };
