@@ -1,0 +1,370 @@
+/// camera, in_sight, cast and surface on every instruction set against the scalar reference, which looks at every
+/// primitive: neither the index nor a filter loses a hit or changes a bit.
+#include "tests/stage_rays.h"
+
+enum { CASES = 300 };
+
+// ---- camera ------------------------------------------------------------------------------------------------------
+
+static void camera_case(int precision, bool odd)
+{
+    const uint32_t across = 1 + below(GLINT_TILE_WIDTH / 4), down = 1 + below(GLINT_TILE_HEIGHT / 4);
+    const uint32_t n = across * down * GLINT_GROUP;
+    glint_camera_args args = { .group_count = across * down, .groups_across = across, .orthographic = one_in(2) };
+    args.x0 = GLINT_TILE_WIDTH * below(2000);
+    args.y0 = GLINT_TILE_HEIGHT * below(2000);
+    args.width = 1 + below(65535);
+    args.height = 1 + below(65535);
+    for (int c = 0; c < 3; c++) {
+        if (c < 2)
+            args.offset[c] = one_in(2) ? 0.5 : between(0, 1);
+        args.eye[c] = maybe_odd(odd, either_sign(power_of_ten(-3, 6)));
+        args.forward[c] = maybe_odd(odd, between(-1, 1));
+        args.right[c] = maybe_odd(odd, between(-1e-2, 1e-2));
+        args.up[c] = maybe_odd(odd, between(-1e-2, 1e-2));
+    }
+    FOR_EACH_TESTED
+    {
+        output3(args.origin, "origin", real_kind(precision), n);
+        output3(args.direction, "direction", real_kind(precision), n);
+        args.across = output("across", real_kind(precision), 3 * across * GLINT_GROUP);
+        args.down = output("down", real_kind(precision), 3 * down * GLINT_GROUP);
+        geometry(precision)->camera(&args);
+        compare_outputs("camera");
+    }
+}
+
+static void test_camera(void **state)
+{
+    (void)state;
+    run_cases(CASES, 1000, camera_case);
+}
+
+// ---- cast --------------------------------------------------------------------------------------------------------
+
+static uint32_t out_of_sight;
+
+static bool any_hit(uint32_t groups)
+{
+    const uint16_t *hits = array_elements(wanted_array("hits"));
+    for (uint32_t g = 0; g < groups; g++)
+        if (hits[g])
+            return true;
+    return false;
+}
+
+static void check_sight(const ray_case *c)
+{
+    if (geometry(c->precision)->in_sight(&c->cast))
+        return;
+    out_of_sight++;
+    if (!any_hit(c->cast.group_count))
+        return;
+    mismatches++;
+    printf("in_sight %s, seed %llu: false, but something is hit\n", running->name, (unsigned long long)case_seed);
+}
+
+static void cast_all(const ray_case *c)
+{
+    static const char *const names[RAY_KINDS] = { "cast_bundle", "cast_rays, orthographic", "cast_rays, parallel",
+                                                  "cast_rays" };
+    glint_cast_args args = c->cast;
+    const uint32_t n = args.group_count * GLINT_GROUP;
+    FOR_EACH_TESTED
+    {
+        args.t = output("t", real_kind(c->precision), n);
+        args.prim = output("prim", KIND_U32, n);
+        args.hits = output("hits", KIND_U16, args.group_count);
+        cast_on(running, c, &args);
+        compare_outputs(names[c->kind]);
+        if (c->kind == RAYS_OF_EYE)
+            check_sight(c);
+    }
+}
+
+/// Now and then what nobody expects in a ray; not a direction next to nothing, whose square is 0 in float.
+static void spoil_rays(ray_case *c)
+{
+    double origin[3], direction[3];
+    for (uint32_t i = 0; i < c->cast.group_count * GLINT_GROUP; i++) {
+        get_ray(c, i, origin, direction);
+        for (uint32_t k = 0; k < 3; k++) {
+            put(c->origin[k], c->precision, i, maybe_odd(true, origin[k]));
+            direction[k] = maybe_odd(true, direction[k]);
+        }
+        if (!(length3(direction) < 1e-15))
+            put3(c->direction, c->precision, i, direction);
+    }
+}
+
+static void cast_case(int precision, bool odd)
+{
+    ray_case c;
+    start_rays(&c, (ray_kind)below(RAY_KINDS), precision);
+    if (odd && c.kind == RAYS_FREE)
+        spoil_rays(&c);
+    cast_all(&c);
+    end_rays(&c);
+}
+
+static void test_cast(void **state)
+{
+    (void)state;
+    run_cases(4 * CASES, 2000, cast_case);
+}
+
+/// The scene around one tile, seen by a tile nearby: what is in sight of it, if anything, is at its border.
+static void neighbour_case(int precision, bool odd)
+{
+    (void)odd;
+    ray_case c;
+    start_rays(&c, RAYS_OF_EYE, precision);
+    for (int round = 0; round < 3; round++) {
+        c.camera.x0 += either_sign(4 * c.camera.groups_across);
+        c.camera.y0 += 4 * below(3) * (c.cast.group_count / c.camera.groups_across);
+        shoot_camera(&c);
+        cast_all(&c);
+        free_arrays(wanted, &wanted_count);
+    }
+    end_rays(&c);
+}
+
+static void test_in_sight(void **state)
+{
+    (void)state;
+    out_of_sight = 0;
+    run_cases(CASES, 3000, neighbour_case);
+    assert_true(out_of_sight > 0);
+}
+
+// ---- From afar ---------------------------------------------------------------------------------------------------
+
+/// Rays along an axis, exactly, from up to 1e36 away, at spheres next to which the way is endless.
+static void afar_case(int precision, bool odd)
+{
+    (void)odd;
+    static test_scene scene;
+    const uint32_t n = GLINT_TILE_SAMPLES, most_exponent = precision == GLINT_DOUBLE ? 36 : 15;
+    ray_case c = { .kind = RAYS_FREE, .precision = precision, .plan = { .size = 1 }, .scene = &scene };
+    scene.table.prim_count = 1 + below(60);
+    for (uint32_t i = 0; i < scene.table.prim_count; i++) {
+        const double center[3] = { between(-1, 1), between(-1, 1), between(-1, 1) };
+        set_sphere(&scene.prims[i], center, power_of_ten(-6, -1));
+    }
+    finish_scene(&c.plan, &scene);
+    input3(c.origin, real_kind(precision), n);
+    input3(c.direction, real_kind(precision), n);
+    for (uint32_t i = 0; i < n; i++) {
+        const glint_prim *prim = &scene.prims[below(scene.table.prim_count)];
+        const uint32_t axis = below(3);
+        double direction[3] = { 0 }, origin[3];
+        direction[axis] = either_sign(power_of_ten(-1, 1));
+        for (int k = 0; k < 3; k++)
+            origin[k] = prim->center[k] + prim->radius * between(-0.8, 0.8);
+        origin[axis] -= power_of_ten(0, most_exponent) * direction[axis];
+        put3(c.origin, precision, i, origin);
+        put3(c.direction, precision, i, direction);
+    }
+    c.cast = (glint_cast_args) { .group_count = GLINT_TILE_GROUPS,
+                                 .active = masks(GLINT_TILE_GROUPS),
+                                 .geometry = &scene.table };
+    memcpy(c.cast.origin, c.origin, sizeof c.cast.origin);
+    memcpy(c.cast.direction, c.direction, sizeof c.cast.direction);
+    cast_all(&c);
+    end_rays(&c);
+}
+
+static void test_from_afar(void **state)
+{
+    (void)state;
+    run_cases(CASES / 2, 7000, afar_case);
+}
+
+// ---- Borders of groups ---------------------------------------------------------------------------------------------
+
+/// An upright camera whose outermost rays of each group run exactly along the group's border.
+static void set_border_camera(glint_camera_args *camera, double distance)
+{
+    const double height = random_tile(camera), edge = power_of_ten(-1.5, 0);
+    const uint32_t axis = below(3);
+    for (int c = 0; c < 2; c++)
+        camera->offset[c] = below(2);
+    camera->forward[axis] = either_sign(1);
+    camera->right[(axis + 1) % 3] = either_sign(edge / height);
+    camera->up[(axis + 2) % 3] = either_sign(edge / height);
+    camera->eye[axis] = -distance * camera->forward[axis];
+}
+
+/// A ray on the left, right, upper or lower border of a group, and which way is out of the group there.
+static void border_ray(const ray_case *c, double origin[3], double direction[3], double outwards[3])
+{
+    const glint_camera_args *camera = &c->camera;
+    const bool across = one_in(2), far = camera->offset[!across] > 0;
+    const uint32_t lane = across ? 4 * below(4) + (far ? 3 : 0) : below(4) + 4 * (far ? 3 : 0);
+    const double *axis = across ? camera->right : camera->up;
+    get_ray(c, below(camera->group_count) * GLINT_GROUP + lane, origin, direction);
+    const double sign = far == across ? 1 : -1, back = dot3(axis, direction) / dot3(direction, direction);
+    for (int k = 0; k < 3; k++)
+        outwards[k] = sign * (axis[k] - back * direction[k]);
+    const double size = length3(outwards);
+    for (int k = 0; k < 3; k++)
+        outwards[k] /= size;
+}
+
+/// Spheres outside of groups that a ray along the border of the group touches, or all but touches.
+static void border_case(int precision, bool odd)
+{
+    (void)odd;
+    static test_scene scene;
+    const double distance = power_of_ten(0.3, 3);
+    ray_case c = { .kind = RAYS_OF_EYE, .precision = precision, .plan = { .size = 1 }, .scene = &scene };
+    set_border_camera(&c.camera, distance);
+    make_axes(&c.camera, precision);
+    shoot_camera(&c);
+    scene.table.prim_count = 1 + below(60);
+    for (uint32_t i = 0; i < scene.table.prim_count; i++) {
+        double origin[3], direction[3], outwards[3], center[3];
+        const double radius = distance * power_of_ten(-6, -1.5);
+        border_ray(&c, origin, direction, outwards);
+        along3(origin, distance * between(0.5, 2), direction, center);
+        along3(center, radius * (1 - power_of_ten(-16, -5)), outwards, center);
+        set_sphere(&scene.prims[i], center, radius);
+    }
+    finish_scene(&c.plan, &scene);
+    uint16_t *active = masks(c.camera.group_count);
+    memset(active, 0xff, c.camera.group_count * sizeof *active);
+    c.cast = (glint_cast_args) {
+        .group_count = c.camera.group_count, .active = active, .geometry = &scene.table, .camera = &c.camera
+    };
+    cast_all(&c);
+    end_rays(&c);
+}
+
+static void test_borders(void **state)
+{
+    (void)state;
+    run_cases(2 * CASES, 3500, border_case);
+}
+
+// ---- Equal distances ---------------------------------------------------------------------------------------------
+
+/// Four primitives that a ray downwards meets at one point, numbered in any order: two spheres that coincide, a third that
+/// touches them there from inside, and a plane that is tangent.
+static test_scene *tied_scene(const scene_plan *plan)
+{
+    static test_scene scene;
+    const double normal[3] = { 0, 0, 1 }, center[3][3] = { { 0, 0, 0 }, { 0, 0, 0.5 }, { 0, 0, 1 } };
+    scene.table.prim_count = 4;
+    set_sphere(&scene.prims[0], center[0], 1);
+    set_sphere(&scene.prims[1], center[0], 1);
+    set_sphere(&scene.prims[2], center[1], 0.5);
+    set_plane(&scene.prims[3], center[2], normal);
+    finish_scene(plan, &scene);
+    return &scene;
+}
+
+/// The lowest id wins. The ray in the middle of the picture is exactly downwards.
+static void ties_case(int precision, bool odd)
+{
+    (void)odd;
+    ray_case c = { .kind = one_in(2) ? RAYS_OF_EYE : RAYS_OF_ORTHOGRAPHIC_CAMERA, .precision = precision };
+    c.plan = (scene_plan) { .size = 1 };
+    c.camera = (glint_camera_args) { .group_count = GLINT_TILE_GROUPS,
+                                     .groups_across = GLINT_TILE_WIDTH / 4,
+                                     .width = GLINT_TILE_WIDTH,
+                                     .height = GLINT_TILE_HEIGHT,
+                                     .orthographic = c.kind != RAYS_OF_EYE,
+                                     .eye = { 0, 0, 2 + below(7) },
+                                     .forward = { 0, 0, -1 },
+                                     .right = { 1. / 32 },
+                                     .up = { 0, 1. / 32 } };
+    const uint32_t middle = (3 * c.camera.groups_across + 4) * GLINT_GROUP, n = GLINT_TILE_SAMPLES;
+    input3(c.origin, real_kind(precision), n);
+    input3(c.direction, real_kind(precision), n);
+    make_axes(&c.camera, precision);
+    shoot_camera(&c);
+    uint16_t *active = masks(GLINT_TILE_GROUPS);
+    active[middle / GLINT_GROUP] |= 1;
+    c.scene = tied_scene(&c.plan);
+    c.cast = (glint_cast_args) { .group_count = GLINT_TILE_GROUPS,
+                                 .active = active,
+                                 .geometry = &c.scene->table,
+                                 .camera = &c.camera,
+                                 .parallel = true };
+    memcpy(c.cast.origin, c.origin, sizeof c.cast.origin);
+    memcpy(c.cast.direction, c.direction, sizeof c.cast.direction);
+    cast_all(&c);
+    assert_int_equal(c.scene->prims[((uint32_t *)array_elements(wanted_array("prim")))[middle]].id, 0);
+    end_rays(&c);
+}
+
+static void test_ties(void **state)
+{
+    (void)state;
+    run_cases(CASES, 4000, ties_case);
+}
+
+// ---- surface -----------------------------------------------------------------------------------------------------
+
+/// Hits as cast leaves them; in an odd case other primitives and distances than those.
+static void make_hits(ray_case *c, bool odd)
+{
+    const uint32_t n = c->cast.group_count * GLINT_GROUP;
+    c->cast.t = input(real_kind(c->precision), n);
+    c->cast.prim = input(KIND_U32, n);
+    c->cast.hits = input(KIND_U16, c->cast.group_count);
+    cast_on(&glint_stages_ref, c, &c->cast);
+    for (uint32_t i = 0; i < n && odd; i++) {
+        if (!lane_of(c->cast.hits, i))
+            continue;
+        put(c->cast.t, c->precision, i, maybe_odd(odd, get(c->cast.t, c->precision, i)));
+        if (one_in(2))
+            c->cast.prim[i] = below(c->scene->table.prim_count);
+    }
+}
+
+static void surface_case(int precision, bool odd)
+{
+    ray_case c;
+    start_rays(&c, (ray_kind)below(RAY_KINDS), precision);
+    make_hits(&c, odd);
+    const uint32_t groups = c.cast.group_count, n = groups * GLINT_GROUP;
+    glint_surface_args args = { .group_count = groups,
+                                .hits = c.cast.hits,
+                                .prim = c.cast.prim,
+                                .prims = c.scene->prims,
+                                .camera = c.kind == RAYS_OF_EYE ? &c.camera : NULL,
+                                .t = c.cast.t };
+    memcpy(args.origin, c.origin, sizeof args.origin);
+    memcpy(args.direction, c.direction, sizeof args.direction);
+    FOR_EACH_TESTED
+    {
+        output3(args.point, "point", real_kind(precision), n);
+        output3(args.normal, "normal", real_kind(precision), n);
+        args.material = output("material", KIND_U32, n);
+        args.back = output("back", KIND_U16, groups);
+        args.dark = output("dark", KIND_U16, groups);
+        geometry(precision)->surface(&args);
+        compare_outputs("surface");
+    }
+    end_rays(&c);
+}
+
+static void test_surface(void **state)
+{
+    (void)state;
+    run_cases(2 * CASES, 6000, surface_case);
+}
+
+int main(void)
+{
+    find_tested();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
+        cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
+        cmocka_unit_test(test_surface),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
+}

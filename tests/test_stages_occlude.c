@@ -1,0 +1,166 @@
+/// occlude on every instruction set against the scalar reference, which asks every primitive about every point: neither
+/// the index nor the list of a tile nor a filter loses a shadow or makes one.
+#include "tests/stage_scene.h"
+
+enum { CASES = 3000 };
+
+typedef struct shadow_case {
+    int precision;
+    scene_plan plan;
+    test_scene *scene;
+    glint_occlude_args args;
+    uint32_t *prim;
+    uint16_t *back;
+} shadow_case;
+
+// ---- Lights and points -------------------------------------------------------------------------------------------
+
+/// In the scene, around it, far away, or without a place. Returns how far from the middle.
+static double place_light(shadow_case *c)
+{
+    const double size = c->plan.size;
+    const double distance = size * (one_in(3) ? between(0, 1) : one_in(3) ? power_of_ten(1, 12) : between(1, 10));
+    double direction[3];
+    random_unit(direction);
+    if (one_in(4)) {
+        memset(direction, 0, sizeof direction);
+        direction[below(3)] = either_sign(1);
+    }
+    c->args.scale = 1;
+    c->args.directional = one_in(3);
+    if (c->args.directional) {
+        memcpy(c->args.position, direction, sizeof direction);
+        return size;
+    }
+    c->args.scale = ldexp(1, -ilogb(distance));
+    along3(c->plan.middle, distance, direction, c->args.position);
+    return distance;
+}
+
+/// What a tile sees lies together more often than not; else its shaft holds half the scene.
+static void place_points(shadow_case *c, double light_distance)
+{
+    const scene_plan *plan = &c->plan;
+    const double width = plan->size * (one_in(3) ? 1 : power_of_ten(-6, 0)), deep = one_in(8) ? 100 : 1;
+    double near[3], point[3];
+    for (int k = 0; k < 3; k++)
+        near[k] = plan->middle[k] + deep * plan->size * between(-1, 1);
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        for (int k = 0; k < 3; k++) {
+            point[k] = near[k] + width * between(-1, 1);
+            put(c->args.point[k], c->precision, i, point[k]);
+            point[k] = get(c->args.point[k], c->precision, i);
+        }
+        if (c->plan.line_count == MOST_LINES || !one_in(3))
+            continue;
+        double way[3];
+        for (int k = 0; k < 3; k++)
+            way[k] = c->args.position[k] - (c->args.directional ? 0 : point[k]);
+        const double length = length3(way);
+        if (length > 0 && isfinite(length))
+            add_line(&c->plan, point, way, c->args.directional ? light_distance : length);
+    }
+    if (c->plan.line_count == 0)
+        add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
+}
+
+/// Some of the points go onto the primitive they are said to be on; the others are on none that could shadow them.
+static void place_on_surfaces(shadow_case *c)
+{
+    const test_scene *scene = c->scene;
+    const uint32_t few = below(4);
+    double out[3], point[3];
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        c->prim[i] = below(one_in(4) ? scene->table.prim_count : (few + scene->table.prim_count) / (few + 1));
+        const glint_prim *prim = &scene->prims[c->prim[i]];
+        if (one_in(3)) {
+            c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+            continue;
+        }
+        if (prim->kind == GLINT_PRIM_SPHERE) {
+            random_unit(out);
+            along3(prim->center, prim->radius, out, point);
+        } else {
+            random_across(prim->normal, out);
+            along3(prim->center, c->plan.size * between(-1, 1), out, point);
+        }
+        put3(c->args.point, c->precision, i, point);
+    }
+}
+
+// ---- occlude -----------------------------------------------------------------------------------------------------
+
+static void start_shadows(shadow_case *c, int precision)
+{
+    memset(c, 0, sizeof *c);
+    c->precision = precision;
+    random_place(&c->plan, precision == GLINT_DOUBLE); // there are no points where float overflows
+    const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
+    c->args.lit = masks(groups);
+    c->args.prim = c->prim = input(KIND_U32, n);
+    c->args.back = c->back = masks(groups);
+    for (uint32_t g = 0; g < groups; g++)
+        c->back[g] = one_in(2) ? 0 : c->back[g];
+    input3(c->args.point, real_kind(precision), n);
+    place_points(c, place_light(c));
+    c->scene = random_scene(&c->plan);
+    c->args.geometry = &c->scene->table;
+    place_on_surfaces(c);
+}
+
+static void occlude_all(shadow_case *c)
+{
+    glint_occlude_args args = c->args;
+    FOR_EACH_TESTED
+    {
+        uint64_t rays = 5;
+        args.rays = &rays;
+        args.open = output("open", KIND_U16, args.group_count);
+        geometry(c->precision)->occlude(&args);
+        *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
+        compare_outputs("occlude");
+    }
+}
+
+/// Some shadow somewhere, and some light: a test of nothing but one of them would be none.
+static uint32_t open_lanes, dark_lanes;
+
+static void count_lanes(const shadow_case *c)
+{
+    const uint16_t *open = array_elements(wanted_array("open"));
+    for (uint32_t g = 0; g < c->args.group_count; g++) {
+        open_lanes += (unsigned)__builtin_popcount(open[g]);
+        dark_lanes += (unsigned)__builtin_popcount(c->args.lit[g] & ~(unsigned)open[g]);
+    }
+}
+
+static void occlude_case(int precision, bool odd)
+{
+    shadow_case c;
+    start_shadows(&c, precision);
+    for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
+        for (int k = 0; k < 3 && one_in(8); k++) {
+            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more
+            put(c.args.point[k], precision, i, odd_number());
+        }
+    occlude_all(&c);
+    count_lanes(&c);
+    free_scene(c.scene);
+}
+
+static void test_occlude(void **state)
+{
+    (void)state;
+    open_lanes = dark_lanes = 0;
+    run_cases(CASES, 9000, occlude_case);
+    assert_true(open_lanes > 10000 && dark_lanes > 10000);
+}
+
+int main(void)
+{
+    find_tested();
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude) };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
+}
