@@ -137,7 +137,7 @@ static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint3
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
     const vr old_t = r_load(best_t);
-    const rm tie = rm_and(hit, r_eq(t, old_t));
+    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is no hit to tie
     hit = rm_and(hit, r_lt(t, old_t));
     if (rm_bits(tie))
         hit = rm_or(hit, rm_from_bits(R(wins_tie)(args->geometry->prims, id, best_id, rm_bits(tie))));
@@ -631,7 +631,7 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     ray_view ray = { .slack = R(walk_slack)(geometry) };
     for (int k = 0; k < 3; k++) {
         ray.origin[k] = rays->local[k][lane];
-        ray.inverse[k] = inverse_of(rays->direction[k][lane]);
+        ray.inverse[k] = 1 / rays->direction[k][lane];
     }
     walk_entry stack[WALK_STACK];
     int height = 0;

@@ -288,7 +288,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * grou
     int height = 0;
     for (int k = 0; k < 3; k++) {
         ray.origin[k] = local[k][lane];
-        ray.inverse[k] = inverse_of(tile->args->directional ? tile->light[k] : tile->light[k] - local[k][lane]);
+        ray.inverse[k] = 1 / (tile->args->directional ? tile->light[k] : tile->light[k] - local[k][lane]);
         // the light's own rounding: as if the box were that much larger
         ray.slack = larger(ray.slack, WALK_SLACK * fabsf(tile->light[k]));
     }

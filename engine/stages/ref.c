@@ -165,7 +165,7 @@ static float highlight_strength(float shininess, float log2_specular)
 /// A light's share of a term is float; the term is a sum in double.
 static void add_share(double *term, float factor, double color)
 {
-    float share = factor * (float)color;
+    float share = factor * (color < FLT_MAX ? (float)color : FLT_MAX);
     *term += (double)share;
 }
 

@@ -37,15 +37,23 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
     }
 }
 
+/// What a material makes of a light's colour; finite, so that nothing of it is nothing.
+static inline float share_color(double reflectance, double light)
+{
+    const double color = reflectance * light;
+    return color < FLT_MAX ? (float)color : FLT_MAX;
+}
+
 /// One light's share of a term in float, for a group: factor times kd Id or ks Is.
 static inline void light_share(const light_factors *factors, const glint_shade_material *material, uint32_t k, int term,
                                int c, float share[GLINT_GROUP])
 {
     const glint_shade_light *light = factors->light[k];
-    const double color = term ? material->specular[c] * light->specular[c] : material->diffuse[c] * light->diffuse[c];
+    const float color = term ? share_color(material->specular[c], light->specular[c])
+                             : share_color(material->diffuse[c], light->diffuse[c]);
     const float *factor = term ? factors->specular[k] : factors->diffuse[k];
     for (int i = 0; i < GLINT_GROUP; i += VF)
-        f_store(share + i, f_load(factor + i) * f_set((float)color));
+        f_store(share + i, f_load(factor + i) * f_set(color));
 }
 
 /// A group's terms in float, before they are added up.
@@ -161,10 +169,11 @@ static inline void shade_whole(const glint_shade_args *args, const glint_shade_m
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             vf sum = f_set((float)material->ambient[c]);
             if (light)
-                sum = sum + f_load(factors->diffuse[0] + i) * f_set((float)(material->diffuse[c] * light->diffuse[c]));
-            if (light && specular)
                 sum =
-                    sum + f_load(factors->specular[0] + i) * f_set((float)(material->specular[c] * light->specular[c]));
+                    sum + f_load(factors->diffuse[0] + i) * f_set(share_color(material->diffuse[c], light->diffuse[c]));
+            if (light && specular)
+                sum = sum +
+                      f_load(factors->specular[0] + i) * f_set(share_color(material->specular[c], light->specular[c]));
             f_store(args->beauty[c] + at + i, sum);
         }
 }

@@ -258,7 +258,7 @@ typedef struct glint_shade_args {
 //   background += background where active and not hit; ambient += materials[m].ambient where hit
 //   for each light where its lit bit is set, in order:
 //     w = attenuation (NULL: 1); all of this in float:
-//     diffuse[c]  += (w cosine) (kd[c] diffuse[c]), the product of the colours made in double and rounded
+//     diffuse[c]  += (w cosine) (kd[c] diffuse[c]), the product p of the colours made in double: p < FLT_MAX ? (float)p : FLT_MAX
 //     where the material has a highlight, highlights is true and log2_specular > GLINT_NO_SPECULAR:
 //     y = shininess log2_specular, S = y < -40 ? 0 : exp2(y)
 //     specular[c] += (w S) (ks[c] specular[c])

@@ -238,10 +238,8 @@ static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)
 
 typedef struct ray_view {
     float origin[3], slack; ///< in the index's frame
-    float inverse[3]; ///< 1 / direction; a component that is next to nothing counts as 1e-30
+    float inverse[3]; ///< 1 / direction, infinite where a component is 0: any other stand-in drifts off in the end
 } ray_view;
-
-static inline float inverse_of(float d) { return fabsf(d) < 1e-30f ? copysignf(1e30f, d) : 1 / d; }
 
 /// Which boxes the ray may enter before `far` (in units of its direction), and where it enters each.
 static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float far, float depth[GLINT_NODE_WIDTH])
@@ -253,7 +251,7 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
             vf middle, half;
             box_axis(node, k, i, ray->origin[k], ray->slack, &middle, &half);
             vf x = (middle - half) * f_set(ray->inverse[k]), y = (middle + half) * f_set(ray->inverse[k]);
-            enter = f_max(f_min(x, y), enter); // NaN keeps what there was
+            enter = f_max(f_min(x, y), enter); // NaN, 0 times infinity, keeps what there was
             leave = f_min(f_max(x, y), leave);
         }
         f_store(depth + i, enter);
