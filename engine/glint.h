@@ -422,6 +422,84 @@ typedef struct glint_compare_desc {
 glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
                                  glint_compare_result *out, glint_error *error);
 
+// ---- Finished files, sheets and films -------------------------------------------------------------------------------
+
+/// A file on its way: written under a hidden name beside its place, which has the whole file or none at any time.
+typedef struct glint_draft glint_draft;
+
+/// Opens a draft for `path`. Missing folders are made, a symbolic link is followed. What exists there and is not a
+/// regular file (a pipe, a device) is written in place and never replaced.
+///
+/// Messages of the three read "<path>: <reason>"; GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_NOMEM, GLINT_ERR_IO
+/// for the rest. A draft belongs to one thread at a time.
+glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error);
+/// The hidden name, for another program to write to; the draft's.
+const char *glint_draft_name(const glint_draft *draft);
+glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error);
+/// Syncs the file and gives it its name; an older one is replaced. Then only glint_draft_destroy may follow.
+glint_status glint_draft_finish(glint_draft *draft, glint_error *error);
+/// Removes what was not finished. NULL does nothing.
+void glint_draft_destroy(glint_draft *draft);
+
+/// A finished .png or .pfm, read again. Immutable.
+typedef struct glint_picture glint_picture;
+
+/// Reads `path`; what is not a whole file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
+/// deflated data are not looked at, the CRCs are. Messages name the file.
+glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error);
+void glint_picture_destroy(glint_picture *picture);
+int glint_picture_width(const glint_picture *picture);
+int glint_picture_height(const glint_picture *picture);
+int glint_picture_bits(const glint_picture *picture); ///< 8, 16; 32: a .pfm
+int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4
+glint_transfer glint_picture_transfer(const glint_picture *picture);
+/// The value of a PNG's tEXt, as UTF-8; the picture's; NULL: there is none.
+const char *glint_picture_text(const glint_picture *picture, const char *keyword);
+/// Row `y`, from 0 at the top, as 3 * width sRGB codes of 8 bits, for viewing: grey becomes RGB, 16 bits and linear codes
+/// are rounded, what shows through alpha is a grey of `backdrop`, 0 .. 255. Needs the pixels.
+void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
+
+typedef struct glint_sheet_cell {
+    const char *path; ///< a .png or .pfm, all of one size
+    const char *label; ///< UTF-8, parts divided by newlines, which share a line where they fit; NULL: none
+} glint_sheet_cell;
+
+typedef struct glint_sheet_desc {
+    const glint_sheet_cell *cells; ///< row by row
+    size_t cell_count; ///< >= 1
+    int columns; ///< >= 1
+    const char *title, *across, *down; ///< of the sheet, of its columns, of its rows; NULL: none
+    size_t difference; ///< the cell, from 1, that each row is compared with in a row below it; 0: no such rows
+    double gain; ///< what differences are multiplied by; > 0
+} glint_sheet_desc;
+
+/// Draws finished pictures in rows, with labels, as one PNG: dark text on white, pixels of 8 bits. A picture that is
+/// missing or of another size than the first is an error that names it; the file is then as it was.
+/// A row of differences holds |cell - chosen cell| times `gain`, in 8-bit sRGB codes.
+glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
+
+/// An animated PNG on its way.
+typedef struct glint_apng glint_apng;
+
+typedef struct glint_apng_desc {
+    int width, height; ///< 1 .. GLINT_SIDE_MAX
+    int bits; ///< 8 or 16
+    glint_transfer transfer;
+    uint32_t frame_count; ///< 1 .. 2^30
+    double fps; ///< 1/65535 .. 65535; a frame stays for the nearest ratio of two 16-bit numbers to 1/fps
+    uint32_t plays; ///< 0: for ever
+    glint_encode encode;
+} glint_apng_desc;
+
+/// Opens a draft for `path` and writes its head.
+glint_status glint_apng_create(const char *path, const glint_apng_desc *desc, glint_apng **out, glint_error *error);
+/// Adds a frame, of which only what has changed is stored: RGB without alpha, of the size, bits and transfer described.
+glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glint_error *error);
+/// Gives the file its name, once frame_count frames were added.
+glint_status glint_apng_finish(glint_apng *apng, glint_error *error);
+/// Removes what was not finished. NULL does nothing.
+void glint_apng_destroy(glint_apng *apng);
+
 // ---- Numbers that are the same on every machine -------------------------------------------------------------------
 
 double glint_sin(double radians);

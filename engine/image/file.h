@@ -5,13 +5,12 @@
 #include "engine/glint.h"
 #include "engine/image/bytes.h"
 
-/// Writes `path` by way of a temporary name beside it, fsync and rename; missing folders are made, a symbolic link is
-/// followed. What exists and is not a regular file (a pipe, a device) is opened and written in place, never replaced.
-///
-/// On failure the temporary file is gone, an existing file is as it was, and the message reads
-/// "<path>: <reason>"; GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_NOMEM, GLINT_ERR_IO for the rest.
-/// SIGXFSZ and SIGPIPE are the caller's to ignore; then EFBIG and EPIPE are reported like the others. Any thread.
+/// A whole file as one glint_draft, see glint.h. SIGXFSZ and SIGPIPE are the caller's to ignore; then EFBIG and EPIPE are
+/// reported like the others. draft.c
 glint_status glint_file_write(const char *path, const void *bytes, size_t size, glint_error *error);
+
+/// Fills `error` with "<path>: <reason>" for an errno, and returns its status: GLINT_ERR_NO_SPACE, _NOMEM or _IO.
+glint_status glint_file_fail(glint_error *error, const char *path, int code);
 
 /// Reads a whole file; *out is filled on success and its data is the caller's to free. More than `limit` bytes is
 /// GLINT_ERR_FORMAT.

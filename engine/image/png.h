@@ -46,4 +46,18 @@ glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, 
 /// Whether the bytes are a whole PNG (chunks from IHDR to IEND with right CRCs, nothing after) that has this text.
 bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value);
 
+typedef struct glint_png_head {
+    int width, height;
+    int bits; ///< as decoded: 8 or 16
+    int channels; ///< as decoded, 1 .. 4
+    glint_transfer transfer; ///< linear: gAMA says 1.0; else sRGB is taken for granted
+    bool is_animated; ///< several frames
+} glint_png_head;
+
+/// Reads what stands beside the pixels, and calls `text` (unless NULL) for each tEXt: its bytes, Latin-1, are borrowed for
+/// the call; false ends the walk. GLINT_ERR_FORMAT when the bytes are not a whole PNG, GLINT_ERR_NOMEM after false.
+glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *out,
+                            bool (*text)(void *user, const uint8_t *bytes, size_t size), void *user,
+                            glint_error *error);
+
 #endif

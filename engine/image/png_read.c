@@ -121,26 +121,101 @@ static bool is_text(const uint8_t *body, size_t size, const char *keyword, const
            memcmp(body + key + 1, value, length) == 0;
 }
 
-bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value)
+/// One chunk of a PNG in memory.
+typedef struct chunk {
+    const uint8_t *type, *body;
+    uint32_t size; ///< of the body
+} chunk;
+
+static bool is_type(const chunk *c, const char *type) { return memcmp(c->type, type, 4) == 0; }
+
+/// Takes the chunk at *at, which moves past it. False: there is no whole chunk with a right CRC.
+static bool next_chunk(const uint8_t *data, size_t size, size_t *at, chunk *out)
+{
+    if (size - *at < 12)
+        return false;
+    const uint8_t *from = data + *at;
+    uint32_t length = big_endian(from);
+    if (length > size - *at - 12 || crc32_z(0, from + 4, (size_t)length + 4) != big_endian(from + 8 + length))
+        return false;
+    *out = (chunk) { from + 4, from + 8, length };
+    *at += 12 + (size_t)length;
+    return true;
+}
+
+static bool has_signature(const uint8_t *data, size_t size)
 {
     static const uint8_t signature[8] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n' };
-    if (size < sizeof signature || memcmp(data, signature, sizeof signature) != 0)
+    return size >= sizeof signature && memcmp(data, signature, sizeof signature) == 0;
+}
+
+#define FIRST_CHUNK 8 // after the signature
+
+bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value)
+{
+    bool found = false, pixels = false, first = true;
+    size_t at = FIRST_CHUNK;
+    chunk c;
+    if (!has_signature(data, size))
         return false;
-    bool found = false, pixels = false;
-    for (size_t at = sizeof signature; size - at >= 12;) {
-        const uint8_t *chunk = data + at;
-        uint32_t length = big_endian(chunk);
-        if (length > size - at - 12)
+    while (next_chunk(data, size, &at, &c)) {
+        if (first && !is_type(&c, "IHDR"))
             return false;
-        if (crc32_z(0, chunk + 4, (size_t)length + 4) != big_endian(chunk + 8 + length))
-            return false;
-        if (at == sizeof signature && memcmp(chunk + 4, "IHDR", 4) != 0)
-            return false;
-        pixels |= memcmp(chunk + 4, "IDAT", 4) == 0;
-        found |= memcmp(chunk + 4, "tEXt", 4) == 0 && is_text(chunk + 8, length, keyword, value);
-        at += 12 + (size_t)length;
-        if (memcmp(chunk + 4, "IEND", 4) == 0)
-            return found && pixels && length == 0 && at == size;
+        first = false;
+        pixels |= is_type(&c, "IDAT");
+        found |= is_type(&c, "tEXt") && is_text(c.body, c.size, keyword, value);
+        if (is_type(&c, "IEND"))
+            return found && pixels && c.size == 0 && at == size;
     }
     return false;
+}
+
+/// IHDR into the head. False: no such picture.
+static bool read_ihdr(const chunk *c, glint_png_head *head)
+{
+    static const int channels[7] = { 1, 0, 3, 3, 2, 0, 4 };
+    uint32_t width = c->size == 13 ? big_endian(c->body) : 0, height = width ? big_endian(c->body + 4) : 0;
+    if (width < 1 || width > GLINT_SIDE_MAX || height < 1 || height > GLINT_SIDE_MAX || c->body[9] > 6)
+        return false;
+    head->width = (int)width;
+    head->height = (int)height;
+    head->bits = c->body[8] == 16 ? 16 : 8;
+    head->channels = channels[c->body[9]];
+    return head->channels > 0;
+}
+
+/// What one chunk before the pixels adds to the head.
+static void read_ancillary(const chunk *c, glint_png_head *head)
+{
+    if (is_type(c, "gAMA") && c->size == 4)
+        head->transfer = big_endian(c->body) == 100000 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB;
+    else if (is_type(c, "acTL") && c->size == 8)
+        head->is_animated = big_endian(c->body) > 1;
+    else if (is_type(c, "tRNS")) // becomes a channel of its own
+        head->channels += head->channels == 1 || head->channels == 3;
+}
+
+glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *out,
+                            bool (*text)(void *user, const uint8_t *bytes, size_t size), void *user, glint_error *error)
+{
+    glint_png_head head = { .transfer = GLINT_TRANSFER_SRGB };
+    bool pixels = false;
+    size_t at = FIRST_CHUNK;
+    chunk c;
+    if (!has_signature(data, size))
+        return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: it does not begin as one");
+    while (next_chunk(data, size, &at, &c)) {
+        if (!head.width && !(is_type(&c, "IHDR") && read_ihdr(&c, &head)))
+            return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no size");
+        pixels |= is_type(&c, "IDAT");
+        read_ancillary(&c, &head);
+        if (text && is_type(&c, "tEXt") && !text(user, c.body, c.size))
+            return glint_fail_nomem(error);
+        if (is_type(&c, "IEND")) {
+            *out = head;
+            return pixels && at == size ? GLINT_OK
+                                        : glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no picture in it");
+        }
+    }
+    return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: it ends too early or is damaged");
 }

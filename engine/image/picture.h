@@ -1,0 +1,11 @@
+/// What the files of engine/image share of a glint_picture. Internal.
+#ifndef GLINT_IMAGE_PICTURE_H
+#define GLINT_IMAGE_PICTURE_H
+
+#include "engine/glint.h"
+
+/// The decoded codes of a .png, uint8_t or uint16_t (native order), interleaved, top row first; NULL: a .pfm, or the
+/// pixels were not read.
+const void *glint_picture_codes(const glint_picture *picture);
+
+#endif
