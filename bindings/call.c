@@ -6,9 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/run.h"
+#include "bindings/film.h"
 
 #define PATH "scene:render: "
+#define DEFAULT_FPS 24.0
 
 int glintL_stop_script(lua_State *L)
 {
@@ -58,7 +59,8 @@ static bool is_selected(glintL_run *run)
 static bool is_open(const glintL_run *run, const glintL_render *render)
 {
     return run->asked.render_text[glintL_render_find("output")] && strcmp(render->output, "none") != 0 &&
-           run->count == 1 && run->point_count <= 1 && !glintL_name_has_number(render->output);
+           run->count == 1 && run->point_count <= 1 && !glintL_name_has_number(render->output) &&
+           glintL_film_kind_of(render->output, run->asked.apng) == GLINTL_FILM_NONE;
 }
 
 bool glintL_call_settle(glintL_run *run)
@@ -89,7 +91,9 @@ static glintL_naming naming_of(const glintL_run *run, const glintL_render *rende
     bool writes = *render->output && strcmp(render->output, "none") != 0;
     bool asked = run->asked.render_text[glintL_render_find("output")] != NULL;
     // A name the script gives for one call is that call's name; one from the command line serves all of them.
-    return (glintL_naming) { .pattern = writes ? render->output : NULL, .is_numbered = asked && is_numbered };
+    glintL_naming naming = { .pattern = writes ? render->output : NULL, .is_numbered = asked && is_numbered };
+    glintL_film_take(run, &naming);
+    return naming;
 }
 
 // Whether the files of the work are there, under the name the first call would get either way.
@@ -149,11 +153,23 @@ static glint_status fill_handle(lua_State *L, int first, const glint_scene *scen
     return GLINT_OK;
 }
 
+// Prepares the film the call's frame goes into, if any.
+static void open_film(lua_State *L, glintL_run *run, const glintL_render *render)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    const char *path = *render->output ? render->output : "none";
+    if (!run->is_command && glintL_film_kind_of(path, false) != GLINTL_FILM_NONE)
+        glintL_error(L, PATH "output: '%s' is a film; animation:run makes one, or the glint command", path);
+    if (!glintL_film_open(run, path, render, DEFAULT_FPS, message))
+        glintL_error(L, PATH "%s", message);
+}
+
 static int render_selected(lua_State *L, glintL_run *run, const glint_scene *scene, const glintL_render *render)
 {
     glint_error error;
     glintL_work *work = NULL;
     double build_ms = glintL_now_ms() - run->since_ms;
+    open_film(L, run, render);
     bool writes = naming_of(run, render, true).pattern != NULL;
     int first = lua_gettop(L) + 1; // the handles exist before what they hold
     glintL_new_box(L, GLINTL_IMAGE);

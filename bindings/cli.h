@@ -15,7 +15,11 @@ typedef enum cli_command {
     CLI_EXPLAIN = 2,
     CLI_DESCRIBE = 4,
     CLI_COMPARE = 8,
-    CLI_COST = 16
+    CLI_COST = 16,
+    CLI_SHEET = 32,
+    CLI_ASSEMBLE = 64,
+    CLI_REPRODUCE = 128,
+    CLI_NEW = 256
 } cli_command;
 
 typedef struct cli_sweep { ///< --sweep name=from:to:count
@@ -29,8 +33,13 @@ typedef struct cli_options {
     cli_command command;
     bool json, quiet, help, version;
     const char *script; ///< NULL: none given
-    char **arguments; ///< of compare; after `--` those of the script
+    char **arguments; ///< words of a command that takes files; after `--` those of the script
     int argument_count;
+    const char *file; ///< of reproduce
+    const char *output; ///< -o as it was given; NULL: not given
+    const char *label, *title; ///< of sheet; NULL: not given
+    int64_t columns, difference; ///< of sheet; 0: not given
+    double gain; ///< of sheet
     int64_t frame; ///< of explain
     double fail, warn; ///< of compare
     cli_sweep *sweeps;
@@ -50,7 +59,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 30
+#define CLI_OPTION_COUNT 37
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -59,6 +68,19 @@ bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_options(cli_options *options);
 void cli_print_usage(FILE *out); ///< usage.c
+
+// ---- file_list.c ----
+
+typedef struct cli_file_list {
+    char **files; ///< owned
+    size_t count;
+} cli_file_list;
+
+/// The files that the command's words name: themselves, or, of one word with a place for a number, the selected files
+/// that fit it. False: frames are missing, or there are none; the message names them. To be freed in any case.
+bool cli_list_files(const cli_options *options, const glintL_selection *selection, cli_file_list *out,
+                    char message[GLINTL_MESSAGE_SIZE]);
+void cli_free_list(cli_file_list *list);
 
 // ---- sweep_points.c ----
 
@@ -130,5 +152,9 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
 int cli_compare(const cli_options *options, cli_output *output);
+int cli_sheet(const cli_options *options, cli_output *output);
+int cli_assemble(cli_options *options, cli_output *output, glintL_run *run);
+int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run);
+int cli_new(const cli_options *options, cli_output *output);
 
 #endif

@@ -99,20 +99,35 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 
 // ---- What the words and the options say together ----
 
+typedef enum cli_words { // that follow a command's name
+    SCRIPT,
+    FILES, // any number; the command counts them
+    FILE_SCRIPT
+} cli_words;
+
 static const struct {
     const char *name;
     cli_command command;
+    cli_words words;
 } COMMANDS[] = {
-    { "render", CLI_RENDER },   { "explain", CLI_EXPLAIN }, { "describe", CLI_DESCRIBE },
-    { "compare", CLI_COMPARE }, { "cost", CLI_COST },
+    { "render", CLI_RENDER, SCRIPT },
+    { "explain", CLI_EXPLAIN, SCRIPT },
+    { "describe", CLI_DESCRIBE, SCRIPT },
+    { "compare", CLI_COMPARE, FILES },
+    { "sheet", CLI_SHEET, FILES },
+    { "assemble", CLI_ASSEMBLE, FILES },
+    { "reproduce", CLI_REPRODUCE, FILE_SCRIPT },
+    { "new", CLI_NEW, FILES },
+    { "cost", CLI_COST, SCRIPT },
 };
 #define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
 
-static bool read_command(const char *word, cli_command *command)
+static bool read_command(const char *word, cli_command *command, cli_words *words)
 {
     for (size_t i = 0; i < COMMAND_COUNT; i++) {
         if (strcmp(word, COMMANDS[i].name) == 0) {
             *command = COMMANDS[i].command;
+            *words = COMMANDS[i].words;
             return true;
         }
     }
@@ -122,12 +137,15 @@ static bool read_command(const char *word, cli_command *command)
 static bool read_words(int count, char **words, cli_options *options, char *message)
 {
     const char *near = NULL;
-    int used = count > 0 && read_command(words[0], &options->command) ? 1 : 0;
-    if (options->command == CLI_COMPARE) {
+    cli_words kind = SCRIPT;
+    int used = count > 0 && read_command(words[0], &options->command, &kind) ? 1 : 0;
+    if (kind == FILES) {
         options->arguments = words + used;
         options->argument_count = count - used;
         return true;
     }
+    if (kind == FILE_SCRIPT && used < count)
+        options->file = words[used++];
     if (used < count)
         options->script = words[used++];
     if (used == count)
@@ -138,6 +156,21 @@ static bool read_words(int count, char **words, cli_options *options, char *mess
         snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
     else
         snprintf(message, MESSAGE, "'%.200s' is one word too many; arguments of the script follow --", words[used]);
+    return false;
+}
+
+// -o is checked here for the commands that take a picture's or a film's name.
+static bool check_output(cli_options *options, char *message)
+{
+    char wrong[MESSAGE];
+    glintL_render scratch = glintL_render_default();
+    int field = glintL_render_find("output");
+    if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
+        return true;
+    options->asked.render_text[field] = options->output;
+    if (glintL_render_set_text(&scratch, field, options->output, wrong))
+        return true;
+    snprintf(message, MESSAGE, "--output: %.1000s", wrong);
     return false;
 }
 
@@ -180,6 +213,7 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
 static bool complete(cli_options *options, char *message)
 {
     bool good = true;
+    options->asked.swept_count = options->sweep_count;
     for (size_t i = 0; i < options->sweep_count; i++)
         good = good && cli_add_set(&options->asked, options->sweeps[i].name, "");
     if (options->start || options->end || options->jump) {
@@ -209,9 +243,9 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     }
     if (!read_argv(words, argv, options, used, message) ||
         !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
-        !complete(options, message))
+        !check_output(options, message) || !complete(options, message))
         return false;
-    if (words < argc && options->command != CLI_COMPARE) {
+    if (words < argc && !options->arguments) {
         options->arguments = argv + words + 1;
         options->argument_count = argc - words - 1;
     }

@@ -153,9 +153,25 @@ static void report_rendering(void *context, const glintL_run *run, bool begins)
 
 static void report_warning(void *context, const char *message) { cli_print_warning(context, message); }
 
+static void report_figure(void *context, const char *kind, const char *path, int64_t count)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_clear(output->progress);
+    if (output->json) {
+        fprintf(output->data, "{\"event\":\"%s\",\"file\":", kind);
+        glintL_json_string(output->data, path);
+        fprintf(output->data, ",\"frames\":%" PRId64 "}", count);
+        end_line(output);
+    } else if (!output->quiet) {
+        print_kept(output);
+        fprintf(stderr, "%s: %s of %" PRId64 " frame%s\n", path, kind, count, count == 1 ? "" : "s");
+    }
+}
+
 glintL_reporter cli_reporter(cli_output *output)
 {
-    return (glintL_reporter) { output, report_rendering, report_frame, report_warning };
+    return (glintL_reporter) { output, report_rendering, report_frame, report_warning, report_figure };
 }
 
 // ---- The end ----

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/run.h"
+#include "bindings/film.h"
 
 static const glintL_field OPTIONS[] = {
     { .name = "frames" }, { .name = "shard" },  { .name = "threads" },
@@ -105,6 +105,7 @@ static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_asked *
         good = glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
     if (!run->is_command) {
         good = glintL_run_collect(run, true) && good;
+        good = good && glintL_films_finish(run);
         if (good && glintL_selection_outside(&run->asked.selection, run->total, message))
             glintL_run_warn(run, "%s", message);
     }
@@ -128,6 +129,8 @@ static int push_summary(lua_State *L, const glintL_run *run, double start_ms)
 // Plain Lua has no command line: each run counts its frames from 1.
 static void begin_plain(glintL_run *run)
 {
+    glintL_films_destroy(run->films);
+    run->films = NULL;
     run->exit_code = 0;
     run->count = run->call_count = run->earlier = 0;
     run->todo = run->done = run->kept = 0;

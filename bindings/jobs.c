@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run.h"
+#include "bindings/film.h"
+#include "bindings/sheet.h"
 
 // ---- What a script returned ----
 
@@ -144,6 +145,17 @@ static void begin_job(job_walk *walk, lua_Integer i)
     }
 }
 
+// Prepares the film the job's frames go into, if any. False: the run has failed.
+static bool open_film(job_walk *walk)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    const char *path = walk->naming.pattern ? walk->naming.pattern : "none";
+    if (!glintL_film_open(walk->run, path, &walk->render, walk->job->fps, message))
+        return glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, 0, "%s", message);
+    glintL_film_take(walk->run, &walk->naming);
+    return true;
+}
+
 static int build(lua_State *L)
 {
     glintL_job_build(L, 1, lua_tointeger(L, 2));
@@ -197,6 +209,22 @@ static bool settle_before(job_walk *walk, lua_Integer i, int64_t first)
     return good;
 }
 
+// Notes a sweep's place with the work. False: out of memory; the work is gone, and the run has failed.
+static bool keep_place(job_walk *walk, glintL_work *work)
+{
+    if (walk->job->kind != GLINTL_JOB_SWEEP)
+        return true;
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_PLACE);
+    const char *place = lua_tostring(walk->L, -1);
+    work->sweep = strdup(place ? place : "");
+    lua_pop(walk->L, 1);
+    if (work->sweep)
+        return true;
+    glintL_run_fail(walk->run, GLINTL_EXIT_FAILED, work->index, "out of memory");
+    glintL_work_destroy(work);
+    return false;
+}
+
 // Sets the scene to frame n and plans it. NULL: the run has failed.
 static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
 {
@@ -217,6 +245,8 @@ static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
     if (status)
         glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number,
                         error.message);
+    else if (!keep_place(walk, work))
+        return NULL;
     else
         work->build_ms = glintL_now_ms() - start;
     return work;
@@ -255,12 +285,52 @@ static part open_part(glintL_run *run, int64_t frames)
     return p;
 }
 
+typedef struct sheet_call {
+    const glintL_naming *naming;
+    int64_t first;
+    bool partial;
+} sheet_call;
+
+static int draw_sheet(lua_State *L)
+{
+    const sheet_call *what = lua_touserdata(L, 2);
+    glintL_sweep_draw_sheet(L, 1, what->naming, what->first, what->partial);
+    return 0;
+}
+
+// Draws the sheet of a sweep whose first frame has that number, when it has one. False: the run has failed.
+static bool make_sheet(job_walk *walk, int64_t first)
+{
+    lua_State *L = walk->L;
+    glintL_run *run = walk->run;
+    const glintL_selection *asked = &run->asked.selection;
+    sheet_call what = { &walk->naming, first, asked->range_count > 0 || asked->shard_count > 1 };
+    int type = lua_getiuservalue(L, walk->job_index, GLINTL_JOB_SHEET);
+    lua_settop(L, walk->job_index);
+    if (type == LUA_TNIL || !walk->naming.pattern || run->no_sheets)
+        return true;
+    if (!glintL_run_collect(run, true)) // its frames are files from here on
+        return false;
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, draw_sheet);
+    lua_pushvalue(L, walk->job_index);
+    lua_pushlightuserdata(L, &what);
+    run->in_frame = true;
+    int status = lua_pcall(L, 2, 0, -4);
+    run->in_frame = false;
+    if (status != LUA_OK)
+        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
+                        lua_tostring(L, -1));
+    lua_settop(L, walk->job_index);
+    return run->exit_code == 0;
+}
+
 static bool run_job(job_walk *walk, lua_Integer i, part *p)
 {
     glintL_run *run = walk->run;
     int64_t first = run->count + 1;
-    bool good = true;
     begin_job(walk, i);
+    bool good = open_film(walk);
     for (int64_t n = 1; n <= walk->job->frames && good; n++) {
         int64_t number = ++run->count;
         if (!glintL_selection_has(&run->asked.selection, number))
@@ -274,6 +344,8 @@ static bool run_job(job_walk *walk, lua_Integer i, part *p)
     }
     if (walk->job->kind == GLINTL_JOB_SWEEP)
         good = call(walk, restore, 0, run->count) && good;
+    if (walk->job->kind == GLINTL_JOB_SWEEP && good && !run->interrupted)
+        good = make_sheet(walk, first);
     lua_settop(walk->L, walk->job_index - 1);
     return good;
 }

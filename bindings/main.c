@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "bindings/cli.h"
+#include "bindings/film.h"
 
 static int run_command(cli_options *options, cli_output *output, glintL_run *run)
 {
@@ -16,6 +17,10 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
         return cli_explain(options, output, run);
     case CLI_DESCRIBE:
         return cli_describe(options, output, run);
+    case CLI_ASSEMBLE:
+        return cli_assemble(options, output, run);
+    case CLI_REPRODUCE:
+        return cli_reproduce(options, output, run);
     default:
         return cli_render(options, output, run);
     }
@@ -33,6 +38,7 @@ static void finish_early(void)
     open_output = NULL;
     bool good = glintL_call_settle(run);
     good = glintL_run_collect(run, true) && good;
+    good = good && glintL_films_finish(run);
     cli_progress_destroy(output->progress);
     output->progress = NULL;
     if (good)
@@ -45,7 +51,7 @@ static void finish_early(void)
         _exit(code ? code : close_code);
 }
 
-// Runs a command that needs a script. *signal_number is the signal that ended it, or 0.
+// Runs a command that a signal may interrupt. *signal_number is the signal that ended it, or 0.
 static int run_scripted(cli_options *options, cli_output *output, int *signal_number)
 {
     glintL_run *run = glintL_run_create();
@@ -55,7 +61,7 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     }
     run->is_command = true;
     run->times_stages = options->json;
-    snprintf(run->script, sizeof run->script, "%s", cli_base_name(options->script));
+    snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
     run->asked = options->asked; // which now owns what it points to
     options->asked.sets = NULL;
     options->asked.selection.ranges = NULL;
@@ -89,7 +95,11 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
     }
     if (options->command == CLI_COMPARE)
         return cli_compare(options, output);
-    if (!options->script) {
+    if (options->command == CLI_SHEET)
+        return cli_sheet(options, output);
+    if (options->command == CLI_NEW)
+        return cli_new(options, output);
+    if (!options->script && options->command != CLI_ASSEMBLE) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "a script expected; glint --help lists the commands");
         return GLINTL_EXIT_USAGE;
     }

@@ -10,7 +10,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "bindings/run.h"
+#include "bindings/film.h"
 
 #define DIGITS_MAX 18 // widest place for a number
 
@@ -84,8 +84,11 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
             wrong = "a place for the frame number such as %04d or ####, and %% for a per cent sign";
         at += length;
     }
-    if (!wrong && !ending(pattern) && !glintL_name_is_special(pattern))
-        wrong = "a file name ending in .png or .pfm";
+    bool is_film = glintL_film_kind_of(pattern, false) != GLINTL_FILM_NONE;
+    if (!wrong && is_film && glintL_name_has_number(pattern))
+        wrong = "a film's name without a place for the frame number";
+    if (!wrong && !is_film && !ending(pattern) && !glintL_name_is_special(pattern))
+        wrong = "a file name ending in .png or .pfm, or a film's in .mp4, .webm, .gif or .apng";
     if (!wrong && strlen(pattern) >= GLINTL_PATH_SIZE - 64)
         wrong = "a shorter file name";
     if (wrong)

@@ -8,7 +8,8 @@
 #include "bindings/cli.h"
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
-#define ALL (SCRIPTED | CLI_COMPARE)
+#define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW)
+#define ALL (SCRIPTED | FILES)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
 // ---- Readers ----
@@ -29,10 +30,10 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    bool *const flags[] = { &options->json,    &options->quiet,       &options->help,
-                            &options->version, &options->asked.force, &options->asked.no_reuse };
-    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse" };
-    for (int i = 0; i < 6; i++)
+    bool *const flags[] = { &options->json,        &options->quiet,          &options->help,      &options->version,
+                            &options->asked.force, &options->asked.no_reuse, &options->asked.apng };
+    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse", "apng" };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(option->name, names[i]) == 0)
             *flags[i] = true;
     return true;
@@ -71,6 +72,45 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
     int field = glintL_render_find(option->name);
     options->asked.render_text[field] = text;
     return glintL_render_set_text(&scratch, field, text, message);
+}
+
+// Which endings are right depends on the command, which is known when all is read.
+static bool read_output(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option, (void)message;
+    options->output = text;
+    return true;
+}
+
+static bool read_fps(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    char *end;
+    double fps = strtod(text, &end);
+    if (end == text || *end || !(fps > 0 && fps <= 1e6)) {
+        snprintf(message, MESSAGE, "frames a second > 0 expected, got '%.200s'", text);
+        return false;
+    }
+    options->asked.fps = fps;
+    return true;
+}
+
+static bool read_sheet(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    char *end;
+    if (option->name[0] == 'c')
+        return read_whole(text, 1, GLINT_SIDE_MAX, &options->columns, message);
+    if (option->name[0] == 'd')
+        return read_whole(text, 1, 1000000, &options->difference, message);
+    if (option->name[0] == 'g') {
+        options->gain = strtod(text, &end);
+        if (end > text && *end == '\0' && options->gain >= 1e-3 && options->gain <= 1e6)
+            return true;
+        snprintf(message, MESSAGE, "number 0.001 .. 1000000 expected, got '%.200s'", text);
+        return false;
+    }
+    *(option->name[0] == 'l' ? &options->label : &options->title) = text;
+    return true;
 }
 
 static bool read_size(cli_options *options, const cli_option *option, char *text, char *message)
@@ -163,13 +203,20 @@ static bool read_threshold(cli_options *options, const cli_option *option, char 
 }
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    { "frames", 'f', true, CLI_RENDER, read_frames },
+    { "frames", 'f', true, CLI_RENDER | CLI_ASSEMBLE, read_frames },
     { "start", 's', true, CLI_RENDER, read_step },
     { "end", 'e', true, CLI_RENDER, read_step },
     { "jump", 'j', true, CLI_RENDER, read_step },
     { "shard", 0, true, CLI_RENDER, read_shard },
     { "frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_COST, read_frame },
-    { "output", 'o', true, CLI_RENDER | CLI_EXPLAIN, read_render },
+    { "output", 'o', true, CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE, read_output },
+    { "fps", 0, true, CLI_RENDER | CLI_ASSEMBLE, read_fps },
+    { "apng", 0, false, CLI_RENDER | CLI_ASSEMBLE, read_flag },
+    { "columns", 0, true, CLI_SHEET, read_sheet },
+    { "label", 0, true, CLI_SHEET, read_sheet },
+    { "title", 0, true, CLI_SHEET, read_sheet },
+    { "difference", 0, true, CLI_SHEET, read_sheet },
+    { "gain", 0, true, CLI_SHEET, read_sheet },
     { "set", 'D', true, SCRIPTED, read_set },
     { "sweep", 0, true, CLI_RENDER, read_sweep },
     { "size", 0, true, SCRIPTED, read_size },
@@ -182,10 +229,10 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "passes", 0, true, SCRIPTED, read_render },
     { "encode", 0, true, SCRIPTED, read_render },
     { "seed", 0, true, SCRIPTED, read_render },
-    { "threads", 't', true, SCRIPTED, read_count },
+    { "threads", 't', true, SCRIPTED | CLI_REPRODUCE, read_count },
     { "no-reuse", 0, false, CLI_RENDER, read_flag },
     { "reuse-memory", 0, true, CLI_RENDER, read_memory },
-    { "force", 0, false, CLI_RENDER, read_flag },
+    { "force", 0, false, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag },
     { "repeat", 0, true, CLI_RENDER, read_count },
     { "json", 0, false, ALL, read_flag },
     { "quiet", 'q', false, ALL, read_flag },

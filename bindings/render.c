@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bindings/cli.h"
+#include "bindings/film.h"
 
 static bool finish_point(cli_script *script, const cli_options *options, glintL_run *run)
 {
@@ -30,6 +31,7 @@ static bool run_points(cli_options *options, glintL_run *run)
     if (run->point_count == 0)
         return finish_point(&script, options, run);
     for (run->point = 1; run->point <= run->point_count; run->point++) {
+        run->point_first = run->count;
         if (frames > 0 && is_empty_point(run, frames)) {
             run->count += frames;
             continue;
@@ -57,8 +59,11 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
         output->progress = cli_progress_create(output->color);
     bool good = run_points(options, run);
     good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
-    if (good && !run->interrupted)
+    good = good && !run->interrupted && glintL_films_finish(run);
+    if (good)
         warn_calls(run);
+    else
+        glintL_films_keep(run);
     if (run->interrupted) {
         cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
     } else if (run->exit_code) {

@@ -277,6 +277,29 @@ static void push_passes(lua_State *L, uint32_t passes)
     }
 }
 
+bool glintL_render_spell(const glintL_render *render, int field, char out[64])
+{
+    const detail *what = &details[field];
+    const char *at = (const char *)render + what->offset;
+    double number;
+    unsigned value;
+    switch (what->sort) {
+    case WHOLE:
+        memcpy(&number, at, sizeof number);
+        snprintf(out, 64, "%.17g", number);
+        return true;
+    case BITS:
+        snprintf(out, 64, "%d", render->desc.tone.bits);
+        return true;
+    case CHOICE:
+        memcpy(&value, at, sizeof value);
+        snprintf(out, 64, "%s", what->names[value]);
+        return true;
+    default:
+        return false;
+    }
+}
+
 void glintL_render_push(lua_State *L, int field, const glintL_render *render)
 {
     const detail *what = &details[field];

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "bindings/run.h"
+#include "bindings/film.h"
 
 #define QUEUE_DEPTH 3 // files that may wait while the next frame renders
 
@@ -56,6 +56,7 @@ void glintL_run_destroy(glintL_run *run)
     }
     glintL_selection_clear(&run->asked.selection);
     free(run->asked.sets);
+    glintL_films_destroy(run->films);
     free(run->params_text);
     free(run);
 }
@@ -227,6 +228,7 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->index = work->index;
     record->build_ms = work->build_ms;
     record->stats = work->stats;
+    record->film = work->film;
     record->pixel_count = work->render.desc.width * work->render.desc.height;
     for (int i = 0; i < work->file_count; i++) {
         char *copy = strdup(work->files[i].path);
@@ -266,6 +268,8 @@ static void flush_records(glintL_run *run)
         if (!record->failed) {
             if (record->is_last)
                 count_record(run, record);
+            if (record->is_last && record->film && !glintL_film_add(record->film, record->files[GLINT_PASS_BEAUTY]))
+                glintL_run_fail(run, GLINTL_EXIT_FAILED, record->index, "out of memory");
             if (run->reporter.frame)
                 run->reporter.frame(run->reporter.context, run, record);
         }

@@ -6,6 +6,9 @@
 ///   params.c          glint.params; param_spec.c one parameter and its --set
 ///   animation.c       the job object and its fields; sweep.c its other kind
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
+///   provenance.c      what a file says of itself, and whether files belong together
+///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
+///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
 ///   run.c             the run: records in order, failures; jobs.c frames of jobs, job_run.c :run; call.c scene:render
 ///   kept_image.c      the picture of a file that was kept
 ///
@@ -66,6 +69,8 @@ bool glintL_render_set_text(glintL_render *render, int field, const char *text, 
 /// Sets a field from the Lua value at `index`; raises "<path><name>: ... expected, got ...".
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
 void glintL_render_push(lua_State *L, int field, const glintL_render *render);
+/// The field as glintL_render_set_text reads it; false: a field that says nothing of the picture.
+bool glintL_render_spell(const glintL_render *render, int field, char out[64]);
 
 // ---- names.c ----
 
@@ -73,6 +78,7 @@ typedef struct glintL_naming {
     const char *pattern; ///< borrowed; NULL: no file is written
     bool is_plain; ///< '%' and '#' stand for themselves
     bool is_numbered; ///< a pattern without a place for the number gets "_0001" before its ending
+    struct glintL_film *film; ///< the frames go into; NULL: none. The run's
 } glintL_naming;
 
 bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
@@ -95,6 +101,9 @@ typedef struct glintL_asked {
     const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
     glintL_set *sets;
     size_t set_count;
+    size_t swept_count; ///< of the sets, the last ones: those of --sweep
+    bool apng; ///< an output in .png is a film
+    double fps; ///< of films; 0: as the script says
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
     bool force, no_reuse;
@@ -116,6 +125,7 @@ typedef struct glintL_record {
     int files_left; ///< at the writer
     bool failed;
     char *files[GLINT_PASS_COUNT]; ///< by pass; owned; NULL: none
+    struct glintL_film *film; ///< its beauty goes into; NULL: none
     struct glintL_record *next;
 } glintL_record;
 
@@ -132,6 +142,8 @@ typedef struct glintL_work {
     glint_plan *plan;
     glint_image *image; ///< NULL until it is rendered
     glint_frame_stats stats;
+    char *sweep; ///< owned; "name=value" lines of the frame's place in a glint.sweep; NULL: none
+    struct glintL_film *film;
     int file_count;
     glintL_file files[GLINT_PASS_COUNT];
 } glintL_work;
@@ -143,6 +155,8 @@ typedef struct glintL_reporter {
     void (*rendering)(void *context, const glintL_run *run, bool begins); ///< around each glint_render
     void (*frame)(void *context, const glintL_run *run, const glintL_record *record);
     void (*warn)(void *context, const char *message);
+    /// A sheet or film was made of `count` frames.
+    void (*figure)(void *context, const char *kind, const char *path, int64_t count);
 } glintL_reporter;
 
 struct glintL_run {
@@ -162,6 +176,7 @@ struct glintL_run {
     int64_t files_pending;
     glintL_work *deferred; ///< the first call, while nobody knows whether there is a second
     char *params_text; ///< owned; "name=value" lines
+    struct glintL_film *films; ///< owned; made when all their frames are there
 
     int64_t count; ///< frames numbered so far
     int64_t call_count; ///< of these by scene:render
@@ -170,10 +185,12 @@ struct glintL_run {
     int64_t done, kept; ///< reported
     uint64_t clipped, pixels, nonfinite; ///< of the reported frames
     int64_t point, point_count; ///< which value of --sweep, 1 .. point_count; 0 of 0: no sweep
+    int64_t point_first; ///< frames numbered before this point
     int64_t earlier; ///< lists of jobs that were run before this one
     bool is_stopped; ///< the script was ended by glintL_stop_script
     double since_ms; ///< when the last call returned
     bool in_frame; ///< a frame function runs
+    bool no_sheets; ///< frames alone are wanted
 
     int exit_code; ///< of the first failure
     int64_t failed_index;
@@ -221,6 +238,31 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
 /// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
 
+// ---- provenance.c ----
+
+#define GLINTL_TEXT_COUNT 9
+
+/// The texts of a file: what it was made by, and what is needed to make it again.
+typedef struct glintL_provenance {
+    glint_text text[GLINTL_TEXT_COUNT];
+    size_t count;
+    char frame[24]; ///< number within the script
+    char options[1024]; ///< "name=value" lines: what the frame was asked to be
+    char *sweep; ///< owned; "name=value" lines: the axes of glint.sweep, then of --sweep; NULL: none
+} glintL_provenance;
+
+/// False: out of memory, and nothing is to be dropped. The texts point into the arguments and into `out`.
+bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const glintL_work *work,
+                            const glintL_file *file);
+void glintL_provenance_drop(glintL_provenance *provenance);
+/// Finds the line "name=..." in "name=value" lines; its length goes to *length. NULL: there is none, or no lines.
+const char *glintL_find_line(const char *lines, const char *name, size_t name_length, size_t *length);
+/// Whether two files were made by the same script and version for the same end, so that they may stand in one film or
+/// sheet; parameters and options count when `strict`, but those that a sweep changes. False: the message names what
+/// differs and where.
+bool glintL_provenance_match(const glint_picture *a, const char *a_path, const glint_picture *b, const char *b_path,
+                             bool strict, char message[GLINTL_MESSAGE_SIZE]);
+
 // ---- animation.c, sweep.c, jobs.c, job_run.c ----
 
 typedef enum glintL_job_kind { GLINTL_JOB_ANIMATION, GLINTL_JOB_SWEEP } glintL_job_kind;
@@ -228,7 +270,8 @@ typedef enum glintL_job_kind { GLINTL_JOB_ANIMATION, GLINTL_JOB_SWEEP } glintL_j
 #define GLINTL_JOB_SCENE 1 ///< user values: the scene,
 #define GLINTL_JOB_FRAME 2 ///< the frame function or the list of axes,
 #define GLINTL_JOB_SHEET 3 ///< the sheet,
-#define GLINTL_JOB_SAVED 4 ///< what a sweep changes, as it was before
+#define GLINTL_JOB_SAVED 4 ///< what a sweep changes, as it was before,
+#define GLINTL_JOB_PLACE 5 ///< "name=value" lines of the sweep's frame that was built last
 
 typedef struct glintL_job {
     void *self; ///< not NULL: messages take a userdata with NULL here for a closed object
@@ -253,6 +296,13 @@ const char *glintL_job_name(glintL_job_kind kind); ///< "animation", "sweep"
 void glintL_job_build(lua_State *L, int index, int64_t n);
 /// Puts back what a sweep has changed, so that the next job does not depend on which frames were rendered.
 void glintL_sweep_restore(lua_State *L, int index);
+/// Pushes the object, the name of the field and the list of values of axis `i` of those at `axes`; returns the object's
+/// index.
+int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i);
+/// Pushes the table name -> value of frame n of the sweep at `index`.
+void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
+/// Pushes the "name=value" lines of frame n of the sweep at `index`, an axis each.
+void glintL_sweep_push_place(lua_State *L, int index, int64_t n);
 
 /// Makes a list of jobs out of what a script returned at `index` (a job, a scene, a list of them): pushes it and
 /// returns true, or pushes a message and returns false.

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/run.h"
+#include "bindings/sheet.h"
 
 #define AXES_MAX 16
 
@@ -103,28 +103,6 @@ static void read_size(lua_State *L, int index, glintL_job *job)
     job->render = read;
 }
 
-// A contact sheet is not made yet; its description is checked all the same.
-static void check_sheet(lua_State *L, int index)
-{
-    static const glintL_field known[] = { { .name = "label" }, { .name = "output" }, { .name = NULL } };
-    if (!lua_istable(L, index))
-        glintL_refuse(L, index, "sweep.sheet", "table");
-    lua_pushnil(L);
-    while (lua_next(L, index)) {
-        if (lua_type(L, -2) != LUA_TSTRING)
-            glintL_bad_key(L, "sweep.sheet", -2);
-        const char *name = lua_tostring(L, -2);
-        bool is_label = strcmp(name, "label") == 0;
-        if (!glintL_find_field(known, name))
-            glintL_no_such_field(L, "sweep.sheet", name, glintL_nearest(name, known));
-        if (is_label && !lua_isboolean(L, -1) && !lua_isfunction(L, -1) && lua_type(L, -1) != LUA_TSTRING)
-            glintL_refuse(L, -1, "sweep.sheet.label", "boolean, string or function");
-        if (!is_label && lua_type(L, -1) != LUA_TSTRING)
-            glintL_refuse(L, -1, "sweep.sheet.output", "file name");
-        lua_pop(L, 1);
-    }
-}
-
 void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name)
 {
     if (strcmp(name, "size") == 0) {
@@ -132,7 +110,7 @@ void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name)
     } else if (strcmp(name, "over") == 0) {
         read_axes(L, index, job_index);
     } else {
-        check_sheet(L, index);
+        glintL_sweep_check_sheet(L, index);
         lua_pushvalue(L, index);
         lua_setiuservalue(L, job_index, GLINTL_JOB_SHEET);
     }
@@ -151,17 +129,6 @@ int glintL_new_sweep(lua_State *L)
 
 // ---- One frame ----
 
-// Pushes the object, the name of the field and the list of values of an axis; returns the object's index.
-static int push_axis(lua_State *L, int axes, lua_Integer i)
-{
-    lua_rawgeti(L, axes, i);
-    int axis = lua_gettop(L);
-    for (int part = 1; part <= 3; part++)
-        lua_rawgeti(L, axis, part);
-    lua_remove(L, axis);
-    return axis;
-}
-
 // Keeps what the fields were before the first frame, in a table under the axes' list: { object, name, value }.
 static void save(lua_State *L, int index, int axes)
 {
@@ -169,7 +136,7 @@ static void save(lua_State *L, int index, int axes)
     lua_newtable(L);
     int saved = lua_gettop(L);
     for (lua_Integer i = 1; i <= count; i++) {
-        int object = push_axis(L, axes, i);
+        int object = glintL_sweep_push_axis(L, axes, i);
         lua_pushvalue(L, object + 1);
         lua_gettable(L, object);
         lua_rawseti(L, saved, i);
@@ -189,13 +156,15 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n)
         save(L, index, axes);
     lua_settop(L, axes);
     for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, axes); i++) {
-        int object = push_axis(L, axes, i);
+        int object = glintL_sweep_push_axis(L, axes, i);
         int64_t count = (int64_t)lua_rawlen(L, object + 2);
         lua_rawgeti(L, object + 2, rest % count + 1);
         glintL_set_field(L, object, lua_tostring(L, object + 1));
         rest /= count;
         lua_settop(L, axes);
     }
+    glintL_sweep_push_place(L, index, n);
+    lua_setiuservalue(L, index, GLINTL_JOB_PLACE);
     lua_settop(L, top);
 }
 
@@ -206,7 +175,7 @@ void glintL_sweep_restore(lua_State *L, int index)
     lua_getiuservalue(L, index, GLINTL_JOB_FRAME);
     if (lua_getiuservalue(L, index, GLINTL_JOB_SAVED) == LUA_TTABLE) {
         for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, top + 1); i++) {
-            int object = push_axis(L, top + 1, i);
+            int object = glintL_sweep_push_axis(L, top + 1, i);
             if (lua_rawgeti(L, top + 2, i) != LUA_TNIL)
                 glintL_set_field(L, object, lua_tostring(L, object + 1));
             lua_settop(L, top + 2);

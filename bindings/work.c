@@ -5,8 +5,6 @@
 
 #include "bindings/run.h"
 
-#define TEXT_MAX 65000 // a PNG text takes 64 KiB
-
 static glint_status fail(glint_error *error, glint_status status, const char *what, const char *text, const char *rest)
 {
     error->status = status;
@@ -45,6 +43,7 @@ void glintL_work_destroy(glintL_work *work)
         return;
     glint_plan_destroy(work->plan);
     glint_image_release(work->image);
+    free(work->sweep);
     free(work);
 }
 
@@ -60,6 +59,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
 {
     uint32_t passes = work->render.file_passes | 1u << GLINT_PASS_BEAUTY;
     work->file_count = 0;
+    work->film = naming->film;
     if (!naming->pattern)
         return GLINT_OK;
     for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
@@ -124,17 +124,15 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
 static glint_status submit(glintL_run *run, const glintL_work *work, const glintL_file *file, glintL_record *record,
                            glint_error *error)
 {
-    const char *params = run->params_text ? run->params_text : "";
-    glint_text text[] = {
-        { "Software", "glint " GLINT_VERSION },
-        { "glint:key", file->key },
-        { "glint:script", run->script },
-        { "glint:params", params },
-    };
+    glintL_provenance provenance;
     glint_write_desc desc = write_desc(work, file);
-    desc.text = text;
-    desc.text_count = *params && strlen(params) < TEXT_MAX ? 4 : 3;
-    return glint_writer_submit(run->writer, work->image, &desc, record, error);
+    if (!glintL_provenance_take(&provenance, run, work, file))
+        return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
+    desc.text = provenance.text;
+    desc.text_count = provenance.count;
+    glint_status status = glint_writer_submit(run->writer, work->image, &desc, record, error);
+    glintL_provenance_drop(&provenance);
+    return status;
 }
 
 bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
