@@ -44,6 +44,8 @@ static const char *check_film(const cli_options *options, const glintL_film *fil
 {
     if (!options->output || film->kind == GLINTL_FILM_NONE)
         return "-o with a film's name in .mp4, .webm, .gif, .png or .apng expected";
+    if (options->asked.apng && film->kind != GLINTL_FILM_APNG)
+        return "--apng: -o with a name in .png expected";
     if (film->kind == GLINTL_FILM_GIF && film->fps > 50)
         return "a GIF has at most 50 frames a second; --fps 50 or less expected";
     return NULL;

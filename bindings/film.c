@@ -91,12 +91,14 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
                       char message[GLINTL_MESSAGE_SIZE])
 {
     glintL_film_kind kind = glintL_film_kind_of(path, run->asked.apng);
-    if (kind == GLINTL_FILM_NONE || strcmp(path, "none") == 0) {
-        if (!run->asked.apng || strcmp(path, "none") == 0)
-            return true;
+    if (strcmp(path, "none") == 0)
+        return true;
+    if (run->asked.apng && kind != GLINTL_FILM_APNG) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "--apng: an output in .png expected, got '%.200s'", path);
         return false;
     }
+    if (kind == GLINTL_FILM_NONE)
+        return true;
     fps = run->asked.fps > 0 ? run->asked.fps : fps;
     if (run->asked.selection.shard_count > 1)
         return refuse(message, path,

@@ -40,7 +40,8 @@ bool glintL_films_finish(glintL_run *run);
 /// Says where the frames of films are that were not made.
 void glintL_films_keep(const glintL_run *run);
 void glintL_films_destroy(glintL_film *films);
-/// Whether the run's last failure leaves films unmade whose frames are there.
+/// Whether the files are whole and go together: size, bits and transfer; when `strict`, also what they were made by.
+/// False: the message names the one that does not.
 bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE]);
 /// Makes a film of its files. Returns the exit code; the message says what failed. What was not finished is gone.
 int glintL_film_make(const glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);

@@ -15,7 +15,7 @@ typedef enum verdict { // exit codes, beside the usual ones
 typedef struct reproduction {
     const char *file;
     glint_picture *picture;
-    char *params, *options, *pass; // cut up: the sets and render texts point into them
+    char *params, *options, *pass, *sweep; // cut up: the sets and render texts point into them
     char folder[256]; // of the new file
     char output[300]; // its pattern
     char *made[GLINT_PASS_COUNT]; // by pass; owned
@@ -61,6 +61,21 @@ static bool take_param(void *user, char *name, char *value)
     return cli_add_set(user, name, value);
 }
 
+// A parameter that --sweep set is one of the run's sweep again: files say so. They come last, in their order.
+static bool take_swept(void *user, char *name, char *value)
+{
+    glintL_asked *asked = user;
+    size_t last = asked->set_count - 1, at = 0;
+    while (at < asked->set_count && strcmp(asked->sets[at].name, name) != 0)
+        at++;
+    if (at == asked->set_count) // an axis of the script's own
+        return true;
+    memmove(asked->sets + at, asked->sets + at + 1, (last - at) * sizeof *asked->sets);
+    asked->sets[last] = (glintL_set) { .name = name, .text = value };
+    asked->swept_count++;
+    return true;
+}
+
 static bool take_option(void *user, char *name, char *value)
 {
     glintL_asked *asked = user;
@@ -91,10 +106,12 @@ static int ask(reproduction *r, glintL_run *run, char *message)
     r->params = strdup(text_of(r, "glint:params"));
     r->options = strdup(text_of(r, "glint:options"));
     r->pass = strdup(text_of(r, "glint:pass"));
-    if (!r->params || !r->options || !r->pass || !cut_lines(r->params, take_param, asked)) {
+    r->sweep = strdup(text_of(r, "glint:sweep"));
+    if (!r->params || !r->options || !r->pass || !r->sweep || !cut_lines(r->params, take_param, asked)) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
         return GLINTL_EXIT_FAILED;
     }
+    cut_lines(r->sweep, take_swept, asked);
     cut_lines(r->options, take_option, asked);
     if (!glintL_selection_parse(&asked->selection, frame, message) || !check_options(asked, message))
         return UNREADABLE;
@@ -252,6 +269,7 @@ static void clean_up(reproduction *r)
     free(r->params);
     free(r->options);
     free(r->pass);
+    free(r->sweep);
 }
 
 int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run)

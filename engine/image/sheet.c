@@ -33,6 +33,8 @@ typedef struct layout {
     int left, top; ///< of the first picture
     int band; ///< height of a row with its differences
     int gap;
+    int note_lines; ///< at the bottom
+    char note[160]; ///< what a row of differences shows, in parts
     int64_t sheet_width, sheet_height;
 } layout;
 
@@ -59,9 +61,9 @@ static int widest_part(const layout *l, const char *label)
     return widest;
 }
 
-/// Sets `label` on lines as wide as the column, parts sharing a line where they fit; draws them centred below `y` on a
-/// column that begins at `x`, unless `canvas` is NULL. Returns how many lines there are.
-static int set_label(const layout *l, const char *label, glint_canvas *canvas, int x, int y)
+/// Sets `label` on lines at most `room` wide, parts sharing a line where they fit; draws them from `y` down, centred on
+/// the room, which begins at `x`, unless `canvas` is NULL. Returns how many lines there are.
+static int set_label(const layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
 {
     int lines = 0;
     while (label && *label) {
@@ -70,12 +72,12 @@ static int set_label(const layout *l, const char *label, glint_canvas *canvas, i
         while (*part) { // how many parts this line takes
             size_t size = strcspn(part, "\n");
             int wider = (part > label ? width + gap : 0) + text_width(l, part, size);
-            if (part > label && wider > l->column)
+            if (part > label && wider > room)
                 break;
             width = wider;
             part += size + (part[size] == '\n');
         }
-        for (int at = x + (l->column - width) / 2; label < part;) {
+        for (int at = x + (room - width) / 2; label < part;) {
             size_t size = strcspn(label, "\n");
             if (canvas)
                 glint_canvas_text(canvas, at, y + lines * line_height(l), l->scale, label, size, INK);
@@ -88,6 +90,28 @@ static int set_label(const layout *l, const char *label, glint_canvas *canvas, i
 }
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
+
+/// The whole sheet: the grid, or what stands above and below it.
+static void measure_sheet(layout *l)
+{
+    const glint_sheet_desc *desc = l->desc;
+    int64_t least[2] = { 0, 0 };
+    l->sheet_width = (int64_t)l->left + (int64_t)desc->columns * (l->column + l->gap);
+    l->sheet_height = (int64_t)l->top + (int64_t)l->rows * l->band;
+    if (desc->title)
+        least[0] = l->left + 2 * (int64_t)text_width(l, desc->title, SIZE_MAX) + l->gap;
+    if (desc->difference) {
+        snprintf(l->note, sizeof l->note,
+                 "below each: |picture - cell %zu| x %g\nthe largest, in codes of 255\npixels that differ",
+                 desc->difference, desc->gain);
+        least[1] = l->left + widest_part(l, l->note) + l->gap;
+    }
+    for (int i = 0; i < 2; i++)
+        l->sheet_width = least[i] > l->sheet_width ? least[i] : l->sheet_width;
+    if (l->sheet_width <= GLINT_SIDE_MAX)
+        l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, NULL, 0, 0);
+    l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
+}
 
 static layout measure(const glint_sheet_desc *desc, int width, int height)
 {
@@ -103,18 +127,15 @@ static layout measure(const glint_sheet_desc *desc, int width, int height)
         l.column = widest > l.column ? widest : l.column;
     }
     for (size_t i = 0; i < desc->cell_count; i++) {
-        int count = set_label(&l, desc->cells[i].label, NULL, 0, 0);
+        int count = set_label(&l, desc->cells[i].label, l.column, NULL, 0, 0);
         lines = count > lines ? count : lines;
     }
     lines = differs && lines < 1 ? 1 : lines;
     l.label = lines * line_height(&l) + (lines ? 4 * l.scale : 0);
     l.left = l.gap + (desc->down ? line_height(&l) + l.gap / 2 : 0);
-    l.top = l.gap + (desc->title ? 2 * line_height(&l) : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
+    l.top = l.gap + (desc->title ? 2 * line_height(&l) + l.gap : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
     l.band = (differs ? 2 : 1) * (height + l.label + l.gap);
-    l.sheet_width = (int64_t)l.left + (int64_t)desc->columns * (l.column + l.gap);
-    l.sheet_height = (int64_t)l.top + (int64_t)l.rows * l.band + (differs ? line_height(&l) : 0);
-    int title = l.gap + l.left + (desc->title ? 2 * text_width(&l, desc->title, SIZE_MAX) : 0);
-    l.sheet_width = title > l.sheet_width ? title : l.sheet_width;
+    measure_sheet(&l);
     return l;
 }
 
@@ -161,23 +182,19 @@ static void draw_difference(const layout *l, glint_canvas *canvas, size_t a, siz
         snprintf(label, sizeof label, "cell %zu", b + 1);
     else
         snprintf(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
-    set_label(l, label, canvas, ax - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+    set_label(l, label, l->column, canvas, ax - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
 }
 
 static void draw_differences(const layout *l, glint_canvas *canvas)
 {
-    char note[160];
     size_t chosen = l->desc->difference - 1;
     int x, y;
     for (size_t i = 0; i < l->desc->cell_count; i++)
         draw_difference(l, canvas, i, chosen);
     place_cell(l, chosen, &x, &y);
     glint_canvas_frame(canvas, x, y, l->width, l->height, 3 * l->scale, MARK);
-    snprintf(note, sizeof note,
-             "Below each: |picture - cell %zu| x %g; the largest, in codes of 255; pixels that differ", chosen + 1,
-             l->desc->gain);
-    glint_canvas_text(canvas, l->left, (int)l->sheet_height - line_height(l) - l->gap / 2, l->scale, note, SIZE_MAX,
-                      FAINT_INK);
+    y = (int)l->sheet_height - l->note_lines * line_height(l) - l->gap / 2;
+    set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
 }
 
 /// "name ->" above the columns or beside the rows, in their middle.
@@ -222,7 +239,7 @@ static glint_status draw_cell(const layout *l, glint_canvas *canvas, size_t i, g
     for (int row = 0; row < l->height && !status; row++)
         glint_picture_row(picture, row, 255, row_at(canvas, x, y + row));
     glint_picture_destroy(picture);
-    set_label(l, cell->label, canvas, x - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+    set_label(l, cell->label, l->column, canvas, x - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
     return status;
 }
 
