@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/run.h"
+#include "bindings/sheet.h"
 
 static const glintL_field ANIMATION_FIELDS[] = {
     { .name = "scene" },  { .name = "frames" }, { .name = "fps" },
@@ -253,6 +253,7 @@ void glintL_open_animation(lua_State *L)
     glintL_open_kept_image(L);
     list_fields(L, "animation", ANIMATION_FIELDS);
     list_fields(L, "sweep", SWEEP_FIELDS);
+    glintL_list_sheet(L);
     lua_pushcfunction(L, new_animation);
     lua_setfield(L, -2, "animation");
     lua_pushcfunction(L, glintL_new_sweep);

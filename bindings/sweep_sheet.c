@@ -47,12 +47,19 @@ static void check_field(lua_State *L, int index, const char *name)
     }
 }
 
+static const glintL_field FIELDS[] = {
+    { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
+    { .name = "title" }, { .name = "output" },  { .name = NULL },
+};
+
+void glintL_list_sheet(lua_State *L)
+{
+    static const glintL_variant variant = { .name = "sheet", .fields = FIELDS };
+    glintL_list_variant(L, &variant, NULL);
+}
+
 void glintL_sweep_check_sheet(lua_State *L, int index)
 {
-    static const glintL_field known[] = {
-        { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
-        { .name = "title" }, { .name = "output" },  { .name = NULL },
-    };
     if (!lua_istable(L, index))
         glintL_refuse(L, index, "sweep.sheet", "table");
     luaL_checkstack(L, 6, "sheet");
@@ -61,8 +68,8 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
         if (lua_type(L, -2) != LUA_TSTRING)
             glintL_bad_key(L, "sweep.sheet", -2);
         const char *name = lua_tostring(L, -2);
-        if (!glintL_find_field(known, name))
-            glintL_no_such_field(L, "sweep.sheet", name, glintL_nearest(name, known));
+        if (!glintL_find_field(FIELDS, name))
+            glintL_no_such_field(L, "sweep.sheet", name, glintL_nearest(name, FIELDS));
         check_field(L, lua_gettop(L), name);
         lua_pop(L, 1);
     }

@@ -279,7 +279,7 @@ function glint.scene(fields) end
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"  what becomes of light above 1. Default "clamp"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
----@field output? string  file name, .png or .pfm; %04d or #### takes the frame number
+---@field output? string  file name, .png or .pfm; %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
 
 ---@class glint.save_options
@@ -349,9 +349,15 @@ function animation:run(options) end
 ---@return glint.animation
 function glint.animation(fields) end
 
+--- A contact sheet of a sweep's frames, drawn when all of them are there: rows of labelled pictures with the names of the
+--- axes, as a picture, or as a page with a slider for each axis.
 ---@class glint.sheet
----@field label? boolean|string|function  what stands under each picture
----@field output? string  file name
+---@field label? boolean|string|fun(values: table<string, any>, n: integer): string  under each picture: true, every axis and its value; false, nothing; "n = {shininess}", with {file} and {frame} too; or what the function makes of the values by name. Default true
+---@field columns? integer  pictures in a row, 1 .. 65535. Default: the values of the first axis
+---@field difference? integer  a frame of the sweep, from 1: a second row shows how far each picture is from it. Default none
+---@field gain? number  what differences are multiplied by, 0.001 .. 1e6. Default 8
+---@field title? string  above the sheet. Default none
+---@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png
 
 ---@class glint.sweep_fields: glint.render
 ---@field scene glint.scene
