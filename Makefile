@@ -72,7 +72,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run asan tsan bench demo demo-run install golden-update check-layers \
+.PHONY: all need deps check check-run check-films asan tsan bench demo demo-run install golden-update check-layers \
         check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
@@ -120,7 +120,8 @@ $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 
 tests: all $(TEST_BIN) $(TEST_TOOLS)
 
-SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/golden.sh tests/povray.sh tests/readme.sh)
+SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/films.sh tests/golden.sh tests/povray.sh \
+              tests/readme.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -132,9 +133,9 @@ check-run: tests
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/povray.sh,$(SCRIPTED))
-# Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh), breaks popen
-# (test_api.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/cli.sh tests/test_api.lua tests/test_misuse.lua,$(SANITIZED))
+# Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
+# popen (test_api.lua), and lets through any allocation that ought to fail (test_misuse.lua).
+WATCHED   := $(filter-out tests/cli.sh tests/films.sh tests/test_api.lua tests/test_misuse.lua,$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
@@ -145,6 +146,11 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread \
 	    PRELOAD=libtsan.so ITEMS="$(WATCHED)"
+
+check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
+	@tests/deps.sh build test films
+	@$(MAKE) --no-print-directory all
+	@$(RUNNER) tests/real_films.sh
 
 .PHONY: san-run
 san-run: tests

@@ -285,44 +285,14 @@ static part open_part(glintL_run *run, int64_t frames)
     return p;
 }
 
-typedef struct sheet_call {
-    const glintL_naming *naming;
-    int64_t first;
-    bool partial;
-} sheet_call;
-
-static int draw_sheet(lua_State *L)
-{
-    const sheet_call *what = lua_touserdata(L, 2);
-    glintL_sweep_draw_sheet(L, 1, what->naming, what->first, what->partial);
-    return 0;
-}
-
 // Draws the sheet of a sweep whose first frame has that number, when it has one. False: the run has failed.
 static bool make_sheet(job_walk *walk, int64_t first)
 {
-    lua_State *L = walk->L;
-    glintL_run *run = walk->run;
-    const glintL_selection *asked = &run->asked.selection;
-    sheet_call what = { &walk->naming, first, asked->range_count > 0 || asked->shard_count > 1 };
-    int type = lua_getiuservalue(L, walk->job_index, GLINTL_JOB_SHEET);
-    lua_settop(L, walk->job_index);
-    if (type == LUA_TNIL || !walk->naming.pattern || run->no_sheets)
+    const glintL_selection *asked = &walk->run->asked.selection;
+    bool partial = asked->range_count > 0 || asked->shard_count > 1;
+    if (!walk->naming.pattern || walk->run->no_sheets)
         return true;
-    if (!glintL_run_collect(run, true)) // its frames are files from here on
-        return false;
-    lua_pushcfunction(L, glintL_message_handler);
-    lua_pushcfunction(L, draw_sheet);
-    lua_pushvalue(L, walk->job_index);
-    lua_pushlightuserdata(L, &what);
-    run->in_frame = true;
-    int status = lua_pcall(L, 2, 0, -4);
-    run->in_frame = false;
-    if (status != LUA_OK)
-        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
-                        lua_tostring(L, -1));
-    lua_settop(L, walk->job_index);
-    return run->exit_code == 0;
+    return glintL_sweep_make_sheet(walk->L, walk->job_index, &walk->naming, first, partial);
 }
 
 static bool run_job(job_walk *walk, lua_Integer i, part *p)

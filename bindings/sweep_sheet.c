@@ -196,36 +196,68 @@ static void warn_missing(const glintL_run *run, const char *path, int64_t from, 
                         to);
 }
 
-void glintL_sweep_draw_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial)
+typedef struct sheet_call {
+    const glintL_naming *naming;
+    int64_t first;
+    bool partial;
+} sheet_call;
+
+// Draws the sheet, of which all but the files is known.
+static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sheet, const lists *l)
 {
-    const glintL_job *job = lua_touserdata(L, index);
-    glintL_run *run = glintL_get_run(L);
-    char output[GLINTL_PATH_SIZE], message[GLINTL_MESSAGE_SIZE];
-    lists l;
-    int64_t last = 0;
-    luaL_checkstack(L, 24, "sheet");
-    int sheet = lua_gettop(L) + 1, label = sheet + 1, kept = label + 1;
-    if (lua_getiuservalue(L, index, GLINTL_JOB_SHEET) != LUA_TTABLE || !naming->pattern) {
-        lua_settop(L, sheet - 1);
+    char message[GLINTL_MESSAGE_SIZE];
+    int64_t last = 0, missing = find_missing(l, (int64_t)sheet->count, &last);
+    if (missing && what->partial) {
+        warn_missing(run, sheet->path, what->first + missing - 1, what->first + last - 1);
         return;
     }
-    lua_getfield(L, sheet, "label");
-    lua_newtable(L);
-    fill_lists(L, index, naming, first, job->frames, label, kept, &l);
-    default_output(naming, output);
-    const char *given = read_text(L, sheet, "output");
-    glintL_sheet made = read_sheet(L, sheet, &l, job->frames, given ? given : output);
-    int64_t missing = find_missing(&l, job->frames, &last);
-    if (missing && partial) {
-        warn_missing(run, made.path, first + missing - 1, first + last - 1);
-    } else {
-        int code = glintL_sheet_make(&made, message);
-        if (code && partial)
-            glintL_run_warn(run, "%s: not drawn: %s", made.path, message);
-        else if (code)
-            glintL_run_fail(run, code, 0, "%s: %s", made.path, message);
-        else if (run->reporter.figure)
-            run->reporter.figure(run->reporter.context, "sheet", made.path, job->frames);
-    }
-    lua_settop(L, sheet - 1);
+    int code = glintL_sheet_make(sheet, message);
+    if (code && what->partial)
+        glintL_run_warn(run, "%s: not drawn: %s", sheet->path, message);
+    else if (code)
+        glintL_run_fail(run, code, 0, "%s: %s", sheet->path, message);
+    else if (run->reporter.figure)
+        run->reporter.figure(run->reporter.context, "sheet", sheet->path, (int64_t)sheet->count);
+}
+
+static int draw_protected(lua_State *L)
+{
+    const glintL_job *job = lua_touserdata(L, 1);
+    const sheet_call *what = lua_touserdata(L, 2);
+    char output[GLINTL_PATH_SIZE];
+    lists l;
+    luaL_checkstack(L, 24, "sheet");
+    lua_getiuservalue(L, 1, GLINTL_JOB_SHEET); // 3
+    lua_getfield(L, 3, "label"); // 4
+    lua_newtable(L); // 5
+    fill_lists(L, 1, what->naming, what->first, job->frames, 4, 5, &l);
+    default_output(what->naming, output);
+    const char *given = read_text(L, 3, "output");
+    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, given ? given : output);
+    draw(glintL_get_run(L), what, &sheet, &l);
+    return 0;
+}
+
+bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial)
+{
+    glintL_run *run = glintL_get_run(L);
+    sheet_call what = { naming, first, partial };
+    int top = lua_gettop(L), type = lua_getiuservalue(L, index, GLINTL_JOB_SHEET);
+    lua_settop(L, top);
+    if (type != LUA_TTABLE)
+        return true;
+    if (!glintL_run_collect(run, true)) // its frames are files from here on
+        return false;
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, draw_protected);
+    lua_pushvalue(L, index);
+    lua_pushlightuserdata(L, &what);
+    run->in_frame = true;
+    int status = lua_pcall(L, 2, 0, top + 1);
+    run->in_frame = false;
+    if (status != LUA_OK)
+        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
+                        lua_tostring(L, -1));
+    lua_settop(L, top);
+    return run->exit_code == 0;
 }

@@ -1,7 +1,8 @@
 #!/bin/sh
 # What glint needs on Debian, and how to get it.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
-#   deps.sh build test bench    installs what is missing for building, testing, comparing speeds, through apt
+#   deps.sh build test bench films    installs what is missing for building, testing, comparing speeds, and for the
+#                                     tests with ffmpeg and Chromium, through apt
 set -eu
 
 # package  how to tell that it is there
@@ -25,6 +26,10 @@ test_optional='
 lua-check       command:luacheck
 cppcheck        command:cppcheck
 povray          command:povray
+'
+films_optional='
+ffmpeg          command:ffmpeg
+chromium        command:chromium
 '
 
 bench_required='
@@ -116,8 +121,9 @@ for what in "$@"; do
         require "$bench_required"
         prefer "$bench_optional" "their rows will be empty"
         ;;
+    films) prefer "$films_optional" "the tests that need it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films ..." >&2
         exit 2
         ;;
     esac

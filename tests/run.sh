@@ -31,7 +31,7 @@ read_cases() {
     local totals
     totals=$(grep -E '^[0-9]+ passed, [0-9]+ failed(, [0-9]+ skipped)?$' "$1" | tail -n 1 | tr -dc '0-9 ')
     if [ -n "$totals" ]; then
-        read -r good bad skips <<<"$totals 0"
+        read -r good bad skips _ <<<"$totals 0"
         return
     fi
     skips=$(count '^(\[  SKIPPED \] [a-zA-Z_]+$|ok .*# (skip|SKIP))' "$1")
