@@ -114,6 +114,7 @@ void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name)
         lua_pushvalue(L, index);
         lua_setiuservalue(L, job_index, GLINTL_JOB_SHEET);
     }
+    glintL_sweep_check_together(L, job_index);
 }
 
 int glintL_new_sweep(lua_State *L)

@@ -75,6 +75,40 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
     }
 }
 
+// Whether every {name} of a template is an axis of the sweep, whose frame has these "name=value" lines.
+static void check_template(lua_State *L, const char *label, const char *lines)
+{
+    size_t unused;
+    for (const char *at = strchr(label, '{'); at; at = strchr(at + 1, '{')) {
+        size_t length = strcspn(at + 1, "}");
+        if (at[1 + length] == '\0' || glintL_find_line(lines, at + 1, length, &unused) ||
+            (length == 4 && memcmp(at + 1, "file", 4) == 0) || (length == 5 && memcmp(at + 1, "frame", 5) == 0))
+            continue;
+        lua_pushlstring(L, at, length + 2);
+        glintL_error(L, "sweep.sheet.label: %s: the name of an axis, {file} or {frame} expected", lua_tostring(L, -1));
+    }
+}
+
+void glintL_sweep_check_together(lua_State *L, int index)
+{
+    const glintL_job *job = lua_touserdata(L, index);
+    luaL_checkstack(L, 8, "sheet");
+    int top = lua_gettop(L);
+    if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) != LUA_TNIL &&
+        lua_getiuservalue(L, index, GLINTL_JOB_SHEET) == LUA_TTABLE) {
+        int sheet = lua_gettop(L);
+        lua_getfield(L, sheet, "difference");
+        if (lua_tonumber(L, -1) > (lua_Number)job->frames)
+            glintL_error(L, "sweep.sheet.difference: a frame 1 .. %d expected, got %d", (int)job->frames,
+                         (int)lua_tonumber(L, -1));
+        if (lua_getfield(L, sheet, "label") == LUA_TSTRING) {
+            glintL_sweep_push_place(L, index, 1);
+            check_template(L, lua_tostring(L, -2), lua_tostring(L, -1));
+        }
+    }
+    lua_settop(L, top);
+}
+
 // ---- Drawing ----
 
 // "out/%04d.png" -> "out/sheet.png", "x_%04d.png", "x.png" and "x.mp4" -> "x_sheet.png".

@@ -148,7 +148,8 @@ check "under its own name" test -s named.png
 SHEET='{ label = function() error "no label today" end }' exits 2 "an error in it" grid.lua
 says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
-    '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' '{ title = 5 }:title: text' '5:sheet: table'; do
+    '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
+    '{ difference = 7 }:difference: a frame 1 .. 6 expected, got 7' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done
