@@ -170,6 +170,7 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     glintL_work *work = NULL;
     double build_ms = glintL_now_ms() - run->since_ms;
     open_film(L, run, render);
+    glintL_find_source(L, run);
     bool writes = naming_of(run, render, true).pattern != NULL;
     int first = lua_gettop(L) + 1; // the handles exist before what they hold
     glintL_new_box(L, GLINTL_IMAGE);

@@ -339,6 +339,7 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     int top = lua_gettop(L);
     job_walk *walk = push_walk(L, index, run);
     part p = open_part(run, glintL_jobs_total(L, walk->list));
+    glintL_find_source(L, run);
     bool good = glintL_run_open(run, &error);
     if (!good)
         glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);

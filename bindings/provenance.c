@@ -1,4 +1,4 @@
-// What a picture's file says of itself: key, script, parameters, frame, options, place in a sweep; and by that, whether
+// What a picture's file says of itself: key, script, its text's hash, parameters, frame, options, place in a sweep; and by that, whether
 // files belong together.
 #include <inttypes.h>
 #include <stdio.h>
@@ -58,6 +58,7 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
     add(out, "Software", "glint " GLINT_VERSION);
     out->text[out->count++] = (glint_text) { "glint:key", file->key };
     add(out, "glint:script", run->script);
+    add(out, "glint:source", run->source);
     add(out, "glint:params", run->params_text);
     add(out, "glint:frame", out->frame);
     add(out, "glint:pass", file->pass == GLINT_PASS_BEAUTY ? NULL : glint_pass_name(file->pass));
@@ -147,6 +148,7 @@ bool glintL_provenance_match(const glint_picture *a, const char *a_path, const g
                       other_keyed ? "a key of glint" : "no key of glint");
     return match_text(&one, &other, "Software", "", message) &&
            match_text(&one, &other, "glint:script", "script ", message) &&
+           match_text(&one, &other, "glint:source", "script text ", message) &&
            match_text(&one, &other, "glint:pass", "pass ", message) &&
            (!strict ||
             (match_lines(&one, &other, "glint:params", message) && match_lines(&other, &one, "glint:params", message) &&

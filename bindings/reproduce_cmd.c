@@ -187,25 +187,35 @@ static bool same_bytes(const char *a, const char *b)
     return same;
 }
 
+// Whether the texts differ; then the reason says so.
+static bool is_reason(reproduction *r, const glint_picture *made, const char *keyword, const char *name)
+{
+    const char *had = text_of(r, keyword), *has = glint_picture_text(made, keyword);
+    if (!has || strcmp(had, has) == 0)
+        return false;
+    snprintf(r->reason, sizeof r->reason, "another %s: '%.100s' then, '%.100s' now", name, *had ? had : "not noted",
+             has);
+    return true;
+}
+
 // Why the files differ, as far as their texts tell.
 static void find_reason(reproduction *r, const glint_picture *made)
 {
-    static const char *const keywords[] = { "Software", "glint:script", "glint:encoder" };
-    static const char *const names[] = { "engine version", "script", "encoder" };
-    for (int i = 0; i < 3; i++) {
-        const char *had = text_of(r, keywords[i]), *has = glint_picture_text(made, keywords[i]);
-        if (has && strcmp(had, has) != 0) {
-            snprintf(r->reason, sizeof r->reason, "another %s: '%.100s' then, '%.100s' now", names[i],
-                     *had ? had : "not noted", has);
-            return;
-        }
-    }
-    const char *key = glint_picture_text(made, "glint:key");
-    if (key && strcmp(key, text_of(r, "glint:key")) != 0)
-        snprintf(r->reason, sizeof r->reason, "the script, or what it reads, describes another frame");
+    const char *source = glint_picture_text(made, "glint:source"), *key = glint_picture_text(made, "glint:key");
+    bool same_source = source && strcmp(source, text_of(r, "glint:source")) == 0;
+    bool same_key = key && strcmp(key, text_of(r, "glint:key")) == 0;
+    if (is_reason(r, made, "Software", "engine version") || is_reason(r, made, "glint:script", "script") ||
+        is_reason(r, made, "glint:encoder", "encoder"))
+        return;
+    if (same_key)
+        snprintf(r->reason, sizeof r->reason, "%s",
+                 same_source
+                     ? "the frame has the same key: the file was changed, or compressed on another kind of processor"
+                     : "another script: its text has changed, though not in what this frame reads");
     else
-        snprintf(r->reason, sizeof r->reason,
-                 "the same frame by its key: the file was changed, or compressed on another kind of processor");
+        snprintf(r->reason, sizeof r->reason, "%s",
+                 same_source ? "what the script reads describes another frame"
+                             : "another script: its text has changed");
 }
 
 static verdict compare(reproduction *r, glint_compare_result *result, char *message)

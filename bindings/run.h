@@ -6,7 +6,7 @@
 ///   params.c          glint.params; param_spec.c one parameter and its --set
 ///   animation.c       the job object and its fields; sweep.c its other kind
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
-///   provenance.c      what a file says of itself, and whether files belong together
+///   provenance.c      what a file says of itself, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
 ///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
 ///   run.c             the run: records in order, failures; jobs.c frames of jobs, job_run.c :run; call.c scene:render
@@ -166,6 +166,7 @@ struct glintL_run {
     int64_t explain_frame;
     glint_plan *explain_plan; ///< owned
     char script[256]; ///< base name
+    char source[33]; ///< of glintL_find_source; "": not looked for yet
     glintL_asked asked;
     glintL_reporter reporter;
 
@@ -238,9 +239,14 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
 /// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
 
+// ---- source.c ----
+
+/// Hashes the text of the script and of the modules it has required so far into run->source, once a run.
+void glintL_find_source(lua_State *L, glintL_run *run);
+
 // ---- provenance.c ----
 
-#define GLINTL_TEXT_COUNT 9
+#define GLINTL_TEXT_COUNT 10
 
 /// The texts of a file: what it was made by, and what is needed to make it again.
 typedef struct glintL_provenance {

@@ -272,6 +272,14 @@ exits 0 "--force takes them" assemble 'f/%02d.png' -o stale.png --force
 exits 0 "one of another size" turn.lua -f 3,5 --size 20x10 -o 'f/%02d.png' -q
 exits 2 "is not taken" assemble 'f/%02d.png' -o size.png --force
 says "and named with its size" 'f/03.png: 40x24 .*got 20x10'
+exits 0 "a frame of an earlier text" turn.lua -f 1-6 -o 'e/%d.png' -q
+sed -i 's/0.8, 0.2/0.8, 0.3/' scene.lua
+exits 0 "and of the edited one" turn.lua -f 4-6 -o 'e/%d.png' -q
+exits 2 "mixed" assemble 'e/%d.png' -o mixed.png
+says "are named" 'e/4.png is of another making: script text [0-9a-f]+, where e/1.png has script text'
+exits 0 "after a run of all" turn.lua -o 'e/%d.png' -q
+exits 0 "they go together" assemble 'e/%d.png' -o mixed.png
+sed -i 's/0.8, 0.3/0.8, 0.2/' scene.lua
 exits 0 "frames of a --sweep" assemble 'swept_%04d.png' -f 1,7,13 -o swept_film.png
 exits 2 "no frames" assemble 'nothing_%04d.png' -o none.png
 exits 2 "no film" assemble f/01.png
@@ -293,8 +301,12 @@ exits 0 "is made again" reproduce call_02.png loop.lua --json
 prints "as an event" '"event":"reproduce","file":"call_02.png","script":"loop.lua","frame":2,"result":"same"'
 sed 's/0.8, 0.2/0.7, 0.2/' scene.lua >scene2.lua
 mkdir edited && cp scene2.lua edited/scene.lua && cp turn.lua loop.lua edited/
-exits 4 "an edited script" reproduce made_0004.png edited/turn.lua
-prints "is said to be that" 'different, by at most .*describes another frame'
+exits 4 "an edited module" reproduce made_0004.png edited/turn.lua
+prints "is said to be that" 'different, by at most .*another script: its text has changed$'
+cp turn.lua scene.lua edited/
+echo '-- a remark' >>edited/turn.lua
+exits 3 "a remark in the script" reproduce made_0004.png edited/turn.lua
+prints "is told from that" 'same pixels, other bytes: .*though not in what this frame reads'
 cp turn.lua renamed.lua
 exits 3 "a renamed script" reproduce made_0004.png renamed.lua
 prints "is said to be that" "same pixels, other bytes: another script: 'turn.lua' then, 'renamed.lua' now"
