@@ -149,8 +149,8 @@ bool glintL_provenance_match(const glint_picture *a, const char *a_path, const g
     return match_text(&one, &other, "Software", "", message) &&
            match_text(&one, &other, "glint:script", "script ", message) &&
            match_text(&one, &other, "glint:source", "script text ", message) &&
-           match_text(&one, &other, "glint:pass", "pass ", message) &&
            (!strict ||
-            (match_lines(&one, &other, "glint:params", message) && match_lines(&other, &one, "glint:params", message) &&
+            (match_text(&one, &other, "glint:pass", "pass ", message) &&
+             match_lines(&one, &other, "glint:params", message) && match_lines(&other, &one, "glint:params", message) &&
              match_lines(&one, &other, "glint:options", message)));
 }

@@ -264,7 +264,7 @@ void glintL_provenance_drop(glintL_provenance *provenance);
 /// Finds the line "name=..." in "name=value" lines; its length goes to *length. NULL: there is none, or no lines.
 const char *glintL_find_line(const char *lines, const char *name, size_t name_length, size_t *length);
 /// Whether two files were made by the same script and version for the same end, so that they may stand in one film or
-/// sheet; parameters and options count when `strict`, but those that a sweep changes. False: the message names what
+/// sheet; pass, parameters and options count when `strict`, but what a sweep changes. False: the message names what
 /// differs and where.
 bool glintL_provenance_match(const glint_picture *a, const char *a_path, const glint_picture *b, const char *b_path,
                              bool strict, char message[GLINTL_MESSAGE_SIZE]);

@@ -45,7 +45,7 @@ typedef struct glintL_axes {
     size_t cell_count;
 } glintL_axes;
 
-/// Reads the files of a sheet and finds its axes: the places, then parameters and options that differ. False: a file is
+/// Reads the files of a sheet and finds its axes: the places, then parameters, options and passes that differ. False: a file is
 /// missing, of another size or of another making; *code is then the exit code. In any case `out` is to be dropped.
 bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE]);
 void glintL_axes_drop(glintL_axes *axes);

@@ -112,6 +112,26 @@ static bool fill_axis(const glintL_sheet *sheet, const glintL_axes *axes, const 
     return good;
 }
 
+// Adds the axis "pass" when the files are of several passes.
+static bool add_passes(glintL_axes *axes)
+{
+    glintL_axis *axis = &axes->axis[axes->count];
+    if (axes->count == GLINTL_AXES_MAX)
+        return true;
+    *axis = (glintL_axis) { .name = strdup("pass"), .index = calloc(axes->cell_count, sizeof *axis->index) };
+    bool good = axis->name && axis->index;
+    for (size_t cell = 0; cell < axes->cell_count && good; cell++) {
+        const char *pass = glint_picture_text(axes->pictures[cell], "glint:pass");
+        char *value = strdup(pass ? pass : "beauty");
+        good = value && add_value(axis, cell, value);
+    }
+    if (good && axis->count > 1)
+        axes->count++;
+    else
+        drop_axis(axis);
+    return good;
+}
+
 static bool has_axis(const glintL_axes *axes, const char *name, size_t name_length)
 {
     for (size_t i = 0; i < axes->count; i++)
@@ -168,7 +188,7 @@ bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, ch
     if (!read_files(sheet, out, code, message))
         return false;
     if (!add_axes(sheet, out, "glint:sweep", true) || !add_axes(sheet, out, "glint:params", false) ||
-        !add_axes(sheet, out, "glint:options", false)) {
+        !add_axes(sheet, out, "glint:options", false) || !add_passes(out)) {
         *code = GLINTL_EXIT_FAILED;
         return no_memory(message);
     }

@@ -160,6 +160,8 @@ says "has no sheet yet" 'grid/sheet.png: not drawn: frames between 3 and 6'
 exits 0 "a shard" grid.lua --shard 1/2
 exits 0 "and the other" grid.lua --shard 2/2
 check "draw it when all is there" cmp grid/sheet.png <("$GLINT" sheet grid/000*.png -o whole.png 2>/dev/null; cat whole.png)
+exits 0 "passes" turn.lua -f 2 --passes depth,normal -o pass.png -q
+exits 0 "are an axis" sheet pass_0002.png pass_0002.depth.png pass_0002.normal.png -o passes.png --label '{pass}'
 exits 0 "a sweep of the command line" turn.lua -f 1-18:6 --sweep radius=2:6:3 -o 'swept_%04d.png' -q
 exits 0 "its frames on a sheet" sheet swept_*.png -o swept.png --label 'r {radius}'
 exits 0 "files of -D" turn.lua -f 1 -D radius=9 -o nine.png -q
@@ -281,9 +283,41 @@ exits 0 "after a run of all" turn.lua -o 'e/%d.png' -q
 exits 0 "they go together" assemble 'e/%d.png' -o mixed.png
 sed -i 's/0.8, 0.3/0.8, 0.2/' scene.lua
 exits 0 "frames of a --sweep" assemble 'swept_%04d.png' -f 1,7,13 -o swept_film.png
+exits 2 "a pass among frames" assemble pass_0002.png pass_0002.depth.png -o passes_film.png
+says "is named" 'pass_0002.depth.png.*(pass depth|transfer)'
 exits 2 "no frames" assemble 'nothing_%04d.png' -o none.png
 exits 2 "no film" assemble f/01.png
 absent "nothing was made of these" gap.png size.png none.png
+
+# ---- Plain Lua ----
+
+cat >plain.lua <<'LUA'
+local glint = require "glint"
+local S = require "scene"
+local turn = glint.animation { scene = S.scene, frames = 4, fps = 10, width = 40, height = 24, frame = function(t)
+  S.lamp.x = 5 * t
+end }
+assert(turn:run { output = "plain.apng" }.frames == 4)
+assert(turn:run { output = "plain.apng", frames = "2-3" }.frames == 2)
+assert(not pcall(S.scene.render, S.scene, { output = "none.apng", width = 40, height = 24 }))
+assert(not pcall(turn.run, turn, { output = "none.apng", shard = "1/2" }))
+local grid = glint.sweep { scene = S.scene, over = { { S.lamp, "x", { 1, 2 } } }, size = { 40, 24 }, output = "p/%d.png",
+  sheet = { label = false } }
+grid:run()
+assert(grid.sheet.label == false)
+grid.sheet = { label = function(values, n) return ("%d: x is %g"):format(n, values.x) end, output = "plain.html" }
+grid:run()
+assert(not pcall(function() grid.sheet = { difference = 3 } end))
+grid.sheet = { label = function() error "stop" end }
+local good, message = pcall(grid.run, grid)
+assert(not good and message:find "stop")
+LUA
+export LUA_CPATH=${LUA_CPATH:-$(dirname "$GLINT")/?.so;;}
+check "plain Lua makes films and sheets" env LD_PRELOAD="${PRELOAD:-}" "${LUA:-lua5.4}" plain.lua
+check "the second film of two frames" test "$(chunks plain.apng | grep -o fcTL | wc -l)" -eq 2
+check "the sheet" test -s p/sheet.png
+check "the page with the function's labels" grep -q '"2: x is 2"' plain.html
+absent "and no more" none.apng none.apng.frames plain.apng.frames
 
 # ---- Reproduce ----
 
