@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bindings/cli.h"
+#include "bindings/film.h"
 
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
@@ -167,6 +168,11 @@ static bool check_output(cli_options *options, char *message)
     int field = glintL_render_find("output");
     if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
         return true;
+    if (options->asked.fps > 0 && glintL_film_kind_of(options->output, options->asked.apng) == GLINTL_FILM_NONE) {
+        snprintf(message, MESSAGE, "--fps: it means something to films alone; -o '%.200s' is a picture",
+                 options->output);
+        return false;
+    }
     options->asked.render_text[field] = options->output;
     if (glintL_render_set_text(&scratch, field, options->output, wrong))
         return true;

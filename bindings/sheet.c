@@ -24,15 +24,19 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         return false;
     }
     if (sheet->count < 1 || sheet->count > GLINTL_SHEET_MAX) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "1 .. %d pictures expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
         return false;
     }
-    if (sheet->difference > (int64_t)sheet->count) {
+    if (sheet->difference > (int64_t)sheet->count)
         snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
                  (long long)sheet->difference);
-        return false;
-    }
-    return true;
+    else if (sheet->gain > 0 && !sheet->difference)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
+    else if (sheet->columns && ends_in(sheet->path, ".html"))
+        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has sliders instead");
+    else
+        return true;
+    return false;
 }
 
 // ---- Labels ----

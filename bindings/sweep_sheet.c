@@ -75,6 +75,42 @@ void glintL_sweep_check_sheet(lua_State *L, int index)
     }
 }
 
+// What the sheet is made of; the strings are kept by the table `kept` on the stack.
+typedef struct lists {
+    char **files, **places, **labels;
+} lists;
+
+static int64_t read_whole(lua_State *L, int sheet, const char *name)
+{
+    lua_getfield(L, sheet, name);
+    int64_t value = (int64_t)lua_tonumber(L, -1);
+    lua_pop(L, 1);
+    return value;
+}
+
+static const char *read_text(lua_State *L, int sheet, const char *name) // which the table keeps
+{
+    const char *text = lua_getfield(L, sheet, name) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+    lua_pop(L, 1);
+    return text;
+}
+
+static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t count, const char *path)
+{
+    glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .places = l->places };
+    out.labels = l->labels;
+    out.label = read_text(L, sheet, "label");
+    out.title = read_text(L, sheet, "title");
+    out.columns = read_whole(L, sheet, "columns");
+    out.difference = read_whole(L, sheet, "difference");
+    lua_getfield(L, sheet, "gain");
+    out.gain = lua_tonumber(L, -1);
+    if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
+        out.label = "none";
+    lua_pop(L, 2);
+    return out;
+}
+
 // Whether every {name} of a template is an axis of the sweep, whose frame has these "name=value" lines.
 static void check_template(lua_State *L, const char *label, const char *lines)
 {
@@ -92,15 +128,17 @@ static void check_template(lua_State *L, const char *label, const char *lines)
 void glintL_sweep_check_together(lua_State *L, int index)
 {
     const glintL_job *job = lua_touserdata(L, index);
+    char message[GLINTL_MESSAGE_SIZE];
     luaL_checkstack(L, 8, "sheet");
     int top = lua_gettop(L);
     if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) != LUA_TNIL &&
         lua_getiuservalue(L, index, GLINTL_JOB_SHEET) == LUA_TTABLE) {
         int sheet = lua_gettop(L);
-        lua_getfield(L, sheet, "difference");
-        if (lua_tonumber(L, -1) > (lua_Number)job->frames)
-            glintL_error(L, "sweep.sheet.difference: a frame 1 .. %d expected, got %d", (int)job->frames,
-                         (int)lua_tonumber(L, -1));
+        lists none = { NULL, NULL, NULL };
+        const char *output = read_text(L, sheet, "output");
+        glintL_sheet made = read_sheet(L, sheet, &none, job->frames, output ? output : "sheet.png");
+        if (!glintL_sheet_check(&made, message))
+            glintL_error(L, "sweep.sheet.%s", message);
         if (lua_getfield(L, sheet, "label") == LUA_TSTRING) {
             glintL_sweep_push_place(L, index, 1);
             check_template(L, lua_tostring(L, -2), lua_tostring(L, -1));
@@ -136,11 +174,6 @@ static void push_label(lua_State *L, int function, int job, int64_t n)
     if (lua_type(L, -1) != LUA_TSTRING && lua_type(L, -1) != LUA_TNUMBER)
         glintL_refuse(L, -1, "sweep.sheet.label: the function's result", "string");
 }
-
-// What the sheet is made of; the strings are kept by the table `kept` on the stack.
-typedef struct lists {
-    char **files, **places, **labels;
-} lists;
 
 static char *keep(lua_State *L, int kept)
 {
@@ -188,37 +221,6 @@ static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64
             out->labels[n - 1] = keep(L, kept);
         }
     }
-}
-
-static int64_t read_whole(lua_State *L, int sheet, const char *name)
-{
-    lua_getfield(L, sheet, name);
-    int64_t value = (int64_t)lua_tonumber(L, -1);
-    lua_pop(L, 1);
-    return value;
-}
-
-static const char *read_text(lua_State *L, int sheet, const char *name) // which the table keeps
-{
-    const char *text = lua_getfield(L, sheet, name) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
-    lua_pop(L, 1);
-    return text;
-}
-
-static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t count, const char *path)
-{
-    glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .places = l->places };
-    out.labels = l->labels;
-    out.label = read_text(L, sheet, "label");
-    out.title = read_text(L, sheet, "title");
-    out.columns = read_whole(L, sheet, "columns");
-    out.difference = read_whole(L, sheet, "difference");
-    lua_getfield(L, sheet, "gain");
-    out.gain = lua_tonumber(L, -1);
-    if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
-        out.label = "none";
-    lua_pop(L, 2);
-    return out;
 }
 
 static void warn_missing(const glintL_run *run, const char *path, int64_t from, int64_t to)

@@ -149,7 +149,8 @@ SHEET='{ label = function() error "no label today" end }' exits 2 "an error in i
 says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
-    '{ difference = 7 }:difference: a frame 1 .. 6 expected, got 7' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '5:sheet: table'; do
+    '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: it means nothing without' \
+    '{ output = "x.html", columns = 2 }:columns: a page has sliders' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done
@@ -200,6 +201,7 @@ exits 0 "of one frame" assemble f/01.png -o one.png
 exits 0 "of 16 bits, linear" turn.lua -f 1-2 --bits 16 --transfer linear -o deep.png --apng
 exits 0 "of a loop" loop.lua -o loop.png --apng
 check "of its calls" test "$(chunks loop.png | grep -o fcTL | wc -l)" -eq 3
+exits 2 "--fps for pictures" turn.lua -o frame.png --fps 12
 exits 2 "--apng for another kind" turn.lua -o film.mp4 --apng
 
 # ---- Films by ffmpeg ----

@@ -353,9 +353,9 @@ function glint.animation(fields) end
 --- axes, as a picture, or as a page with a slider for each axis.
 ---@class glint.sheet
 ---@field label? boolean|string|fun(values: table<string, any>, n: integer): string  under each picture: true, every axis and its value; false, nothing; "n = {shininess}", with {file} and {frame} too; or what the function makes of the values by name. Default true
----@field columns? integer  pictures in a row, 1 .. 65535. Default: the values of the first axis
+---@field columns? integer  pictures in a row of a .png, 1 .. 65535. Default: the values of the first axis
 ---@field difference? integer  a frame of the sweep, from 1: a second row shows how far each picture is from it. Default none
----@field gain? number  what differences are multiplied by, 0.001 .. 1e6. Default 8
+---@field gain? number  what differences are multiplied by, 0.001 .. 1e6; with `difference`. Default 8
 ---@field title? string  above the sheet. Default none
 ---@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png
 

@@ -21,6 +21,7 @@
 #define FAINT_INK 0x6a6a6a
 #define MARK 0xd9594c // around the chosen cell
 #define LARGE_PICTURE 900 // pixels across from which labels are twice as large
+#define AREA_MAX ((int64_t)400000000) // pixels of a sheet: 1.2 GB while it is drawn
 #define PART_GAP 2 // characters between parts of a label on one line
 
 /// The sheet's measures, in pixels.
@@ -314,5 +315,9 @@ glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, g
             "sheet: sides of at most %d pixels expected, got %lldx%lld; other columns or smaller pictures "
             "make it fit",
             GLINT_SIDE_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
+    if (l.sheet_width * l.sheet_height > AREA_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "sheet: at most %lld pixels expected, got %lldx%lld; smaller or fewer pictures make it fit",
+                          (long long)AREA_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
     return draw_sheet(&l, path, error);
 }
