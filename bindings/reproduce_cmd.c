@@ -151,7 +151,7 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     cli_close_script(&script);
     good = glintL_run_collect(run, true) && good;
     for (size_t i = 0; i < run->asked.set_count; i++)
-        if (!good && !run->asked.sets[i].is_known) {
+        if (!good && !run->asked.sets[i].is_known && strstr(run->message, "--set ")) {
             snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no parameter '%.100s', which %.200s was made with",
                      run->script, run->asked.sets[i].name, r->file);
             return GLINTL_EXIT_USAGE;

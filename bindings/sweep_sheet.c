@@ -164,6 +164,16 @@ static void default_output(const glintL_naming *naming, char out[GLINTL_PATH_SIZ
              length ? "_sheet.png" : "sheet.png");
 }
 
+// "sheet.png" -> "sheet_0013.png": of a later sweep of the same run, by its first frame.
+static void number_output(char path[GLINTL_PATH_SIZE], int64_t first)
+{
+    char ending[16];
+    char *dot = strrchr(path, '.');
+    size_t stem = (size_t)(dot - path);
+    snprintf(ending, sizeof ending, "%s", dot);
+    snprintf(path + stem, GLINTL_PATH_SIZE - stem, "_%04" PRId64 "%s", first, ending);
+}
+
 // Pushes what the label function returns for frame n: function(values, n), values[name] = value on each axis.
 static void push_label(lua_State *L, int function, int job, int64_t n)
 {
@@ -267,10 +277,16 @@ static int draw_protected(lua_State *L)
     lua_getfield(L, 3, "label"); // 4
     lua_newtable(L); // 5
     fill_lists(L, 1, what->naming, what->first, job->frames, 4, 5, &l);
-    default_output(what->naming, output);
     const char *given = read_text(L, 3, "output");
-    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, given ? given : output);
-    draw(glintL_get_run(L), what, &sheet, &l);
+    glintL_run *run = glintL_get_run(L);
+    if (given)
+        snprintf(output, sizeof output, "%s", given);
+    else
+        default_output(what->naming, output);
+    if (what->first > 1 && (!given || run->point_count > 1))
+        number_output(output, what->first);
+    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
+    draw(run, what, &sheet, &l);
     return 0;
 }
 

@@ -168,6 +168,15 @@ exits 0 "its frames on a sheet" sheet swept_*.png -o swept.png --label 'r {radiu
 exits 0 "files of -D" turn.lua -f 1 -D radius=9 -o nine.png -q
 exits 0 "stand beside others" sheet other_0001.png other_0001.png -o same.png --label '{file}'
 
+cat >two.lua <<'LUA'
+local glint = require "glint"
+local S = require "scene"
+local function grid(object, name) return glint.sweep { scene = S.scene, size = { 20, 15 }, sheet = {},
+  over = { { object, name, { 1, 2, 3 } } } } end
+return { grid(S.lamp, "x"), grid(S.lamp, "y") }
+LUA
+exits 0 "two sweeps" two.lua -q
+check "two sheets" test -s two_sheet.png -a -s two_sheet_0004.png
 exits 0 "a page" sheet grid/000*.png -o page.html --difference 1 --title 'a < b & </script>'
 check "without anything from elsewhere" bash -c '! grep -qE "src=\"|https?://|@import|url\(" page.html'
 check "with every picture" test "$(grep -c '^"data:image/png;base64,' page.html)" -eq 6

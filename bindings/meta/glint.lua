@@ -357,7 +357,7 @@ function glint.animation(fields) end
 ---@field difference? integer  a frame of the sweep, from 1: a second row shows how far each picture is from it. Default none
 ---@field gain? number  what differences are multiplied by, 0.001 .. 1e6; with `difference`. Default 8
 ---@field title? string  above the sheet. Default none
----@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png
+---@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png, with the number of the first frame when that is not 1
 
 ---@class glint.sweep_fields: glint.render
 ---@field scene glint.scene
