@@ -47,7 +47,7 @@ typedef struct encoder {
 
 // The arguments: sRGB in; BT.709 of limited range out, so that players show the colours of the frames. Nothing in the
 // file tells dates or versions.
-static void list_arguments(const encoder *e, const char *target, const char **list, char numbers[3][64])
+static void list_arguments(const encoder *e, const char *target, const char **list, char numbers[2][64])
 {
     static const char *const mp4[] = { "-c:v", "libx264",   "-preset",    "medium", "-crf",
                                        "18",   "-movflags", "+faststart", NULL };
@@ -91,7 +91,7 @@ static int spawn(encoder *e, int input, const char *target)
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     const char *arguments[ARGUMENTS_MAX];
-    char numbers[3][64];
+    char numbers[2][64];
     sigset_t none;
     list_arguments(e, target, arguments, numbers);
     sigemptyset(&none);

@@ -66,25 +66,18 @@ static const char CODE[] =
 // A string of JavaScript that cannot end the script it stands in; newlines become two spaces.
 static void put_string(FILE *out, const char *text)
 {
-    char *copy = NULL;
-    size_t size = 0;
-    FILE *memory = open_memstream(&copy, &size);
-    if (!memory)
-        return;
-    glintL_json_string(memory, text);
-    fclose(memory);
-    for (size_t i = 0; i < size; i++) {
-        if (copy[i] == '<')
+    fputc('"', out);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\')
+            fprintf(out, "\\%c", *text);
+        else if (*text == '<')
             fputs("\\u003c", out);
-        else if (copy[i] == '\\' && copy[i + 1] == 'n')
-            fputs("  ", out), i++;
-        else {
-            if (copy[i] == '\\')
-                fputc(copy[i++], out);
-            fputc(copy[i], out);
-        }
+        else if (*text == '\n')
+            fputs("  ", out);
+        else
+            fputc((unsigned char)*text < ' ' ? ' ' : *text, out);
     }
-    free(copy);
+    fputc('"', out);
 }
 
 static void put_html(FILE *out, const char *text)
