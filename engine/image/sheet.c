@@ -254,7 +254,9 @@ static const void *row_of_canvas(const void *user, int y, void *scratch)
 static glint_status write_canvas(const glint_canvas *canvas, const char *path, glint_error *error)
 {
     glint_text text = { "Software", "glint " GLINT_VERSION };
-    glint_png_source source = { .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas };
+    glint_png_source source = {
+        .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas
+    };
     glint_png_desc png = { GLINT_ENCODE_SMALL, &text, 1 };
     glint_bytes bytes = { 0 };
     source.tone = glint_tone_desc_default();
