@@ -19,13 +19,13 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 }
 
 /// `near`: the origin is known to be within 2^20 radii in every lane.
-static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, bool near, vr n[3],
-                                     vr p[3])
+static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius,
+                                     bool near, vr n[3], vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
-    vr ts = t * scale, inverse = r_set((real)1 / ((real)prim->radius * (real)prim->scale));
+    vr ts = t * scale;
     for (int k = 0; k < 3; k++)
-        n[k] = (f[k] + ts * d[k]) * inverse;
+        n[k] = (f[k] + ts * d[k]) * r_set(inverse_radius);
     vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
     for (int k = 0; k < 3; k++)
         n[k] = n[k] * newton;
@@ -53,6 +53,7 @@ static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 typedef struct R(seen_prim) {
     uint32_t id; ///< GLINT_MISS: none yet
     const glint_prim *prim;
+    real inverse_radius; ///< of a sphere, in its own units
     bool near; ///< see sphere_surface
     real f[3];
 } R(seen_prim);
@@ -61,7 +62,10 @@ static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim
 {
     const glint_prim *prim = &args->prims[id];
     *seen = (R(seen_prim)) { .id = id, .prim = prim };
-    if (!args->camera || prim->kind != GLINT_PRIM_SPHERE)
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return;
+    seen->inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
+    if (!args->camera)
         return;
     for (int k = 0; k < 3; k++)
         seen->f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
@@ -88,7 +92,7 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
             f[k] = r_set(seen->f[k]);
         if (!args->camera)
             R(offset)(from, prim, f);
-        R(sphere_surface)(f, d, t, prim, seen->near, n, p);
+        R(sphere_surface)(f, d, t, prim, seen->inverse_radius, seen->near, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
             if (args->camera)
