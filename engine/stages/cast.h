@@ -121,13 +121,15 @@ static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
 
 // ---- The decision ----
 
-/// Of equal hits the one defined first stays. Returns the lanes of `tied` in which that is `id`.
+/// Of equal hits the one defined first stays; t = inf, where float overflows, is a miss's own and no hit. Returns the lanes of `tied` in which that is `id`.
 static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t *best, unsigned tied)
 {
     unsigned wins = 0;
-    for (; tied; tied &= tied - 1)
-        if (prims[id].id < prims[best[__builtin_ctz(tied)]].id)
+    for (; tied; tied &= tied - 1) {
+        const uint32_t old = best[__builtin_ctz(tied)];
+        if (old != GLINT_MISS && prims[id].id < prims[old].id)
             wins |= tied & -tied;
+    }
     return wins;
 }
 
