@@ -2,6 +2,8 @@
 
 #include "engine/base/status.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 
 #define HEADER_FIELDS 4 // "PF", width, height, scale
@@ -12,6 +14,14 @@ static void put_little_endian(float value, uint8_t *out)
     memcpy(&bits, &value, sizeof bits);
     for (int i = 0; i < 4; i++)
         out[i] = (uint8_t)(bits >> (8 * i));
+}
+
+/// Programs that read pictures trip over infinity in a colour, and over NaN.
+static float nearest_number(float value)
+{
+    if (isnan(value))
+        return 0;
+    return isinf(value) ? copysignf(FLT_MAX, value) : value;
 }
 
 bool glint_pfm_encode(int width, int height, int channels, float *const plane[], glint_bytes *out)
@@ -26,7 +36,7 @@ bool glint_pfm_encode(int width, int height, int channels, float *const plane[],
     for (int y = height - 1; y >= 0; y--)
         for (size_t i = (size_t)y * (size_t)width, end = i + (size_t)width; i < end; i++)
             for (int c = 0; c < channels; c++, at += 4)
-                put_little_endian(plane[c][i], at);
+                put_little_endian(channels == 3 ? nearest_number(plane[c][i]) : plane[c][i], at);
     out->size += (size_t)length + row * (size_t)height;
     return true;
 }

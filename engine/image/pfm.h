@@ -5,7 +5,8 @@
 #include "engine/glint.h"
 #include "engine/image/bytes.h"
 
-/// Appends a whole little-endian PFM to `out`.
+/// Appends a whole little-endian PFM to `out`. With three channels an infinite value is written as the largest float of
+/// its sign, and NaN as 0; one channel is a distance and may be infinite.
 ///
 /// plane     channels (1 or 3) pointers to width * height values, top row first.
 /// False: out of memory.
