@@ -62,6 +62,8 @@ MAIN_OBJ     := $(BUILD)/bindings/main.o
 MODULE_OBJ   := $(filter-out $(MAIN_OBJ),$(BINDINGS_OBJ))
 TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/test_*.c)))
 TEST_TOOLS   := $(BUILD)/tests/compare16
+HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
+HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/hard/hard_%.c,$(sort $(wildcard tests/hard/*.c))))
 KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa_%.o,$(ENGINE_OBJ))
 
 # ---- Build ----
@@ -72,7 +74,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run check-films asan tsan bench demo demo-run install golden-update check-layers \
+.PHONY: all need deps check check-run check-films asan tsan hard hard-run soak soak-run bench demo demo-run install golden-update check-layers \
         check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
@@ -109,7 +111,7 @@ $(BUILD)/flags: FORCE
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 
@@ -118,10 +120,16 @@ $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
-tests: all $(TEST_BIN) $(TEST_TOOLS)
+# The hard cases: each hard_*.c is a program, the others are what they share. They use the public API alone.
+$(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
-SCRIPTED := $(wildcard tests/test_*.lua tests/check_*.lua tests/cli.sh tests/films.sh tests/golden.sh tests/povray.sh \
-              tests/readme.sh)
+tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
+
+SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua tests/cli.sh tests/films.sh tests/golden.sh \
+              tests/povray.sh tests/readme.sh)
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -129,7 +137,7 @@ check: ## every test; T=name runs those whose name has it
 	@$(MAKE) --no-print-directory check-run
 
 check-run: tests
-	@T="$(T)" $(RUNNER) $(TEST_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
+	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/povray.sh,$(SCRIPTED))
@@ -154,7 +162,24 @@ check-films: ## films by the real ffmpeg, and what Chromium makes of them; insta
 
 .PHONY: san-run
 san-run: tests
-	@T="$(T)" PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(ITEMS)
+	@T="$(T)" HARD_RAYS=20000 PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
+
+hard: ## the hard cases as Markdown tables: truth, engine in double and in float, textbook formula, verdict
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory -s hard-run
+
+hard-run: $(HARD_BIN)
+	@bad=0; for program in $(HARD_BIN); do $$program --table || bad=1; echo; done; exit $$bad
+
+SOAK_RAYS ?= 1e8
+
+soak: ## the hard cases with 1e8 rays (SOAK_RAYS) at the fuzz's aims, in two processes: about ten minutes
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory soak-run
+
+# Other seeds than the check's, so that both see something new.
+soak-run: $(HARD_BIN)
+	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
 	@BUILD=$(BUILD) tests/golden.sh update

@@ -1,5 +1,6 @@
 -- The hard cases that need a picture: scale and offset, ties, coverage, lights in awkward places, odd cameras and
--- sizes. Each is named by its id. The cases of one ray or one reflection are in test_rays.lua.
+-- sizes. Each is named by its id. The cases of one ray or one reflection are in hard_cases.c and hard_shading.c, the
+-- largest numbers and counts in hard_limits.c, random scenes in hard_frames.c.
 local glint = require "glint"
 
 local count = 0
@@ -159,15 +160,6 @@ do
   end
   local r, g, b = scene:render { width = 1, height = 1 }:pixel(0, 0)
   check(r > 1 and b > 1 and g == 0, "L14: 1000 lights of 1e36: white, and 0 where the material is 0", r, g, b)
-end
-do
-  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 2 }, at = origin },
-    glint.plane { point = origin, normal = { 0, 0, 1 }, material = glint.material { diffuse = 1 } } }
-  for _ = 1, 1000000 do
-    scene:add(glint.directional_light { direction = { 0, 0, -1 }, intensity = 1e-6, shadows = false })
-  end
-  local r = scene:render { width = 1, height = 1 }:pixel(0, 0)
-  check(math.abs(r - 1) < 1e-6, "L13: a million lights of 1e-6 add up to 1", ("%.9g"):format(r))
 end
 
 -- Cameras and sizes

@@ -1,5 +1,5 @@
--- One ray against one sphere, one reflection at one point: the hard cases whose answers are known to many digits.
--- Truth was computed with 4096 bits from the binary64 inputs. Each case is named by its id.
+-- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with what lies near them, is in
+-- hard_cases.c and hard_shading.c; here are those that would show a number bent on its way through Lua.
 package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
 local glint = require "glint"
 
@@ -26,53 +26,23 @@ end
 -- ---- Spheres ----
 
 local O = { 0, 0, 0 }
-local U = { 0.6868525772, 0.3745683848, 0.622841924 }
 -- id, origin, direction, centre, radius, t, normal; t false: a miss
 local cases = {
   { "S01", { 0, 0, 5 }, { 0, 0, -1 }, O, 1, 4, { 0, 0, 1 } },
-  { "S03b", { 1230.5, 820.25, 4100 }, { -0.3, -0.2, -1 }, O, 1, 4099.3771580759945, U },
-  { "S04", { 6000.5, 4000.25, 20000 }, { -0.3, -0.2, -1 }, O, 1, 19999.377158075995, U },
-  { "S05", { 300.0025, 200.00125, 1000 }, { -0.3, -0.2, -1 }, O, 0.01, 999.99180943895754,
-    { 0.4957168313, 0.2888112208, 0.8190561042 } },
-  { "S06", { 3000000.5, 2000000.25, 10000000 }, { -0.3, -0.2, -1 }, O, 1, 9999999.377158076,
-    { 0.6868525773, 0.3745683847, 0.622841924 } },
-  { "S07", { 0, 1.5, 0 }, { 1, -0.125, 0.25 }, { 0, -1e4, 0 }, 1e4, 12.06183233862541,
-    { 0.001206183234, 0.9999992271, 0.0003015458085 } },
-  { "S08", { 0, 1.5, 0 }, { 1, -0.125, 0.25 }, { 0, -1e5, 0 }, 1e5, 12.006126250393924,
-    { 0.0001200612625, 0.9999999923, 3.001531563e-05 } },
-  { "S09", { 0, 1.5, 0 }, { 1, -0.125, 0.25 }, { 0, -1e6, 0 }, 1e6, 12.000612062431984,
-    { 1.200061206e-05, 0.9999999999, 3.000153016e-06 } },
   { "S10", { 0, 1.75, 0 }, { 1, -0.125, 0.25 }, { 0, -1e7, 0 }, 1e7, 14.000083300991285,
     { 1.40000833e-06, 1, 3.500020825e-07 } },
-  { "S10b", { 0, 1.75, 0 }, { 1, -0.001, 0 }, { 0, -6378137, 0 }, 6378137, 2093.6122920890288,
-    { 0.0003282482474, 0.9999999461, 0 } },
   { "S10c", { 0, 1.75, 0 }, { 1, -0.125, 0.25 }, { 0, -1e9, 0 }, 1e9, 14.000000833000099,
     { 1.400000083e-08, 1, 3.500000208e-09 } },
-  { "S11", { 0.5, 0, 0 }, { 1, 0, 0 }, O, 1, 0.5, { 1, 0, 0 } },
-  { "S12", O, { 1, 2, 2 }, O, 1, 0.33333333333333333, { 0.3333333333, 0.6666666667, 0.6666666667 } },
   { "S13", { 1, 0, 0 }, { 1, 0, 0 }, O, 1, false },
   { "S14", { 1, 0, 0 }, { -1, 0, 0 }, O, 1, 2, { -1, 0, 0 } },
-  { "S15", { 1, 0, 0 }, { 0, 1, 0 }, O, 1, false },
   { "S17", { 1 - 0x1p-24, 0, 5 }, { 0, 0, -1 }, O, 1, 4.9996547330221436, { 0.9999999404, 0, 0.0003452669779 } },
-  { "S18", { 1 + 0x1p-23, 0, 5 }, { 0, 0, -1 }, O, 1, false },
   { "S18b", { 1 + 0x1p-52, 0, 5 }, { 0, 0, -1 }, O, 1, false },
-  { "S19b", { -2996, -4003, 0 }, { 3, 4, 0 }, O, 5 * (1 + 0x1p-20), 999.99861893173872,
-    { 0.7991705969, -0.6011042814, 0 } },
   { "S20", { 0, 0, 5 }, { 0, 0, -1e-20 }, O, 1, 4.0000000000000002e+20, { 0, 0, 1 } },
-  { "S21", { 0, 0, 5 }, { 0, 0, -1e-30 }, O, 1, 3.9999999999999997e+30, { 0, 0, 1 } },
-  { "S22", { 0, 0, 5 }, { 0, 0, -1e25 }, O, 1, 3.9999999999999996e-25, { 0, 0, 1 } },
   { "S23", { 0, 0, 5 }, { 0, 0, -1e-200 }, O, 1, 4.0000000000000001e+200, { 0, 0, 1 } },
   { "S24", { 0, 0, 5 }, { 0, 0, -1 }, O, 1e-20, 5, { 0, 0, 1 } },
-  { "S26", { 0, 0, 5 }, { 0, 0, -1 }, O, 1e20, 1e+20, { 0, 0, -1 } },
   { "S27", { 0, 0, 5 }, { 0, 0, -1 }, O, 1e160, 1e+160, { 0, 0, -1 } },
   { "S29", { 10000000.5, 0.125, 5 }, { 0, 0, -1 }, { 10000000.25, 0, 0 }, 1, 4.039856781516424,
     { 0.25, 0.125, 0.9601432185 } },
-  { "S30", { 0.25e-6, 0.125e-6, 5e-6 }, { 0, 0, -1 }, O, 1e-6, 4.0398567815164244e-06, { 0.25, 0.125, 0.9601432185 } },
-  { "S31", { 0.25e6, 0.125e6, 5e6 }, { 0, 0, -1 }, O, 1e6, 4039856.781516424, { 0.25, 0.125, 0.9601432185 } },
-  { "S32", { 0, 1.5, 0 }, { 1, -0.0017321, 0 }, { 0, -1e6, 0 }, 1e6, 1719.1297884057082,
-    { 0.001719129788, 0.9999985223, 0 } },
-  { "S32b", { 0, 1.5, 0 }, { 1, -0.001732, 0 }, { 0, -1e6, 0 }, 1e6, false },
-  { "S35", { 0.999, 0, 1e5 }, { 0, 0, -1 }, O, 1, 99999.955289822188, { 0.999, 0, 0.04471017781 } },
 }
 
 local function distance(a, b)
@@ -109,13 +79,6 @@ for _, case in ipairs(cases) do
   else
     check(not hit, "%s: a miss expected, got t = %.17g", id, hit and hit.t or 0)
   end
-end
-
-do -- S16, S19: tangent; hit or miss, but the point it should be, and no NaN
-  local hit = sphere_scene(O, 1):cast({ 1, 0, 5 }, { 0, 0, -1 })
-  check(not hit or math.abs(hit.t - 5) < 1e-7, "S16: t = 5 or a miss expected, got %g", hit and hit.t or 0)
-  hit = sphere_scene(O, 5):cast({ -2996, -4003, 0 }, { 3, 4, 0 })
-  check(not hit or math.abs(hit.t - 1000) < 1e-7, "S19: t = 1000 or a miss expected, got %g", hit and hit.t or 0)
 end
 
 do -- S28: the outer of two concentric spheres, whichever was defined first
@@ -175,8 +138,8 @@ end
 local function phong(...) return specular("phong", ...) end
 local function blinn(...) return specular("blinn_phong", ...) end
 
--- A direction in the x-z plane whose cosine with z is c; s: its sine, where sqrt(1 - c^2) would lose digits.
-local function tilted(c, s) return { s or math.sqrt(1 - c * c), 0, c } end
+-- A direction in the x-z plane whose cosine with z is c.
+local function tilted(c) return { math.sqrt(1 - c * c), 0, c } end
 local Z = { 0, 0, 1 }
 local REL = 4e-6 -- the kernels shade in float32 and bound their power function by this
 
@@ -188,30 +151,9 @@ do
   near("P1: diffuse", d, 0.8, 1e-7)
   near_rel("P1: blinn", blinn(40, Z, { 0.6, 0, 0.8 }, Z), 0.1215766546)
   near_rel("P2: phong", phong(50, Z, { 3, 0, 4 }, { -3, 1, 4 }), 0.3751168023)
-  near_rel("P2: blinn", blinn(200, Z, { 3, 0, 4 }, { -3, 1, 4 }), 0.2174646193)
+  near_rel("P6", phong(1e6, Z, Z, tilted(0.999999)), 0.367879257221)
   s, d = phong(1, { 0, 1, 0 }, { 0.8, -0.6, 0 }, { -0.96, 0.28, 0 })
   check(s == 0 and d == 0, "P3: nothing from a light below the horizon, got %g and %g", d, s)
-  check(phong(0, Z, Z, tilted(0.5)) == 1, "P4: shininess 0, r.v 0.5: 1 expected")
-  check(phong(0, Z, Z, { 1, 0, 0 }) == 0, "P4: shininess 0, r.v 0: 0 expected")
-  near_rel("P5", phong(1e-3, Z, Z, tilted(0.5)), 0.99930709299)
-  near_rel("P6", phong(1e6, Z, Z, tilted(0.999999)), 0.367879257221)
-  near_rel("P7", phong(1e6, Z, Z, tilted(math.cos(1e-3), math.sin(1e-3))), 0.606530609)
-  local r = { -0.644607008, 0.74651444, -0.164918959 }
-  s = phong(1e6, r, r, r)
-  check(s <= 1 and s > 1 - 1e-6, "P8: 1 expected, got %.9g", s)
-  for _, l in ipairs { { 0.6, 0, 0.8 }, Z } do
-    local v = { -l[1], -l[2], -l[3] }
-    s, d = blinn(10, Z, l, v)
-    check(s == 0 and d == d, "P9: specular 0 where l = -v, got %g", s)
-    s = phong(10, Z, l, v)
-    check(s == s and s >= 0, "P9: phong has no NaN there, got %g", s)
-  end
-  for _, z in ipairs { 0, -1e-20 } do
-    s, d = phong(5, Z, { 1, 0, z }, tilted(0.5))
-    check(s == 0 and d == 0, "P10: n.l = %g gives 0 and 0, got %g and %g", z, d, s)
-  end
-  s = phong(310, Z, Z, tilted(0.1))
-  check(s == 0 or math.abs(s - 1e-310) < 1e-311, "P11: 0 or 1e-310 expected, got %g", s)
   s, d = specular("lambert", 1, Z, Z, Z)
   check(s == 0 and d == 1, "lambert: no highlight, got %g and %g", d, s)
 end

@@ -1,0 +1,227 @@
+/// Whole pictures against 113-bit arithmetic: nine still lifes that differ in how far apart their numbers are. In double
+/// no pixel may show a wrong object, a wrong shadow or a colour more than one 8-bit code off; what float and the
+/// textbook's formulas get wrong is printed beside it.
+#include "tests/hard/still.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH 96
+#define HEIGHT 72
+#define TIMED_SCALE 8 ///< the timed pictures' sides are this many times longer
+#define TIMED_RUNS 15 ///< of each precision
+
+/// Three spheres that touch a huge one, and each other's shadows.
+static hard_still ordinary(const char *name, double ground)
+{
+    hard_still s = { .name = name,
+                     .count = 4,
+                     .spheres = { { { -1.5, 1, 0 }, 1 },
+                                  { { 1, 0.75, 1.25 }, 0.75 },
+                                  { { 0.5, 1.5, -2 }, 1.5 },
+                                  { { 0, -ground, 0 }, ground } },
+                     .paint = { { { 0.75, 0.25, 0.25 }, 0.5, 50 },
+                                { { 0.25, 0.5, 0.75 }, 0.375, 10 },
+                                { { 0.5, 0.75, 0.25 }, 0.25, 200 },
+                                { { 0.5, 0.5, 0.5 }, 0, 1 } },
+                     .light = { 5, 8, 6 },
+                     .eye = { 0.25, 2.5, 9 },
+                     .at = { 0, 1, 0 },
+                     .fov_y_rad = 0.75,
+                     .ambient = 0.125,
+                     .background = { 0.125, 0.1875, 0.25 } };
+    return s;
+}
+
+static hard_still telephoto(void)
+{
+    hard_still s = ordinary("telephoto: r=1 at 1e4", 100);
+    const double eye[3] = { 277, 2500, 9680 };
+    memcpy(s.eye, eye, sizeof eye);
+    s.fov_y_rad = 6.5e-4;
+    return s;
+}
+
+static void move(double v[3], double scale, const double by[3])
+{
+    for (int c = 0; c < 3; c++)
+        v[c] = v[c] * scale + by[c];
+}
+
+static hard_still moved(const char *name, double scale, const double by[3])
+{
+    hard_still s = ordinary(name, 100);
+    for (int i = 0; i < s.count; i++) {
+        move(s.spheres[i].c, scale, by);
+        s.spheres[i].r *= scale;
+    }
+    move(s.light, scale, by);
+    move(s.eye, scale, by);
+    move(s.at, scale, by);
+    return s;
+}
+
+typedef struct errors {
+    long object, shadow, over1; ///< pixels
+    int worst; ///< codes
+    double ms; ///< least time of the larger picture; 0: not measured
+} errors;
+
+static int code(double linear)
+{
+    const double x = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+    return (int)floor(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055) + 0.5);
+}
+
+static void note(errors *sum, const still_pixel *want, const still_pixel *got)
+{
+    int off = 0;
+    for (int c = 0; c < 3; c++) {
+        const int d = isfinite(got->color[c]) ? abs(code(got->color[c]) - code(want->color[c])) : 255;
+        off = d > off ? d : off;
+    }
+    sum->object += got->object != want->object;
+    sum->shadow += got->object == want->object && got->lit != want->lit;
+    sum->over1 += off > 1;
+    sum->worst = off > sum->worst ? off : sum->worst;
+}
+
+/// The least of some times, the two precisions by turns.
+static void time_both(const hard_still *still, errors *in_float, errors *in_double)
+{
+    glint_scene *scene = still_scene(still);
+    in_float->ms = in_double->ms = HUGE_VAL;
+    for (int i = 0; i < 2 * TIMED_RUNS; i++) {
+        errors *one = i % 2 ? in_float : in_double;
+        const frame_desc desc = { WIDTH * TIMED_SCALE,
+                                  HEIGHT * TIMED_SCALE,
+                                  i % 2 ? GLINT_FLOAT : GLINT_DOUBLE,
+                                  1u << GLINT_PASS_BEAUTY,
+                                  1,
+                                  NULL };
+        glint_frame_stats stats;
+        glint_image_release(frame(scene, &desc, &stats));
+        one->ms = fmin(one->ms, stats.render_ms);
+    }
+    glint_scene_release(scene);
+}
+
+static errors engine_errors(const hard_still *still, const still_pixel *want, glint_precision precision)
+{
+    errors sum = { 0 };
+    glint_scene *scene = still_scene(still);
+    const frame_desc desc = {
+        WIDTH, HEIGHT, precision, 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DIFFUSE | 1u << GLINT_PASS_OBJECT_ID,
+        1,     NULL
+    };
+    glint_frame_stats stats;
+    glint_image *image = frame(scene, &desc, &stats);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const still_pixel got = still_engine_pixel(image, x, y);
+            note(&sum, &want[y * WIDTH + x], &got);
+        }
+    hard_check(stats.nonfinite == 0, "%ld pixels are not finite", (long)stats.nonfinite);
+    glint_image_release(image);
+    glint_scene_release(scene);
+    return sum;
+}
+
+typedef still_pixel tracer(const hard_still *still, int width, int height, int x, int y);
+
+static errors textbook_errors(const hard_still *still, const still_pixel *want, tracer *trace)
+{
+    errors sum = { 0 };
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const still_pixel got = trace(still, WIDTH, HEIGHT, x, y);
+            note(&sum, &want[y * WIDTH + x], &got);
+        }
+    return sum;
+}
+
+/// The cells that are the same on every machine; README.md may hold the row, and must then hold these.
+static void write_row(char row[256], const char *name, const errors *in_float, const errors *in_double)
+{
+    snprintf(row, 256, "| %s | %ld, %ld, %ld | %ld, %ld, %ld |", name, in_float->object, in_float->shadow,
+             in_float->over1, in_double->object, in_double->shadow, in_double->over1);
+}
+
+static double share_over1(const errors *e) { return 100.0 * (double)e->over1 / (WIDTH * HEIGHT); }
+
+static void check_readme(const char *name, const char *row)
+{
+    char line[1024], start[128];
+    snprintf(start, sizeof start, "| %s |", name);
+    FILE *readme = fopen("README.md", "r");
+    if (!readme)
+        return;
+    while (fgets(line, sizeof line, readme))
+        if (!strncmp(line, start, strlen(start)))
+            hard_check(!strncmp(line, row, strlen(row)), "README.md says %swhere it is %s", line, row);
+    fclose(readme);
+}
+
+/// The truth is not one colour: every object is seen, and both in light and in shadow.
+static void check_truth(const hard_still *still, const still_pixel *want)
+{
+    long seen[STILL_MAX + 1] = { 0 }, shadows = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        seen[want[i].object]++;
+        shadows += want[i].object == still->count && !want[i].lit;
+    }
+    for (int i = 1; i <= still->count; i++)
+        hard_check(seen[i] > 100, "object %d covers %ld pixels", i, seen[i]);
+    hard_check(shadows > 100, "%ld pixels of the ground in shadow", shadows);
+}
+
+static void compare(const hard_still *still)
+{
+    hard_test("picture", still->name);
+    static still_pixel want[WIDTH * HEIGHT];
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            want[y * WIDTH + x] = still_trace_113(still, WIDTH, HEIGHT, x, y);
+    check_truth(still, want);
+    const errors textbook_float = textbook_errors(still, want, still_trace_24);
+    const errors textbook_double = textbook_errors(still, want, still_trace_53);
+    errors in_float = engine_errors(still, want, GLINT_FLOAT), in_double = engine_errors(still, want, GLINT_DOUBLE);
+    hard_check(in_double.object == 0, "%ld pixels show a wrong object", in_double.object);
+    hard_check(in_double.shadow == 0, "%ld pixels with a wrong shadow", in_double.shadow);
+    hard_check(in_double.over1 == 0, "%ld pixels more than a code off, at most %d", in_double.over1, in_double.worst);
+    char row[256];
+    write_row(row, still->name, &in_float, &in_double);
+    check_readme(still->name, row);
+    if (!hard_table)
+        return;
+    time_both(still, &in_float, &in_double);
+    printf("%s %.1f, %.1f | %.1f %% | %.1f %% |\n", row, in_float.ms, in_double.ms, share_over1(&textbook_float),
+           share_over1(&textbook_double));
+}
+
+int main(int argc, char **argv)
+{
+    hard_begin(argc, argv);
+    const double away[3] = { 1e7, 0, 1e7 }, here[3] = { 0 };
+    const hard_still stills[] = { ordinary("ordinary: 3 spheres, ground R=100", 100),
+                                  ordinary("ground R=1e4", 1e4),
+                                  ordinary("ground R=1e5", 1e5),
+                                  ordinary("ground R=1e6", 1e6),
+                                  ordinary("ground R=1e7", 1e7),
+                                  telephoto(),
+                                  moved("whole scene at offset 1e7", 1, away),
+                                  moved("scale 1e-6", 1e-6, here),
+                                  moved("scale 1e6", 1e6, here) };
+    if (hard_table)
+        printf("Pictures of %d x %d pixels against 113-bit arithmetic: pixels with a wrong object, with a wrong "
+               "shadow, more "
+               "than one 8-bit code off. Time: %d x %d pixels, one thread, least of %d.\n\n"
+               "| scene | `--precision float` | double | ms, float and double | textbook in float, off | in double, "
+               "off |\n"
+               "| --- | --- | --- | --- | --- | --- |\n",
+               WIDTH, HEIGHT, WIDTH * TIMED_SCALE, HEIGHT * TIMED_SCALE, TIMED_RUNS);
+    for (size_t i = 0; i < sizeof stills / sizeof *stills; i++)
+        compare(&stills[i]);
+    return hard_end();
+}

@@ -1,0 +1,338 @@
+/// The named cases of reflections, of sums of lights and of codes, each also turned and scaled; shininess from 0 to 1e7;
+/// codes as they come out of a PNG file. And the list of the cases whose subject the engine does not have yet.
+#include "tests/hard/drive.h"
+
+#include <math.h>
+#include <png.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// ---- Reflections ----
+
+typedef struct reflection_case {
+    const char *id, *what;
+    bool blinn;
+    double shininess, n[3], l[3], v[3];
+    double specular, diffuse; ///< from the list of hard cases, to its digits; NAN: not stated
+} reflection_case;
+
+#define Z \
+    { \
+        0, 0, 1 \
+    }
+#define TURNED_DOWN \
+    { \
+        -0.644607008, 0.74651444, -0.164918959 \
+    }
+
+static const reflection_case cases[] = {
+    { "P1", "Phong", false, 10, Z, { 0.6, 0, 0.8 }, Z, 0.1073741824, 0.8 },
+    { "P1", "Blinn, 4 x", true, 40, Z, { 0.6, 0, 0.8 }, Z, 0.1215766546, 0.8 },
+    { "P2", "Phong", false, 50, Z, { 3, 0, 4 }, { -3, 1, 4 }, 0.3751168023, 0.8 },
+    { "P2", "Blinn, 4 x", true, 200, Z, { 3, 0, 4 }, { -3, 1, 4 }, 0.2174646193, 0.8 },
+    { "P3", "light below the horizon", false, 1, { 0, 1, 0 }, { 0.8, -0.6, 0 }, { -0.96, 0.28, 0 }, 0, 0 },
+    { "P4", "shininess 0, r.v = 0.5", false, 0, Z, Z, { 0.8660254037844386, 0, 0.5 }, 1, 1 },
+    { "P4", "shininess 0, r.v = 0", false, 0, Z, Z, { 1, 0, 0 }, 0, 1 },
+    { "P5", "shininess 1e-3", false, 1e-3, Z, Z, { 0.8660254037844386, 0, 0.5 }, 0.99930709299, 1 },
+    { "P6",
+      "shininess 1e6, r.v = 0.999999",
+      false,
+      1e6,
+      Z,
+      Z,
+      { 0.0014142132088085115, 0, 0.999999 },
+      0.367879257221,
+      1 },
+    { "P7",
+      "shininess 1e6, 1e-3 rad",
+      false,
+      1e6,
+      Z,
+      Z,
+      { 0.00099999983333334168, 0, 0.99999950000004167 },
+      0.606530609,
+      1 },
+    { "P8", "r = v, longer than 1 in float", false, 1e6, TURNED_DOWN, TURNED_DOWN, TURNED_DOWN, 1, 1 },
+    { "P9", "l = -v: h is undefined", true, 10, Z, { 0.6, 0, 0.8 }, { -0.6, 0, -0.8 }, 0, 0 },
+    { "P9", "l = -v, Phong", false, 10, Z, { 0.6, 0, 0.8 }, { -0.6, 0, -0.8 }, 0, 0 },
+    { "P10", "n.l = 0", false, 5, Z, { 1, 0, 0 }, { 0.8660254037844386, 0, 0.5 }, 0, 0 },
+    { "P10", "n.l = -1e-20", false, 5, Z, { 1, 0, -1e-20 }, { 0.8660254037844386, 0, 0.5 }, 0, 0 },
+    { "P11", "shininess 310, r.v = 0.1", false, 310, Z, Z, { 0.99498743710661995, 0, 0.1 }, 0, 1 },
+    { "P14",
+      "Phong, v out of the plane",
+      false,
+      50,
+      Z,
+      { 1.7320508075688772, 0, 1 },
+      { -1.5, 0.86602540378443865, 1 },
+      NAN,
+      0.5 },
+    { "P14",
+      "Blinn, v out of the plane",
+      true,
+      200,
+      Z,
+      { 1.7320508075688772, 0, 1 },
+      { -1.5, 0.86602540378443865, 1 },
+      NAN,
+      0.5 },
+};
+
+/// log2 of the cosine is a float, off by at most 2.75 ulp, times a rounded exponent, rounded: 3.75 ulp of y; exp2 adds 1.5,
+/// the material's and the light's strengths 1.5. What the vectors' own rounding does to the cosine counts s times.
+static double allowed(const reflection *want, double shininess)
+{
+    const double y = want->specular > 0 ? fabs(want->log2_specular) : 0;
+    return want->specular * (0x1p-23 * (0.6931471805599453 * 3.75 * y + 3) + shininess * 8 * 0x1p-53) +
+           0x1p-40; // below it a highlight is 0
+}
+
+static glint_reflection evaluate(bool blinn, double shininess, const double n[3], const double l[3], const double v[3])
+{
+    static const double white[3] = { 1, 1, 1 };
+    glint_error error;
+    glint_reflection out;
+    glint_material *material = material_new(blinn ? GLINT_MODEL_BLINN_PHONG : GLINT_MODEL_PHONG, white, 1, shininess);
+    must(glint_material_evaluate(material, n, l, v, &out, &error), &error);
+    glint_material_release(material);
+    return out;
+}
+
+/// The textbook's highlight in float: powf(r.v, s).
+static double naive_phong(double shininess, const double n[3], const double l[3], const double v[3])
+{
+    float unit[3][3], nl = 0, rv = 0;
+    const double *const given[3] = { n, l, v };
+    for (int k = 0; k < 3; k++) {
+        const float x = (float)given[k][0], y = (float)given[k][1], z = (float)given[k][2];
+        const float length = sqrtf(x * x + y * y + z * z);
+        unit[k][0] = x / length;
+        unit[k][1] = y / length;
+        unit[k][2] = z / length;
+    }
+    for (int c = 0; c < 3; c++)
+        nl += unit[0][c] * unit[1][c];
+    for (int c = 0; c < 3; c++)
+        rv += (2 * nl * unit[0][c] - unit[1][c]) * unit[2][c];
+    return nl > 0 && rv > 0 ? powf(rv, (float)shininess) : 0;
+}
+
+static double compare(bool blinn, double shininess, const double n[3], const double l[3], const double v[3])
+{
+    const reflection want = oracle_reflection(blinn, shininess, n, l, v);
+    const glint_reflection got = evaluate(blinn, shininess, n, l, v);
+    const double error = fabs(got.specular[1] - want.specular), limit = allowed(&want, shininess);
+    hard_check(error <= limit && got.specular[1] <= 1, "specular %.10g, truth %.10g, off by %g where %g is allowed",
+               got.specular[1], want.specular, error, limit);
+    hard_check(fabs(got.diffuse[1] - want.diffuse) <= 0x1p-23, "diffuse %.10g, truth %.10g", got.diffuse[1],
+               want.diffuse);
+    return error / limit;
+}
+
+static void check_reflection(const reflection_case *k)
+{
+    const reflection want = oracle_reflection(k->blinn, k->shininess, k->n, k->l, k->v);
+    if (!isnan(k->specular))
+        hard_check(fabs(want.specular - k->specular) <= 5e-10, "oracle %.12g, stated %.12g", want.specular,
+                   k->specular);
+    hard_check(fabs(want.diffuse - k->diffuse) <= 1e-15, "oracle %.17g, stated %.17g", want.diffuse, k->diffuse);
+    const double share = compare(k->blinn, k->shininess, k->n, k->l, k->v);
+    if (hard_table)
+        printf("| %s | %s | %.10g | %.10g | %s |\n", k->id, k->what, want.specular,
+               evaluate(k->blinn, k->shininess, k->n, k->l, k->v).specular[1], share <= 1 ? "right" : "**wrong**");
+    if (hard_table && !k->blinn)
+        printf("| | textbook, float | | %.10g | |\n", naive_phong(k->shininess, k->n, k->l, k->v));
+    for (int turn = 0; turn < 6; turn++) // swapped axes, other lengths
+        for (int e = -300; e <= 300; e += 150) {
+            static const int order[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 },
+                                             { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
+            double n[3], l[3], v[3];
+            for (int c = 0; c < 3; c++) {
+                n[c] = ldexp(k->n[order[turn][c]], e);
+                l[c] = k->l[order[turn][c]] * 3;
+                v[c] = ldexp(k->v[order[turn][c]], -e);
+            }
+            compare(k->blinn, k->shininess, n, l, v);
+        }
+}
+
+/// Shininess 0 and 1e-3 .. 1e7; v as far from the mirror direction as makes the highlight anything from 1 to 2^-45.
+static void sweep_shininess(uint64_t count)
+{
+    hard_test("P", "shininess 0 .. 1e7");
+    double worst = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        const double shininess = chance(0.02) ? 0 : log_uniform(1e-3, 1e7);
+        const bool blinn = chance(0.5);
+        double n[3], l[3], v[3], off[3], nl = 0;
+        random_direction(n);
+        random_direction(l);
+        random_direction(off);
+        for (int c = 0; c < 3; c++)
+            nl += n[c] * l[c];
+        const double angle = fmin(1, sqrt(uniform(0, 90) / (shininess + 1e-9))) * (blinn ? 2 : 1);
+        for (int c = 0; c < 3; c++) {
+            l[c] = nl < 0 ? -l[c] : l[c];
+            v[c] = 2 * fabs(nl) * n[c] - l[c] + angle * off[c];
+        }
+        worst = fmax(worst, compare(blinn, shininess, n, l, v));
+    }
+    if (hard_table)
+        printf("\n%llu highlights of shininess 0 .. 1e7: worst error %.2f of the bound.\n", (unsigned long long)count,
+               worst);
+}
+
+// ---- Codes ----
+
+/// One row of pixels of these linear values: spheres that an orthographic camera sees one a pixel, lit by ambient alone.
+static glint_image *row_of(const double *values, int count)
+{
+    static const double one[3] = { 1, 1, 1 }, none[3] = { 0 };
+    glint_scene *scene = scene_new();
+    scene_light_up(scene, 1, none);
+    glint_camera_desc camera = glint_camera_desc_default();
+    camera.projection = GLINT_ORTHOGRAPHIC;
+    camera.height = 1;
+    scene_camera(scene, &camera);
+    for (int i = 0; i < count; i++) {
+        const hard_sphere ball = { { i + 0.5 - 0.5 * count, 0, 0 }, 0.4 };
+        glint_material *material = material_new(GLINT_MODEL_LAMBERT, one, 0, 1);
+        glint_material_desc desc = *glint_material_get(material);
+        glint_error error;
+        for (int c = 0; c < 3; c++)
+            desc.diffuse[c] = values[i];
+        must(glint_material_set(material, &desc, &error), &error);
+        scene_sphere(scene, &ball, material);
+        glint_material_release(material);
+    }
+    const frame_desc desc = { count, 1, GLINT_DOUBLE, 1u << GLINT_PASS_BEAUTY, 1, NULL };
+    glint_image *image = frame(scene, &desc, NULL);
+    glint_scene_release(scene);
+    return image;
+}
+
+/// Writes the image and reads its codes back with libpng.
+static void written_codes(const glint_image *image, glint_transfer transfer, int bits, int *codes)
+{
+    char path[64];
+    const int width = glint_image_width(image);
+    glint_error error;
+    glint_write_desc desc = { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    desc.tone.transfer = transfer;
+    desc.tone.bits = bits;
+    temporary_file(path, ".png");
+    must(glint_image_write(image, &desc, &error), &error);
+    FILE *in = fopen(path, "rb");
+    unlink(path);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_byte *row = malloc((size_t)width * 6);
+    if (!in || !row || setjmp(png_jmpbuf(png)))
+        exit(1);
+    png_init_io(png, in);
+    png_read_info(png, info);
+    const int wide = png_get_bit_depth(png, info) == 16;
+    hard_check(png_get_bit_depth(png, info) == bits, "a PNG of %d bits", bits);
+    png_read_row(png, row, NULL);
+    for (int x = 0; x < width; x++)
+        codes[x] = wide ? row[6 * x] << 8 | row[6 * x + 1] : row[3 * x];
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(in);
+    free(row);
+}
+
+static void check_row(const char *id, const double *values, int count, glint_transfer transfer, int bits,
+                      const int *stated)
+{
+    hard_test(id, bits == 8 ? "codes of 8 bits" : "codes of 16 bits");
+    int *codes = calloc((size_t)count, sizeof *codes), wrong = 0;
+    glint_image *image = row_of(values, count);
+    written_codes(image, transfer, bits, codes);
+    for (int i = 0; i < count; i++) {
+        float linear[3];
+        pixel(image, GLINT_PASS_BEAUTY, i, 0, linear);
+        const int want = oracle_code(linear[1], transfer == GLINT_TRANSFER_SRGB, bits == 8 ? 255 : 65535);
+        wrong += !hard_check(codes[i] == want && (!stated || codes[i] == stated[i]), "%.9g is %d, truth %d", linear[1],
+                             codes[i], want);
+    }
+    if (hard_table)
+        printf("| %s | %d values | %d bit, %s | %d | %s |\n", id, count, bits,
+               transfer == GLINT_TRANSFER_SRGB ? "sRGB" : "linear", wrong, wrong ? "**wrong**" : "right");
+    glint_image_release(image);
+    free(codes);
+}
+
+static void check_codes(void)
+{
+    // I1; a pixel is a float: those a hair below a half stay there
+    const double steps[] = { 0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, 1e30, 0 };
+    const int step_codes[] = { 0, 1, 2, 128, 255, 255, 255, 0 };
+    check_row("I1", steps, 8, GLINT_TRANSFER_LINEAR, 8, step_codes);
+    // I2 without 0.2140411, whose float is on the other side of the step
+    const double known[] = { 0.0031308, 0.18, 0.5, 0.75, 1 };
+    const int known_8[] = { 10, 118, 188, 225, 255 }, known_16[] = { 2651, 30235, 48192, 57725, 65535 };
+    check_row("I2", known, 5, GLINT_TRANSFER_SRGB, 8, known_8);
+    check_row("I2", known, 5, GLINT_TRANSFER_SRGB, 16, known_16);
+    double values[1024];
+    int same[1024];
+    for (int bits = 8; bits <= 16; bits += 8) {
+        const int range = bits == 8 ? 255 : 65535, count = bits == 8 ? 256 : 1024;
+        for (int i = 0; i < count; i++) {
+            same[i] = bits == 8 ? i : (int)(random_bits() % 65536);
+            values[i] = glint_srgb_decode((double)same[i] / range);
+        }
+        check_row("I3", values, count, GLINT_TRANSFER_SRGB, bits, same); // code -> linear -> code
+        for (int i = 0; i < 1024; i++) { // at the steps themselves, and a few floats to each side
+            const double step = glint_srgb_decode(((double)(random_bits() % (unsigned)range) + 0.5) / range);
+            values[i] = (double)((float)step * (1 + (float)(int)(random_bits() % 7 - 3) * 0x1p-23f));
+        }
+        check_row("steps", values, 1024, GLINT_TRANSFER_SRGB, bits, NULL);
+    }
+}
+
+// ---- What is not there yet ----
+
+static const struct {
+    const char *ids, *what;
+} waiting[] = {
+    { "P12", "Cook-Torrance" },
+    { "P13", "Cook-Torrance" },
+    { "L6", "spot lights" },
+    { "L7", "spot lights" },
+    { "L8", "area lights" },
+    { "L9", "sphere lights" },
+    { "L10", "sphere lights" },
+    { "L11", "disk and sphere lights" },
+    { "L12", "sphere lights" },
+    { "M1", "refraction" },
+    { "M2", "refraction" },
+    { "M3", "refraction" },
+    { "M4", "refraction" },
+    { "M5", "refraction" },
+    { "M6", "mirrors, and a depth to bound them by" },
+    { "G2", "meshes" },
+    { "G3", "textures" },
+};
+
+int main(int argc, char **argv)
+{
+    hard_begin(argc, argv);
+    if (hard_table)
+        printf("Reflections: the highlight of one light.\n\n| case | what | truth | engine | verdict |\n"
+               "| --- | --- | --- | --- | --- |\n");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        hard_test(cases[i].id, cases[i].what);
+        check_reflection(&cases[i]);
+    }
+    sweep_shininess(hard_rays / 20);
+    if (hard_table)
+        printf("\nCodes, read back from PNG files.\n\n| case | of | as | wrong | verdict |\n| --- | --- | --- | --- | "
+               "--- |\n");
+    check_codes();
+    if (hard_table)
+        printf("\nWaiting for what the engine does not have yet.\n\n| case | |\n| --- | --- |\n");
+    for (size_t i = 0; i < sizeof waiting / sizeof *waiting; i++)
+        hard_needs(waiting[i].ids, waiting[i].what);
+    return hard_end();
+}
