@@ -41,7 +41,7 @@ hard_still still_random(double scale, double away)
 {
     hard_still s = { .name = "random", .fov_y_rad = uniform(0.3, 1.5), .ambient = 0.125, .count = 2 };
     s.count += (int)(random_bits() % 6);
-    double at[3], side[3];
+    double at[3], side[3], lamp[3];
     for (int c = 0; c < 3; c++)
         at[c] = uniform(-1, 1) * away;
     for (int i = 0; i < s.count; i++) {
@@ -60,13 +60,15 @@ hard_still still_random(double scale, double away)
         s.spheres[s.count] = (hard_sphere) { { at[0], at[1], at[2] }, scale * log_uniform(20, 1e4) };
         s.paint[s.count++] = random_paint();
     }
+    random_direction(lamp);
+    const double far = scale * log_uniform(1, 300); // in a room or outside it
     do
         random_direction(side);
     while (fabs(side[1]) > 0.9); // the textbook's camera has no other upward axis
     for (int c = 0; c < 3; c++) {
         s.at[c] = s.spheres[0].c[c];
         s.eye[c] = s.at[c] + side[c] * scale * uniform(4, 10);
-        s.light[c] = at[c] + scale * uniform(-15, 15);
+        s.light[c] = at[c] + lamp[c] * far;
     }
     return s;
 }
