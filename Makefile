@@ -173,7 +173,7 @@ hard-run: $(HARD_BIN)
 
 SOAK_RAYS ?= 1e8
 
-soak: ## the hard cases with 1e8 rays (SOAK_RAYS) at the fuzz's aims, in two processes: about ten minutes
+soak: ## the hard cases with 1e8 rays (SOAK_RAYS) at the fuzz's aims, in two processes: about a quarter of an hour on two free cores
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory soak-run
 
