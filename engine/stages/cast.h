@@ -535,12 +535,11 @@ static int R(open_node)(R(tile_cast) * tile, const glint_node *node, float far, 
         if (!(child & GLINT_NODE_PRIM))
             continue;
         if (!known)
-            boxes_on_screen(node, &tile->view, &screen);
+            boxes_on_screen(node, &tile->view, tile->across, tile->down, &screen);
         known = true;
-        const group_rect rect = groups_of(&screen, order[i], &tile->view, tile->across, tile->down);
         R(candidate) *candidate = &candidates[found];
-        candidate->columns = bit_range(rect.first[0], rect.last[0]);
-        candidate->rows = bit_range(rect.first[1], rect.last[1]);
+        candidate->columns = bit_range((int)screen.first[0][order[i]], (int)screen.last[0][order[i]]);
+        candidate->rows = bit_range((int)screen.first[1][order[i]], (int)screen.last[1][order[i]]);
         candidate->depth = depth[order[i]];
         if (!candidate->columns || !candidate->rows || R(hidden)(tile, candidate))
             continue;

@@ -51,6 +51,7 @@ static inline fm fm_from_bits(unsigned bits)
 
 static inline vi f_bits(vf x) { return _mm256_castps_si256(x); }
 static inline vf f_from_bits(vi x) { return _mm256_castsi256_ps(x); }
+static inline vi i_from_f(vf x) { return _mm256_cvttps_epi32(x); } // towards 0
 static inline vi i_set(uint32_t x) { return _mm256_set1_epi32((int)x); }
 static inline vi i_add(vi a, vi b) { return _mm256_add_epi32(a, b); }
 static inline vi i_sub(vi a, vi b) { return _mm256_sub_epi32(a, b); }

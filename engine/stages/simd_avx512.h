@@ -42,6 +42,7 @@ static inline fm fm_from_bits(unsigned bits) { return (fm)bits; }
 
 static inline vi f_bits(vf x) { return _mm512_castps_si512(x); }
 static inline vf f_from_bits(vi x) { return _mm512_castsi512_ps(x); }
+static inline vi i_from_f(vf x) { return _mm512_cvttps_epi32(x); } // towards 0
 static inline vi i_set(uint32_t x) { return _mm512_set1_epi32((int)x); }
 static inline vi i_add(vi a, vi b) { return _mm512_add_epi32(a, b); }
 static inline vi i_sub(vi a, vi b) { return _mm512_sub_epi32(a, b); }

@@ -88,60 +88,48 @@ static unsigned boxes_in_tile(const glint_node *node, const tile_view *view, flo
     return inside;
 }
 
-/// What a node's boxes may cover of the picture, in the units of s and t.
+/// Groups of 4 x 4 pixels that each box of a node may show in: columns first[0] .. last[0], rows first[1] .. last[1];
+/// none where last < first.
 typedef struct node_on_screen {
-    _Alignas(64) float low[2][GLINT_NODE_WIDTH], high[2][GLINT_NODE_WIDTH];
+    _Alignas(64) uint32_t first[2][GLINT_NODE_WIDTH], last[2][GLINT_NODE_WIDTH];
 } node_on_screen;
 
+/// The interval of s or t that boxes may cover.
 static inline void interval_on_screen(const vf middle[3], const vf half[3], const float axis[3], vf near, vf far,
-                                      float low_out[], float high_out[])
+                                      vf *least, vf *most)
 {
     vf low, high;
     box_along(middle, half, axis, &low, &high);
     const fm ahead = f_lt(f_set(0), near); // else the box reaches the eye's plane and may be seen anywhere
-    f_store(low_out, f_select(ahead, f_min(low / near, low / far), f_set(-HUGE_VALF)));
-    f_store(high_out, f_select(ahead, f_max(high / near, high / far), f_set(HUGE_VALF)));
+    *least = f_select(ahead, f_min(low / near, low / far), f_set(-HUGE_VALF));
+    *most = f_select(ahead, f_max(high / near, high / far), f_set(HUGE_VALF));
 }
 
-static void boxes_on_screen(const glint_node *node, const tile_view *view, node_on_screen *out)
+/// Groups are 8 units of s or t wide; `slack`, a hundredth of a unit and more, is far above the rounding. NaN gives all.
+static inline void groups_between(vf least, vf most, float slack, int count, uint32_t first[], uint32_t last[])
 {
-    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
-        vf middle[3], half[3], near, far;
-        for (int k = 0; k < 3; k++)
-            box_axis(node, k, i, view->eye[k], view->slack, &middle[k], &half[k]);
-        box_along(middle, half, view->forward, &near, &far);
-        interval_on_screen(middle, half, view->right, near, far, out->low[0] + i, out->high[0] + i);
-        interval_on_screen(middle, half, view->up, near, far, out->low[1] + i, out->high[1] + i);
-    }
+    const vf eighth = f_set(0.125f), limit = f_set((float)count);
+    vf from = f_min(f_max((least - f_set(slack)) * eighth, f_set(0)), limit);
+    vf to = f_max(f_min((most + f_set(slack)) * eighth + f_set(1), limit), f_set(0));
+    i_store(first, i_from_f(from));
+    i_store(last, i_sub(i_from_f(to), i_set(1)));
 }
 
-/// Groups of 4 x 4 pixels: columns first[0] .. last[0], rows first[1] .. last[1]; empty where last < first.
-typedef struct group_rect {
-    int first[2], last[2];
-} group_rect;
-
-/// Groups are 8 units of s or t wide; a hundredth of a unit is far above the rounding. NaN keeps the group.
-static inline int first_group(float units, float slack)
-{
-    const float group = floorf((units - slack) * 0.125f);
-    return group > 0 ? (int)smaller(group, 1000) : 0;
-}
-
-static inline int last_group(float units, float slack, int count)
-{
-    const float group = floorf((units + slack) * 0.125f);
-    return group < (float)count ? (int)larger(group, -1) : count - 1;
-}
-
-/// The groups that one slot of a node may show in, of across x down. s runs along the columns, t against the rows.
-static inline group_rect groups_of(const node_on_screen *boxes, int slot, const tile_view *view, int across, int down)
+/// s runs along the columns, t against the rows.
+static void boxes_on_screen(const glint_node *node, const tile_view *view, int across, int down, node_on_screen *out)
 {
     const float s = view->s[0], t = view->t[1];
     const float slack_s = 0.01f + 1e-5f * fabsf(s), slack_t = 0.01f + 1e-5f * fabsf(t);
-    return (group_rect) {
-        { first_group(boxes->low[0][slot] - s, slack_s), first_group(t - boxes->high[1][slot], slack_t) },
-        { last_group(boxes->high[0][slot] - s, slack_s, across), last_group(t - boxes->low[1][slot], slack_t, down) }
-    };
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3], near, far, least, most;
+        for (int k = 0; k < 3; k++)
+            box_axis(node, k, i, view->eye[k], view->slack, &middle[k], &half[k]);
+        box_along(middle, half, view->forward, &near, &far);
+        interval_on_screen(middle, half, view->right, near, far, &least, &most);
+        groups_between(least - f_set(s), most - f_set(s), slack_s, across, out->first[0] + i, out->last[0] + i);
+        interval_on_screen(middle, half, view->up, near, far, &least, &most);
+        groups_between(f_set(t) - most, f_set(t) - least, slack_t, down, out->first[1] + i, out->last[1] + i);
+    }
 }
 
 /// Bits first .. last.
