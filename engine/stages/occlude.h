@@ -6,6 +6,7 @@
 // between, each group walks with its own, thinner shaft.
 
 #define GLINT_OCCLUDERS 12 ///< what a tile's list holds
+#define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
 #define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
 
 /// A primitive between the tile and the light.
@@ -28,6 +29,7 @@ typedef struct R(shadow_group) {
     size_t at;
     bool made;
     uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
+    int shafts_failed; ///< of the last groups in a row
     _Alignas(64) real to_light[3][GLINT_GROUP]; ///< in the light's units
     R(ray_group) rays;
     uint32_t surface[GLINT_GROUP]; ///< the coincident of the primitive each ray leaves
@@ -230,11 +232,27 @@ static void R(find_occluders)(R(shadow_tile) * tile, float lower[3], float upper
     }
 }
 
+/// Whether the light is outside the sphere for certain, by what the filter knows.
+static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_prim *prim)
+{
+    float distance2 = 0, size = 0;
+    if (prim->kind != GLINT_PRIM_SPHERE || tile->args->directional)
+        return prim->kind == GLINT_PRIM_SPHERE;
+    for (int k = 0; k < 3; k++) {
+        const float d = tile->light[k] - prim->filter_center[k];
+        distance2 += d * d;
+        size += fabsf(tile->light[k]);
+    }
+    const float reach = prim->filter_bound + WALK_SLACK * size;
+    return distance2 > reach * reach * (1 + 1e-5f);
+}
+
 /// Tests a primitive that a walk came upon. Returns the lanes that are still open.
 static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t id,
                                         unsigned open)
 {
-    const R(occluder) occluder = { id, R(light_side)(tile->args, &tile->args->geometry->prims[id]) };
+    const glint_prim *prim = &tile->args->geometry->prims[id];
+    const R(occluder) occluder = { id, R(light_outside)(tile, prim) ? 1 : R(light_side)(tile->args, prim) };
     const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
     if (blocked)
         group->last_blocker = id;
@@ -295,19 +313,17 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * grou
     stack[height++] = 0;
     while (height > 0) {
         _Alignas(64) float depth[GLINT_NODE_WIDTH];
-        int order[GLINT_NODE_WIDTH];
         const glint_node *node = &geometry->nodes[stack[--height]];
-        const int count = sort_slots(boxes_on_ray(node, &ray, far, depth), depth, order);
-        for (int i = 0; i < count; i++) {
-            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
+        for (unsigned mask = boxes_on_ray(node, &ray, far, depth); mask; mask &= mask - 1) {
+            const uint32_t child = node->child[__builtin_ctz(mask)];
+            if (!(child & GLINT_NODE_PRIM)) {
+                stack[height++] = child;
                 continue;
-            open = R(test_occluder)(tile, group, node->child[order[i]] & ~GLINT_NODE_PRIM, open);
+            }
+            open = R(test_occluder)(tile, group, child & ~GLINT_NODE_PRIM, open);
             if (!(open >> lane & 1))
                 return open;
         }
-        for (int i = count; i-- > 0;)
-            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
-                stack[height++] = node->child[order[i]];
     }
     return open;
 }
@@ -321,8 +337,10 @@ static unsigned R(walk_group)(const R(shadow_tile) * tile, R(shadow_group) * gro
         open = R(test_occluder)(tile, group, group->last_blocker, open);
     for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
         open = R(test_occluder)(tile, group, geometry->unbounded[i], open);
-    if (open && !done)
+    if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
         open = R(walk_shaft)(tile, group, open, &done);
+        group->shafts_failed = done ? 0 : group->shafts_failed + 1;
+    }
     for (unsigned left = open; left && !done; left &= (left - 1) & open)
         open = R(walk_lane)(tile, group, __builtin_ctz(left), open);
     return open;

@@ -32,21 +32,20 @@
 
 typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE } glint_prim_kind;
 
-/// One surface, as far as no ray is concerned.
+/// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
 typedef struct glint_prim {
-    uint16_t kind;
+    _Alignas(64) uint16_t kind;
     uint16_t two_sided; ///< 0: seen from behind it gets ambient light only
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
     uint32_t coincident; ///< id of the first primitive with bit-equal geometry: what a leaving ray skips
+    float filter_center[3]; ///< sphere: (center - reference) * scale, in the index's frame
+    float filter_bound; ///< sphere: >= radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
     double center[3]; ///< sphere: centre; plane: a point of it
-    double normal[3]; ///< plane: unit
     double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
+    double normal[3]; ///< plane: unit
     double radius; ///< sphere, world units
     double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
-    float filter_center[3]; ///< sphere: (center - reference) * scale, in the index's frame
-    float
-        filter_bound; ///< sphere: >= radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
 } glint_prim;
 
 #define GLINT_NODE_WIDTH 16
