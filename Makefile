@@ -172,13 +172,16 @@ hard-run: $(HARD_BIN)
 	@bad=0; for program in $(HARD_BIN); do $$program --table || bad=1; echo; done; exit $$bad
 
 SOAK_RAYS ?= 1e8
+SOAK_SECONDS ?= 300
+SOAK_SEED ?= 7
 
-soak: ## the hard cases with 1e8 rays (SOAK_RAYS) at the fuzz's aims, in two processes: about a quarter of an hour on two free cores
+soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases with SOAK_RAYS rays (1e8: a quarter of an hour)
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory soak-run
 
 # Other seeds than the check's, so that both see something new.
-soak-run: $(HARD_BIN)
+soak-run: $(HARD_BIN) $(BUILD)/tests/test_reuse
+	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_reuse
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
