@@ -41,7 +41,7 @@ ifdef SANITIZE
   SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
 
-COMPILE := -I. $(DEFINES) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null) $(CPPFLAGS) \
+COMPILE := -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKAGES) 2>/dev/null) $(CPPFLAGS) \
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
 LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
@@ -74,8 +74,8 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run check-films asan tsan hard hard-run soak soak-run bench demo demo-run install golden-update check-layers \
-        check-symbols check-headers lint clean help tests FORCE
+.PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install golden-update \
+        check-layers check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
@@ -84,6 +84,13 @@ $(BUILD)/engine/stages/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) -mavx2 -mfma
 $(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
+
+# Files that the command carries with it, as C: bindings/watch_page.html.h has the bytes of bindings/watch_page.html.
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*.html bindings/watch_*.lua))
+$(CARRIED): $(BUILD)/%.h: %
+	@mkdir -p $(@D)
+	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
+$(BINDINGS_OBJ): | $(CARRIED)
 
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
@@ -128,8 +135,8 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
-SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua tests/cli.sh tests/films.sh tests/golden.sh \
-              tests/povray.sh tests/readme.sh)
+SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
+              $(addprefix tests/,$(addsuffix .sh,cli films golden povray readme watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -155,10 +162,16 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread \
 	    PRELOAD=libtsan.so ITEMS="$(WATCHED)"
 
+# ---- Checks that need more than the build does; each says what is missing ----
+
+.PHONY: check-films check-watch
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
 	@$(RUNNER) tests/real_films.sh
+
+check-watch: all ## the page of glint watch in headless Chromium, where that is installed
+	@$(RUNNER) tests/watch_page.sh
 
 .PHONY: san-run
 san-run: tests

@@ -19,7 +19,8 @@ typedef enum cli_command {
     CLI_SHEET = 32,
     CLI_ASSEMBLE = 64,
     CLI_REPRODUCE = 128,
-    CLI_NEW = 256
+    CLI_NEW = 256,
+    CLI_WATCH = 512
 } cli_command;
 
 typedef struct cli_sweep { ///< --sweep name=from:to:count
@@ -48,18 +49,22 @@ typedef struct cli_options {
     char width[16], height[16]; ///< of --size
     int64_t start, end, jump; ///< -s -e -j; 0: not given
     bool has_frames;
+    int http_port; ///< of watch; 0: any free one, -1: no page
+    const char *terminal; ///< of watch: NULL: what the terminal says
 } cli_options;
+
+#define CLI_MAY_HAVE_NUMBER 2
 
 typedef struct cli_option cli_option;
 struct cli_option {
     const char *name;
     char letter; ///< 0: none
-    bool has_text;
+    int has_text; ///< false, true, or CLI_MAY_HAVE_NUMBER: a number that may be left out, and `text` is then NULL
     unsigned commands; ///< that know it
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 37
+#define CLI_OPTION_COUNT 39
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -118,6 +123,8 @@ void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< "rays":{...}
 void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
 /// The end of a run that did all it was asked.
 void cli_report_end(cli_output *output);
+/// Ends a line of data and flushes it; a reader that has gone ends the run.
+void cli_end_line(cli_output *output);
 
 /// NULL when there is no terminal to draw on.
 cli_progress *cli_progress_create(bool color);
@@ -132,14 +139,22 @@ typedef struct cli_script {
     lua_State *state;
     int64_t frames; ///< of the jobs it returned
     bool has_jobs;
+    int jobs; ///< reference to the list of jobs, when the run's mode is GLINTL_MODE_WATCH
 } cli_script;
 
 /// Runs the script, and what it returns. False: the run has failed, was interrupted or was stopped.
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run);
+/// Runs the selected frames of the jobs that a script run in GLINTL_MODE_WATCH has returned, once more each time.
+bool cli_run_jobs(cli_script *script, glintL_run *run);
 const char *cli_base_name(const char *path);
 void cli_close_script(cli_script *script);
 /// The state that a signal stops; NULL: none. signals.c
 void cli_set_state(lua_State *L);
+
+// ---- describe.c ----
+
+/// The parameters of the script in `L` as a JSON list. May raise.
+void cli_print_params(lua_State *L, FILE *out);
 
 // ---- signals.c ----
 
@@ -151,6 +166,7 @@ void cli_release_signals(void);
 int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
+int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
 int cli_compare(const cli_options *options, cli_output *output);
 int cli_sheet(const cli_options *options, cli_output *output);
 int cli_assemble(cli_options *options, cli_output *output, glintL_run *run);

@@ -66,15 +66,22 @@ static const cli_option *find_option(int code)
     return NULL;
 }
 
+static int argument_of(const cli_option *option)
+{
+    return option->has_text == CLI_MAY_HAVE_NUMBER ? optional_argument
+           : option->has_text                      ? required_argument
+                                                   : no_argument;
+}
+
+static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
+
 // Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
 static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI_OPTION_COUNT], char *message)
 {
     struct option list[CLI_OPTION_COUNT + 1] = { 0 };
     char letters[2 * CLI_OPTION_COUNT + 2] = ":", *letter = letters + 1, wrong[MESSAGE];
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
-        list[i] =
-            (struct option) { cli_option_list[i].name, cli_option_list[i].has_text ? required_argument : no_argument,
-                              NULL, 0x100 + (int)i };
+        list[i] = (struct option) { cli_option_list[i].name, argument_of(&cli_option_list[i]), NULL, 0x100 + (int)i };
         if (cli_option_list[i].letter) {
             *letter++ = cli_option_list[i].letter;
             if (cli_option_list[i].has_text)
@@ -91,6 +98,8 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
             return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
         const cli_option *option = find_option(code);
         used[option - cli_option_list] = true;
+        if (option->has_text == CLI_MAY_HAVE_NUMBER && !optarg && optind < argc && is_number(argv[optind]))
+            optarg = argv[optind++];
         if (!option->read(options, option, optarg, wrong)) {
             snprintf(message, MESSAGE, "--%s: %.1000s", option->name, wrong);
             return false;
@@ -120,6 +129,7 @@ static const struct {
     { "reproduce", CLI_REPRODUCE, FILE_SCRIPT },
     { "new", CLI_NEW, FILES },
     { "cost", CLI_COST, SCRIPT },
+    { "watch", CLI_WATCH, SCRIPT },
 };
 #define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
 
@@ -239,6 +249,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     options->command = CLI_RENDER;
     options->asked.repeat = 1;
     options->frame = 1;
+    options->http_port = -1;
     options->fail = options->warn = -1;
     int words = argc;
     for (int i = 1; i < words; i++) {

@@ -140,23 +140,31 @@ typedef struct description {
     FILE *out;
 } description;
 
-static void print_json(lua_State *L, const description *what)
+void cli_print_params(lua_State *L, FILE *out)
 {
     glintL_push_params(L);
     lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
+    fputc('[', out);
+    for (lua_Integer i = 1; i <= count; i++) {
+        if (i > 1)
+            fputc(',', out);
+        lua_rawgeti(L, -1, i);
+        print_param_json(L, out);
+        lua_pop(L, 1);
+    }
+    fputc(']', out);
+    lua_pop(L, 1);
+}
+
+static void print_json(lua_State *L, const description *what)
+{
     fputs("{\"event\":\"description\",\"script\":", what->out);
     glintL_json_string(what->out, what->run->script);
     fputs(",\"doc\":", what->out);
     glintL_json_string(what->out, what->comment);
-    fputs(",\"params\":[", what->out);
-    for (lua_Integer i = 1; i <= count; i++) {
-        if (i > 1)
-            fputc(',', what->out);
-        lua_rawgeti(L, -1, i);
-        print_param_json(L, what->out);
-        lua_pop(L, 1);
-    }
-    fputs("]}\n", what->out);
+    fputs(",\"params\":", what->out);
+    cli_print_params(L, what->out);
+    fputs("}\n", what->out);
 }
 
 static void print_for_people(lua_State *L, const description *what)

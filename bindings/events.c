@@ -8,7 +8,7 @@
 #define CLIPPED_HINT 0.1 // share of clipped pixels above which a picture looks washed out
 
 // Ends a line of data. A reader that has gone, or a full disk, ends the run.
-static void end_line(cli_output *output)
+void cli_end_line(cli_output *output)
 {
     fputc('\n', output->data);
     errno = 0;
@@ -93,7 +93,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
         glintL_json_number(out, (double)record->stats.clipped / record->pixel_count);
         fprintf(out, ",\"nonfinite\":%" PRIu64 "}", record->stats.nonfinite);
     }
-    end_line(output);
+    cli_end_line(output);
 }
 
 // ---- Frames for people ----
@@ -162,7 +162,7 @@ static void report_figure(void *context, const char *kind, const char *path, int
         fprintf(output->data, "{\"event\":\"%s\",\"file\":", kind);
         glintL_json_string(output->data, path);
         fprintf(output->data, ",\"frames\":%" PRId64 "}", count);
-        end_line(output);
+        cli_end_line(output);
     } else if (!output->quiet) {
         print_kept(output);
         fprintf(stderr, "%s: %s of %" PRId64 " frame%s\n", path, kind, count, count == 1 ? "" : "s");
@@ -171,7 +171,11 @@ static void report_figure(void *context, const char *kind, const char *path, int
 
 glintL_reporter cli_reporter(cli_output *output)
 {
-    return (glintL_reporter) { output, report_rendering, report_frame, report_warning, report_figure };
+    return (glintL_reporter) { .context = output,
+                               .rendering = report_rendering,
+                               .frame = report_frame,
+                               .warn = report_warning,
+                               .figure = report_figure };
 }
 
 // ---- The end ----
@@ -189,7 +193,7 @@ void cli_report_error(cli_output *output, int64_t index, int exit_code, const ch
     fputs(",\"message\":", output->data);
     glintL_json_string(output->data, message);
     fprintf(output->data, ",\"exit\":%d}", exit_code);
-    end_line(output);
+    cli_end_line(output);
 }
 
 void cli_report_end(cli_output *output)
@@ -200,7 +204,7 @@ void cli_report_end(cli_output *output)
     if (output->json) {
         fprintf(output->data, "{\"event\":\"end\",\"frames\":%" PRId64 ",\"kept\":%" PRId64 ",\"seconds\":%.3f}",
                 run->done, run->kept, seconds);
-        end_line(output);
+        cli_end_line(output);
     }
     if (output->quiet)
         return;

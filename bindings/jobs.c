@@ -1,5 +1,6 @@
 // Frames of animations and sweeps: numbered through a list of them, selected, rendered in order.
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,12 +87,25 @@ typedef struct job_walk {
     glintL_naming naming;
 } job_walk;
 
-void glintL_run_apply(const glintL_run *run, glintL_render *render)
+// A picture of the run's preview size: quick, and of the same shape.
+static void shrink(glintL_run *run, glint_render_desc *desc)
+{
+    double longest = desc->width > desc->height ? desc->width : desc->height;
+    double scale = longest > run->preview_side ? run->preview_side / longest : 1;
+    run->was_shrunk = run->was_shrunk || scale < 1 || desc->samples > 1;
+    desc->samples = 1;
+    desc->width = scale < 1 ? fmax(1, floor(desc->width * scale + 0.5)) : desc->width;
+    desc->height = scale < 1 ? fmax(1, floor(desc->height * scale + 0.5)) : desc->height;
+}
+
+void glintL_run_apply(glintL_run *run, glintL_render *render)
 {
     char message[GLINTL_MESSAGE_SIZE];
     for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
         if (run->asked.render_text[field]) // it was checked when it was read
             glintL_render_set_text(render, field, run->asked.render_text[field], message);
+    if (run->preview_side > 0)
+        shrink(run, &render->desc);
 }
 
 void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE])
@@ -240,8 +254,8 @@ static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
         glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "frame %" PRId64 ": the scene is closed", number);
         return NULL;
     }
-    glint_status status =
-        glintL_work_create(scene, &walk->render, number, walk->naming.pattern != NULL, false, &work, &error);
+    glint_status status = glintL_work_create(scene, &walk->render, number, walk->naming.pattern != NULL,
+                                             walk->run->keeps_images, &work, &error);
     if (status)
         glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number,
                         error.message);

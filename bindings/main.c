@@ -15,6 +15,8 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
     switch (options->command) {
     case CLI_EXPLAIN:
         return cli_explain(options, output, run);
+    case CLI_WATCH:
+        return cli_watch(options, output, run);
     case CLI_DESCRIBE:
         return cli_describe(options, output, run);
     case CLI_ASSEMBLE:

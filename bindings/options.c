@@ -8,8 +8,9 @@
 #include "bindings/cli.h"
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
+#define SHOWN (SCRIPTED | CLI_WATCH)
 #define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW)
-#define ALL (SCRIPTED | FILES)
+#define ALL (SHOWN | FILES)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
 // ---- Readers ----
@@ -190,6 +191,30 @@ static bool read_memory(cli_options *options, const cli_option *option, char *te
     return true;
 }
 
+// The page's port; without a number any free one.
+static bool read_port(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    int64_t port = 0;
+    if (text && !read_whole(text, 0, 65535, &port, message))
+        return false;
+    options->http_port = (int)port;
+    return true;
+}
+
+static bool read_terminal(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    static const char *const known[] = { "kitty", "sixel", "blocks", "text" };
+    for (int i = 0; i < 4; i++)
+        if (strcmp(text, known[i]) == 0) {
+            options->terminal = text;
+            return true;
+        }
+    snprintf(message, MESSAGE, "kitty, sixel, blocks or text expected, got '%.200s'", text);
+    return false;
+}
+
 static bool read_threshold(cli_options *options, const cli_option *option, char *text, char *message)
 {
     char *end;
@@ -208,7 +233,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "end", 'e', true, CLI_RENDER, read_step },
     { "jump", 'j', true, CLI_RENDER, read_step },
     { "shard", 0, true, CLI_RENDER, read_shard },
-    { "frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_COST, read_frame },
+    { "frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST, read_frame },
     { "output", 'o', true, CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE, read_output },
     { "fps", 0, true, CLI_RENDER | CLI_ASSEMBLE, read_fps },
     { "apng", 0, false, CLI_RENDER | CLI_ASSEMBLE, read_flag },
@@ -217,25 +242,27 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "title", 0, true, CLI_SHEET, read_sheet },
     { "difference", 0, true, CLI_SHEET, read_sheet },
     { "gain", 0, true, CLI_SHEET, read_sheet },
-    { "set", 'D', true, SCRIPTED, read_set },
+    { "set", 'D', true, SHOWN, read_set },
     { "sweep", 0, true, CLI_RENDER, read_sweep },
-    { "size", 0, true, SCRIPTED, read_size },
-    { "samples", 0, true, SCRIPTED, read_render },
-    { "precision", 0, true, SCRIPTED, read_render },
-    { "bits", 0, true, SCRIPTED, read_render },
-    { "transfer", 0, true, SCRIPTED, read_render },
-    { "rounding", 0, true, SCRIPTED, read_render },
-    { "tone", 0, true, SCRIPTED, read_render },
+    { "size", 0, true, SHOWN, read_size },
+    { "samples", 0, true, SHOWN, read_render },
+    { "precision", 0, true, SHOWN, read_render },
+    { "bits", 0, true, SHOWN, read_render },
+    { "transfer", 0, true, SHOWN, read_render },
+    { "rounding", 0, true, SHOWN, read_render },
+    { "tone", 0, true, SHOWN, read_render },
     { "passes", 0, true, SCRIPTED, read_render },
-    { "encode", 0, true, SCRIPTED, read_render },
-    { "seed", 0, true, SCRIPTED, read_render },
-    { "threads", 't', true, SCRIPTED | CLI_REPRODUCE, read_count },
-    { "no-reuse", 0, false, CLI_RENDER, read_flag },
-    { "reuse-memory", 0, true, CLI_RENDER, read_memory },
+    { "encode", 0, true, SHOWN, read_render },
+    { "seed", 0, true, SHOWN, read_render },
+    { "threads", 't', true, SHOWN | CLI_REPRODUCE, read_count },
+    { "no-reuse", 0, false, CLI_RENDER | CLI_WATCH, read_flag },
+    { "reuse-memory", 0, true, CLI_RENDER | CLI_WATCH, read_memory },
     { "force", 0, false, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag },
     { "repeat", 0, true, CLI_RENDER, read_count },
     { "json", 0, false, ALL, read_flag },
     { "quiet", 'q', false, ALL, read_flag },
+    { "http", 0, CLI_MAY_HAVE_NUMBER, CLI_WATCH, read_port },
+    { "terminal", 0, true, CLI_WATCH, read_terminal },
     { "fail", 0, true, CLI_COMPARE, read_threshold },
     { "warn", 0, true, CLI_COMPARE, read_threshold },
     { "help", 'h', false, ALL, read_flag },

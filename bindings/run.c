@@ -61,6 +61,30 @@ void glintL_run_destroy(glintL_run *run)
     free(run);
 }
 
+void glintL_run_reset(glintL_run *run)
+{
+    glintL_run_collect(run, true);
+    glint_plan_destroy(run->explain_plan);
+    glintL_work_destroy(run->deferred);
+    glintL_films_destroy(run->films);
+    free(run->params_text);
+    run->explain_plan = NULL;
+    run->deferred = NULL;
+    run->films = NULL;
+    run->params_text = NULL;
+    run->source[0] = '\0';
+    run->count = run->call_count = run->selected_calls = 0;
+    run->total = run->todo = run->done = run->kept = 0;
+    run->clipped = run->pixels = run->nonfinite = 0;
+    run->earlier = run->failed_index = 0;
+    run->is_stopped = run->in_frame = run->was_shrunk = false;
+    run->since_ms = glintL_now_ms();
+    run->exit_code = GLINTL_EXIT_DONE;
+    run->message[0] = '\0';
+    for (size_t i = 0; i < run->asked.set_count; i++)
+        run->asked.sets[i].is_known = false;
+}
+
 // ---- The run of a Lua state ----
 
 static int collect_run(lua_State *L)

@@ -110,7 +110,12 @@ typedef struct glintL_asked {
     size_t reuse_memory; ///< bytes; 0: the engine's default
 } glintL_asked;
 
-typedef enum glintL_mode { GLINTL_MODE_RENDER, GLINTL_MODE_DESCRIBE, GLINTL_MODE_EXPLAIN } glintL_mode;
+typedef enum glintL_mode {
+    GLINTL_MODE_RENDER,
+    GLINTL_MODE_DESCRIBE,
+    GLINTL_MODE_EXPLAIN,
+    GLINTL_MODE_WATCH ///< jobs wait until they are run by cli_run_jobs; calls render as ever
+} glintL_mode;
 
 // ---- One frame on its way ----
 
@@ -157,10 +162,17 @@ typedef struct glintL_reporter {
     void (*warn)(void *context, const char *message);
     /// A sheet or film was made of `count` frames.
     void (*figure)(void *context, const char *kind, const char *path, int64_t count);
+    /// A picture is rendered, with its linear beauty pass when the run keeps images. NULL: nobody looks.
+    void (*image)(void *context, const glintL_run *run, const glintL_work *work);
+    /// The script is about to run in `L`, whose libraries are open. May raise. NULL: nothing to do.
+    void (*prepare)(void *context, lua_State *L);
 } glintL_reporter;
 
 struct glintL_run {
     bool times_stages;
+    bool keeps_images; ///< every picture has its linear beauty pass
+    int preview_side; ///< > 0: no picture has a longer side or more than one sample a pixel
+    bool was_shrunk; ///< by preview_side
     bool is_command; ///< run by the command: its options beat the script's, files are written behind
     glintL_mode mode;
     int64_t explain_frame;
@@ -201,6 +213,8 @@ struct glintL_run {
 
 glintL_run *glintL_run_create(void);
 void glintL_run_destroy(glintL_run *run);
+/// As if nothing had run yet: counts, failure, parameters. Renderer, writer, what is asked and a signal stay.
+void glintL_run_reset(glintL_run *run);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);
@@ -208,7 +222,7 @@ double glintL_now_ms(void);
 bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /// What the command line says beats what the script says.
-void glintL_run_apply(const glintL_run *run, glintL_render *render);
+void glintL_run_apply(glintL_run *run, glintL_render *render);
 /// The pattern of a script that names no output.
 void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE]);
 /// The exit code that answers an engine's error.

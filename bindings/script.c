@@ -121,6 +121,8 @@ static int run_protected(lua_State *L)
     lua_settop(L, 0);
     open_libraries(L, work);
     cli_set_state(L);
+    if (work->run->reporter.prepare)
+        work->run->reporter.prepare(work->run->reporter.context, L);
     if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
         return lua_error(L);
     work->run->since_ms = glintL_now_ms();
@@ -128,7 +130,9 @@ static int run_protected(lua_State *L)
     take_results(L, work);
     if (!work->script->has_jobs || !check_sweep(work))
         return 0;
-    if (work->run->mode == GLINTL_MODE_EXPLAIN) {
+    if (work->run->mode == GLINTL_MODE_WATCH) {
+        work->script->jobs = luaL_ref(L, LUA_REGISTRYINDEX);
+    } else if (work->run->mode == GLINTL_MODE_EXPLAIN) {
         glintL_jobs_explain(L, 1, work->run);
     } else if (work->run->mode == GLINTL_MODE_RENDER) {
         int64_t total = work->run->point_count ? work->script->frames * work->run->point_count
@@ -156,6 +160,27 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
         glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
                         lua_tostring(L, -1));
     return status == LUA_OK && !run->exit_code && !run->interrupted;
+}
+
+static int run_jobs_protected(lua_State *L)
+{
+    const task *work = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, work->script->jobs);
+    glintL_jobs_run(L, 2, work->run);
+    return 0;
+}
+
+bool cli_run_jobs(cli_script *script, glintL_run *run)
+{
+    task work = { script, NULL, run };
+    lua_State *L = script->state;
+    lua_settop(L, 0);
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, run_jobs_protected);
+    lua_pushlightuserdata(L, &work);
+    if (lua_pcall(L, 1, 0, 1) != LUA_OK && !run->interrupted)
+        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
+    return !run->exit_code && !run->interrupted;
 }
 
 void cli_close_script(cli_script *script)

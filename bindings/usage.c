@@ -5,6 +5,7 @@ void cli_print_usage(FILE *out)
 {
     fputs("usage: glint [render] SCRIPT [options]        render the frames that a Lua script describes\n"
           "       glint SCRIPT --help                    the script's parameters\n"
+          "       glint watch SCRIPT [--http [PORT]]     render at every save, in the terminal and on a page\n"
           "       glint explain SCRIPT [--frame N] [--json]   what a frame needs, and who called for it\n"
           "       glint describe SCRIPT --json           the script's parameters, for programs\n"
           "       glint compare A B [--fail X] [--warn X] [--json]\n"
@@ -30,6 +31,7 @@ void cli_print_usage(FILE *out)
           "           --transfer srgb|linear  --rounding nearest|truncate  --tone clamp\n"
           "machine    -t, --threads N  --no-reuse  --reuse-memory SIZE\n"
           "           --repeat N                         render each frame N times, report each\n"
+          "watch      --frame N  --http [PORT]  --terminal kitty|sixel|blocks|text\n"
           "report     --json  -q, --quiet  --version  -h, --help\n"
           "\n"
           "Words after -- are the script's `arg`. What the command line says beats what the script says.\n"

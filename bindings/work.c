@@ -115,6 +115,8 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
     if (status == GLINT_OK) {
         glint_image_release(work->image);
         work->image = image;
+        if (run->reporter.image)
+            run->reporter.image(run->reporter.context, run, work);
     }
     return status;
 }
