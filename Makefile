@@ -13,6 +13,7 @@ libdir   ?= $(PREFIX)/lib
 incdir   ?= $(PREFIX)/include
 datadir  ?= $(PREFIX)/share
 luadir   ?= $(libdir)/lua/5.4
+luasharedir ?= $(datadir)/lua/5.4
 
 VERSION := $(shell sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.h)
 
@@ -74,8 +75,8 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
-.PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install golden-update \
-        check-layers check-symbols check-headers lint clean help tests FORCE
+.PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
+        golden-update check-layers check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
@@ -136,7 +137,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli films golden povray readme watch)))
+              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -147,7 +148,7 @@ check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
-SANITIZED := $(filter-out tests/povray.sh,$(SCRIPTED))
+SANITIZED := $(filter-out tests/povray.sh tests/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
 # popen (test_api.lua), and lets through any allocation that ought to fail (test_misuse.lua).
 WATCHED   := $(filter-out tests/cli.sh tests/films.sh tests/test_api.lua tests/test_misuse.lua,$(SANITIZED))
@@ -266,17 +267,39 @@ demo-run: all
 	@echo "  ffmpeg -framerate 24 -i $(BUILD)/demo/moving_light_%04d.png -pix_fmt yuv420p $(BUILD)/demo/moving_light.mp4"
 	@echo "Try:  $(BUILD)/glint scripts/moving_light.lua --help"
 
-install: all ## PREFIX=/usr/local, DESTDIR=
-	install -d $(addprefix $(DESTDIR),$(bindir) $(luadir) $(libdir)/pkgconfig $(incdir) $(datadir)/man/man1 $(datadir)/glint)
-	install -m 755 $(BUILD)/glint $(DESTDIR)$(bindir)/glint
-	install -m 755 $(BUILD)/glint.so $(DESTDIR)$(luadir)/glint.so
-	install -m 644 $(BUILD)/libglint.a $(DESTDIR)$(libdir)/libglint.a
-	install -m 644 engine/glint.h $(DESTDIR)$(incdir)/glint.h
-	install -m 644 bindings/glint.1 $(DESTDIR)$(datadir)/man/man1/glint.1
-	install -m 644 bindings/meta/glint.lua $(DESTDIR)$(datadir)/glint/glint.lua
-	sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
-	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' engine/glint.pc.in \
-	    > $(DESTDIR)$(libdir)/pkgconfig/glint.pc
+# What is installed: mode, from, to.
+define INSTALLED
+755 $(BUILD)/glint $(bindir)/glint
+755 $(BUILD)/glint.so $(luadir)/glint.so
+644 $(BUILD)/libglint.a $(libdir)/libglint.a
+644 $(BUILD)/glint.pc $(libdir)/pkgconfig/glint.pc
+644 engine/glint.h $(incdir)/glint.h
+644 bindings/glint.1 $(datadir)/man/man1/glint.1
+644 bindings/meta/glint.lua $(datadir)/glint/glint.lua
+644 $(BUILD)/completion/bash $(datadir)/bash-completion/completions/glint
+644 $(BUILD)/completion/zsh $(datadir)/zsh/site-functions/_glint
+644 $(BUILD)/completion/fish $(datadir)/fish/vendor_completions.d/glint.fish
+$(foreach module,$(notdir $(wildcard scripts/lib/*.lua)),644 scripts/lib/$(module) $(luasharedir)/$(module)
+)
+endef
+export INSTALLED
+
+$(BUILD)/glint.pc: engine/glint.pc.in FORCE
+	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' $< > $@
+
+$(BUILD)/completion/%: $(BUILD)/glint
+	@mkdir -p $(@D)
+	@$(BUILD)/glint completion $* > $@
+
+install: all $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
+	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
+	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; }; done
+
+uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
+	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
+	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
+	@if [ -d "$(DESTDIR)$(datadir)/glint" ]; then rmdir "$(DESTDIR)$(datadir)/glint"; fi
 
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test

@@ -20,8 +20,24 @@ typedef enum cli_command {
     CLI_ASSEMBLE = 64,
     CLI_REPRODUCE = 128,
     CLI_NEW = 256,
-    CLI_WATCH = 512
+    CLI_WATCH = 512,
+    CLI_COMPLETION = 1024
 } cli_command;
+
+typedef enum cli_words { ///< that follow a command's name
+    CLI_SCRIPT,
+    CLI_FILES, ///< any number; the command counts them
+    CLI_FILE_SCRIPT
+} cli_words;
+
+typedef struct cli_command_name {
+    const char *name;
+    cli_command command;
+    cli_words words;
+    const char *help; ///< a line for people
+} cli_command_name;
+#define CLI_COMMAND_COUNT 11
+extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 
 typedef struct cli_sweep { ///< --sweep name=from:to:count
     const char *name;
@@ -167,6 +183,7 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
+int cli_completion(const cli_options *options, cli_output *output); ///< its shell is options->script
 int cli_compare(const cli_options *options, cli_output *output);
 int cli_sheet(const cli_options *options, cli_output *output);
 int cli_assemble(cli_options *options, cli_output *output, glintL_run *run);

@@ -109,36 +109,26 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 
 // ---- What the words and the options say together ----
 
-typedef enum cli_words { // that follow a command's name
-    SCRIPT,
-    FILES, // any number; the command counts them
-    FILE_SCRIPT
-} cli_words;
-
-static const struct {
-    const char *name;
-    cli_command command;
-    cli_words words;
-} COMMANDS[] = {
-    { "render", CLI_RENDER, SCRIPT },
-    { "explain", CLI_EXPLAIN, SCRIPT },
-    { "describe", CLI_DESCRIBE, SCRIPT },
-    { "compare", CLI_COMPARE, FILES },
-    { "sheet", CLI_SHEET, FILES },
-    { "assemble", CLI_ASSEMBLE, FILES },
-    { "reproduce", CLI_REPRODUCE, FILE_SCRIPT },
-    { "new", CLI_NEW, FILES },
-    { "cost", CLI_COST, SCRIPT },
-    { "watch", CLI_WATCH, SCRIPT },
+const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
+    { "render", CLI_RENDER, CLI_SCRIPT, "render the frames of a script" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "what a frame needs, and who called for it" },
+    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "the parameters of a script" },
+    { "compare", CLI_COMPARE, CLI_FILES, "compare two pictures" },
+    { "sheet", CLI_SHEET, CLI_FILES, "a contact sheet of finished frames" },
+    { "assemble", CLI_ASSEMBLE, CLI_FILES, "a film of finished frames" },
+    { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "render a finished frame again" },
+    { "new", CLI_NEW, CLI_FILES, "write a scene to begin with" },
+    { "cost", CLI_COST, CLI_SCRIPT, "what accuracy costs in time" },
+    { "watch", CLI_WATCH, CLI_SCRIPT, "render at every save" },
+    { "completion", CLI_COMPLETION, CLI_SCRIPT, "what a shell completes" },
 };
-#define COMMAND_COUNT (sizeof COMMANDS / sizeof *COMMANDS)
 
 static bool read_command(const char *word, cli_command *command, cli_words *words)
 {
-    for (size_t i = 0; i < COMMAND_COUNT; i++) {
-        if (strcmp(word, COMMANDS[i].name) == 0) {
-            *command = COMMANDS[i].command;
-            *words = COMMANDS[i].words;
+    for (size_t i = 0; i < CLI_COMMAND_COUNT; i++) {
+        if (strcmp(word, cli_command_list[i].name) == 0) {
+            *command = cli_command_list[i].command;
+            *words = cli_command_list[i].words;
             return true;
         }
     }
@@ -148,21 +138,21 @@ static bool read_command(const char *word, cli_command *command, cli_words *word
 static bool read_words(int count, char **words, cli_options *options, char *message)
 {
     const char *near = NULL;
-    cli_words kind = SCRIPT;
+    cli_words kind = CLI_SCRIPT;
     int used = count > 0 && read_command(words[0], &options->command, &kind) ? 1 : 0;
-    if (kind == FILES) {
+    if (kind == CLI_FILES) {
         options->arguments = words + used;
         options->argument_count = count - used;
         return true;
     }
-    if (kind == FILE_SCRIPT && used < count)
+    if (kind == CLI_FILE_SCRIPT && used < count)
         options->file = words[used++];
     if (used < count)
         options->script = words[used++];
     if (used == count)
         return true;
-    for (size_t i = 0; i < COMMAND_COUNT && used == 1; i++)
-        near = glintL_nearer(words[0], near, COMMANDS[i].name);
+    for (size_t i = 0; i < CLI_COMMAND_COUNT && used == 1; i++)
+        near = glintL_nearer(words[0], near, cli_command_list[i].name);
     if (near)
         snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
     else

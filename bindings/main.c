@@ -101,6 +101,8 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
         return cli_sheet(options, output);
     if (options->command == CLI_NEW)
         return cli_new(options, output);
+    if (options->command == CLI_COMPLETION)
+        return cli_completion(options, output);
     if (!options->script && options->command != CLI_ASSEMBLE) {
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "a script expected; glint --help lists the commands");
         return GLINTL_EXIT_USAGE;

@@ -78,6 +78,11 @@ int glintL_render_find(const char *name)
     return -1;
 }
 
+const char *const *glintL_render_choices(int field)
+{
+    return details[field].sort == CHOICE ? details[field].names : NULL;
+}
+
 static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == BITS || what->sort == DEPTH; }
 
 // What is allowed, for messages.

@@ -15,6 +15,7 @@ void cli_print_usage(FILE *out)
           "       glint reproduce FILE SCRIPT            renders a finished frame again:\n"
           "                                              0 same bytes, 3 same pixels, 4 another picture, 5 file\n"
           "       glint new NAME                         writes a scene to begin with\n"
+          "       glint completion bash|zsh|fish         what the shell completes; make install puts it in place\n"
           "\n"
           "frames     -f, --frames 1-3,5,7-20:2,90-      frames are numbered from 1\n"
           "           -s, --start N  -e, --end N  -j, --jump N\n"

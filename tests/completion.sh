@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# glint completion: each shell's script is read by that shell where it is installed, offers what the command takes, and
+# every word it offers for an option is one the command accepts. Prints TAP lines.
+set -u
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bad=0
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
+        echo "not ok - $name"
+        cat "$work/log"
+        bad=1
+    fi
+}
+
+for shell in bash zsh fish; do
+    check "glint completion $shell" "$glint" completion $shell
+    "$glint" completion $shell >"$work/$shell"
+done
+"$glint" completion ksh >"$work/log" 2>&1
+check "an unknown shell is an error" test $? -eq 2
+
+# ---- bash ----
+
+# offers WORDS...: what is offered for the last word, a line each
+offers() {
+    COMP_WORDS=(glint "$@")
+    COMP_CWORD=$#
+    _glint 2>/dev/null
+    printf '%s\n' "${COMPREPLY[@]}"
+}
+has() { grep -qx -- "$1" <(offers "${@:2}"); }
+lacks() { ! has "$@"; }
+
+# shellcheck source=/dev/null
+source "$work/bash"
+cd "$work" || exit 1
+touch scene.lua picture.png
+mkdir folder
+check "bash: options of render" has --frames scene.lua --fr
+check "bash: options of explain" has --frame explain scene.lua --fr
+check "bash: not those of other commands" lacks --frames explain scene.lua --fr
+check "bash: choices" has double scene.lua --precision d
+check "bash: scripts" has scene.lua s
+check "bash: folders" has folder f
+check "bash: no pictures where a script belongs" lacks picture.png p
+check "bash: pictures to compare" has picture.png compare p
+check "bash: pictures of a sheet" has picture.png sheet p
+check "bash: no scripts on a sheet" lacks scene.lua sheet s
+check "bash: a picture to reproduce" has picture.png reproduce p
+check "bash: and its script" has scene.lua reproduce picture.png s
+check "bash: options of assemble" has --fps assemble picture.png --f
+check "bash: a new name is nobody's to know" lacks picture.png new p
+check "bash: commands" has explain exp
+check "bash: shells" has fish completion f
+
+# Every option that --help names is offered by some command, and the other way round.
+cd - >/dev/null || exit 1
+"$glint" --help | grep -oE -- '--[a-z][a-z-]*' | sort -u >"$work/helped"
+grep -oE 'options="[^"]*"' "$work/bash" | grep -oE -- '--[a-z-]+' | sort -u >"$work/offered"
+check "the options of --help" diff "$work/helped" "$work/offered"
+man_options() { tr -d '\\' <bindings/glint.1 | grep -oE -- '--[a-z][a-z-]*' | sort -u; }
+check "the options of the manual page" diff <(man_options) "$work/offered"
+
+# Every choice is accepted by the command.
+cat >"$work/scene.lua" <<'END'
+local glint = require "glint"
+return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+END
+grep -E -- '^ +--[a-z-]+.*compgen -W' "$work/bash" | sed -E 's/^ +--([a-z-]+).*compgen -W "([^"]*)".*/\1 \2/' >"$work/choices"
+check "there are choices" test "$(wc -l <"$work/choices")" -ge 7
+while read -r option words; do
+    [ "$option" != terminal ] || continue # of watch, which does not end
+    for word in $words; do
+        check "--$option $word" "$glint" "$work/scene.lua" --size 8x8 --quiet -o none "--$option" "$word"
+    done
+done <"$work/choices"
+
+# ---- zsh and fish ----
+
+if command -v zsh >/dev/null; then
+    check "zsh reads it" zsh -n "$work/zsh"
+    # _arguments gets its lines: options with descriptions and choices.
+    # shellcheck disable=SC2016
+    zsh -f -c '_arguments() { print -rl -- "$@"; }; words=(glint watch s.lua --te); CURRENT=4; source "$1"' - "$work/zsh" >"$work/specs"
+    check "zsh: the options of watch" grep -q -- '^--terminal\[how to draw\]:terminal:(kitty sixel blocks text)$' "$work/specs"
+    check "zsh: not those of render" test "$(grep -c -- '--frames' "$work/specs")" -eq 0
+else
+    echo "ok - zsh # skip zsh is not installed"
+fi
+if command -v fish >/dev/null; then
+    fish_offers() { HOME=$work fish --no-config -c "source $work/fish; complete -C '$1'" 2>&1; }
+    check "fish: options" grep -q -- '^--frames' <(fish_offers "glint scene.lua --fr")
+    check "fish: not those of other commands" test -z "$(fish_offers "glint explain scene.lua --frames")"
+    check "fish: choices" grep -q '^linear' <(fish_offers "glint scene.lua --transfer ")
+    check "fish: commands" grep -q '^watch' <(fish_offers "glint w")
+else
+    echo "ok - fish # skip fish is not installed"
+fi
+exit $bad

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# make install into a folder of its own: the command, the module, the manual page, the completions, and a C program
+# built against the installed files alone. make uninstall leaves nothing. Prints TAP lines.
+set -u
+build=${BUILD:-build}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+prefix=$work/usr
+bad=0
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
+        echo "not ok - $name"
+        cat "$work/log"
+        bad=1
+    fi
+}
+quiet_make() { ${MAKE:-make} -s --no-print-directory BUILD="$build" "$@"; }
+
+check "make install" quiet_make install PREFIX="$prefix"
+check "the command" "$prefix/bin/glint" --version
+check "the module, in plain Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" "${LUA:-lua5.4}" -e \
+    'assert(require("glint").version)'
+check "the manual page" grep -q '^\.TH GLINT 1' "$prefix/share/man/man1/glint.1"
+check "its version" grep -q "\"glint $("$prefix/bin/glint" --version | cut -d ' ' -f 2)\"" "$prefix/share/man/man1/glint.1"
+for file in bash-completion/completions/glint zsh/site-functions/_glint fish/vendor_completions.d/glint.fish; do
+    check "$file" grep -q reuse-memory "$prefix/share/$file"
+done
+
+# The C example, from a copy outside the checkout.
+cp scripts/c_example.c "$work/"
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+check "pkg-config knows it" pkg-config --exists --print-errors "glint = $("$prefix/bin/glint" --version | cut -d ' ' -f 2)"
+compile() { # in the folder of the example
+    cd "$work" && ${CC:-cc} -std=c11 -Wall -Wextra -Werror c_example.c $(pkg-config --cflags --libs glint) -o c_example
+}
+check "the C example compiles" eval '(compile)'
+check "and runs" eval '(cd "$work" && ./c_example)'
+cat >"$work/same.lua" <<'END'
+local glint = require "glint"
+local function paint(r, g, b, ks) return glint.material { diffuse = { r, g, b }, specular = ks, shininess = 64 } end
+glint.scene { camera = glint.camera { eye = { 0, 3, 8 }, at = { 0, 1, 0 } }, ambient = 0.125,
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = paint(0.5, 0.5, 0.5, 0) },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1, material = paint(0.75, 0.25, 0.125, 0.5) },
+  glint.point_light { position = { 4, 8, 6 } },
+}:render { width = 640, height = 360, samples = 4, output = "same.png" }
+END
+check "the same scene from Lua" eval '(cd "$work" && "$prefix/bin/glint" same.lua --quiet)'
+check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$work/same.png" --fail 0 --warn 0
+
+check "make uninstall" quiet_make uninstall PREFIX="$prefix"
+check "nothing is left" test -z "$(find "$prefix" -type f)" -a ! -e "$prefix/share/glint"
+check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
+check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
+exit $bad
