@@ -76,7 +76,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
-        golden-update check-layers check-symbols check-headers lint clean help tests FORCE
+        install-rock golden-update check-layers check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
@@ -165,7 +165,7 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
-.PHONY: check-films check-watch
+.PHONY: check-films check-watch check-rock
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
@@ -173,6 +173,10 @@ check-films: ## films by the real ffmpeg, and what Chromium makes of them; insta
 
 check-watch: all ## the page of glint watch in headless Chromium, where that is installed
 	@$(RUNNER) tests/watch_page.sh
+
+check-rock: ## luarocks make into a folder of its own; installs luarocks through apt
+	@tests/deps.sh build rock
+	@$(RUNNER) tests/rock.sh
 
 .PHONY: san-run
 san-run: tests
@@ -295,6 +299,12 @@ $(BUILD)/completion/%: $(BUILD)/glint
 install: all $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; }; done
+
+# The rockspec's: LuaRocks copies what it finds in its folders.
+install-rock: all
+	install -D -m 755 $(BUILD)/glint $(bindir)/glint
+	install -D -m 755 $(BUILD)/glint.so $(luadir)/glint.so
+	@for module in $(wildcard scripts/lib/*.lua); do install -D -m 644 $$module $(luasharedir)/$${module##*/} || exit 1; done
 
 uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \

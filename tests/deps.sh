@@ -1,8 +1,8 @@
 #!/bin/sh
 # What glint needs on Debian, and how to get it.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
-#   deps.sh build test bench films    installs what is missing for building, testing, comparing speeds, and for the
-#                                     tests with ffmpeg and Chromium, through apt
+#   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
+#                         ffmpeg and Chromium), rock (the test of the rockspec)
 set -eu
 
 # package  how to tell that it is there
@@ -30,6 +30,9 @@ povray          command:povray
 films_optional='
 ffmpeg          command:ffmpeg
 chromium        command:chromium
+'
+rock_required='
+luarocks        command:luarocks
 '
 
 bench_required='
@@ -122,8 +125,9 @@ for what in "$@"; do
         prefer "$bench_optional" "their rows will be empty"
         ;;
     films) prefer "$films_optional" "the tests that need it will be skipped" ;;
+    rock) require "$rock_required" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock ..." >&2
         exit 2
         ;;
     esac

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# luarocks make for Lua 5.4 into a folder of its own: the module loads in plain Lua and renders, the command runs, and
+# removing the rock leaves neither. Prints TAP lines.
+set -u
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bad=0
+rocks() { HOME=$work luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
+
+check() { # NAME COMMAND...
+    local name=$1
+    shift
+    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
+        echo "not ok - $name"
+        tail -n 20 "$work/log"
+        bad=1
+    fi
+}
+
+command -v luarocks >/dev/null || {
+    echo "skip: luarocks is not installed"
+    exit 77
+}
+version=$(sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.h)
+rockspec=glint-$version-1.rockspec
+check "the rockspec has the engine's version" grep -qx "version = \"$version-1\"" "$rockspec"
+unset LUA_PATH LUA_CPATH MAKEFLAGS MFLAGS
+check "luarocks make" rocks make "$rockspec"
+check "the rock is there" grep -q "$version-1 (installed)" <(rocks list --porcelain 2>/dev/null | sed 's/\t/ /g; s/ installed / (installed) /')
+
+cat >"$work/scene.lua" <<'END'
+local glint = require "glint"
+glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,
+  glint.sphere { center = { 0, 0, 0 }, radius = 2 } }:render { width = 32, height = 18, output = arg[1] }
+END
+check "the module renders in plain Lua" env LUA_CPATH="$work/tree/lib/lua/5.4/?.so" "${LUA:-lua5.4}" "$work/scene.lua" "$work/plain.png"
+check "the command renders" "$work/tree/bin/glint" "$work/scene.lua" --quiet -- "$work/command.png"
+check "both alike" "$work/tree/bin/glint" compare "$work/plain.png" "$work/command.png" --fail 0 --warn 0
+check "luarocks remove" rocks remove glint
+check "nothing is left" test -z "$(find "$work/tree" -name 'glint*' -type f)"
+exit $bad
