@@ -165,7 +165,7 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
-.PHONY: check-films check-watch check-rock
+.PHONY: check-films check-watch check-rock check-farm
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
@@ -177,6 +177,10 @@ check-watch: all ## the page of glint watch in headless Chromium, where that is 
 check-rock: ## luarocks make into a folder of its own; installs luarocks through apt
 	@tests/deps.sh build rock
 	@$(RUNNER) tests/rock.sh
+
+check-farm: all ## scripts/farm with GNU parallel, and on a Slurm that SLURM_CLUSTER=PROGRAM starts
+	@tests/deps.sh farm
+	@$(RUNNER) tests/farm.sh
 
 .PHONY: san-run
 san-run: tests

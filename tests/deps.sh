@@ -2,7 +2,7 @@
 # What glint needs on Debian, and how to get it.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
-#                         ffmpeg and Chromium), rock (the test of the rockspec)
+#                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm)
 set -eu
 
 # package  how to tell that it is there
@@ -42,6 +42,9 @@ bench_optional='
 libembree-dev   header:embree3/rtcore.h
 povray          command:povray
 tachyon         command:tachyon
+'
+farm_optional='
+parallel        command:parallel
 '
 
 present() {
@@ -126,8 +129,9 @@ for what in "$@"; do
         ;;
     films) prefer "$films_optional" "the tests that need it will be skipped" ;;
     rock) require "$rock_required" ;;
+    farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm ..." >&2
         exit 2
         ;;
     esac
