@@ -137,7 +137,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme watch)))
+              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

@@ -172,6 +172,9 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     open_film(L, run, render);
     glintL_find_source(L, run);
     bool writes = naming_of(run, render, true).pattern != NULL;
+    glintL_observe_frame(L, run, 1, &render->desc, run->count);
+    if (run->exit_code)
+        return raise_failure(L, run);
     int first = lua_gettop(L) + 1; // the handles exist before what they hold
     glintL_new_box(L, GLINTL_IMAGE);
     glintL_push_kept_image(L);

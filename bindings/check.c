@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "bindings/glintL.h"
+#include "bindings/run.h"
 
 #define SPELT_MAX 40 // longest part of a script's string shown in a message
 
@@ -37,7 +37,7 @@ int glintL_error(lua_State *L, const char *format, ...)
 void glintL_warn(lua_State *L, const char *message)
 {
     push_position(L);
-    fprintf(stderr, "glint: warning: %s%s\n", lua_tostring(L, -1), message);
+    glintL_run_warn(glintL_get_run(L), "%s%s", lua_tostring(L, -1), message);
     lua_pop(L, 1);
 }
 

@@ -80,7 +80,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 39
+#define CLI_OPTION_COUNT 40
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -137,6 +137,8 @@ glintL_reporter cli_reporter(cli_output *output);
 void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< "rays":{...}
 /// The error as an event and for people.
 void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
+/// When much of what the run rendered is above white.
+void cli_warn_clipped(glintL_run *run);
 /// The end of a run that did all it was asked.
 void cli_report_end(cli_output *output);
 /// Ends a line of data and flushes it; a reader that has gone ends the run.

@@ -43,6 +43,7 @@ static const struct hint {
     { "repeat", "render each frame N times", NULL, false },
     { "json", "events on stdout, one a line", NULL, false },
     { "quiet", "no report of frames", NULL, false },
+    { "warnings", "what a warning does", "show error none", false },
     { "http", "also serve a page; on PORT", NULL, false },
     { "terminal", "how to draw", "kitty sixel blocks text", false },
     { "fail", "threshold of failure", NULL, false },

@@ -138,7 +138,8 @@ static void report_frame(void *context, const glintL_run *run, const glintL_reco
     else if (!output->quiet && (!output->progress || record->repeat))
         print_frame_line(output, record);
     if (record->stats.nonfinite > 0 && !record->kept)
-        glintL_run_warn(run, "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",
+        glintL_run_warn(output->run,
+                        "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",
                         record->index, record->stats.nonfinite);
     if (output->progress)
         cli_progress_update(output->progress, run, false);
@@ -151,7 +152,18 @@ static void report_rendering(void *context, const glintL_run *run, bool begins)
         cli_progress_update(output->progress, run, begins);
 }
 
-static void report_warning(void *context, const char *message) { cli_print_warning(context, message); }
+static void report_warning(void *context, const char *message)
+{
+    cli_output *output = context;
+    print_kept(output);
+    cli_print_warning(output, message);
+    if (!output->json)
+        return;
+    fputs("{\"event\":\"warning\",\"message\":", output->data);
+    glintL_json_string(output->data, message);
+    fputc('}', output->data);
+    cli_end_line(output);
+}
 
 static void report_figure(void *context, const char *kind, const char *path, int64_t count)
 {
@@ -196,11 +208,18 @@ void cli_report_error(cli_output *output, int64_t index, int exit_code, const ch
     cli_end_line(output);
 }
 
+void cli_warn_clipped(glintL_run *run)
+{
+    double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
+    if (clipped > CLIPPED_HINT)
+        glintL_run_warn(run, "%.0f %% of the pixels are brighter than white; dimmer lights keep what is lost there",
+                        100 * clipped);
+}
+
 void cli_report_end(cli_output *output)
 {
     const glintL_run *run = output->run;
     double seconds = (glintL_now_ms() - output->start_ms) * 1e-3;
-    double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
     if (output->json) {
         fprintf(output->data, "{\"event\":\"end\",\"frames\":%" PRId64 ",\"kept\":%" PRId64 ",\"seconds\":%.3f}",
                 run->done, run->kept, seconds);
@@ -214,8 +233,4 @@ void cli_report_end(cli_output *output)
     if (!output->json)
         fprintf(stderr, "%" PRId64 " frame%s in %.2f s, %" PRId64 " kept\n", run->done, run->done == 1 ? "" : "s",
                 seconds, run->kept);
-    if (clipped > CLIPPED_HINT)
-        fprintf(stderr,
-                "glint: hint: %.0f %% of the pixels are brighter than white; dimmer lights keep what is lost there\n",
-                100 * clipped);
 }

@@ -80,7 +80,7 @@ static bool refuse(char *message, const char *path, const char *why)
     return false;
 }
 
-static void warn_no_ffmpeg(const glintL_run *run, const glintL_film *film)
+static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
 {
     if (film->kind != GLINTL_FILM_APNG && !glintL_has_ffmpeg())
         glintL_run_warn(run, "ffmpeg is not installed: the frames of %s are rendered, and stay in %s.frames",
@@ -247,7 +247,7 @@ static glint_status make_apng(const glintL_run *run, const glintL_film *film, gl
     return status;
 }
 
-int glintL_film_make(const glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
+int glintL_film_make(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
 {
     glint_error error = { .message = "interrupted" };
     if (film->kind != GLINTL_FILM_APNG)
@@ -257,14 +257,17 @@ int glintL_film_make(const glintL_run *run, const glintL_film *film, char messag
     return glintL_run_exit_code(status);
 }
 
-static void remove_frames(const glintL_run *run, const glintL_film *film)
+static void remove_frames(const glintL_run *run, glintL_film *film)
 {
     char folder[GLINTL_PATH_SIZE];
-    for (size_t i = 0; i < film->count; i++)
+    for (size_t i = 0; i < film->count; i++) {
         unlink(film->files[i]);
+        free(film->files[i]);
+    }
+    film->count = 0;
     snprintf(folder, sizeof folder, "%s.frames", film->path);
     if (rmdir(folder) != 0 && errno != ENOENT)
-        glintL_run_warn(run, "%s: it holds other files, and stays", folder);
+        glintL_run_note(run, "%s: it holds other files, and stays", folder);
 }
 
 bool glintL_films_finish(glintL_run *run)
@@ -274,13 +277,14 @@ bool glintL_films_finish(glintL_run *run)
         if (film->count == 0)
             continue;
         int code = GLINTL_EXIT_USAGE;
+        size_t count = film->count;
         if (!run->interrupted && glintL_film_check_files(film, false, message))
             code = glintL_film_make(run, film, message);
         if (run->interrupted || code)
             return glintL_run_fail(run, code, 0, "%s", message);
         remove_frames(run, film);
         if (run->reporter.figure)
-            run->reporter.figure(run->reporter.context, "film", film->path, (int64_t)film->count);
+            run->reporter.figure(run->reporter.context, "film", film->path, (int64_t)count);
     }
     if (run->exit_code)
         return false;
@@ -293,6 +297,6 @@ void glintL_films_keep(const glintL_run *run)
 {
     for (const glintL_film *film = run->films; film; film = film->next)
         if (film->count > 0)
-            glintL_run_warn(run, "%zu frames of %s are kept in %s.frames: the same command goes on from there",
+            glintL_run_note(run, "%zu frames of %s are kept in %s.frames: the same command goes on from there",
                             film->count, film->path, film->path);
 }

@@ -44,12 +44,12 @@ void glintL_films_destroy(glintL_film *films);
 /// False: the message names the one that does not.
 bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE]);
 /// Makes a film of its files. Returns the exit code; the message says what failed. What was not finished is gone.
-int glintL_film_make(const glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
+int glintL_film_make(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
 
 // ---- film_pipe.c ----
 
 bool glintL_has_ffmpeg(void);
 /// The same for the kinds that ffmpeg makes.
-int glintL_film_pipe(const glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
+int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
 
 #endif

@@ -279,7 +279,7 @@ static int fail_without(const glintL_run *run, const glintL_film *film, char *me
     return GLINTL_EXIT_FAILED;
 }
 
-int glintL_film_pipe(const glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
+int glintL_film_pipe(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
 {
     glint_error error;
     glint_picture *first = NULL;

@@ -67,7 +67,7 @@ int glintL_refuse(lua_State *L, int index, const char *path, const char *expecte
 const char *glintL_push_spelling(lua_State *L, int index);
 /// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
 size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
-/// Prints "glint: warning: <position>: <message>" on stderr.
+/// Gives the warning "<position>: <message>", once a run.
 void glintL_warn(lua_State *L, const char *message);
 
 // ---- vector.c: the immutable value of a vector or colour ----
@@ -193,7 +193,7 @@ typedef struct glintL_render {
 /// What the command line (or :run{}) asked. Strings are owned by the run.
 typedef struct glintL_run glintL_run;
 glintL_run *glintL_get_run(lua_State *L);
-/// scene:render{...}: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
+/// scene:render{...} of the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
 /// files. Pushes an image, or nil and "skipped". Returns the number of results.
 int glintL_render_call(lua_State *L, glint_scene *scene, int index);
 

@@ -176,6 +176,15 @@ static int build(lua_State *L)
     return 0;
 }
 
+// Looks at the job's scene, which frame n has just been built in.
+static int observe(lua_State *L)
+{
+    job_walk *walk = lua_touserdata(L, 3);
+    lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
+    glintL_observe_frame(L, walk->run, -1, &walk->render.desc, lua_tointeger(L, 2));
+    return 0;
+}
+
 static int restore(lua_State *L)
 {
     glintL_sweep_restore(L, 1);
@@ -190,8 +199,9 @@ static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t numb
     lua_pushcfunction(L, function);
     lua_pushvalue(L, walk->job_index);
     lua_pushinteger(L, n);
+    lua_pushlightuserdata(L, walk);
     walk->run->in_frame = true;
-    int status = lua_pcall(L, 2, 0, -4);
+    int status = lua_pcall(L, 3, 0, -5);
     walk->run->in_frame = false;
     if (status != LUA_OK)
         glintL_run_fail(walk->run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, number,
@@ -245,7 +255,7 @@ static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
     glint_error error;
     glintL_work *work = NULL;
     double start = glintL_now_ms();
-    if (!call(walk, build, n, number))
+    if (!call(walk, build, n, number) || !call(walk, observe, number, number) || walk->run->exit_code)
         return NULL;
     lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_SCENE);
     const glint_scene *scene = glintL_test_object(walk->L, -1, GLINTL_SCENE);
@@ -354,8 +364,8 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     job_walk *walk = push_walk(L, index, run);
     part p = open_part(run, glintL_jobs_total(L, walk->list));
     glintL_find_source(L, run);
-    bool good = glintL_run_open(run, &error);
-    if (!good)
+    bool good = !run->exit_code && glintL_run_open(run, &error);
+    if (!good && !run->exit_code)
         glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);
     for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, walk->list) && good; i++)
         good = run_job(walk, i, &p);

@@ -44,6 +44,8 @@ static void finish_early(void)
     cli_progress_destroy(output->progress);
     output->progress = NULL;
     if (good)
+        cli_warn_clipped(run);
+    if (good && !run->exit_code)
         cli_report_end(output);
     else
         cli_report_error(output, run->failed_index, run->exit_code, run->message);

@@ -2,7 +2,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-#include "bindings/glintL.h"
+#include "bindings/run.h"
 
 typedef glint_material_desc desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
@@ -51,6 +51,8 @@ static void follow(void *desc)
 // kd ranges over 0 .. 1; more is allowed, and warned about once.
 static void accepted(lua_State *L, const glintL_field *field, const void *desc)
 {
+    if (field->offset == AT(specular))
+        glintL_note_specular(L, 1);
     static atomic_flag warned = ATOMIC_FLAG_INIT;
     const double *kd = ((const desc_type *)desc)->diffuse;
     if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && !atomic_flag_test_and_set(&warned))
@@ -98,6 +100,15 @@ static const glintL_class CLASS = {
     .methods = METHODS,
 };
 
+// Whether the constructor's table, at 1, has the field.
+static bool is_given(lua_State *L, const char *name)
+{
+    lua_pushstring(L, name);
+    bool given = lua_rawget(L, 1) != LUA_TNIL;
+    lua_pop(L, 1);
+    return given;
+}
+
 static int new_material(lua_State *L)
 {
     desc_type desc = glint_material_desc_default();
@@ -110,6 +121,8 @@ static int new_material(lua_State *L)
     box->object = material;
     glintL_remember(L, material);
     accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
+    glintL_note_material(L, 2,
+                         desc.model != GLINT_MODEL_LAMBERT && is_given(L, "shininess") && !is_given(L, "specular"));
     return 1;
 }
 

@@ -215,6 +215,19 @@ static bool read_terminal(cli_options *options, const cli_option *option, char *
     return false;
 }
 
+static bool read_warnings(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    static const char *const known[] = { "show", "error", "none" };
+    for (int i = 0; i < 3; i++)
+        if (strcmp(text, known[i]) == 0) {
+            options->asked.warnings = (glintL_warnings)i;
+            return true;
+        }
+    snprintf(message, MESSAGE, "show, error or none expected, got '%.200s'", text);
+    return false;
+}
+
 static bool read_threshold(cli_options *options, const cli_option *option, char *text, char *message)
 {
     char *end;
@@ -261,6 +274,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "repeat", 0, true, CLI_RENDER, read_count },
     { "json", 0, false, ALL, read_flag },
     { "quiet", 'q', false, ALL, read_flag },
+    { "warnings", 0, true, CLI_RENDER | CLI_WATCH, read_warnings },
     { "http", 0, CLI_MAY_HAVE_NUMBER, CLI_WATCH, read_port },
     { "terminal", 0, true, CLI_WATCH, read_terminal },
     { "fail", 0, true, CLI_COMPARE, read_threshold },

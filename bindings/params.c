@@ -143,9 +143,11 @@ static int new_params(lua_State *L)
         glintL_refuse(L, 1, "params", "table");
     lua_settop(L, 1);
     luaL_checkstack(L, 12, "params");
-    params_box *box = lua_newuserdatauv(L, sizeof *box, 1); // 2
+    params_box *box = lua_newuserdatauv(L, sizeof *box, 2); // 2: with the values, and the specs
     box->self = box;
     luaL_setmetatable(L, GLINTL_PARAMS);
+    lua_newtable(L);
+    lua_setiuservalue(L, 2, 2);
     lua_newtable(L); // 3: name -> value
     glintL_push_params(L); // 4
     lua_Integer count = push_names(L); // 5
@@ -156,6 +158,10 @@ static int new_params(lua_State *L)
         glintL_push_param_spec(L, run, name, 7);
         lua_getfield(L, -1, "value");
         lua_setfield(L, 3, name);
+        lua_getiuservalue(L, 2, 2);
+        lua_pushvalue(L, -2);
+        lua_setfield(L, -2, name);
+        lua_pop(L, 1);
         list_spec(L, name, 4);
         lua_settop(L, 5);
     }
@@ -167,16 +173,31 @@ static int new_params(lua_State *L)
     return 1;
 }
 
+// Marks the parameter of the name at `name` as read.
+static void mark_read(lua_State *L, int params, int name)
+{
+    lua_getiuservalue(L, params, 2);
+    lua_pushvalue(L, name);
+    if (lua_rawget(L, -2) == LUA_TTABLE) {
+        lua_pushboolean(L, true);
+        lua_setfield(L, -2, "is_read");
+    }
+    lua_pop(L, 2);
+}
+
 static int read_param(lua_State *L)
 {
     const char *near = NULL;
     luaL_checkudata(L, 1, GLINTL_PARAMS);
     if (lua_type(L, 2) != LUA_TSTRING)
         glintL_bad_key(L, "params", 2);
+    lua_settop(L, 2);
     lua_getiuservalue(L, 1, 1);
     lua_pushvalue(L, 2);
-    if (lua_rawget(L, 3) != LUA_TNIL)
+    if (lua_rawget(L, 3) != LUA_TNIL) {
+        mark_read(L, 1, 2);
         return 1;
+    }
     lua_pushnil(L);
     lua_replace(L, 4);
     while (lua_next(L, 3)) {
@@ -209,6 +230,7 @@ static int pairs_of_params(lua_State *L)
     lua_getiuservalue(L, 1, 1);
     lua_pushnil(L);
     while (lua_next(L, -2)) {
+        mark_read(L, 1, lua_gettop(L) - 1);
         lua_pushvalue(L, -2);
         lua_insert(L, -2);
         lua_rawset(L, -5);

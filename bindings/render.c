@@ -45,7 +45,7 @@ static bool run_points(cli_options *options, glintL_run *run)
 }
 
 // Calls are counted as they come: what was asked for beyond them shows at the end.
-static void warn_calls(const glintL_run *run)
+static void warn_calls(glintL_run *run)
 {
     char message[GLINTL_MESSAGE_SIZE];
     if (run->call_count > 0 && run->call_count == run->count &&
@@ -60,10 +60,12 @@ int cli_render(cli_options *options, cli_output *output, glintL_run *run)
     bool good = run_points(options, run);
     good = glintL_run_collect(run, true) && good; // what was handed over is finished in any case
     good = good && !run->interrupted && glintL_films_finish(run);
-    if (good)
+    if (good) {
         warn_calls(run);
-    else
+        cli_warn_clipped(run);
+    } else {
         glintL_films_keep(run);
+    }
     if (run->interrupted) {
         cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
     } else if (run->exit_code) {

@@ -58,6 +58,7 @@ void glintL_run_destroy(glintL_run *run)
     free(run->asked.sets);
     glintL_films_destroy(run->films);
     free(run->params_text);
+    glintL_forget_warnings(run);
     free(run);
 }
 
@@ -67,6 +68,7 @@ void glintL_run_reset(glintL_run *run)
     glint_plan_destroy(run->explain_plan);
     glintL_work_destroy(run->deferred);
     glintL_films_destroy(run->films);
+    glintL_forget_warnings(run);
     free(run->params_text);
     run->explain_plan = NULL;
     run->deferred = NULL;
@@ -184,19 +186,6 @@ int glintL_run_exit_code(glint_status status)
     default:
         return GLINTL_EXIT_FAILED;
     }
-}
-
-void glintL_run_warn(const glintL_run *run, const char *format, ...)
-{
-    char message[GLINTL_MESSAGE_SIZE];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
-    va_end(args);
-    if (run->reporter.warn)
-        run->reporter.warn(run->reporter.context, message);
-    else
-        fprintf(stderr, "glint: warning: %s\n", message);
 }
 
 static glint_status open_renderer(glintL_run *run, glint_error *error)

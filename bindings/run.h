@@ -48,6 +48,7 @@ bool glintL_selection_parse(glintL_selection *selection, const char *text, char 
 bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_selection_add(glintL_selection *selection, glintL_range range);
 void glintL_selection_clear(glintL_selection *selection);
+bool glintL_selection_is_whole(const glintL_selection *selection); ///< every frame
 /// Without regard to shards.
 bool glintL_selection_has(const glintL_selection *selection, int64_t number);
 int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
@@ -98,6 +99,8 @@ typedef struct glintL_set { ///< --set name=text
     bool is_known; ///< a params table has it
 } glintL_set;
 
+typedef enum glintL_warnings { GLINTL_WARNINGS_SHOW, GLINTL_WARNINGS_ERROR, GLINTL_WARNINGS_NONE } glintL_warnings;
+
 typedef struct glintL_asked {
     glintL_selection selection;
     const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
@@ -109,6 +112,7 @@ typedef struct glintL_asked {
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
     bool force, no_reuse;
+    glintL_warnings warnings;
     size_t reuse_memory; ///< bytes; 0: the engine's default
 } glintL_asked;
 
@@ -207,6 +211,9 @@ struct glintL_run {
     bool in_frame; ///< a frame function runs
     bool no_sheets; ///< frames alone are wanted
 
+    char **said; ///< warnings given, each once; owned
+    size_t said_count;
+
     int exit_code; ///< of the first failure
     int64_t failed_index;
     char message[GLINTL_MESSAGE_SIZE];
@@ -229,7 +236,6 @@ void glintL_run_apply(glintL_run *run, glintL_render *render);
 void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE]);
 /// The exit code that answers an engine's error.
 int glintL_run_exit_code(glint_status status);
-void glintL_run_warn(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool glintL_run_open(glintL_run *run, glint_error *error); ///< the renderer and the writer exist afterwards
 /// Adds a record to be reported in its turn. False: out of memory, and the run has failed.
 glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
@@ -237,6 +243,23 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
 bool glintL_run_collect(glintL_run *run, bool wait);
 /// Message handler: a string out of any error object.
 int glintL_message_handler(lua_State *L);
+
+// ---- warnings.c, warn_view.c ----
+
+/// Gives a warning unless it was given before; under --warnings=error the run fails with it.
+void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/// Says what a later run goes on from: no mistake, so that it stays no failure under --warnings=error.
+void glintL_run_note(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void glintL_forget_warnings(glintL_run *run);
+/// A material was made; is_dull: with a shininess and without a specular. May raise.
+void glintL_note_material(lua_State *L, int index, bool is_dull);
+void glintL_note_specular(lua_State *L, int index); ///< it has got one since
+/// Looks at the scene at `scene_index` as it is in a frame that is about to be rendered. May raise.
+void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc,
+                          int64_t number);
+/// What all frames together have shown, when the script `script` has ended. May raise.
+void glintL_report_observed(lua_State *L, glintL_run *run, const char *script);
+void glintL_report_unseen(lua_State *L, glintL_run *run);
 
 // ---- work.c ----
 

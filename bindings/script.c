@@ -114,22 +114,10 @@ static bool check_sweep(const task *work)
     return true;
 }
 
-static int run_protected(lua_State *L)
+// Runs the jobs whose list is at 1.
+static void run_results(lua_State *L, const task *work)
 {
-    const task *work = lua_touserdata(L, 1);
     char message[GLINTL_MESSAGE_SIZE];
-    lua_settop(L, 0);
-    open_libraries(L, work);
-    cli_set_state(L);
-    if (work->run->reporter.prepare)
-        work->run->reporter.prepare(work->run->reporter.context, L);
-    if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
-        return lua_error(L);
-    work->run->since_ms = glintL_now_ms();
-    lua_call(L, 0, LUA_MULTRET);
-    take_results(L, work);
-    if (!work->script->has_jobs || !check_sweep(work))
-        return 0;
     if (work->run->mode == GLINTL_MODE_WATCH) {
         work->script->jobs = luaL_ref(L, LUA_REGISTRYINDEX);
     } else if (work->run->mode == GLINTL_MODE_EXPLAIN) {
@@ -142,6 +130,25 @@ static int run_protected(lua_State *L)
         glintL_call_settle(work->run);
         glintL_jobs_run(L, 1, work->run);
     }
+}
+
+static int run_protected(lua_State *L)
+{
+    const task *work = lua_touserdata(L, 1);
+    lua_settop(L, 0);
+    open_libraries(L, work);
+    cli_set_state(L);
+    if (work->run->reporter.prepare)
+        work->run->reporter.prepare(work->run->reporter.context, L);
+    if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
+        return lua_error(L);
+    work->run->since_ms = glintL_now_ms();
+    lua_call(L, 0, LUA_MULTRET);
+    take_results(L, work);
+    if (work->script->has_jobs && check_sweep(work))
+        run_results(L, work);
+    if (work->run->mode == GLINTL_MODE_RENDER && !work->run->exit_code && !work->run->interrupted)
+        glintL_report_observed(L, work->run, work->options->script);
     return 0;
 }
 

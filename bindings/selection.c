@@ -94,6 +94,11 @@ bool glintL_selection_parse_shard(glintL_selection *selection, const char *text,
     return false;
 }
 
+bool glintL_selection_is_whole(const glintL_selection *selection)
+{
+    return selection->range_count == 0 && selection->shard_count == 0;
+}
+
 bool glintL_selection_has(const glintL_selection *selection, int64_t number)
 {
     for (size_t i = 0; i < selection->range_count; i++) {

@@ -236,9 +236,9 @@ static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64
 static void warn_missing(const glintL_run *run, const char *path, int64_t from, int64_t to)
 {
     if (from == to)
-        glintL_run_warn(run, "%s: not drawn: frame %" PRId64 " is not there yet", path, from);
+        glintL_run_note(run, "%s: not drawn: frame %" PRId64 " is not there yet", path, from);
     else
-        glintL_run_warn(run, "%s: not drawn: frames between %" PRId64 " and %" PRId64 " are not there yet", path, from,
+        glintL_run_note(run, "%s: not drawn: frames between %" PRId64 " and %" PRId64 " are not there yet", path, from,
                         to);
 }
 
@@ -259,7 +259,7 @@ static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sh
     }
     int code = glintL_sheet_make(sheet, message);
     if (code && what->partial)
-        glintL_run_warn(run, "%s: not drawn: %s", sheet->path, message);
+        glintL_run_note(run, "%s: not drawn: %s", sheet->path, message);
     else if (code)
         glintL_run_fail(run, code, 0, "%s: %s", sheet->path, message);
     else if (run->reporter.figure)

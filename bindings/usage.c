@@ -33,7 +33,7 @@ void cli_print_usage(FILE *out)
           "machine    -t, --threads N  --no-reuse  --reuse-memory SIZE\n"
           "           --repeat N                         render each frame N times, report each\n"
           "watch      --frame N  --http [PORT]  --terminal kitty|sixel|blocks|text\n"
-          "report     --json  -q, --quiet  --version  -h, --help\n"
+          "report     --warnings show|error|none  --json  -q, --quiet  --version  -h, --help\n"
           "\n"
           "Words after -- are the script's `arg`. What the command line says beats what the script says.\n"
           "Exit: 0 done, 1 a frame failed, 2 usage or script error, 75 disk full (try later), 130 and 143 by signal.\n",

@@ -94,7 +94,7 @@ local P = glint.params {
   mode = { "day", choices = { "day", "night" } },
   plain = 1.5,
 }
-S.red.shininess = P.shiny and 20 or 5
+S.red.shininess = P.shiny and 20 or 5; assert(P.mode and P.plain) -- a parameter that is not read is warned about
 return glint.animation { scene = S.scene, frames = 10, cyclic = true, width = 40, height = 24, frame = function(t, n)
   if os.getenv "TRACE" then io.stderr:write("frame ", n, " t ", t, "\n") end
   S.lamp.position = { P.radius * glint.cos(2 * math.pi * t), 5, P.radius * glint.sin(2 * math.pi * t) }

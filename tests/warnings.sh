@@ -1,0 +1,197 @@
+#!/usr/bin/env bash
+# Warnings that teach: each where it is due and nowhere else, once, as an event, and as an error on request. Prints TAP.
+set -u
+root=$PWD
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+bad=0
+
+result() { # STATUS NAME
+    if [ "$1" -eq 0 ]; then echo "ok - $2"; else
+        echo "not ok - $2"
+        cat err
+        bad=1
+    fi
+}
+run() { "$glint" "$@" -t 1 -o none --quiet >out 2>err </dev/null; }
+
+# scene LINE...: a script with a camera that looks at the origin, the lines, and `objects` to render
+scene() {
+    {
+        echo 'local glint = require "glint"'
+        echo 'local lamp = glint.point_light { position = { 0, 8, 4 }, name = "lamp" }'
+        printf '%s\n' "$@"
+        echo 'local view = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }'
+        echo 'local scene = glint.scene { camera = view, ambient = 0.1, lamp, table.unpack(objects or {}) }'
+        echo 'return glint.animation { scene = scene, frames = 4, width = 32, height = 18, frame = frame or function() end }'
+    } >scene.lua
+}
+# warns NAME PATTERN OPTION...: one warning, which matches; the run is good
+warns() {
+    local name=$1 pattern=$2
+    shift 2
+    run scene.lua "$@" && [ "$(wc -l <err)" -eq 1 ] && grep -q "^glint: warning: $pattern" err
+    result $? "$name"
+}
+# silent NAME OPTION...: nothing to say
+silent() {
+    local name=$1
+    shift
+    run scene.lua "$@" && [ ! -s err ]
+    result $? "$name"
+}
+
+# ---- Shininess without specular ----
+
+scene 'local m = glint.material { shininess = 64 }'
+warns "shininess without specular" 'scene.lua:3: material.shininess has no effect while specular is black; set that, too'
+scene 'for i = 1, 3 do' 'glint.material { shininess = i } end'
+warns "once for many" 'scene.lua:4: material.shininess'
+scene 'local m = glint.material { shininess = 64, specular = 0 }'
+silent "a specular that is black on purpose"
+scene 'local m = glint.material { shininess = 64 }; m.specular = 0.5; m.specular = 0'
+silent "a specular that comes later"
+scene 'local m = glint.material { shininess = 64 }' 'function frame(t) m.specular = t end'
+silent "a specular that comes in a frame"
+scene 'local m = glint.material { shininess = 64, model = "lambert" }'
+silent "a model without highlights"
+
+# ---- A light inside a closed sphere ----
+
+inside='objects = { glint.sphere { center = { 0, 0, 0 }, radius = 2, name = "ball" } }'
+scene "$inside" 'lamp.position = { 0, 1, 0 }'
+warns "a light inside a sphere" "frame 1: a point_light 'lamp' is inside sphere 'ball', which lets none of its light out" -f 1
+scene "$inside" 'lamp.position = { 0, 1, 0 }; lamp.shadows = false'
+silent "its light goes through without shadows"
+scene "$inside" 'lamp.position = { 0, 2, 0 }'
+silent "on the surface is not inside"
+scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 20 } }'
+silent "with the eye inside, too, it is a room"
+scene "$inside" 'function frame(t, n) lamp.position = { 0, n == 3 and 1 or 9, 0 } end'
+warns "in a frame of many" "frame 3: a point_light 'lamp'"
+
+# ---- Outside the view ----
+
+scene 'objects = { glint.sphere { center = { 0, 0, 20 }, radius = 1, name = "ball" } }'
+warns "behind the eye" "sphere 'ball' is outside the view in every frame, with its shadow"
+silent "not when frames are chosen" -f 1
+silent "nor in a shard" --shard 1/2
+scene 'objects = {}; for i = 1, 3 do objects[i] = glint.sphere { center = { 30, 0, 9 + i }, radius = 1 } end'
+warns "one line for many" "the sphere at {30, 0, 10} and 2 more are outside the view"
+scene 'objects = { glint.sphere { center = { 0, 0, 20 }, radius = 1 } }' \
+    'function frame(t, n) objects[1].center = { 0, 0, n == 4 and 0 or 20 } end'
+silent "not one that comes in"
+scene 'objects = { glint.sphere { center = { 0, 6, 2 }, radius = 0.5 } }'
+silent "not one whose shadow falls into the view"
+
+# Of random scenes, perspective and parallel: where a sphere is said to be unseen, taking it away changes no pixel.
+cat >random.lua <<'END'
+local glint = require "glint"
+local P = glint.params { seed = 1 }
+local state = P.seed * 7919 % 65537
+local function random(low, high)
+  state = state * 75 % 65537
+  return low + (high - low) * state / 65537
+end
+for _ = 1, 5 do random(0, 1) end
+local ball = glint.sphere { center = { random(-9, 9), random(-9, 9), random(-9, 9) }, radius = random(0.2, 2) }
+local light = P.seed % 3 == 0 and glint.directional_light { direction = { random(-1, 1), random(-1, 1), random(-1, 1) } }
+  or glint.point_light { position = { random(-9, 9), random(-9, 9), random(-9, 9) } }
+local scene = glint.scene {
+  camera = glint.camera { eye = { random(-4, 4), random(-4, 4), random(-4, 4) }, at = { 0, 0, 0 }, fov = random(10, 90),
+    projection = P.seed % 2 == 0 and "orthographic" or "perspective", height = random(1, 6) },
+  ambient = 0.1, light, ball,
+  glint.plane { point = { 0, -5, 0 }, normal = { 0, 1, 0 } }, glint.plane { point = { 0, 0, -7 }, normal = { 0, 0, 1 } },
+}
+local with = scene:render { width = 32, height = 18, samples = 4 }
+scene:remove(ball)
+local without = scene:render { width = 32, height = 18, samples = 4 }
+for y = 0, 17 do
+  for x = 0, 31 do
+    local a, b, c = with:pixel(x, y)
+    local d, e, f = without:pixel(x, y)
+    if a ~= d or b ~= e or c ~= f then print "differs" return end
+  end
+end
+END
+said=0 wrong=0 unsaid=0
+for seed in $(seq 100); do
+    "$glint" random.lua -t 1 --quiet --set seed="$seed" >out 2>err
+    if grep -q 'outside the view' err; then
+        said=$((said + 1))
+        ! grep -q differs out || wrong=$((wrong + 1))
+    else
+        grep -q differs out || unsaid=$((unsaid + 1))
+    fi
+done
+echo "# of 100 scenes: $said said to be unseen, $wrong of them wrong, $unsaid unseen and not said"
+[ $wrong -eq 0 ] && [ $said -ge 30 ]
+result $? "no warning of an unseen sphere is wrong"
+
+# ---- Parameters ----
+
+scene 'local P = glint.params { lost = 1 }'
+warns "a parameter that is never read" 'params.lost: the script never reads it'
+scene 'local P = glint.params { used = 1 }' 'if P.used > 2 then print(P.used) end'
+silent "one that is read"
+scene 'local P = glint.params { a = 1, b = 2 }' 'for name, value in pairs(P) do assert(name and value) end'
+silent "all are read by pairs"
+scene 'local P = glint.params { step = "all", depth = 1 }' 'if P.step == "some" then print(P.depth) end'
+silent "one that is read under a condition"
+warns "unless it is set, and changes nothing" '--set depth: the script did not read it with these settings' --set depth=3
+
+# ---- Clipping ----
+
+scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 3, material = glint.material { ambient = 30 } } }'
+warns "a clipped picture" '[0-9]* % of the pixels are brighter than white'
+
+# ---- What is done with them ----
+
+scene 'local m = glint.material { shininess = 64 }' 'local P = glint.params { lost = 1 }'
+run scene.lua --json
+test $? -eq 0 && [ "$(grep -c '"event":"warning","message":"' out)" -eq 2 ] && grep -q '"event":"end"' out
+result $? "events"
+run scene.lua --warnings=none
+test $? -eq 0 -a ! -s err
+result $? "none"
+run scene.lua --warnings error --json
+test $? -eq 2 && grep -q '"event":"error","message":"scene.lua:3: material.shininess.*(--warnings=error)","exit":2' out
+result $? "an error on request"
+scene "$inside" 'lamp.position = { 0, 1, 0 }'
+"$glint" scene.lua -o 'no%d.png' --warnings=error --quiet 2>err
+test $? -eq 2 -a ! -e no1.png
+result $? "before anything is rendered"
+scene 'local bright = glint.material { diffuse = 2 }'
+run scene.lua --warnings=error
+test $? -eq 2 && grep -q 'scene.lua:3: material.diffuse above 1.*(--warnings=error)' err
+result $? "the other warnings, too"
+scene 'function frame(t) if t > 0.5 then glint.material { diffuse = 2 } end end'
+"$glint" scene.lua -o film.apng --warnings=error --quiet 2>err
+test $? -eq 2 && grep -q 'frames of film.apng are kept in film.apng.frames' err && [ -e film.apng.frames/0001.png ]
+result $? "the frames of a film that it ends are kept, and it says where"
+cat >sweep.lua <<'END'
+local glint = require "glint"
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+return glint.sweep { scene = scene, over = { { scene, "ambient", { 0.1, 0.2 } } }, width = 8, height = 8, sheet = {},
+                     output = "sweep_%04d.png" }
+END
+"$glint" sweep.lua --shard 1/2 --warnings=error --quiet 2>err
+test $? -eq 0 && grep -q 'not drawn: frame 2 is not there yet' err
+result $? "a sheet that waits for other shards is no mistake"
+run scene.lua --warnings=loud
+test $? -eq 2 && grep -q "show, error or none expected, got 'loud'" err
+result $? "wrong use"
+
+# ---- The scripts of the project give no cause ----
+
+for script in "$root"/scripts/*.lua; do
+    run "$script" --size 64x36 --samples 1 --warnings=error
+    result $? "$(basename "$script")"
+done
+for step in ambient diffuse specular; do
+    run "$root/scripts/workshop.lua" --size 64x36 --samples 1 --warnings=error --set step=$step
+    result $? "workshop.lua, step $step"
+done
+exit $bad
