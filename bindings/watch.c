@@ -37,6 +37,7 @@ typedef struct watcher {
     bool differs; // the picture in full is another than the preview
     double since_ms; // when what is shown now was asked for; 0: at the start
     int64_t pictures, frame, frames; // pictures: shown so far
+    int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
     int width, height;
     double ms;
     bool is_preview;
@@ -277,12 +278,11 @@ static bool run_script(watcher *w, quality now)
     return cli_run_script(&w->script, w->options, run);
 }
 
+// The script's jobs, as it left them.
 static bool run_jobs(watcher *w)
 {
-    w->frames = w->script.frames;
-    if (w->run->exit_code)
-        return false;
-    w->run->count = 0;
+    w->frames = w->calls + w->script.frames;
+    w->run->count = w->calls;
     select_frame(w, watch_asks_frame(&w->asks, w->frames));
     return cli_run_jobs(&w->script, w->run);
 }
@@ -301,9 +301,10 @@ static bool run_calls(watcher *w, quality now)
 static bool render(watcher *w, quality now, bool run_again)
 {
     bool good = true, has_jobs = w->script.state && w->script.has_jobs;
-    if (run_again || !has_jobs) {
+    if (run_again || !has_jobs || w->calls > 0) {
         good = run_script(w, now);
         has_jobs = good && w->script.has_jobs;
+        w->calls = w->run->count;
         if (good || w->script.state)
             keep_params(w);
     } else {
@@ -379,7 +380,7 @@ static void close_watcher(watcher *w)
 // Where the page is, and that watching has begun.
 static void tell_start(watcher *w)
 {
-    if (w->server && !w->output->quiet)
+    if (w->server)
         fprintf(stderr, "glint: watching at %s\n", watch_server_url(w->server));
     if (!w->output->json)
         return;

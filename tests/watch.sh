@@ -223,6 +223,50 @@ timeout 60 "$glint" watch loop.lua --frame 7 --size 64x36 >out4 2>err4 </dev/nul
 watchers+=($!)
 check "without a terminal: a line; a frame too many: the last" await '^loop.lua, frame 3: 64 x 36, ' 1 err4
 
+cat >mixed.lua <<'END'
+local glint = require "glint"
+local ball = glint.sphere { center = { 0, 0, 0 }, radius = 1 }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1, ball }
+for i = 1, 2 do ball.radius = i; scene:render { width = 64, height = 36 } end
+return glint.animation { scene = scene, frames = 3, width = 32, height = 18, frame = function(t) ball.radius = 1 + t end }
+END
+timeout 60 "$glint" watch mixed.lua --frame 4 --http --json >events5 2>err5 </dev/null &
+watchers+=($!)
+check "jobs are numbered after the calls" await '"index":4,"width":32,' 1 events5
+host=$(sed -n 's/.*"url":"http:\/\/\([^/]*\).*/\1/p' events5) path=$(sed -n 's/.*"url":"http:\/\/[^/]*\(\/[^"]*\)".*/\1/p' events5)
+port=${host#*:}
+ask POST "${path}frame" 2 >/dev/null
+check "a call among jobs" await '"index":2,"width":64,' 1 events5
+ask POST "${path}frame" 9 >/dev/null
+check "the last of all" await '"index":5,"width":32,' 1 events5
+
+# ---- What a terminal gets ----
+
+cat >still.lua <<'END'
+local glint = require "glint"
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1, background = "navy",
+  glint.sphere { center = { 0, 0, 0 }, radius = 2 } }
+return scene
+END
+"$glint" still.lua --size 96x54 --quiet
+draws() { # TERMINAL: draws still.lua into drawn.TERMINAL
+    COLORTERM=truecolor timeout 60 "$glint" watch still.lua --size 96x54 --terminal "$1" >/dev/null 2>"drawn.$1" </dev/null &
+    watchers+=($!)
+    await 'still.lua, frame 1: 96 x 54' 1 "drawn.$1"
+}
+check "kitty" draws kitty
+tr -d '\n' <drawn.kitty | grep -oaP '\x1b_G(a=T|m=)[^;]*;\K[^\x1b]*' | tr -d '\n' | base64 -d >kitty.png
+check "it is the picture" "$glint" compare kitty.png still.png --fail 0 --warn 0
+check "blocks" draws blocks
+check "half blocks, two pixels each, within 80 columns" test "$(grep -oa '▀' drawn.blocks | wc -l)" -eq $((78 * 22))
+check "navy is navy" grep -qa $'\033\[38;2;0;0;128m' drawn.blocks
+check "sixel" draws sixel
+check "its size, and its end" grep -qaP '\x1bPq"1;1;96;54#' drawn.sixel
+check "on a real terminal, which does not answer" eval '
+    command -v script >/dev/null || { echo "# skip: no script command"; exit 0; }
+    (TERM=xterm COLORTERM=truecolor timeout 3 script -qec "timeout 2 $glint watch still.lua --size 96x54" typescript >/dev/null </dev/null)
+    grep -qa "▀" typescript'
+
 fails() { # MESSAGE OPTION...: exit 2 with a message
     local message=$1
     shift
