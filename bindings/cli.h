@@ -137,6 +137,7 @@ glintL_reporter cli_reporter(cli_output *output);
 void cli_print_rays(FILE *out, const glint_ray_counts *rays); ///< "rays":{...}
 /// The error as an event and for people.
 void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message);
+void cli_warning_event(cli_output *output, const char *message); ///< under --json
 /// When much of what the run rendered is above white.
 void cli_warn_clipped(glintL_run *run);
 /// The end of a run that did all it was asked.

@@ -157,6 +157,11 @@ static void report_warning(void *context, const char *message)
     cli_output *output = context;
     print_kept(output);
     cli_print_warning(output, message);
+    cli_warning_event(output, message);
+}
+
+void cli_warning_event(cli_output *output, const char *message)
+{
     if (!output->json)
         return;
     fputs("{\"event\":\"warning\",\"message\":", output->data);

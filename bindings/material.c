@@ -1,5 +1,4 @@
 // glint.material
-#include <stdatomic.h>
 #include <string.h>
 
 #include "bindings/run.h"
@@ -48,14 +47,25 @@ static void follow(void *desc)
     d->has_ambient = true;
 }
 
+static const char WARNED; // its address is the registry's key: true once the script was warned
+
+static bool is_first(lua_State *L)
+{
+    luaL_checkstack(L, 2, "warning");
+    bool first = lua_rawgetp(L, LUA_REGISTRYINDEX, &WARNED) == LUA_TNIL;
+    lua_pushboolean(L, true);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &WARNED);
+    lua_pop(L, 1);
+    return first;
+}
+
 // kd ranges over 0 .. 1; more is allowed, and warned about once.
 static void accepted(lua_State *L, const glintL_field *field, const void *desc)
 {
     if (field->offset == AT(specular))
         glintL_note_specular(L, 1);
-    static atomic_flag warned = ATOMIC_FLAG_INIT;
     const double *kd = ((const desc_type *)desc)->diffuse;
-    if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && !atomic_flag_test_and_set(&warned))
+    if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && is_first(L))
         glintL_warn(L, "material.diffuse above 1: the surface gives off more light than it gets");
 }
 

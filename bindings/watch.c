@@ -43,6 +43,7 @@ typedef struct watcher {
     bool is_preview;
     char *params; // JSON of the last good run; owned
     char error[GLINTL_MESSAGE_SIZE]; // "": the last run was good
+    char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, a line each
 } watcher;
 
 // ---- What is told ----
@@ -65,6 +66,10 @@ static char *make_state(const watcher *w)
     if (*w->error) {
         fputs(",\"error\":", out);
         glintL_json_string(out, w->error);
+    }
+    if (*w->warnings) {
+        fputs(",\"warnings\":", out);
+        glintL_json_string(out, w->warnings);
     }
     fputc('}', out);
     return fclose(out) == 0 ? text : NULL;
@@ -115,7 +120,7 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
 {
     watcher *w = context;
     glint_error error;
-    char line[512];
+    char line[GLINTL_MESSAGE_SIZE + 512];
     (void)run;
     watch_picture *picture = watch_picture_create(work->image, &work->render, &error);
     if (!picture) {
@@ -134,8 +139,9 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
     publish(w, picture);
     if (w->output->json)
         print_picture_event(w);
-    snprintf(line, sizeof line, "%.255s, frame %" PRId64 ": %d x %d%s, %.0f ms after the change", w->run->script,
-             w->frame, w->width, w->height, w->is_preview ? ", preview" : "", w->ms);
+    snprintf(line, sizeof line, "%.255s, frame %" PRId64 ": %d x %d%s, %.0f ms after the change%s%s", w->run->script,
+             w->frame, w->width, w->height, w->is_preview ? ", preview" : "", w->ms, *w->warnings ? "\n" : "",
+             w->warnings);
     if (!w->output->quiet && !(w->is_preview && w->terminal.graphics == WATCH_TEXT))
         watch_terminal_draw(&w->terminal, work->image, picture, line);
     watch_picture_release(picture);
@@ -152,10 +158,15 @@ static void around_render(void *context, const glintL_run *run, bool begins)
     }
 }
 
+// Shown below the picture. The run in full says nothing that its preview has not said.
 static void warn(void *context, const char *message)
 {
     watcher *w = context;
-    cli_print_warning(w->output, message);
+    size_t used = strlen(w->warnings);
+    if (w->now == FULL)
+        return;
+    snprintf(w->warnings + used, sizeof w->warnings - used, "%swarning: %s", used ? "\n" : "", message);
+    cli_warning_event(w->output, message);
 }
 
 static int note_file(lua_State *L)
@@ -258,6 +269,8 @@ static void begin_run(watcher *w, quality now)
     run->mode = GLINTL_MODE_WATCH;
     run->preview_side = now == PREVIEW ? PREVIEW_SIDE : 0;
     w->shown = false;
+    if (now == PREVIEW)
+        w->warnings[0] = '\0';
 }
 
 // Runs the script from its beginning; its calls of scene:render render on the way.

@@ -90,6 +90,11 @@ echo "return 1" >parts/missing.lua
 check "it recovers when the module appears" await '"event":"picture"' $((before + 1))
 check "no picture came of the errors" test "$(seen picture)" -eq $((before + 1))
 
+save 0.5 'local bright = glint.material { diffuse = 2 }'
+check "a warning is told" await '"event":"warning","message":"scene.lua:5: material.diffuse above 1' 1
+save 0.6 'local bright = glint.material { diffuse = 2 }'
+check "in each run" await '"event":"warning","message":"scene.lua:5: material.diffuse above 1' 2
+
 # A script that never ends gives way to the next save.
 before=$(seen picture)
 save 0.5 "while true do end"

@@ -91,7 +91,10 @@ check "an error covers the picture" becomes "!get('error').hidden && get('error'
 check "the last good one stays" becomes "document.images[0].naturalWidth === 640"
 save 0.7 'error "<b id=hacked>"'
 check "an error is text, not markup" becomes "get('error').textContent.includes('<b id=hacked>') && !get('hacked')"
+save 0.7 "local bright = glint.material { diffuse = 2 }"
+check "a warning stands below" becomes "!get('warnings').hidden && get('warnings').textContent.includes('diffuse above 1')"
 save 0.6
+check "and goes" becomes "get('warnings').hidden"
 check "the error goes" becomes "get('error').hidden"
 
 check "a slider for a number with limits" becomes "document.querySelector('[name=shade]').type === 'range' && document.querySelector('[name=shade]').value === '0.6'"
