@@ -5,7 +5,7 @@ set -u
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 bad=0
-rocks() { HOME=$work luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
+rocks() { HOME=$work MAKEFLAGS=-j2 luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
 
 check() { # NAME COMMAND...
     local name=$1
