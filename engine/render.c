@@ -27,7 +27,7 @@ struct glint_renderer {
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     glint_image
         *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
-        ///< them
+    ///< them
     glint_key last_key;
     glint_frame_stats last_stats;
 };
@@ -68,6 +68,8 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
 static void drop_spares(glint_renderer *renderer)
 {
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
+        if (renderer->spare[i])
+            glint_reuse_unreserve(&renderer->reuse, glint_image_bytes(renderer->spare[i]));
         glint_image_release(renderer->spare[i]);
         renderer->spare[i] = NULL;
     }
@@ -80,9 +82,9 @@ void glint_renderer_destroy(glint_renderer *renderer)
     for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
         free(renderer->tiles[i]);
     free(renderer->tiles);
+    drop_spares(renderer);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
-    drop_spares(renderer);
     glint_pool_destroy(renderer->pool);
     free(renderer);
 }
@@ -226,10 +228,11 @@ static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_im
 static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                      const glint_frame_stats *stats)
 {
-    if (!renderer->reuse.on)
-        return;
+    bool within_budget = false;
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
+        within_budget = within_budget || renderer->spare[i] == image;
     glint_image_release(renderer->last);
-    renderer->last = glint_image_retain(image);
+    renderer->last = within_budget ? glint_image_retain(image) : NULL;
     renderer->last_key = picture_key(plan);
     renderer->last_stats = *stats;
 }
@@ -264,7 +267,7 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
         free_slot = renderer->spare[i] ? free_slot : i;
     glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
                                              desc->codes ? &desc->tone : NULL, out, error);
-    if (!status && renderer->reuse.on && free_slot >= 0)
+    if (!status && free_slot >= 0 && glint_reuse_reserve(&renderer->reuse, glint_image_bytes(*out)))
         renderer->spare[free_slot] = glint_image_retain(*out);
     return status;
 }

@@ -23,11 +23,12 @@ void glint_reuse_clear(glint_reuse *reuse)
         free(tile->lights);
     }
     free(reuse->tiles);
-    const size_t budget = reuse->budget;
+    const size_t budget = reuse->budget, pictures = reuse->pictures;
     const bool on = reuse->on;
     memset(reuse, 0, sizeof *reuse);
     reuse->on = on;
     reuse->budget = budget;
+    reuse->pictures = pictures;
 }
 
 /// The slots of every tile, or none at all.
@@ -38,7 +39,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->samples = (uint32_t)plan->desc.samples;
     reuse->real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     const size_t bytes = tile_count * (sizeof *reuse->tiles + light_count * sizeof *reuse->tiles->lights);
-    if (bytes > reuse->budget || !(reuse->tiles = calloc(tile_count, sizeof *reuse->tiles)))
+    if (bytes > reuse->budget - reuse->pictures || !(reuse->tiles = calloc(tile_count, sizeof *reuse->tiles)))
         return;
     reuse->light_count = light_count;
     for (reuse->tile_count = 0; reuse->tile_count < tile_count; reuse->tile_count++) {
@@ -100,13 +101,26 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
     return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
 }
 
+bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes)
+{
+    const size_t half = reuse->budget / 2;
+    if (!reuse->on || bytes > half || reuse->pictures > half - bytes ||
+        atomic_load(&reuse->used) > reuse->budget - reuse->pictures - bytes)
+        return false;
+    reuse->pictures += bytes;
+    return true;
+}
+
+void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes) { reuse->pictures -= bytes; }
+
 /// A block of memory within the budget, or NULL; its contents do not matter yet. Nothing is booked that does not fit:
 /// a failing request must not make another worker's fail.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
     size_t used = atomic_load(&reuse->used);
     do {
-        if (bytes > reuse->budget || used > reuse->budget - bytes)
+        const size_t room = reuse->budget - reuse->pictures;
+        if (bytes > room || used > room - bytes)
             return NULL;
     } while (!atomic_compare_exchange_weak(&reuse->used, &used, used + bytes));
     void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);

@@ -43,6 +43,7 @@ typedef struct glint_kept_tile {
 typedef struct glint_reuse {
     bool on;
     size_t budget;
+    size_t pictures; ///< bytes of the budget that whole pictures have, see glint_reuse_reserve
     atomic_size_t used;
     uint32_t width, height, samples; ///< the layout of what is kept
     size_t real_size;
@@ -59,6 +60,10 @@ void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget);
 void glint_reuse_clear(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory nothing is kept.
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
+
+/// Takes `bytes` of the budget for a picture that is kept as a whole; at most half of it goes to pictures.
+bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes);
+void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
 
 /// The key of a tile's pixels, from what is known of it; all zero where that is not of this plan's surfaces.
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan);

@@ -81,6 +81,16 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
     return GLINT_OK;
 }
 
+size_t glint_image_bytes(const glint_image *image)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    size_t bytes = image->codes ? pixels * 3 * (size_t)(image->code_tone.bits / 8) : 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < 3; c++)
+            bytes += image->plane[pass][c] ? pixels * sizeof(float) : 0;
+    return bytes;
+}
+
 glint_image *glint_image_retain(glint_image *image)
 {
     if (image)

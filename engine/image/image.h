@@ -27,6 +27,9 @@ static inline size_t glint_image_stamps(const glint_image *image)
     return ((size_t)image->height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
 }
 
+/// Bytes of its planes and codes.
+size_t glint_image_bytes(const glint_image *image);
+
 /// Makes an image with one reference; its planes and codes are not initialised, its stamps are 0.
 ///
 /// width, height  1 .. GLINT_SIDE_MAX, else GLINT_ERR_INVALID, before anything is allocated.
