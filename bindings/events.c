@@ -217,7 +217,9 @@ void cli_warn_clipped(glintL_run *run)
 {
     double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
     if (clipped > CLIPPED_HINT)
-        glintL_run_warn(run, "%.0f %% of the pixels are brighter than white; dimmer lights keep what is lost there",
+        glintL_run_warn(run,
+                        "%.0f %% of the pixels are brighter than white; dimmer lights, --exposure -1 or --tone filmic "
+                        "keep what is lost there",
                         100 * clipped);
 }
 

@@ -197,4 +197,6 @@ glintL_run *glintL_get_run(lua_State *L);
 /// files. Pushes an image, or nil and "skipped". Returns the number of results.
 int glintL_render_call(lua_State *L, glint_scene *scene, int index);
 
+extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
+
 #endif

@@ -90,7 +90,7 @@ static int pixel(lua_State *L)
 
 static void read_options(lua_State *L, glint_write_desc *desc)
 {
-    static const char *const curves[] = { "clamp", NULL }, *const transfers[] = { "srgb", "linear", NULL };
+    static const char *const transfers[] = { "srgb", "linear", NULL };
     static const char *const roundings[] = { "nearest", "truncate", NULL }, *const encodes[] = { "fast", "small",
                                                                                                  NULL };
     typedef struct options {
@@ -107,7 +107,11 @@ static void read_options(lua_State *L, glint_write_desc *desc)
           .kind = GLINTL_ENUM,
           .offset = offsetof(options, desc.tone.rounding),
           .names = roundings },
-        { .name = "tone", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.tone.curve), .names = curves },
+        { .name = "tone",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.curve),
+          .names = glintL_tone_curves },
+        { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
         { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
         { .name = "pass", .kind = GLINTL_OTHER },
         { .name = NULL },

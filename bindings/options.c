@@ -264,6 +264,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "transfer", 0, true, SHOWN, read_render },
     { "rounding", 0, true, SHOWN, read_render },
     { "tone", 0, true, SHOWN, read_render },
+    { "exposure", 0, true, SHOWN, read_render },
     { "passes", 0, true, SCRIPTED, read_render },
     { "encode", 0, true, SHOWN, read_render },
     { "seed", 0, true, SHOWN, read_render },

@@ -12,6 +12,7 @@
 
 typedef enum sort {
     WHOLE, // a double of the engine's, min .. max
+    REAL, // likewise, not only whole
     CHOICE, // an enum
     BITS,
     OUTPUT,
@@ -29,19 +30,28 @@ typedef struct detail {
 static const char *const precisions[] = { "double", "float", NULL };
 static const char *const transfers[] = { "srgb", "linear", NULL };
 static const char *const roundings[] = { "nearest", "truncate", NULL };
-static const char *const curves[] = { "clamp", NULL };
 static const char *const encodes[] = { "fast", "small", NULL };
 
 #define AT(member) offsetof(glintL_render, member)
 
+const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
+
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    { .name = "width", .kind = GLINTL_NUMBER },     { .name = "height", .kind = GLINTL_NUMBER },
-    { .name = "samples", .kind = GLINTL_NUMBER },   { .name = "seed", .kind = GLINTL_NUMBER },
-    { .name = "max_depth", .kind = GLINTL_NUMBER }, { .name = "bits", .kind = GLINTL_NUMBER },
-    { .name = "precision", .kind = GLINTL_ENUM },   { .name = "transfer", .kind = GLINTL_ENUM },
-    { .name = "rounding", .kind = GLINTL_ENUM },    { .name = "tone", .kind = GLINTL_ENUM },
-    { .name = "encode", .kind = GLINTL_ENUM },      { .name = "output", .kind = GLINTL_STRING },
-    { .name = "passes", .kind = GLINTL_STRING },    { .name = NULL },
+    { .name = "width", .kind = GLINTL_NUMBER },
+    { .name = "height", .kind = GLINTL_NUMBER },
+    { .name = "samples", .kind = GLINTL_NUMBER },
+    { .name = "seed", .kind = GLINTL_NUMBER },
+    { .name = "max_depth", .kind = GLINTL_NUMBER },
+    { .name = "bits", .kind = GLINTL_NUMBER },
+    { .name = "precision", .kind = GLINTL_ENUM },
+    { .name = "transfer", .kind = GLINTL_ENUM },
+    { .name = "rounding", .kind = GLINTL_ENUM },
+    { .name = "tone", .kind = GLINTL_ENUM },
+    { .name = "encode", .kind = GLINTL_ENUM },
+    { .name = "output", .kind = GLINTL_STRING },
+    { .name = "passes", .kind = GLINTL_STRING },
+    { .name = "exposure", .kind = GLINTL_NUMBER },
+    { .name = NULL },
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {
@@ -54,10 +64,11 @@ static const detail details[GLINTL_RENDER_FIELDS] = {
     { CHOICE, AT(desc.precision), 0, 0, precisions },
     { CHOICE, AT(desc.tone.transfer), 0, 0, transfers },
     { CHOICE, AT(desc.tone.rounding), 0, 0, roundings },
-    { CHOICE, AT(desc.tone.curve), 0, 0, curves },
+    { CHOICE, AT(desc.tone.curve), 0, 0, glintL_tone_curves },
     { CHOICE, AT(encode), 0, 0, encodes },
     { OUTPUT, AT(output), 0, 0, NULL },
     { PASSES, AT(file_passes), 0, 0, NULL },
+    { REAL, AT(desc.tone.exposure), -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL },
 };
 
 glintL_render glintL_render_default(void)
@@ -83,7 +94,10 @@ const char *const *glintL_render_choices(int field)
     return details[field].sort == CHOICE ? details[field].names : NULL;
 }
 
-static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == BITS || what->sort == DEPTH; }
+static bool is_number(const detail *what)
+{
+    return what->sort == WHOLE || what->sort == REAL || what->sort == BITS || what->sort == DEPTH;
+}
 
 // What is allowed, for messages.
 static void describe(const detail *what, char out[256])
@@ -92,6 +106,9 @@ static void describe(const detail *what, char out[256])
     switch (what->sort) {
     case WHOLE:
         snprintf(out, 256, "whole number %.17g .. %.17g", what->min, what->max);
+        break;
+    case REAL:
+        snprintf(out, 256, "number %.17g .. %.17g", what->min, what->max);
         break;
     case DEPTH:
         snprintf(out, 256, "number >= 0");
@@ -123,6 +140,11 @@ static bool set_number(glintL_render *render, const detail *what, double value)
     case WHOLE:
         // Within the limits, so the conversion is exact; NaN fails them.
         if (!(value >= what->min && value <= what->max) || value != (double)(int64_t)value)
+            return false;
+        memcpy(field, &value, sizeof value);
+        return true;
+    case REAL:
+        if (!(value >= what->min && value <= what->max))
             return false;
         memcpy(field, &value, sizeof value);
         return true;
@@ -290,6 +312,7 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
     unsigned value;
     switch (what->sort) {
     case WHOLE:
+    case REAL:
         memcpy(&number, at, sizeof number);
         snprintf(out, 64, "%.17g", number);
         return true;
@@ -315,6 +338,10 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
     case WHOLE:
         memcpy(&number, at, sizeof number);
         lua_pushinteger(L, (lua_Integer)number);
+        break;
+    case REAL:
+        memcpy(&number, at, sizeof number);
+        lua_pushnumber(L, number);
         break;
     case BITS:
         lua_pushinteger(L, render->desc.tone.bits);

@@ -231,14 +231,24 @@ int glint_pass_channels(glint_pass pass); ///< 1 or 3
 
 typedef enum glint_transfer { GLINT_TRANSFER_SRGB, GLINT_TRANSFER_LINEAR } glint_transfer;
 typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
-typedef enum glint_tone_curve { GLINT_TONE_CLAMP } glint_tone_curve;
 
-/// How linear light becomes integer codes: curve, transfer, rounding. NaN and negative become 0, above the range M.
+/// What becomes of bright light, each channel on its own. x is the light after exposure, the result 0 .. 1.
+typedef enum glint_tone_curve {
+    GLINT_TONE_CLAMP, ///< min(x, 1)
+    GLINT_TONE_REINHARD, ///< x / (1 + x): Reinhard, Stark, Shirley and Ferwerda 2002, equation 3. Nothing is cut off
+    GLINT_TONE_FILMIC ///< h(2 x) / h(11.2), h Hable's curve of "Uncharted 2" (Filmic Games, 2010): white from 5.6 on
+} glint_tone_curve;
+
+#define GLINT_EXPOSURE_MAX 32 ///< stops, either way
+
+/// How linear light becomes integer codes: exposure, curve, transfer, rounding. NaN and negative become 0, above the
+/// range M.
 typedef struct glint_tone_desc {
     glint_tone_curve curve;
     glint_transfer transfer; ///< default sRGB, IEC 61966-2-1:1999
     glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
     int bits; ///< 8 (default) or 16: M = 255 or 65535
+    double exposure; ///< stops: light is first multiplied by 2^exposure, in float; default 0
 } glint_tone_desc;
 
 glint_tone_desc glint_tone_desc_default(void);

@@ -1,6 +1,7 @@
 #include "engine/plan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/image/tone.h"
 
 #include <stdlib.h>
 
@@ -43,8 +44,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");
     if (!status && desc->passes >> GLINT_PASS_COUNT)
         status = glint_fail(error, GLINT_ERR_INVALID, "passes: no such pass");
-    if (!status && desc->codes && desc->tone.bits != 8 && desc->tone.bits != 16)
-        status = glint_fail(error, GLINT_ERR_INVALID, "bits: 8 or 16 expected, got %d", desc->tone.bits);
+    if (!status)
+        status = glint_tone_check(&desc->tone, error);
     return status;
 }
 
@@ -139,6 +140,7 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
     glint_key key = glint_key_add(plan->keys[GLINT_STAGE_SHADE], options, sizeof options);
+    key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     key = glint_key_add_string(key, GLINT_VERSION);
     key = glint_key_add_string(key, glint_encoder_name(desc->encode));
     glint_key_hex(key, hex);

@@ -151,6 +151,10 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
+    static const char *const curves[] = { "clamp", "reinhard", "filmic" };
+    const glint_tone_desc *tone = &plan->desc.tone;
+    one(e, tone->curve != GLINT_TONE_CLAMP, "tone curve", "tone = %s", curves[tone->curve]);
+    one(e, tone->exposure != 0, "exposure", "exposure = %g", tone->exposure);
     for (int pass = GLINT_PASS_BACKGROUND; pass < GLINT_PASS_COUNT; pass++)
         one(e, plan->desc.passes >> pass & 1, "pass", "passes: %s", glint_pass_name((glint_pass)pass));
 }

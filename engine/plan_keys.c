@@ -83,7 +83,9 @@ static glint_key material_key(const glint_shade_material *m, glint_key key)
 static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key key)
 {
     const glint_tone_desc *tone = &plan->desc.tone;
-    const int numbers[] = { plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits };
+    const double numbers[] = {
+        plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits, tone->exposure
+    };
     if (which & READS(PASSES))
         ADD(key, plan->desc.passes);
     if (which & READS(TONE))

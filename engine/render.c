@@ -172,6 +172,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .image = image,
                             .last = renderer->last,
                             .tone_table = table,
+                            .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
                             .cancelled = &renderer->cancelled,
                             .time_stages = renderer->time_stages } };

@@ -22,6 +22,7 @@ typedef struct glint_tile_frame {
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no codes
+    float gain; ///< of the exposure
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages;

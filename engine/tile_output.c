@@ -86,7 +86,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
             for (int c = 0; c < 3; c++)
                 row[c][x] = tile->beauty[c][((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4];
         uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
-        glint_tone_row16(frame->tone_table, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
+        glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);
     }
 }
@@ -101,8 +101,11 @@ void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
     glint_tone_args args = { .group_count = tile->group_count,
                              .groups_across = tile->groups_across,
                              .active = tile->active,
+                             .gain = frame->gain,
+                             .white = frame->tone_table->white,
+                             .top = frame->tone_table->top,
                              .table = frame->tone_table->lut,
-                             .fit = &frame->tone_table->fit,
+                             .fit = frame->tone_table->has_fit ? &frame->tone_table->fit : NULL,
                              .codes = (uint8_t *)frame->image->codes + tile->y0 * stride + 3 * (size_t)tile->x0,
                              .stride = stride,
                              .clipped = &tile->counts.clipped,

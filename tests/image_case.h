@@ -91,7 +91,7 @@ static inline glint_image *make_image(int width, int height, const glint_tone_de
         const glint_tone_table *table;
         assert_int_equal(glint_tone_table_shared(codes, &table, NULL), GLINT_OK);
         float **p = image->plane[GLINT_PASS_BEAUTY];
-        glint_tone_row8(table, p[0], p[1], p[2], count, image->codes, NULL, NULL);
+        glint_tone_row8(table, glint_tone_gain(codes), p[0], p[1], p[2], count, image->codes, NULL, NULL);
     }
     return image;
 }
@@ -122,10 +122,10 @@ static inline uint16_t code_of(const glint_tone_table *table, float x)
     uint8_t a[3];
     uint16_t b[3];
     if (table->desc.bits == 8) {
-        glint_tone_row8(table, &x, &x, &x, 1, a, NULL, NULL);
+        glint_tone_row8(table, 1, &x, &x, &x, 1, a, NULL, NULL);
         return a[1];
     }
-    glint_tone_row16(table, &x, &x, &x, 1, b, NULL, NULL);
+    glint_tone_row16(table, 1, &x, &x, &x, 1, b, NULL, NULL);
     return b[1];
 }
 

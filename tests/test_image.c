@@ -44,8 +44,9 @@ static void check_code(const glint_tone_table *table, float x)
 {
     double want = glint_tone_value(&table->desc, x);
     if (code_of(table, x) != want)
-        fail_msg("%d bits, transfer %d, rounding %d: %a gives %d, want %g", table->desc.bits, (int)table->desc.transfer,
-                 (int)table->desc.rounding, (double)x, code_of(table, x), want);
+        fail_msg("curve %d, %d bits, transfer %d, rounding %d: %a gives %d, want %g", (int)table->desc.curve,
+                 table->desc.bits, (int)table->desc.transfer, (int)table->desc.rounding, (double)x, code_of(table, x),
+                 want);
 }
 
 /// Every float where the code could step: the inverse of each code, and the 20 floats on either side.
@@ -56,14 +57,15 @@ static void check_every_step(const glint_tone_desc *desc)
     int max = desc->bits == 16 ? 65535 : 255;
     for (int k = 0; k <= 2 * max; k++) {
         double encoded = 0.5 * k / max;
-        float x = (float)(desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded);
+        double y = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded;
+        float x = (float)glint_tone_curve_inverse(desc->curve, y);
         int reach = desc->bits == 16 ? 2 : 20;
         for (int i = 0; i < reach; i++)
             x = nextafterf(x, 0);
-        for (int i = 0; i <= 2 * reach; i++, x = nextafterf(x, 2))
+        for (int i = 0; i <= 2 * reach; i++, x = nextafterf(x, INFINITY))
             check_code(table, x);
     }
-    for (uint32_t bits = 0; bits < 0x40000000u; bits += 9973) { // and a walk over all of them
+    for (uint32_t bits = 0; bits < 0x5a800000u; bits += 9973) { // and a walk over all of them
         float x;
         memcpy(&x, &bits, sizeof x);
         check_code(table, x);
@@ -71,17 +73,19 @@ static void check_every_step(const glint_tone_desc *desc)
     assert_int_equal(code_of(table, NAN), 0);
     assert_int_equal(code_of(table, INFINITY), max);
     assert_int_equal(code_of(table, -INFINITY), 0);
-    assert_int_equal(code_of(table, 1), max);
-    assert_int_equal(code_of(table, 1.0001f), max);
+    const float limit = (float)glint_tone_curve_white(desc->curve);
+    const float white = desc->curve == GLINT_TONE_CLAMP ? 1 : nextafterf(limit, INFINITY); // 5.6 lies between two
+    assert_int_equal(code_of(table, white), max);
+    assert_int_equal(code_of(table, 1.0001f * white), max);
     assert_int_equal(code_of(table, -1), 0);
 }
 
 static void test_tone_every_step(void **state)
 {
     (void)state;
-    for (int i = 0; i < 8; i++) {
-        glint_tone_desc desc = {GLINT_TONE_CLAMP, i & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                                i & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, i & 4 ? 16 : 8};
+    for (int i = 0; i < 24; i++) {
+        glint_tone_desc desc = {(glint_tone_curve)(i / 8), i & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
+                                i & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, i & 4 ? 16 : 8, 0};
         check_every_step(&desc);
     }
 }
@@ -89,7 +93,7 @@ static void test_tone_every_step(void **state)
 static void test_tone_known(void **state) // I1, I2, I3
 {
     (void)state;
-    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUND_NEAREST, 8};
+    glint_tone_desc linear = {GLINT_TONE_CLAMP, GLINT_TRANSFER_LINEAR, GLINT_ROUND_NEAREST, 8, 0};
     static const double in[] = {0.49999 / 255, 0.5 / 255, 1.5 / 255, 127.5 / 255, 0.999, 1.0001, NAN, -1, INFINITY};
     static const int want[] = {0, 1, 2, 128, 255, 255, 0, 0, 255};
     for (int i = 0; i < 9; i++)
@@ -124,9 +128,75 @@ static void test_tone_counts(void **state)
     uint8_t rgb[18];
     uint64_t clipped = 10, nonfinite = 20;
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
-    glint_tone_row8(table, r, g, b, 6, rgb, &clipped, &nonfinite);
+    glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
     assert_int_equal(clipped, 12);
     assert_int_equal(nonfinite, 23);
+    glint_tone_row8(table, 0.5f, r, g, b, 6, rgb, &clipped, &nonfinite); // 2 is white then, and no more
+    assert_int_equal(clipped, 13);
+    desc.curve = GLINT_TONE_REINHARD; // cuts nothing off
+    assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
+    glint_tone_row8(table, 1, r, g, b, 6, rgb, &clipped, &nonfinite);
+    assert_int_equal(clipped, 13);
+    desc.curve = GLINT_TONE_FILMIC;
+    static const float bright[] = {5.5f, 5.7f, 1e30f, 0, 0, 0};
+    assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
+    glint_tone_row8(table, 1, bright, g + 5, b, 1, rgb, &clipped, &nonfinite);
+    assert_int_equal(clipped, 13);
+    glint_tone_row8(table, 1, bright + 1, b, b, 2, rgb, &clipped, &nonfinite);
+    assert_int_equal(clipped, 15);
+}
+
+static void check_near(double got, double want, double tolerance)
+{
+    if (!(fabs(got - want) <= tolerance))
+        fail_msg("%.17g, want %.17g", got, want);
+}
+
+/// The curves as they were published, in their own words, at light that scenes have.
+static void test_tone_curves(void **state)
+{
+    (void)state;
+    static const double light[] = {1e-4, 0.01, 0.18, 0.5, 1, 2, 4, 5.5};
+    for (int i = 0; i < 8; i++) {
+        const double x = light[i];
+        double hable[2];
+        for (int k = 0; k < 2; k++) {
+            const double v = k ? 11.2 : 2 * x;
+            hable[k] = (v * (0.15 * v + 0.10 * 0.50) + 0.20 * 0.02) / (v * (0.15 * v + 0.50) + 0.20 * 0.30) - 0.02 / 0.30;
+        }
+        check_near(glint_tone_curve_value(GLINT_TONE_CLAMP, x), x < 1 ? x : 1, 0);
+        check_near(glint_tone_curve_value(GLINT_TONE_REINHARD, x), x / (1 + x), 1e-15);
+        check_near(glint_tone_curve_value(GLINT_TONE_FILMIC, x), hable[0] / hable[1], 1e-14);
+        for (int curve = GLINT_TONE_REINHARD; curve <= GLINT_TONE_FILMIC; curve++) {
+            const double y = glint_tone_curve_value((glint_tone_curve)curve, x);
+            check_near(glint_tone_curve_inverse((glint_tone_curve)curve, y), x, 1e-13 * x);
+        }
+    }
+}
+
+/// A stop more is twice the light, in every code.
+static void test_tone_exposure(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        glint_tone_desc plain = glint_tone_desc_default(), exposed;
+        plain.curve = (glint_tone_curve)(i / 2);
+        plain.bits = i & 1 ? 16 : 8;
+        exposed = plain;
+        exposed.exposure = -1.5;
+        const float gain = glint_tone_gain(&exposed);
+        check_near(gain, 0.35355339059327373, 2e-8);
+        for (double x = 1e-5; x < 100; x *= 1.07)
+            check_near(glint_tone_value(&exposed, (float)x), glint_tone_value(&plain, gain * (float)x), 0);
+    }
+    glint_tone_desc desc = glint_tone_desc_default();
+    desc.exposure = 1;
+    assert_int_equal((int)glint_tone_value(&desc, 0.25), 188);
+    static const double wrong[] = {33, -33, NAN, INFINITY};
+    for (int i = 0; i < 4; i++) {
+        desc.exposure = wrong[i];
+        assert_int_equal(glint_tone_check(&desc, NULL), GLINT_ERR_INVALID);
+    }
 }
 
 // ---- Passes as pictures -------------------------------------------------------------------------------------------
@@ -228,7 +298,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_image_sizes), cmocka_unit_test(test_tone_known), cmocka_unit_test(test_tone_every_step),
-        cmocka_unit_test(test_tone_counts), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_kept),
+        cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_kept),
         WITH_FOLDER(test_compare),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

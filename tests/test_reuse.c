@@ -111,8 +111,8 @@ static const field render_fields[] = {
 #define R(...) FIELD(glint_render_desc, __VA_ARGS__)
     R(width, WHOLE, 60, 75),        R(height, WHOLE, 40, 55),    R(samples, WHOLE, 1, 4),
     R(precision, CHOICE, 0, 2),     R(seed, WHOLE, 0, 2),        R(passes, BITS, 0, GLINT_PASS_COUNT),
-    R(codes, FLAG, 0, 1),           R(tone.curve, CHOICE, 0, 1), R(tone.transfer, CHOICE, 0, 2),
-    R(tone.rounding, CHOICE, 0, 2), R(tone.bits, DEPTH, 0, 0),
+    R(codes, FLAG, 0, 1),           R(tone.curve, CHOICE, 0, 3), R(tone.transfer, CHOICE, 0, 2),
+    R(tone.rounding, CHOICE, 0, 2), R(tone.bits, DEPTH, 0, 0), R(tone.exposure, NUMBER, -2, 3),
 #undef R
 };
 

@@ -17,6 +17,7 @@
 #define ALIGNED _Alignas(64)
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
+enum { ENTRIES = 0x3f80 - GLINT_TONE_FIRST + 1 }; // up to 1
 enum { CASES = 600, TONE_BYTES = 3 * GLINT_TILE_SAMPLES, STRIDE_MOST = 3 * GLINT_TILE_WIDTH + 10 };
 
 // ---- Random numbers ----
@@ -68,10 +69,10 @@ static bool runs_here(const glint_stages *stages)
 // ---- Cases ----
 
 /// Codes with a threshold anywhere in a bucket, at its ends, or nowhere.
-static void make_tone_table(uint32_t table[GLINT_TONE_ENTRIES])
+static void make_tone_table(uint32_t table[ENTRIES])
 {
     uint32_t code = 0;
-    for (uint32_t i = 0; i < GLINT_TONE_ENTRIES; i++) {
+    for (uint32_t i = 0; i < ENTRIES; i++) {
         bool step = code < 255 && one_in(7);
         uint32_t threshold = !step ? 65536 : one_in(4) ? 1 : one_in(3) ? 65535 : 1 + below(65535);
         table[i] = code | threshold << 8;
@@ -81,17 +82,18 @@ static void make_tone_table(uint32_t table[GLINT_TONE_ENTRIES])
 
 static float tone_value(const uint32_t *table)
 {
-    uint32_t bucket = below(GLINT_TONE_ENTRIES);
+    uint32_t bucket = below(ENTRIES);
     uint32_t bits = ((GLINT_TONE_FIRST + bucket) << 16) + ((table[bucket] >> 8) + below(3) - 1) % 65536;
     float x;
     memcpy(&x, &bits, sizeof x);
     return one_in(8) ? odd_number() : one_in(3) ? (float)between(-0.1, 1.2) : x;
 }
 
+/// 0 .. 3: clamp, 4 .. 7: reinhard, 8 .. 11: filmic.
 static const glint_tone_table *tone_of(int index)
 {
-    glint_tone_desc desc = {GLINT_TONE_CLAMP, index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                            index & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, 8};
+    glint_tone_desc desc = {(glint_tone_curve)(index / 4), index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
+                            index & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, 8, 0};
     const glint_tone_table *table = NULL;
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
     return table;
@@ -99,7 +101,7 @@ static const glint_tone_table *tone_of(int index)
 
 typedef struct tone_case {
     ALIGNED float beauty[3][GLINT_TILE_SAMPLES];
-    uint32_t table[GLINT_TONE_ENTRIES];
+    uint32_t table[ENTRIES];
     uint16_t active[GLINT_TILE_GROUPS];
     glint_tone_args args;
 } tone_case;
@@ -114,17 +116,21 @@ static void make_case(tone_case *c)
 {
     uint32_t across = 1 + below(8), groups = across * (1 + below(6));
     bool tame = one_in(2), made_up = one_in(2);
-    const glint_tone_table *real = tone_of((int)below(4));
+    const glint_tone_table *real = tone_of((int)below(12));
     make_tone_table(c->table);
     c->args = (glint_tone_args){.group_count = groups, .groups_across = across, .active = c->active};
+    static const float gains[] = {1, 0.7f, 2, 0x1p-32f, 0x1p32f};
     c->args.table = made_up ? c->table : real->lut;
-    c->args.fit = made_up ? NULL : &real->fit;
+    c->args.fit = made_up || !real->has_fit ? NULL : &real->fit;
+    c->args.top = made_up ? 1 : real->top;
+    c->args.white = made_up ? 1 : real->white;
+    c->args.gain = gains[one_in(3) ? below(COUNT_OF(gains)) : 0];
     c->args.stride = 12 * across + below(11);
     for (uint32_t g = 0; g < groups; g++)
         c->active[g] = random_mask();
     for (int k = 0; k < 3; k++) {
         for (uint32_t i = 0; i < groups * GLINT_GROUP; i++)
-            c->beauty[k][i] = tame ? (float)between(0, 1) : tone_value(c->args.table);
+            c->beauty[k][i] = tame ? (float)between(0, 1) : one_in(9) ? (float)between(0, 700) : tone_value(c->args.table);
         c->args.beauty[k] = c->beauty[k];
     }
 }
@@ -168,8 +174,11 @@ static void test_tone_reference(void **state)
     for (uint32_t seed = 0; seed < CASES / 10; seed++) {
         random_state = seed;
         make_case(&c);
-        const glint_tone_table *table = tone_of(seed & 3);
+        const glint_tone_table *table = tone_of((int)(seed % 12));
         c.args.table = table->lut;
+        c.args.top = table->top;
+        c.args.white = table->white;
+        c.args.gain = 1;
         run_case(&c, &glint_stages_ref, &got);
         for (size_t i = 0; i < sizeof got.codes; i++) {
             size_t at = i - STRIDE_MOST, y = at / c.args.stride, x = at % c.args.stride / 3; // of no lane: too large
@@ -199,8 +208,11 @@ static void tone_floats(const glint_stages *stages, const glint_tone_table *tabl
                             .groups_across = 1,
                             .active = all,
                             .beauty = {beauty[0], beauty[1], beauty[2]},
+                            .gain = 1,
+                            .white = table->white,
+                            .top = table->top,
                             .table = table->lut,
-                            .fit = &table->fit,
+                            .fit = table->has_fit ? &table->fit : NULL,
                             .codes = codes,
                             .stride = 12,
                             .clipped = &count[0],
@@ -216,7 +228,7 @@ static void test_tone_every_float(void **state)
     for (int i = 0; i < 5; i++) {
         const uint32_t step = i == 0 ? 1 : i == 4 ? 40961 : 7; // the last: down to the smallest of all
         const uint32_t first = i == 4 ? 0 : GLINT_TONE_FIRST << 16;
-        for (uint64_t bits = first; bits <= (GLINT_TONE_LAST << 16) + 1; bits += (uint64_t)step * TONE_BYTES) {
+        for (uint64_t bits = first; bits <= 0x3f800001u; bits += (uint64_t)step * TONE_BYTES) {
             tone_floats(&glint_stages_ref, tone_of(i), (uint32_t)bits, step, want);
             FOR_EACH_OTHER(isa)
             {

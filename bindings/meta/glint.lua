@@ -277,7 +277,8 @@ function glint.scene(fields) end
 ---@field bits? 8|16  a channel of a .png. Default 8
 ---@field transfer? "srgb"|"linear"  how light becomes codes. Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
----@field tone? "clamp"  what becomes of light above 1. Default "clamp"
+---@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
+---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
 ---@field output? string  file name, .png or .pfm; %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
@@ -286,7 +287,8 @@ function glint.scene(fields) end
 ---@field bits? 8|16  a channel of a .png. Default 8
 ---@field transfer? "srgb"|"linear"  Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
----@field tone? "clamp"  Default "clamp"
+---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
+---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
 ---@field pass? glint.pass  Default "beauty"
 

@@ -6,14 +6,16 @@
 #include "engine/stages/stages.h"
 
 #define GLINT_TONE16_FIRST 0x3500u ///< upper 16 bits of 2^-21; the floats below have code 0 at 16 bits
-#define GLINT_TONE16_ENTRIES ((GLINT_TONE_LAST - GLINT_TONE16_FIRST) * 2 + 1)
 
+/// One curve's codes, for light after exposure.
 typedef struct glint_tone_table {
-    glint_tone_desc desc;
-    uint32_t lut[GLINT_TONE_ENTRIES]; ///< 8 bits: the table of the tone stage, see stages.h
-    glint_tone_fit fit; ///< 8 bits: likewise
+    glint_tone_desc desc; ///< with exposure 0
+    float white, top; ///< as in glint_tone_args
+    uint32_t *lut; ///< 8 bits: the table of the tone stage, see stages.h
+    bool has_fit; ///< 8 bits: of the curve `clamp`
+    glint_tone_fit fit; ///< likewise
     float *threshold; ///< 16 bits: [k] is the first float of code k, k = 0 .. 65535, then +inf
-    float guess[GLINT_TONE16_ENTRIES][2]; ///< 16 bits: buckets of 2^15 floats: code at the first float, codes a step
+    float (*guess)[2]; ///< 16 bits: buckets of 2^15 floats: code at the first float, codes a step
 } glint_tone_table;
 
 /// GLINT_ERR_INVALID when a field is out of its range.
@@ -21,10 +23,19 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error);
 
 bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b);
 
-/// The code of one value, by definition: floor(f(clamp(x)) M + 0.5) or floor(f(clamp(x)) M) in double.
+/// What light is multiplied by: 2^exposure, rounded to float.
+float glint_tone_gain(const glint_tone_desc *desc);
+
+/// The curve, 0 .. 1, and the light at which it reaches y (+inf: nowhere). tone_curve.c.
+double glint_tone_curve_value(glint_tone_curve curve, double linear);
+double glint_tone_curve_inverse(glint_tone_curve curve, double y);
+double glint_tone_curve_white(glint_tone_curve curve); ///< from where on it is 1
+
+/// The code of one value by definition: with x the float product of gain and value (the value itself at exposure 0),
+/// floor(f(curve(x)) M + 0.5) or floor(f(curve(x)) M) in double.
 double glint_tone_value(const glint_tone_desc *desc, double linear);
 
-/// Makes a table that gives exactly glint_tone_value for every float.
+/// Makes a table that gives exactly glint_tone_value for every float; the exposure is left to who uses it.
 glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_table **out, glint_error *error);
 void glint_tone_table_destroy(glint_tone_table *table);
 
@@ -32,10 +43,11 @@ void glint_tone_table_destroy(glint_tone_table *table);
 glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error);
 
 /// Converts `count` pixels of three planes to interleaved codes. The table's bits must be 8 or 16 as the name says.
-/// *clipped and *nonfinite (each may be NULL) grow by the pixels with a channel > 1, with one that is not finite.
-void glint_tone_row8(const glint_tone_table *table, const float *r, const float *g, const float *b, size_t count,
-                     uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
-void glint_tone_row16(const glint_tone_table *table, const float *r, const float *g, const float *b, size_t count,
-                      uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
+/// *clipped and *nonfinite (each may be NULL) grow by the pixels with a channel brighter than white, with one that is
+/// not finite.
+void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
+                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
+void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
+                      size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
 
 #endif

@@ -20,6 +20,7 @@ typedef struct picture {
     float *const *plane;
     glint_tone_desc tone; ///< of the file
     const glint_tone_table *table; ///< colour passes
+    float gain; ///< likewise
     double nearest; ///< of all depths
 } picture;
 
@@ -61,9 +62,9 @@ static const void *row_of_color(const void *user, int y, void *scratch)
     size_t width = (size_t)p->image->width, at = (size_t)y * width;
     const float *r = p->plane[0] + at, *g = p->plane[1] + at, *b = p->plane[2] + at;
     if (p->tone.bits == 16)
-        glint_tone_row16(p->table, r, g, b, width, scratch, NULL, NULL);
+        glint_tone_row16(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
     else
-        glint_tone_row8(p->table, r, g, b, width, scratch, NULL, NULL);
+        glint_tone_row8(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
     return scratch;
 }
 
@@ -169,6 +170,7 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
         return fail_not_kept(image, desc->pass, error);
     } else if (is_color(desc->pass)) {
         status = glint_tone_table_shared(&desc->tone, &p.table, error);
+        p.gain = glint_tone_gain(&desc->tone);
         source.row = row_of_color;
     } else if (desc->pass == GLINT_PASS_DEPTH) {
         find_nearest(&p);

@@ -259,9 +259,9 @@ static void resolve(const glint_resolve_args *args)
 
 // ---- tone --------------------------------------------------------------------------------------------------------
 
-static uint32_t tone_code(const uint32_t *table, float value)
+static uint32_t tone_code(const uint32_t *table, float top, float value)
 {
-    float x = min_float(max_float(value, 0), 1);
+    float x = min_float(max_float(value, 0), top);
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
     if (bits < GLINT_TONE_FIRST << 16)
@@ -278,10 +278,10 @@ static void tone_sample(const glint_tone_args *args, uint32_t i)
     if (!(args->active[group] >> lane & 1))
         return;
     for (size_t c = 0; c < 3; c++) {
-        float value = args->beauty[c][i];
-        clipped = clipped || value > 1;
-        finite = finite && isfinite(value);
-        args->codes[y * args->stride + 3 * x + c] = (uint8_t)tone_code(args->table, value);
+        float value = args->gain * args->beauty[c][i];
+        clipped = clipped || value > args->white;
+        finite = finite && isfinite(args->beauty[c][i]);
+        args->codes[y * args->stride + 3 * x + c] = (uint8_t)tone_code(args->table, args->top, value);
     }
     *args->clipped += clipped;
     *args->nonfinite += !finite;

@@ -277,12 +277,10 @@ typedef struct glint_resolve_args {
 
 // ---- tone: 8-bit codes, written into the image ----
 
-/// Any rising map of 0 .. 1 to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the floats
+/// Any rising map of 0 .. top to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the floats
 /// that agree in their upper 16 bits; its entry is code | threshold << 8: the code of its first float, and from which
-/// of the lower 16 bits on the code is one more (65536: never).
+/// of the lower 16 bits on the code is one more (65536: never). The last entry is top's.
 #define GLINT_TONE_FIRST 0x3800u ///< upper bits of 2^-15; floats below have code 0
-#define GLINT_TONE_LAST 0x3f80u ///< upper bits of 1
-#define GLINT_TONE_ENTRIES (GLINT_TONE_LAST - GLINT_TONE_FIRST + 1)
 
 /// What spares most look-ups: an estimate of the code with a fraction, and how far it is to be trusted.
 typedef struct glint_tone_fit {
@@ -297,13 +295,16 @@ typedef struct glint_tone_args {
     uint32_t group_count, groups_across; ///< as in glint_camera_args; group_count is a multiple of groups_across
     const uint16_t *active; ///< a bit a lane: pixels inside the image
     const float *beauty[3];
+    float gain; ///< > 0: what light is multiplied by
+    float white, top; ///< light above `white` is clipped; above `top` (at most `white`) all codes are that of `top`
     const uint32_t *table;
     const glint_tone_fit *fit; ///< NULL: the table alone. The codes are the same with either
     uint8_t *codes; ///< out: red, green, blue of the first lane of group 0
     size_t stride; ///< bytes from a row of pixels to the next. No byte but those of active lanes is written
-    uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > 1; with one that is not finite
+    uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > white; with one of beauty that
+        ///< is not finite
 } glint_tone_args;
-// x = max(x, 0) (NaN gives 0), x = min(x, 1); bits of x below GLINT_TONE_FIRST << 16: code 0;
+// x = gain beauty in float; clipped where x > white; x = max(x, 0) (NaN gives 0), x = min(x, top); bits of x below GLINT_TONE_FIRST << 16: code 0;
 // else entry = table[(bits >> 16) - GLINT_TONE_FIRST], code = (entry & 255) + ((bits & 0xffff) >= entry >> 8)
 
 // ---- elementary functions, elementary.h and ref.c ----

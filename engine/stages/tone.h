@@ -79,24 +79,25 @@ static inline vi tone_codes(const uint32_t *table, const tone_fit *fit, const vf
 }
 #endif
 
-/// Brings three vectors that are not all in 0 .. 1 there, and counts their pixels; `active`: of their lanes.
-static inline void tone_clamp(const glint_tone_args *args, vf x[3], unsigned active)
+/// Brings three vectors that are not all in 0 .. top there, and counts their pixels; `active`: of their lanes; `beauty`:
+/// the light before exposure.
+static inline void tone_clamp(const glint_tone_args *args, const vf beauty[3], vf x[3], unsigned active)
 {
-    const vf zero = f_set(0), one = f_set(1), infinity = f_set(HUGE_VALF);
-    fm over = f_lt(one, zero), sound = f_lt(zero, one);
+    const vf zero = f_set(0), infinity = f_set(HUGE_VALF), white = f_set(args->white), top = f_set(args->top);
+    fm over = f_lt(infinity, zero), sound = f_lt(zero, infinity);
     for (int c = 0; c < 3; c++) {
-        over = fm_or(over, f_lt(one, x[c]));
-        sound = fm_and(sound, f_lt(f_abs(x[c]), infinity));
-        x[c] = f_min(f_max(x[c], zero), one);
+        over = fm_or(over, f_lt(white, x[c]));
+        sound = fm_and(sound, f_lt(f_abs(beauty[c]), infinity));
+        x[c] = f_min(f_max(x[c], zero), top);
     }
     *args->clipped += (unsigned)__builtin_popcount(fm_bits(over) & active);
     *args->nonfinite += (unsigned)__builtin_popcount(~fm_bits(sound) & active);
 }
 
-/// Whether a lane is negative (-0 too), above 1 or NaN: as a number without sign its bits are above those of 1.
-static inline bool tone_is_outside(const vf x[3])
+/// Whether a lane is negative (-0 too), above top or NaN: as a number without sign its bits are above those of top.
+static inline bool tone_is_outside(const vf x[3], vf top)
 {
-    return fm_bits(i_any_above(f_bits(x[0]), f_bits(x[1]), f_bits(x[2]), f_bits(f_set(1)))) != 0;
+    return fm_bits(i_any_above(f_bits(x[0]), f_bits(x[1]), f_bits(x[2]), f_bits(top))) != 0;
 }
 
 static void tone_store_some(uint8_t *to, size_t stride, vi rgb, unsigned active)
@@ -109,8 +110,9 @@ static void tone_store_some(uint8_t *to, size_t stride, vi rgb, unsigned active)
                 to[i / 4 * stride + i % 4 * 3 + c] = (uint8_t)(word[i] >> 8 * c);
 }
 
-static void tone(const glint_tone_args *args)
+static inline void tone_groups(const glint_tone_args *args, bool exposed)
 {
+    const vf gain = f_set(args->gain), top = f_set(args->top);
     const unsigned all = (1u << VF) - 1;
     const tone_fit fit = tone_load_fit(args->fit);
     uint32_t column = 0;
@@ -120,11 +122,14 @@ static void tone(const glint_tone_args *args)
         const bool spill = !last && args->active[g + 1] == 0xffff; // the next group is yet to be written, over it
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             const unsigned active = args->active[g] >> i & all;
-            vf x[3];
-            for (int c = 0; c < 3; c++)
-                x[c] = f_load(args->beauty[c] + (size_t)g * GLINT_GROUP + i);
-            if (tone_is_outside(x))
-                tone_clamp(args, x, active);
+            vf beauty[3], x[3];
+            for (int c = 0; c < 3; c++) {
+                x[c] = beauty[c] = f_load(args->beauty[c] + (size_t)g * GLINT_GROUP + i);
+                if (exposed)
+                    x[c] = gain * beauty[c];
+            }
+            if (tone_is_outside(x, top))
+                tone_clamp(args, beauty, x, active);
             vi rgb = tone_codes(args->table, &fit, x);
             if (active == all)
                 i_store_rgb(codes + (size_t)(i / 4) * args->stride, args->stride, rgb, spill);
@@ -134,4 +139,13 @@ static void tone(const glint_tone_args *args)
         codes += last ? 4 * args->stride - 12 * (size_t)(args->groups_across - 1) : 12;
         column = last ? 0 : column;
     }
+}
+
+/// Each way is compiled for its constant.
+static void tone(const glint_tone_args *args)
+{
+    if (args->gain != 1)
+        tone_groups(args, true);
+    else
+        tone_groups(args, false);
 }
