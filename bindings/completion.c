@@ -33,6 +33,7 @@ static const struct hint {
     { "transfer", "from light to codes", NULL, false },
     { "rounding", "of codes", NULL, false },
     { "tone", "curve", NULL, false },
+    { "exposure", "stops brighter or darker", NULL, false },
     { "passes", "also write these", "background ambient diffuse specular depth normal object_id", false },
     { "encode", "fast to write or small on disk", NULL, false },
     { "seed", "another sample pattern", NULL, false },
