@@ -152,7 +152,28 @@ static void read_object(lua_State *L, int index, const char *path, const glintL_
     memcpy(out, &object, sizeof object);
 }
 
-// Nothing here allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
+// A list of points. The block belongs to Lua, which keeps it until the next list of points is read: long enough for the
+// engine to copy it.
+static void read_points(lua_State *L, int index, const char *path, void *out)
+{
+    static const char block; // its address is the registry's key
+    char element[PATH_SIZE + 24];
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of {x, y, z}");
+    const size_t count = glintL_check_list(L, index, path, false);
+    double(*points)[3] = lua_newuserdatauv(L, (count + 1) * sizeof *points, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &block);
+    for (size_t i = 0; i < count; i++) {
+        snprintf(element, sizeof element, "%s[%zu]", path, i + 1);
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        glintL_read_vector(L, -1, element, points[i]);
+        lua_pop(L, 1);
+    }
+    memcpy(out, &points, sizeof points);
+    memcpy((char *)out + sizeof points, &count, sizeof count);
+}
+
+// Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
 // whose pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
@@ -195,6 +216,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     case GLINTL_OBJECT:
         read_object(L, index, full, field, out);
         break;
+    case GLINTL_POINTS:
+        read_points(L, index, full, out);
+        break;
     case GLINTL_OTHER:
         break;
     }
@@ -212,6 +236,19 @@ static double to_degrees(double radians)
     snprintf(text, sizeof text, "%.15g", degrees);
     double tidy = strtod(text, NULL);
     return tidy * PI / 180 == radians ? tidy : degrees;
+}
+
+static void push_points(lua_State *L, const void *in)
+{
+    const double(*points)[3];
+    size_t count;
+    memcpy(&points, in, sizeof points);
+    memcpy(&count, (const char *)in + sizeof points, sizeof count);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        glintL_push_vector(L, points[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
 }
 
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc)
@@ -249,6 +286,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
     case GLINTL_OBJECT:
         memcpy(&object, in, sizeof object);
         glintL_push_remembered(L, object);
+        break;
+    case GLINTL_POINTS:
+        push_points(L, in);
         break;
     case GLINTL_OTHER:
         lua_pushnil(L);

@@ -23,6 +23,7 @@ typedef enum glintL_kind {
     GLINTL_ENUM, ///< enum; `names` spells its values in order, ends with NULL
     GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
     GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
+    GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
 

@@ -1,4 +1,4 @@
-// glint.point_light, glint.directional_light
+// glint.point_light, directional_light, spot_light, disk_light, polygon_light, sphere_light
 #include <string.h>
 
 #include "bindings/glintL.h"
@@ -19,11 +19,19 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
     {.name = "shadows", .kind = GLINTL_BOOLEAN, .offset = AT(shadows)}, \
     {.name = "visible", .kind = GLINTL_BOOLEAN, .offset = AT(visible)}, \
     {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+
+#define EVERY_AREA_LIGHT \
+    EVERY_LIGHT, \
+    {.name = "samples", .kind = GLINTL_NUMBER, .offset = AT(samples)}, \
+    {.name = "radiance", .kind = GLINTL_NUMBER, .offset = AT(radiance), .set_offset = AT(has_radiance)}
+
+#define PLACE {.name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true}
+#define RADIUS {.name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true}
 // clang-format on
 
 static const glintL_field POINT_FIELDS[] = {
     EVERY_LIGHT,
-    { .name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true },
+    PLACE,
     { .name = NULL },
 };
 
@@ -33,9 +41,47 @@ static const glintL_field DIRECTIONAL_FIELDS[] = {
     { .name = NULL },
 };
 
+static const glintL_field SPOT_FIELDS[] = {
+    EVERY_LIGHT,
+    PLACE,
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true },
+    { .name = "inner", .kind = GLINTL_DEGREES, .offset = AT(inner_rad), .required = true },
+    { .name = "outer", .kind = GLINTL_DEGREES, .offset = AT(outer_rad), .required = true },
+    { .name = "exponent", .kind = GLINTL_NUMBER, .offset = AT(exponent) },
+    { .name = NULL },
+};
+
+static const glintL_field DISK_FIELDS[] = {
+    EVERY_AREA_LIGHT,
+    PLACE,
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
+    RADIUS,
+    { .name = NULL },
+};
+
+static const glintL_field POLYGON_FIELDS[] = {
+    EVERY_AREA_LIGHT,
+    { .name = "vertices", .kind = GLINTL_POINTS, .offset = AT(vertices), .required = true },
+    { .name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(two_sided) },
+    { .name = NULL },
+};
+
+static const glintL_field SPHERE_FIELDS[] = {
+    EVERY_AREA_LIGHT,
+    PLACE,
+    RADIUS,
+    { .name = NULL },
+};
+
+_Static_assert(AT(vertex_count) == AT(vertices) + sizeof(void *), "GLINTL_POINTS");
+
 static const glintL_variant VARIANTS[] = {
     [GLINT_LIGHT_POINT] = { .name = "point_light", .fields = POINT_FIELDS, .place = "position" },
     [GLINT_LIGHT_DIRECTIONAL] = { .name = "directional_light", .fields = DIRECTIONAL_FIELDS },
+    [GLINT_LIGHT_SPOT] = { .name = "spot_light", .fields = SPOT_FIELDS, .place = "position" },
+    [GLINT_LIGHT_DISK] = { .name = "disk_light", .fields = DISK_FIELDS, .place = "position" },
+    [GLINT_LIGHT_POLYGON] = { .name = "polygon_light", .fields = POLYGON_FIELDS },
+    [GLINT_LIGHT_SPHERE] = { .name = "sphere_light", .fields = SPHERE_FIELDS, .place = "position" },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_light_get(object)->kind]; }
@@ -89,11 +135,23 @@ static int new_point_light(lua_State *L) { return new_light(L, GLINT_LIGHT_POINT
 
 static int new_directional_light(lua_State *L) { return new_light(L, GLINT_LIGHT_DIRECTIONAL); }
 
+static int new_spot_light(lua_State *L) { return new_light(L, GLINT_LIGHT_SPOT); }
+
+static int new_disk_light(lua_State *L) { return new_light(L, GLINT_LIGHT_DISK); }
+
+static int new_polygon_light(lua_State *L) { return new_light(L, GLINT_LIGHT_POLYGON); }
+
+static int new_sphere_light(lua_State *L) { return new_light(L, GLINT_LIGHT_SPHERE); }
+
 void glintL_open_light(lua_State *L)
 {
     static const luaL_Reg constructors[] = {
         { "point_light", new_point_light },
         { "directional_light", new_directional_light },
+        { "spot_light", new_spot_light },
+        { "disk_light", new_disk_light },
+        { "polygon_light", new_polygon_light },
+        { "sphere_light", new_sphere_light },
         { NULL, NULL },
     };
     glintL_open_class(L, &CLASS);

@@ -81,7 +81,16 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
 
 typedef struct glint_light glint_light;
 
-typedef enum glint_light_kind { GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL } glint_light_kind;
+typedef enum glint_light_kind {
+    GLINT_LIGHT_POINT,
+    GLINT_LIGHT_DIRECTIONAL,
+    GLINT_LIGHT_SPOT, ///< a point light within a cone
+    GLINT_LIGHT_DISK, ///< area lights: `samples` points of their surface, other ones for each pixel of a 4 x 4 block
+    GLINT_LIGHT_POLYGON,
+    GLINT_LIGHT_SPHERE
+} glint_light_kind;
+
+#define GLINT_CORNERS_MAX 4096 ///< of a polygon light
 
 typedef struct glint_light_desc {
     glint_light_kind kind;
@@ -92,9 +101,22 @@ typedef struct glint_light_desc {
     double diffuse[3], specular[3];
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
-    bool visible; ///< rays may see the light's surface; point and directional lights have none
-    double position[3]; ///< point light
-    double direction[3]; ///< directional light: the direction of travel; not zero, need not be unit
+    bool visible; ///< rays may see the light's surface; lights without one may be called so. No area light can be yet
+    double position[3]; ///< point and spot light; disk and sphere light: the centre
+    double direction[3]; ///< directional and spot light: the direction of travel; not zero, need not be unit
+    double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light within, none without,
+        ///< smoothstep of the cosine between; default 20 and 30 degrees
+    double exponent; ///< spot: the light falls off as cos^exponent from the axis; >= 0, default 0
+    double normal[3]; ///< disk: the side that shines; not zero, need not be unit; default {0, -1, 0}
+    double radius; ///< disk and sphere: >= 0, 0 is a point; default 1
+    const double (
+        *vertices)[3]; ///< polygon: its corners, convex and in one plane; it shines to the side from which they
+    size_t vertex_count; ///< run counter-clockwise. 3 .. GLINT_CORNERS_MAX; copied
+    bool two_sided; ///< polygon: shines to both sides; default false
+    double samples; ///< area lights: shadow rays a sample of a pixel; whole number, 1 .. 65536; default 16
+    bool has_radiance; ///< area lights: `radiance` says how strong it is; `intensity` must then be 1
+    double radiance; ///< >= 0: light adds kd times the integral of radiance cos cos' / distance^2 over the surface.
+        ///< With `intensity` it adds the mean over the surface of what a point light there adds
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
 
@@ -102,6 +124,7 @@ glint_light_desc glint_light_desc_default(glint_light_kind kind);
 glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error);
 /// `desc->kind` must be the light's kind.
 glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error);
+/// `vertices` is the light's own copy, until it is set or released.
 const glint_light_desc *glint_light_get(const glint_light *light);
 glint_light *glint_light_retain(glint_light *light);
 void glint_light_release(glint_light *light);

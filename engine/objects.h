@@ -12,7 +12,8 @@ struct glint_material {
 
 struct glint_light {
     size_t references;
-    glint_light_desc desc;
+    glint_light_desc desc; ///< its `vertices` are the light's own
+    double (*vertices)[3]; ///< or NULL
 };
 
 struct glint_camera {

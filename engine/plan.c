@@ -103,6 +103,7 @@ void glint_plan_destroy(glint_plan *plan)
         return;
     glint_geometry_release(plan->geometry);
     free(plan->lights);
+    free(plan->lamps);
     free(plan->materials);
     free(plan->material_keys);
     free(plan->lines);

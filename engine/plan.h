@@ -33,9 +33,15 @@ typedef struct glint_plan_camera {
     double pixel_offset;
 } glint_plan_camera;
 
+/// A light, or one sample of an area light.
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
-    double position[3]; ///< directional: the unit vector towards the light
+    bool joined; ///< a further sample of the area light before it
+    bool is_spot;
+    glint_spot spot;
+    const glint_lamp *lamps; ///< of an area light: the pattern of each turn, turn after turn; else NULL
+    uint32_t turn_count; ///< samples of a pixel take the turns one after the other
+    double position[3]; ///< directional: the unit vector towards the light; area: not used
     double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
@@ -57,6 +63,7 @@ struct glint_plan {
     uint32_t material_count;
     bool highlights; ///< some material and some light make one
     glint_plan_light *lights;
+    glint_lamp *lamps; ///< of all area lights
     uint32_t light_count, shadow_count;
     double ambient[3], background[3];
 

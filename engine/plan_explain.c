@@ -1,4 +1,5 @@
 #include "engine/base/status.h"
+#include "engine/lamp.h"
 #include "engine/plan.h"
 
 #include <stdarg.h>
@@ -65,7 +66,7 @@ static bool gives(const glint_light_desc *d)
     bool any = false;
     for (int c = 0; c < 3; c++)
         any = any || diffuse[c] > 0 || specular[c] > 0;
-    return any && d->intensity > 0;
+    return any && (d->has_radiance ? d->radiance > 0 && glint_lamp_area(d) > 0 : d->intensity > 0);
 }
 static bool gives_ambient(const glint_light_desc *d)
 {
@@ -73,11 +74,21 @@ static bool gives_ambient(const glint_light_desc *d)
 }
 static bool is_point(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_POINT; }
 static bool is_directional(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_DIRECTIONAL; }
-static bool casts_shadows(const glint_light_desc *d) { return gives(d) && d->shadows; }
+static bool is_spot(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_SPOT; }
+static bool is_disk(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_DISK; }
+static bool is_polygon(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_POLYGON; }
+static bool is_sphere(const glint_light_desc *d) { return gives(d) && d->kind == GLINT_LIGHT_SPHERE; }
+static bool has_size(const glint_light_desc *d)
+{
+    return is_polygon(d) || ((is_disk(d) || is_sphere(d)) && d->radius > 0);
+}
+static bool casts_hard_shadows(const glint_light_desc *d) { return gives(d) && d->shadows && !has_size(d); }
+static bool casts_soft_shadows(const glint_light_desc *d) { return d->shadows && has_size(d); }
+static bool radiates(const glint_light_desc *d) { return gives(d) && d->has_radiance; }
 static bool falls_off(const glint_light_desc *d)
 {
     const double *a = d->attenuation;
-    return is_point(d) && (a[0] != 1 || a[1] != 0 || a[2] != 0);
+    return gives(d) && d->kind != GLINT_LIGHT_DIRECTIONAL && (a[0] != 1 || a[1] != 0 || a[2] != 0);
 }
 
 static void lights(explainer *e, const glint_scene *scene, const char *effect, light_test *test)
@@ -143,7 +154,13 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "point light", is_point);
         lights(e, scene, "directional light", is_directional);
         lights(e, scene, "distance fall-off", falls_off);
-        lights(e, scene, "hard shadow", casts_shadows);
+        lights(e, scene, "spot light", is_spot);
+        lights(e, scene, "disk light", is_disk);
+        lights(e, scene, "polygon light", is_polygon);
+        lights(e, scene, "sphere light", is_sphere);
+        lights(e, scene, "light by radiance", radiates);
+        lights(e, scene, "hard shadow", casts_hard_shadows);
+        lights(e, scene, "soft shadow", casts_soft_shadows);
     }
     if (plan->highlights) {
         highlights(e, scene, "Phong highlight", GLINT_MODEL_PHONG);

@@ -50,9 +50,16 @@ static glint_key view_key(const glint_plan *plan, glint_key key)
 
 static glint_key light_place_key(const glint_plan_light *l, glint_key key)
 {
-    const double numbers[] = { l->directional,     l->position[0],     l->position[1],    l->position[2],
-                               l->coefficients[0], l->coefficients[1], l->coefficients[2] };
-    return glint_key_add(key, numbers, sizeof numbers);
+    const double numbers[] = { l->directional,     l->position[0],     l->position[1],
+                               l->position[2],     l->coefficients[0], l->coefficients[1],
+                               l->coefficients[2], l->is_spot,         l->turn_count };
+    ADD(key, numbers);
+    if (l->is_spot) {
+        const double cone[] = { l->spot.axis[0], l->spot.axis[1], l->spot.axis[2],
+                                l->spot.outer,   l->spot.inverse, l->spot.exponent };
+        ADD(key, cone);
+    }
+    return l->lamps ? glint_key_add(key, l->lamps, l->turn_count * sizeof *l->lamps) : key;
 }
 
 static glint_key light_color_key(const glint_plan_light *l, glint_key key)

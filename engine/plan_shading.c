@@ -1,6 +1,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/lamp.h"
 #include "engine/plan.h"
 
 #include <float.h>
@@ -30,28 +31,74 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
         out->highlight = desc->model == GLINT_MODEL_PHONG ? GLINT_HIGHLIGHT_PHONG : GLINT_HIGHLIGHT_BLINN;
 }
 
+/// Whether the light is taken for many points of its surface.
+static bool is_area(const glint_light_desc *desc)
+{
+    switch (desc->kind) {
+    case GLINT_LIGHT_DISK:
+    case GLINT_LIGHT_POLYGON:
+        return true;
+    case GLINT_LIGHT_SPHERE:
+        return desc->radius > 0 || desc->has_radiance;
+    default:
+        return false;
+    }
+}
+
+/// How many points are taken: of a point-like disk, one.
+static uint32_t sample_count(const glint_light_desc *desc)
+{
+    return !is_area(desc) || (desc->kind == GLINT_LIGHT_DISK && desc->radius == 0) ? 1 : (uint32_t)desc->samples;
+}
+
+static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
+{
+    const double inner = glint_cos(desc->inner_rad), outer = glint_cos(desc->outer_rad);
+    out->is_spot = inner > -1 || desc->exponent > 0; // else it shines everywhere, as a point light
+    if (!out->is_spot)
+        return;
+    out->attenuated = true;
+    vec_normalize(out->spot.axis, desc->direction);
+    out->spot.outer = outer;
+    out->spot.inverse = inner > outer ? 1 / (inner - outer) : HUGE_VAL;
+    out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
+}
+
+static double distance_scale(const double position[3], const double eye[3])
+{
+    double away[3];
+    vec_sub(away, position, eye);
+    const double distance = vec_max_abs(away);
+    return distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
+}
+
+/// A light, or what all samples of one have in common.
 static void light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
 {
     *out = (glint_plan_light) { .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
                                 .shadows = desc->shadows,
                                 .scale = 1 };
-    bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, desc->intensity);
-    bounded(out->specular, desc->has_specular ? desc->specular : desc->color, desc->intensity);
+    double strength = desc->intensity / sample_count(desc);
     if (out->directional) {
         vec_normalize(out->position, desc->direction);
         vec_scale(out->position, out->position, -1);
         out->coefficients[0] = 1;
-        return;
+    } else {
+        const double *a = desc->attenuation;
+        const double *place = desc->kind == GLINT_LIGHT_POLYGON ? desc->vertices[0] : desc->position;
+        vec_copy(out->position, place);
+        vec_copy(out->coefficients, a);
+        out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
+        out->scale = distance_scale(place, eye);
     }
-    const double *a = desc->attenuation;
-    vec_copy(out->position, desc->position);
-    vec_copy(out->coefficients, a);
-    out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
-    double away[3];
-    vec_sub(away, desc->position, eye);
-    const double distance = vec_max_abs(away);
-    if (distance > 0 && isfinite(distance))
-        out->scale = power_of_two_scale(distance);
+    if (desc->kind == GLINT_LIGHT_SPOT)
+        spot_init(out, desc);
+    if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units
+        out->attenuated = true;
+        strength = desc->radiance * (glint_lamp_area(desc) / desc->samples) * (out->scale * out->scale);
+    }
+    bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);
+    bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
 }
 
 /// Ia: the scene's ambient light and every light's.
@@ -81,24 +128,64 @@ static glint_status make_materials(glint_plan *plan, bool *highlights, glint_err
     return GLINT_OK;
 }
 
+/// Rows for all lights, and lamps for those of area.
+static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    double rows = 0, lamps = 0;
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        rows += sample_count(desc);
+        if (is_area(desc))
+            lamps += (double)sample_count(desc) * glint_lamp_turns(desc, plan->desc.samples);
+    }
+    if (lamps + rows > 1u << 28)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "samples: at most %u samples of all lights together expected, got %.0f", 1u << 28, lamps);
+    plan->lights = glint_alloc((size_t)rows, sizeof *plan->lights);
+    plan->lamps = glint_alloc((size_t)lamps, sizeof *plan->lamps);
+    return plan->lights && plan->lamps ? GLINT_OK : glint_fail_nomem(error);
+}
+
+/// Adds the rows of one light: one, or one a sample. Returns how many lamps they took of `lamps`.
+static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
+                        glint_lamp *lamps)
+{
+    const uint32_t samples = sample_count(desc), turns = glint_lamp_turns(desc, plan->desc.samples);
+    const bool area = is_area(desc);
+    if (area) {
+        glint_light_desc taken = *desc;
+        taken.samples = samples;
+        glint_lamp_fill(&taken, turns, plan->desc.seed, lamps);
+    }
+    for (uint32_t i = 0; i < samples; i++) {
+        glint_plan_light *light = &plan->lights[plan->light_count++];
+        *light = *common;
+        light->joined = i > 0;
+        light->lamps = area ? lamps + (size_t)i * turns : NULL;
+        light->turn_count = area ? turns : 0;
+        plan->shadow_count += light->shadows;
+    }
+    return area ? (size_t)samples * turns : 0;
+}
+
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     bool shiny = false, glossy_light = false;
+    size_t lamps = 0;
     total_ambient(plan, scene);
     glint_status status = make_materials(plan, &shiny, error);
+    if (!status)
+        status = make_room(plan, scene, error);
     if (status)
         return status;
-    plan->lights = glint_alloc(scene->lights.count, sizeof *plan->lights);
-    if (!plan->lights)
-        return glint_fail_nomem(error);
     for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         glint_plan_light light;
-        light_init(&light, &glint_scene_light(scene, i)->desc, plan->camera.eye);
+        light_init(&light, desc, plan->camera.eye);
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
         glossy_light = glossy_light || !is_black(light.specular);
-        plan->shadow_count += light.shadows;
-        plan->lights[plan->light_count++] = light;
+        lamps += add_light(plan, &light, desc, plan->lamps + lamps);
     }
     plan->highlights = shiny && glossy_light;
     return GLINT_OK;

@@ -107,10 +107,11 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
                                .dark = &g->dark,
                                .directional = true,
                                .scale = 1,
+                               .sample_count = 1,
                                .highlights = material.highlight,
-                               .lit = &g->lit,
-                               .cosine = g->cosine,
-                               .log2_specular = g->log2_specular };
+                               .lit = { &g->lit },
+                               .cosine = { g->cosine },
+                               .log2_specular = { g->log2_specular } };
     vec_copy(light.position, to_light);
     glint_shade_light strength = { .lit = &g->lit, .cosine = g->cosine, .log2_specular = g->log2_specular };
     vec_copy(strength.diffuse, white);

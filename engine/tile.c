@@ -200,26 +200,43 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     return any;
 }
 
-/// What one light does to this sample.
-static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index, uint32_t slot)
+/// What one light does to this sample: `count` rows of the plan from `first + slot` on.
+static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+                       uint32_t count)
 {
-    const glint_plan_light *light = &frame->plan->lights[index];
-    bool light_known, occlude_known;
-    find_light_memory(tile, frame, w->sample, index, slot, &light_known, &occlude_known);
-    if (light_known) {
-        glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, true);
-    } else {
-        need_points(tile, frame, w);
-        glint_tile_shine(tile, frame, light, slot);
+    const glint_plan_light *light = &frame->plan->lights[first + slot];
+    uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining = 0, occluding = 0;
+    for (uint32_t i = slot; i < slot + count; i++) {
+        bool light_known, occlude_known;
+        find_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
+        if (light_known)
+            glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, true);
+        else
+            shine[shining++] = i;
+        if (light->shadows && occlude_known)
+            glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, true);
+        else if (light->shadows)
+            occlude[occluding++] = i;
     }
-    if (light->shadows && occlude_known) {
-        glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, true);
-    } else if (light->shadows) {
+    if (shining || occluding)
         need_points(tile, frame, w);
-        glint_tile_occlude(tile, frame, light, slot);
+    if (shining)
+        glint_tile_shine(tile, frame, first, shine, shining);
+    if (occluding)
+        glint_tile_occlude(tile, frame, first, occlude, occluding);
+    for (uint32_t i = slot; i < slot + count; i++)
+        if (tile->kept && first + i < frame->reuse->light_count)
+            note_light(tile, first + i, i, light->shadows, w->sample);
+}
+
+/// A chunk of lights; the samples of one are found together.
+static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t count)
+{
+    for (uint32_t slot = 0, next; slot < count; slot = next) {
+        for (next = slot + 1; next < count && frame->plan->lights[first + next].joined; next++)
+            continue;
+        find_light(tile, frame, w, first, slot, next - slot);
     }
-    if (tile->kept && index < frame->reuse->light_count)
-        note_light(tile, index, slot, light->shadows, w->sample);
 }
 
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
@@ -232,8 +249,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     uint32_t from = 0;
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
-        for (uint32_t i = 0; i < count; i++)
-            find_light(tile, frame, &w, from + i, i);
+        find_lights(tile, frame, &w, from, count);
         if (from == 0 && any && !w.points) {
             glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);

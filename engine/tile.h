@@ -63,6 +63,7 @@ typedef struct glint_tile {
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
+    uint32_t sample; ///< which it is
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
     glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
@@ -89,9 +90,11 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// `in_sight` false: nothing is hit, and no rays need to have been made.
 void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
-/// slot: where in the chunk the light's results go.
-void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot);
-void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot);
+/// One light, or samples of one: light `first + slot[i]` of the plan, for each of `count` slots of the chunk.
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count);
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.

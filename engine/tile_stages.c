@@ -1,5 +1,6 @@
 /// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
 #include "engine/tile.h"
+#include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 
 #include <string.h>
@@ -32,36 +33,10 @@ void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stag
     lap(tile, frame, stage);
 }
 
-/// Reverses the lower `bits` bits.
-static uint32_t reverse(uint32_t k, int bits)
-{
-    uint32_t r = 0;
-    for (int i = 0; i < bits; i++)
-        r |= (k >> i & 1) << (bits - 1 - i);
-    return r;
-}
-
-/// Where sample k of a pixel lies: Sobol's (0,2) sequence, so that any power-of-two number of first samples is
-/// stratified in every way; centred in its cells, and shifted around the torus by the seed.
+/// Where sample k of a pixel lies.
 static void sample_offset(const glint_plan *plan, uint32_t k, double out[2])
 {
-    const uint32_t samples = (uint32_t)plan->desc.samples;
-    int bits = 0;
-    while (1u << bits < samples)
-        bits++;
-    uint32_t second = 0;
-    for (uint32_t i = k, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
-        if (i & 1)
-            second ^= v;
-    const double cells = (double)(1u << bits), seed = plan->desc.seed;
-    out[0] = (reverse(k, bits) + 0.5) / cells;
-    out[1] = ((bits ? second >> (32 - bits) : 0) + 0.5) / cells;
-    if (seed > 0) { // golden-ratio steps: neighbouring seeds fall far apart
-        out[0] += fmod(seed * 0x1.3c6ef372fe95p-1, 1);
-        out[1] += fmod(seed * 0x1.83b2b3de7cfacp-1, 1);
-        out[0] -= floor(out[0]);
-        out[1] -= floor(out[1]);
-    }
+    glint_sequence_point(k, glint_sequence_bits((uint32_t)plan->desc.samples), plan->desc.seed, out);
     for (int i = 0; i < 2; i++)
         out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
 }
@@ -78,6 +53,7 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
                                   .width = plan->desc.width,
                                   .height = plan->desc.height,
                                   .orthographic = camera->orthographic };
+    tile->sample = k;
     sample_offset(plan, k, args->offset);
     vec_copy(args->eye, camera->eye);
     vec_copy(args->forward, camera->forward);
@@ -186,9 +162,17 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+/// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
+static const glint_lamp *lamp_of(const glint_tile *tile, const glint_plan_light *light)
+{
+    return light->lamps ? &light->lamps[tile->sample % light->turn_count] : NULL;
+}
+
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count)
 {
     const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_light_args args = { .group_count = tile->group_count,
                               .hits = tile->at.hits,
                               .camera = rays_of(tile),
@@ -197,14 +181,19 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const gli
                               .dark = tile->dark,
                               .directional = light->directional,
                               .scale = light->scale,
+                              .spot = light->is_spot ? &light->spot : NULL,
+                              .sample_count = count,
                               .attenuated = light->attenuated,
-                              .highlights = plan->highlights,
-                              .lit = tile->at.light[slot].lit,
-                              .cosine = tile->at.light[slot].cosine,
-                              .attenuation = tile->at.light[slot].attenuation,
-                              .log2_specular = tile->at.light[slot].log2_specular };
+                              .highlights = plan->highlights };
     vec_copy(args.position, light->position);
     vec_copy(args.coefficients, light->coefficients);
+    for (uint32_t i = 0; i < count; i++) {
+        args.lamp[i] = lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lit[i] = tile->at.light[slot[i]].lit;
+        args.cosine[i] = tile->at.light[slot[i]].cosine;
+        args.attenuation[i] = tile->at.light[slot[i]].attenuation;
+        args.log2_specular[i] = tile->at.light[slot[i]].log2_specular;
+    }
     for (int c = 0; c < 3; c++) {
         args.point[c] = tile->point[c];
         args.normal[c] = tile->normal[c];
@@ -212,24 +201,33 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, const gli
     }
     frame->stages->geometry[plan->desc.precision].light(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+    tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
 }
 
-void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count)
 {
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_occlude_args args = { .group_count = tile->group_count,
-                                .lit = tile->at.light[slot].lit,
+                                .sample_count = count,
                                 .prim = tile->at.prim,
                                 .back = tile->back,
                                 .directional = light->directional,
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
-                                .open = tile->at.light[slot].open,
                                 .rays = &tile->counts.shadow };
     vec_copy(args.position, light->position);
+    for (uint32_t i = 0; i < count; i++) {
+        args.lamp[i] = lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lit[i] = tile->at.light[slot[i]].lit;
+        args.open[i] = tile->at.light[slot[i]].open;
+    }
     for (int c = 0; c < 3; c++)
         args.point[c] = tile->point[c];
-    frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
+    frame->stages->geometry[plan->desc.precision].occlude(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
+    tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
 }
 
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
@@ -238,7 +236,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
-        lights[i] = (glint_shade_light) { .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
+        lights[i] = (glint_shade_light) { .joined = light->joined && i > 0,
+                                          .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
                                           .cosine = tile->at.light[i].cosine,
                                           .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
                                           .log2_specular = tile->at.light[i].log2_specular };

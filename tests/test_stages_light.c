@@ -76,9 +76,48 @@ static void place_light(glint_light_args *args, double distance)
     }
 }
 
+/// The cone of a spot that points somewhere near the middle; its axis and edges now and then through points.
+static void make_spot(glint_light_args *args, glint_spot *spot)
+{
+    const double inner = cos(between(0, 3)), outer = one_in(4) ? inner : fmin(inner, cos(between(0, 3.2)));
+    *spot = (glint_spot) { .outer = outer,
+                           .inverse = inner > outer ? 1 / (inner - outer) : HUGE_VAL,
+                           .exponent = one_in(2) ? 0 : (float)power_of_ten(-2, 3) };
+    random_unit(spot->axis);
+    for (int c = 0; c < 3 && one_in(2); c++)
+        spot->axis[c] = -args->position[c] / length3(args->position);
+    args->spot = spot;
+    args->directional = false;
+    args->attenuated = true;
+}
+
+/// Samples of an area light about the place of the light, which may be anywhere and of any size.
+static void make_lamps(glint_light_args *args, glint_lamp *lamps, double radius)
+{
+    args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
+    args->directional = false;
+    const uint32_t emission = below(GLINT_EMIT_RADIANT_BALL + 1);
+    args->attenuated = args->attenuated || emission >= GLINT_EMIT_RADIANT_FRONT;
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        lamps[s] = (glint_lamp) { .emission = emission, .radius = radius };
+        memcpy(lamps[s].center, args->position, sizeof lamps[s].center);
+        for (int lane = 0; lane < GLINT_GROUP; lane++) {
+            double out[3];
+            random_unit(out);
+            for (int c = 0; c < 3; c++) {
+                lamps[s].position[c][lane] = args->position[c] + radius * out[c];
+                lamps[s].normal[c][lane] = out[c];
+            }
+        }
+        args->lamp[s] = &lamps[s];
+    }
+}
+
 static void light_case(int precision, bool odd)
 {
-    glint_light_args args = { .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
+    static glint_lamp lamps[GLINT_LIGHT_CHUNK];
+    glint_spot spot;
+    glint_light_args args = { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
     glint_camera_args camera;
     const double size = power_of_ten(-4, 6);
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
@@ -90,14 +129,20 @@ static void light_case(int precision, bool odd)
     }
     const uint32_t n = args.group_count * GLINT_GROUP;
     place_light(&args, size * power_of_ten(-3, 3));
+    if (one_in(3))
+        make_spot(&args, &spot);
+    else if (one_in(2))
+        make_lamps(&args, lamps, size * power_of_ten(-4, 2));
     args.hits = masks(args.group_count);
     make_points(&args, precision, odd, size);
     FOR_EACH_TESTED
     {
-        args.lit = output("lit", KIND_U16, args.group_count);
-        args.cosine = output("cosine", KIND_FLOAT, n);
-        args.attenuation = output("attenuation", KIND_FLOAT, n);
-        args.log2_specular = output("log2_specular", KIND_FLOAT, n);
+        for (uint32_t s = 0; s < args.sample_count; s++) {
+            args.lit[s] = output("lit", KIND_U16, args.group_count);
+            args.cosine[s] = output("cosine", KIND_FLOAT, n);
+            args.attenuation[s] = output("attenuation", KIND_FLOAT, n);
+            args.log2_specular[s] = output("log2_specular", KIND_FLOAT, n);
+        }
         geometry(precision)->light(&args);
         compare_outputs("light");
     }
@@ -140,10 +185,11 @@ static double log2_error(int precision, uint32_t n, const double *s)
                               .directional = true,
                               .position = { 0, 0, 1 },
                               .scale = 1,
+                              .sample_count = 1,
                               .highlights = true,
-                              .lit = lit,
-                              .cosine = cosine,
-                              .log2_specular = log2_specular };
+                              .lit = { lit },
+                              .cosine = { cosine },
+                              .log2_specular = { log2_specular } };
     input3(args.point, real_kind(precision), n);
     input3(args.normal, real_kind(precision), n);
     input3(args.direction, real_kind(precision), n);

@@ -11,6 +11,7 @@ typedef struct shadow_case {
     glint_occlude_args args;
     uint32_t *prim;
     uint16_t *back;
+    bool soft; ///< an area light
 } shadow_case;
 
 // ---- Lights and points -------------------------------------------------------------------------------------------
@@ -35,6 +36,42 @@ static double place_light(shadow_case *c)
     c->args.scale = ldexp(1, -ilogb(distance));
     along3(c->plan.middle, distance, direction, c->args.position);
     return distance;
+}
+
+static glint_lamp lamps[GLINT_LIGHT_CHUNK];
+
+/// Makes an area light of the light: a ball, or a patch of a plane, of any size.
+static void place_lamps(shadow_case *c, double distance)
+{
+    const double radius = one_in(8) ? 0 : distance * power_of_ten(-6, 0.5);
+    const bool flat = one_in(2);
+    double axis[3], out[3], lower[3], upper[3];
+    random_unit(axis);
+    c->soft = true;
+    c->args.directional = false;
+    c->args.sample_count = 1 + below(GLINT_LIGHT_CHUNK);
+    for (int k = 0; k < 3; k++)
+        lower[k] = upper[k] = c->args.position[k];
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        for (int lane = 0; lane < GLINT_GROUP; lane++) {
+            if (flat)
+                random_across(axis, out);
+            else
+                random_unit(out);
+            for (int k = 0; k < 3; k++) {
+                const double x = c->args.position[k] + radius * out[k];
+                lamps[s].position[k][lane] = x;
+                lower[k] = fmin(lower[k], x);
+                upper[k] = fmax(upper[k], x);
+            }
+        }
+    for (uint32_t s = 0; s < c->args.sample_count; s++) {
+        memcpy(lamps[s].lower, lower, sizeof lower);
+        memcpy(lamps[s].upper, upper, sizeof upper);
+        memcpy(lamps[s].center, c->args.position, sizeof lamps[s].center);
+        lamps[s].radius = radius;
+        c->args.lamp[s] = &lamps[s];
+    }
 }
 
 /// What a tile sees lies together more often than not; else its shaft holds half the scene.
@@ -96,17 +133,33 @@ static void start_shadows(shadow_case *c, int precision)
     c->precision = precision;
     random_place(&c->plan, precision == GLINT_DOUBLE); // there are no points where float overflows
     const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
-    c->args.lit = masks(groups);
+    c->args.sample_count = 1;
     c->args.prim = c->prim = input(KIND_U32, n);
     c->args.back = c->back = masks(groups);
     for (uint32_t g = 0; g < groups; g++)
         c->back[g] = one_in(2) ? 0 : c->back[g];
     input3(c->args.point, real_kind(precision), n);
-    place_points(c, place_light(c));
+    const double distance = place_light(c);
+    if (!c->args.directional && one_in(2))
+        place_lamps(c, distance);
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        c->args.lit[s] = masks(groups);
+    place_points(c, distance);
     c->scene = random_scene(&c->plan);
     c->args.geometry = &c->scene->table;
     place_on_surfaces(c);
 }
+
+static uint64_t lit_lanes(const shadow_case *c)
+{
+    uint64_t lanes = 0;
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        for (uint32_t g = 0; g < c->args.group_count; g++)
+            lanes += (unsigned)__builtin_popcount(c->args.lit[s][g]);
+    return lanes;
+}
+
+static uint32_t settled; ///< cases in which the whole of an area light settled something
 
 static void occlude_all(shadow_case *c)
 {
@@ -115,9 +168,14 @@ static void occlude_all(shadow_case *c)
     {
         uint64_t rays = 5;
         args.rays = &rays;
-        args.open = output("open", KIND_U16, args.group_count);
+        for (uint32_t s = 0; s < args.sample_count; s++)
+            args.open[s] = output("open", KIND_U16, args.group_count);
         geometry(c->precision)->occlude(&args);
-        *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
+        if (c->soft) // what the whole light settles is not counted
+            settled += running != &glint_stages_ref && rays < lit_lanes(c) + 5;
+        else
+            *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
+        assert_true(rays <= lit_lanes(c) + 5);
         compare_outputs("occlude");
     }
 }
@@ -130,7 +188,7 @@ static void count_lanes(const shadow_case *c)
     const uint16_t *open = array_elements(wanted_array("open"));
     for (uint32_t g = 0; g < c->args.group_count; g++) {
         open_lanes += (unsigned)__builtin_popcount(open[g]);
-        dark_lanes += (unsigned)__builtin_popcount(c->args.lit[g] & ~(unsigned)open[g]);
+        dark_lanes += (unsigned)__builtin_popcount(c->args.lit[0][g] & ~(unsigned)open[g]);
     }
 }
 
@@ -153,7 +211,7 @@ static void test_occlude(void **state)
     (void)state;
     open_lanes = dark_lanes = 0;
     run_cases(CASES, 9000, occlude_case);
-    assert_true(open_lanes > 10000 && dark_lanes > 10000);
+    assert_true(open_lanes > 10000 && dark_lanes > 10000 && settled > 100);
 }
 
 int main(void)

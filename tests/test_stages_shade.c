@@ -96,6 +96,13 @@ static void shade_case(int precision, bool odd)
     random_color(args.background);
     for (uint32_t k = 0; k < args.light_count; k++)
         make_shade_light(&lights[k], hits, groups);
+    for (uint32_t k = 1; k < args.light_count; k++) { // samples of one light have its colours
+        lights[k].joined = one_in(2);
+        if (!lights[k].joined)
+            continue;
+        memcpy(lights[k].diffuse, lights[k - 1].diffuse, sizeof lights[k].diffuse);
+        memcpy(lights[k].specular, lights[k - 1].specular, sizeof lights[k].specular);
+    }
     FOR_EACH_TESTED
     {
         make_shade_outputs(&args, before, args.highlights ? passes : passes & 7);

@@ -659,17 +659,18 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
 static void R(walk_parallel)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays)
 {
     const glint_geometry_table *geometry = args->geometry;
-    float lower[3], upper[3], direction[3];
+    float lower[3], upper[3];
+    light_place ahead = { .directional = true };
     light_shaft shaft;
     for (int k = 0; k < 3; k++) {
         vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
         widen(rays->local[k], args->active[g], &least, &most);
-        direction[k] = rays->direction[k][0];
+        ahead.lower[k] = ahead.upper[k] = rays->direction[k][0];
         lower[k] = f_min_all(least);
         upper[k] = f_max_all(most);
     }
     loosen(lower, upper, R(walk_slack)(geometry));
-    make_shaft(lower, upper, direction, true, &shaft);
+    make_shaft(lower, upper, &ahead, &shaft);
     uint32_t stack[WALK_STACK];
     int height = 0;
     stack[height++] = 0;

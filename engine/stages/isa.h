@@ -15,8 +15,10 @@
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
+#include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
+#include "engine/stages/soft.h"
 
 #undef GLINT_REAL
 #define GLINT_REAL 32
@@ -24,8 +26,10 @@
 #include "engine/stages/camera.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
+#include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
+#include "engine/stages/soft.h"
 
 #include "engine/stages/shade.h"
 #include "engine/stages/resolve.h"

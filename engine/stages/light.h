@@ -1,12 +1,13 @@
 // light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
 // float (square root, division, logarithm) follows in float over the whole group. Contract: stages.h.
 
+/// What one light or sample does to a group.
 typedef struct R(lit_group) {
     _Alignas(64) float along[GLINT_GROUP]; ///< n.l, in the light's units
     _Alignas(64) float distance2[GLINT_GROUP];
     _Alignas(64) float x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
-    unsigned phong, blinn; ///< lanes by the highlight of their material
-    unsigned lit, shiny; ///< out
+    _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< of a spot
+    unsigned lit, shiny;
 } R(lit_group);
 
 static inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
@@ -25,38 +26,69 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
     return rm_and(r_lt(r_set(0), num), r_lt(r_set(0), den));
 }
 
-/// The real part of one vector of lanes.
-static inline void R(light_lanes)(const glint_light_args *args, R(group_place) place, R(group_directions) directions,
-                                  int i, unsigned open, R(lit_group) * group)
+/// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
+typedef struct R(lit_surface) {
+    unsigned phong, blinn; ///< lanes by the highlight of their material
+    R(group_directions) directions;
+    vr point[3], normal[3];
+    bool viewed; ///< the following are made
+    vr direction[3], a, nv; ///< a = length2(direction)
+} R(lit_surface);
+
+static inline void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_surface) * surface)
 {
-    const size_t at = (size_t)place.g * GLINT_GROUP;
+    if (surface->viewed)
+        return;
+    R(load_direction)(surface->directions, args->direction, at, i, surface->direction);
+    surface->a = DOT(surface->direction, surface->direction);
+    surface->nv = -DOT(surface->normal, surface->direction);
+    surface->viewed = true;
+}
+
+/// 1 / (c0 + (c1 d + c2 d^2))
+static inline vr R(fall_off)(const glint_light_args *args, vr l2)
+{
+    const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
+    vr distance = r_sqrt(l2) / r_set(args->scale);
+    return r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance)));
+}
+
+/// The real part of one vector of lanes, for sample s. `kind` is a constant.
+static inline void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(lamp_lanes) * lanes,
+                                  size_t at, int i, unsigned open, R(lit_surface) * surface, R(lit_group) * group)
+{
     const vr zero = r_set(0), scale = r_set(args->scale);
-    vr n[3], l[3];
+    vr l[3], m = zero;
     for (int k = 0; k < 3; k++) {
-        n[k] = r_load((const real *)args->normal[k] + at + i);
-        l[k] = r_set(args->position[k]);
+        l[k] = kind == LIGHT_LAMP ? r_load(lanes->position[k] + i) : r_set(args->position[k]);
         if (!args->directional)
-            l[k] = (l[k] - r_load((const real *)args->point[k] + at + i)) * scale;
+            l[k] = (l[k] - surface->point[k]) * scale;
     }
-    vr l2 = DOT(l, l), nl = DOT(n, l);
-    const unsigned lit = rm_bits(r_lt(zero, nl)) & open >> i & ((1u << VR) - 1);
+    vr l2 = DOT(l, l), nl = DOT(surface->normal, l);
+    rm ahead = r_lt(zero, nl);
+    const bool aimed = kind == LIGHT_LAMP && args->lamp[s]->emission != GLINT_EMIT_ALL;
+    if (kind == LIGHT_SPOT)
+        ahead = rm_and(
+            ahead, R(in_cone)(args->spot, l, l2, group->cone_cosine + i, group->cone_less_1 + i, group->cone_step + i));
+    if (aimed)
+        ahead = rm_and(ahead, R(in_front)(args->lamp[s], lanes, i, l, surface->point, &m));
+    const unsigned lit = rm_bits(ahead) & open >> i & ((1u << VR) - 1);
     group->lit |= lit << i;
     if (!lit)
         return;
     r_store_f(group->along + i, nl);
     r_store_f(group->distance2 + i, l2);
     if (args->attenuated) {
-        const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]),
-                 c2 = r_set(args->coefficients[2]);
-        vr distance = r_sqrt(l2) / scale;
-        r_store_f(args->attenuation + at + i, r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance))));
+        vr attenuation = R(fall_off)(args, l2);
+        if (aimed && args->lamp[s]->emission != GLINT_EMIT_FRONT)
+            attenuation = attenuation * (m / (l2 * r_sqrt(l2)));
+        r_store_f(args->attenuation[s] + at + i, attenuation);
     }
-    const unsigned phong = group->phong >> i & lit, blinn = group->blinn >> i & lit;
+    const unsigned phong = surface->phong >> i & lit, blinn = surface->blinn >> i & lit;
     if (!(phong | blinn))
         return;
-    vr d[3];
-    R(load_direction)(directions, args->direction, at, i, d);
-    vr a = DOT(d, d), nv = -DOT(n, d), lv = -DOT(l, d), x = r_set(1);
+    R(view_lanes)(args, at, i, surface);
+    vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction), x = r_set(1);
     rm some = rm_from_bits(0);
     if (phong)
         some = rm_and(rm_from_bits(phong), R(phong)(nl, nv, lv, l2 * a, &x));
@@ -71,57 +103,97 @@ static inline void R(light_lanes)(const glint_light_args *args, R(group_place) p
 }
 
 /// The float part of one group.
-static inline void R(finish_light)(const glint_light_args *args, size_t at, const R(lit_group) * group)
+static inline void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at,
+                                   const R(lit_group) * group)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
         vf cosine = f_load(group->along + i);
         if (!args->directional)
             cosine = cosine / f_sqrt(f_load(group->distance2 + i));
-        f_store(args->cosine + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
+        f_store(args->cosine[s] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
         if (args->attenuated) {
-            vf attenuation = f_min(f_load(args->attenuation + at + i), f_set(GLINT_ATTENUATION_MAX));
-            f_store(args->attenuation + at + i, f_select(lit, attenuation, f_set(0)));
+            vf attenuation = f_min(f_load(args->attenuation[s] + at + i), f_set(GLINT_ATTENUATION_MAX));
+            if (kind == LIGHT_SPOT)
+                attenuation =
+                    attenuation * R(cone_factor)(args->spot, lit, f_load(group->cone_cosine + i),
+                                                 f_load(group->cone_less_1 + i), f_load(group->cone_step + i));
+            f_store(args->attenuation[s] + at + i, f_select(lit, attenuation, f_set(0)));
         }
         if (args->highlights) {
             const fm shiny = fm_from_bits(group->shiny >> i & ((1u << VF) - 1));
             vf log2 = f_log2(f_select(shiny, f_load(group->x + i), f_set(1)), f_load(group->x_less_1 + i));
-            f_store(args->log2_specular + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
+            f_store(args->log2_specular[s] + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
         }
     }
 }
 
 /// Lanes by the highlight of their material.
-static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_group) * group)
+static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_surface) * surface)
 {
-    group->phong = group->blinn = 0;
+    surface->phong = surface->blinn = 0;
     while (args->highlights && left) {
         const uint32_t material = args->material[at + (unsigned)__builtin_ctz(left)];
         const unsigned lanes = lanes_equal(args->material + at, material);
         if (args->materials[material].highlight == GLINT_HIGHLIGHT_PHONG)
-            group->phong |= lanes;
+            surface->phong |= lanes;
         else if (args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
-            group->blinn |= lanes;
+            surface->blinn |= lanes;
         left &= ~lanes;
     }
+}
+
+/// All groups. `kind` and `samples` of a light without samples are constants.
+static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
+                                   const R(lamp_lanes) * lanes, R(lit_group) * groups)
+{
+    R(lit_surface) surface = { 0 };
+    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
+        const uint32_t g = place.g;
+        const size_t at = (size_t)g * GLINT_GROUP;
+        const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
+        for (uint32_t s = 0; s < samples; s++)
+            groups[s].lit = groups[s].shiny = 0;
+        if (open) {
+            surface.directions = R(directions_of)(args->camera, place.x, place.y);
+            R(sort_highlights)(args, at, open, &surface);
+            for (int i = 0; i < GLINT_GROUP; i += VR) {
+                R(load3)(args->point, at + i, surface.point);
+                R(load3)(args->normal, at + i, surface.normal);
+                surface.viewed = false;
+                for (uint32_t s = 0; s < samples; s++)
+                    R(light_lanes)(args, kind, s, &lanes[s], at, i, open, &surface, &groups[s]);
+            }
+        }
+        for (uint32_t s = 0; s < samples; s++) {
+            args->lit[s][g] = (uint16_t)groups[s].lit;
+            if (groups[s].lit)
+                R(finish_light)(args, kind, s, at, &groups[s]);
+        }
+    }
+}
+
+static void R(light_lamp)(const glint_light_args *args)
+{
+    R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK];
+    R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
+    R(load_lamps)(args, lanes);
+    R(light_groups)(args, LIGHT_LAMP, args->sample_count, lanes, groups);
+}
+
+static void R(light_spot)(const glint_light_args *args)
+{
+    R(lit_group) group = { .lit = 0 };
+    R(light_groups)(args, LIGHT_SPOT, 1, NULL, &group);
 }
 
 static void R(light)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
-    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const uint32_t g = place.g;
-        const size_t at = (size_t)g * GLINT_GROUP;
-        const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
-        group.lit = group.shiny = 0;
-        if (open) {
-            const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-            R(sort_highlights)(args, at, open, &group);
-            for (int i = 0; i < GLINT_GROUP; i += VR)
-                R(light_lanes)(args, place, directions, i, open, &group);
-        }
-        args->lit[g] = (uint16_t)group.lit;
-        if (group.lit)
-            R(finish_light)(args, at, &group);
-    }
+    if (args->lamp[0])
+        R(light_lamp)(args);
+    else if (args->spot)
+        R(light_spot)(args);
+    else
+        R(light_groups)(args, LIGHT_PLAIN, 1, NULL, &group);
 }

@@ -9,19 +9,27 @@
 #define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
 #define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
 
+/// On which side of a primitive the light is, a bit a lane: outside or in front, inside or behind; neither on it.
+typedef struct R(light_sides) {
+    uint16_t outside, inside;
+} R(light_sides);
+
 /// A primitive between the tile and the light.
 typedef struct R(occluder) {
     uint32_t id;
-    int light_side;
+    R(light_sides) sides;
 } R(occluder);
 
 /// What the groups of one call share.
 typedef struct R(shadow_tile) {
     const glint_occlude_args *args;
-    float light[3]; ///< position, or direction towards it, in the index's frame
+    light_place light; ///< of an area light, all of it
+    _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
+    float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     R(occluder) occluders[GLINT_OCCLUDERS];
     int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
     _Alignas(64) float local[GLINT_TILE_GROUPS][3][GLINT_GROUP]; ///< the points of lit groups, in the index's frame
+    float lower[3], upper[3]; ///< their box
 } R(shadow_tile);
 
 /// A group's shadow rays; made as soon as one needs them.
@@ -35,14 +43,14 @@ typedef struct R(shadow_group) {
     uint32_t surface[GLINT_GROUP]; ///< the coincident of the primitive each ray leaves
 } R(shadow_group);
 
-/// On which side of the primitive the light is.
-static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim)
+/// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
+static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim, const double position[3])
 {
     double f[3], height;
     for (int k = 0; k < 3; k++)
-        f[k] = args->position[k] - prim->center[k];
+        f[k] = position[k] - prim->center[k];
     if (prim->kind == GLINT_PRIM_PLANE) {
-        height = args->directional ? DOT(prim->normal, args->position) : DOT(prim->normal, f);
+        height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {
         for (int k = 0; k < 3; k++)
             f[k] *= prim->scale;
@@ -59,30 +67,71 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim)
     return (height > 0) - (height < 0);
 }
 
-static inline void R(begin_group)(const R(shadow_tile) * tile, uint32_t g, R(shadow_group) * group)
+/// `lamp`: the sample, NULL when the light is none of area.
+static inline R(light_sides) R(sides_of)(const glint_occlude_args *args, const glint_lamp *lamp, const glint_prim *prim)
+{
+    R(light_sides) sides = { 0, 0 };
+    for (int lane = 0; lane < (lamp ? GLINT_GROUP : 1); lane++) {
+        double position[3];
+        for (int k = 0; k < 3; k++)
+            position[k] = lamp ? lamp->position[k][lane] : args->position[k];
+        const int side = R(light_side)(args, prim, position);
+        const uint16_t lanes = (uint16_t)(lamp ? 1u << lane : 0xffffu);
+        sides.outside |= side > 0 ? lanes : 0;
+        sides.inside |= side < 0 ? lanes : 0;
+    }
+    return sides;
+}
+
+/// Points the tile at a sample of its light.
+static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_geometry_table *geometry = args->geometry;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i++) {
+            const double x = lamp ? lamp->position[k][i] : args->position[k];
+            tile->position[k][i] = (real)x;
+            tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
+        }
+}
+
+/// lit: the lanes to test.
+static inline void R(begin_group)(const R(shadow_tile) * tile, uint32_t g, unsigned lit, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
     group->at = (size_t)g * GLINT_GROUP;
     group->made = false;
     if (args->geometry->duplicates)
-        for (unsigned lit = args->lit[g]; lit; lit &= lit - 1) {
+        for (; lit; lit &= lit - 1) {
             const int lane = __builtin_ctz(lit);
             group->surface[lane] = args->geometry->prims[args->prim[group->at + (size_t)lane]].coincident;
         }
+}
+
+/// From points to the light, in its units.
+static inline void R(directions_to)(const glint_occlude_args *args, const real position[3][GLINT_GROUP], size_t at,
+                                    int i, vr d[3])
+{
+    for (int k = 0; k < 3; k++) {
+        d[k] = r_load(position[k] + i);
+        if (!args->directional)
+            d[k] = (d[k] - r_load((const real *)args->point[k] + at + i)) * r_set(args->scale);
+    }
 }
 
 static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
     const size_t at = group->at;
-    for (int i = 0; i < GLINT_GROUP; i += VR)
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        R(directions_to)(args, tile->position, at, i, d);
         for (int k = 0; k < 3; k++) {
-            vr d = r_set(args->position[k]);
-            if (!args->directional)
-                d = (d - r_load((const real *)args->point[k] + at + i)) * r_set(args->scale);
-            r_store(group->to_light[k] + i, d);
-            r_store_f(group->rays.direction[k] + i, d);
+            r_store(group->to_light[k] + i, d[k]);
+            r_store_f(group->rays.direction[k] + i, d[k]);
         }
+    }
     R(set_origins)(args->point, at, tile->local[at / GLINT_GROUP], &group->rays);
     group->made = true;
 }
@@ -100,37 +149,31 @@ static inline unsigned R(own_lanes)(const glint_occlude_args *args, const R(shad
     return own;
 }
 
-static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, int light_side,
-                                  const R(shadow_group) * group, int i)
+static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
+
+/// One vector of segments: from f off the sphere's centre, where its c is, along d.
+static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, unsigned outside,
+                                  unsigned inside, const vr f[3], vr c, const vr d[3])
 {
+    const unsigned all = (1u << VR) - 1;
     const vr zero = r_set(0), scale = r_set(prim->scale);
-    vr p[3], f[3], d[3];
-    R(load3)(args->point, group->at + i, p);
-    R(offset)(p, prim, f);
-    for (int k = 0; k < 3; k++)
-        d[k] = r_load(group->to_light[k] + i);
-    vr c = R(exact_c)(f, prim);
-    if (light_side < 0)
-        return r_lt(zero, c);
+    const rm from_outside = r_lt(zero, c), from_inside = r_lt(c, zero);
+    if (inside == all)
+        return from_outside;
     vr a = DOT(d, d), b = -DOT(f, d);
     rm blocked = rm_and(r_lt(zero, b), r_le(zero, R(discriminant)(f, d, a, b, c, r_set(prim->r2))));
     if (!args->directional)
         blocked = rm_and(blocked, r_lt(b * r_set(args->scale), a * scale));
-    const rm inside = r_lt(c, zero);
-    return light_side > 0 ? rm_or(inside, blocked) : rm_andnot(blocked, inside);
+    if (outside == all)
+        return rm_or(from_inside, blocked);
+    blocked = R(either)(rm_from_bits(outside), rm_or(from_inside, blocked), rm_andnot(blocked, from_inside));
+    return R(either)(rm_from_bits(inside), from_outside, blocked);
 }
 
-static inline rm R(plane_blocks)(const glint_occlude_args *args, const glint_prim *prim, int light_side,
-                                 const R(shadow_group) * group, int i)
+/// h: the points' heights over the plane.
+static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
 {
-    vr p[3], e[3];
-    R(load3)(args->point, group->at + i, p);
-    R(offset)(p, prim, e);
-    const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
-    vr h = DOT(n, e);
-    if (light_side > 0)
-        return r_lt(h, r_set(0));
-    return light_side < 0 ? r_lt(r_set(0), h) : rm_from_bits(0);
+    return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
 }
 
 /// The lanes of `wanted` that the primitive blocks.
@@ -140,23 +183,30 @@ static inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) oc
     const glint_occlude_args *args = tile->args;
     const glint_prim *prim = &args->geometry->prims[occluder.id];
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    const unsigned own = R(own_lanes)(args, group, prim, occluder.id, wanted);
+    const unsigned own = R(own_lanes)(args, group, prim, occluder.id, wanted), all = (1u << VR) - 1;
     unsigned blocked = 0;
-    if (own && sphere && occluder.light_side > 0)
-        blocked = own & args->back[group->at / GLINT_GROUP];
+    if (own && sphere)
+        blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
     wanted &= ~own;
     if (!wanted)
         return blocked;
     if (!group->made)
         R(make_shadow_rays)(tile, group);
-    if (occluder.light_side >= 0) // with the light inside, being outside is enough: no distance is asked
-        wanted &= R(near_rays)(&group->rays, prim);
+    if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is asked
+        wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
-        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        const unsigned lanes = wanted >> i & all;
         if (!lanes)
             continue;
-        rm hit = sphere ? R(sphere_blocks)(args, prim, occluder.light_side, group, i)
-                        : R(plane_blocks)(args, prim, occluder.light_side, group, i);
+        const unsigned outside = occluder.sides.outside >> i & all, inside = occluder.sides.inside >> i & all;
+        vr p[3], f[3], d[3];
+        R(load3)(args->point, group->at + i, p);
+        R(offset)(p, prim, f);
+        for (int k = 0; k < 3; k++)
+            d[k] = r_load(group->to_light[k] + i);
+        const vr c = R(offset_constant)(f, prim);
+        const rm hit =
+            sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
         blocked |= (rm_bits(hit) & lanes) << i;
     }
     return blocked;
@@ -165,49 +215,53 @@ static inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) oc
 // ---- What lies between the tile and the light ----
 
 /// Whether a plane that touches the sphere keeps the whole shaft on its other side: then it blocks nothing.
-static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3], const float light[3],
-                            bool directional)
+static bool R(sphere_apart)(const glint_prim *prim, const float lower[3], const float upper[3],
+                            const light_place *light)
 {
-    float middle[3], half[3], way[3], e[3], along = 0, length2 = 0;
+    float middle[3], half[3], end[3], end_half[3], way[3], e[3], along = 0, length2 = 0;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5f * (lower[k] + upper[k]);
         half[k] = upper[k] - middle[k];
-        way[k] = directional ? light[k] : light[k] - middle[k];
+        end[k] = 0.5f * (light->lower[k] + light->upper[k]);
+        end_half[k] = light->upper[k] - end[k];
+        way[k] = light->directional ? end[k] : end[k] - middle[k];
         e[k] = middle[k] - prim->filter_center[k];
         along -= e[k] * way[k];
         length2 += way[k] * way[k];
     }
     along = larger(along / length2, 0);
-    if (!directional)
+    if (!light->directional)
         along = smaller(along, 1);
     for (int k = 0; k < 3; k++)
         e[k] += along * way[k];
     // e: from the centre to the nearest point of the middle segment
     float size = 0, at_points = 0, at_light = 0;
     for (int k = 0; k < 3; k++) {
-        size += (fabsf(middle[k]) + fabsf(prim->filter_center[k])) + fabsf(light[k]);
+        size += (fabsf(middle[k]) + fabsf(prim->filter_center[k])) + fabsf(end[k]);
         at_points += e[k] * (middle[k] - prim->filter_center[k]) - fabsf(e[k]) * half[k];
-        at_light += directional ? e[k] * light[k] : e[k] * (light[k] - prim->filter_center[k]);
+        at_light +=
+            (light->directional ? e[k] * end[k] : e[k] * (end[k] - prim->filter_center[k])) - fabsf(e[k]) * end_half[k];
     }
     const float length = sqrtf(DOT(e, e)), slack = 4 * WALK_SLACK * size * length;
     const float bound = prim->filter_bound * length + slack;
-    return at_points > bound && at_light > (directional ? slack : bound);
+    return at_points > bound && at_light > (light->directional ? slack : bound);
 }
 
 /// Notes an occluder of the tile; false: there is no more room.
 static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
 {
+    const glint_occlude_args *args = tile->args;
     if (tile->count++ >= GLINT_OCCLUDERS)
         return false;
-    const glint_prim *prim = &tile->args->geometry->prims[id];
-    tile->occluders[tile->count - 1] = (R(occluder)) { id, R(light_side)(tile->args, prim) };
+    tile->occluders[tile->count - 1].id = id;
+    if (!args->lamp[0]) // the sides of samples are found for each
+        tile->occluders[tile->count - 1].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
     return true;
 }
 
-static void R(find_occluders)(R(shadow_tile) * tile, float lower[3], float upper[3])
+static void R(find_occluders)(R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const bool directional = tile->args->directional;
     uint32_t stack[WALK_STACK];
     int height = 0;
     light_shaft shaft;
@@ -216,8 +270,7 @@ static void R(find_occluders)(R(shadow_tile) * tile, float lower[3], float upper
             return;
     if (!geometry->nodes)
         return;
-    loosen(lower, upper, R(walk_slack)(geometry));
-    make_shaft(lower, upper, tile->light, directional, &shaft);
+    make_shaft(tile->lower, tile->upper, &tile->light, &shaft);
     stack[height++] = 0;
     while (height > 0) {
         const glint_node *node = &geometry->nodes[stack[--height]];
@@ -225,57 +278,72 @@ static void R(find_occluders)(R(shadow_tile) * tile, float lower[3], float upper
             const uint32_t child = node->child[__builtin_ctz(mask)], id = child & ~GLINT_NODE_PRIM;
             if (!(child & GLINT_NODE_PRIM))
                 stack[height++] = child;
-            else if (!R(sphere_apart)(&geometry->prims[id], lower, upper, tile->light, directional) &&
+            else if (!R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
                      !R(note_occluder)(tile, id))
                 return;
         }
     }
 }
 
-/// Whether the light is outside the sphere for certain, by what the filter knows.
+/// Whether all of the light is outside the sphere for certain, by what the filter knows.
 static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_prim *prim)
 {
     float distance2 = 0, size = 0;
     if (prim->kind != GLINT_PRIM_SPHERE || tile->args->directional)
         return prim->kind == GLINT_PRIM_SPHERE;
     for (int k = 0; k < 3; k++) {
-        const float d = tile->light[k] - prim->filter_center[k];
+        const float lower = tile->light.lower[k], upper = tile->light.upper[k], center = prim->filter_center[k];
+        const float d = larger(larger(lower - center, center - upper), 0);
         distance2 += d * d;
-        size += fabsf(tile->light[k]);
+        size += largest_of(lower, upper);
     }
     const float reach = prim->filter_bound + WALK_SLACK * size;
     return distance2 > reach * reach * (1 + 1e-5f);
 }
 
+/// As sides_of, and quicker where the light is far from the primitive.
+static inline R(light_sides) R(seen_sides)(const R(shadow_tile) * tile, const glint_lamp *lamp, const glint_prim *prim)
+{
+    if (R(light_outside)(tile, prim))
+        return (R(light_sides)) { 0xffff, 0 };
+    return R(sides_of)(tile->args, lamp, prim);
+}
+
 /// Tests a primitive that a walk came upon. Returns the lanes that are still open.
-static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t id,
-                                        unsigned open)
+static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
+                                        uint32_t id, unsigned open)
 {
     const glint_prim *prim = &tile->args->geometry->prims[id];
-    const R(occluder) occluder = { id, R(light_outside)(tile, prim) ? 1 : R(light_side)(tile->args, prim) };
+    const R(occluder) occluder = { id, R(seen_sides)(tile, lamp, prim) };
     const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
     if (blocked)
         group->last_blocker = id;
     return open & ~blocked;
 }
 
+/// The box of a group's lanes, loosened.
+static inline void R(group_box)(const R(shadow_tile) * tile, uint32_t g, unsigned lanes, float lower[3], float upper[3])
+{
+    for (int k = 0; k < 3; k++) {
+        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
+        widen(tile->local[g][k], lanes, &least, &most);
+        lower[k] = f_min_all(least);
+        upper[k] = f_max_all(most);
+    }
+    loosen(lower, upper, R(walk_slack)(tile->args->geometry));
+}
+
 /// Walks with the shaft of a group, and gives up where it has many nodes to see: *done tells.
-static unsigned R(walk_shaft)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned open, bool *done)
+static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
+                              unsigned open, bool *done)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const float(*local)[GLINT_GROUP] = tile->local[group->at / GLINT_GROUP];
     float lower[3], upper[3];
     uint32_t stack[WALK_STACK];
     int height = 0;
     light_shaft shaft;
-    for (int k = 0; k < 3; k++) {
-        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
-        widen(local[k], open, &least, &most);
-        lower[k] = f_min_all(least);
-        upper[k] = f_max_all(most);
-    }
-    loosen(lower, upper, R(walk_slack)(geometry));
-    make_shaft(lower, upper, tile->light, tile->args->directional, &shaft);
+    R(group_box)(tile, (uint32_t)(group->at / GLINT_GROUP), open, lower, upper);
+    make_shaft(lower, upper, &tile->light, &shaft);
     stack[height++] = 0;
     for (int nodes = 0; height > 0 && open; nodes++) {
         if (nodes == GLINT_SHAFT_NODES) {
@@ -286,7 +354,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, R(shadow_group) * gro
         for (unsigned mask = boxes_in_shaft(node, &shaft); mask && open; mask &= mask - 1) {
             const uint32_t child = node->child[__builtin_ctz(mask)];
             if (child & GLINT_NODE_PRIM)
-                open = R(test_occluder)(tile, group, child & ~GLINT_NODE_PRIM, open);
+                open = R(test_occluder)(tile, lamp, group, child & ~GLINT_NODE_PRIM, open);
             else
                 stack[height++] = child;
         }
@@ -296,7 +364,8 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, R(shadow_group) * gro
 }
 
 /// Walks with the segment of one lane. What it comes upon is tested against all lanes that are open.
-static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * group, int lane, unsigned open)
+static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group, int lane,
+                             unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const float(*local)[GLINT_GROUP] = tile->local[group->at / GLINT_GROUP];
@@ -306,9 +375,10 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * grou
     int height = 0;
     for (int k = 0; k < 3; k++) {
         ray.origin[k] = local[k][lane];
-        ray.inverse[k] = 1 / (tile->args->directional ? tile->light[k] : tile->light[k] - local[k][lane]);
+        const float light = tile->local_light[k][lane];
+        ray.inverse[k] = 1 / (tile->args->directional ? light : light - local[k][lane]);
         // the light's own rounding: as if the box were that much larger
-        ray.slack = larger(ray.slack, WALK_SLACK * fabsf(tile->light[k]));
+        ray.slack = larger(ray.slack, WALK_SLACK * fabsf(light));
     }
     stack[height++] = 0;
     while (height > 0) {
@@ -320,7 +390,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * grou
                 stack[height++] = child;
                 continue;
             }
-            open = R(test_occluder)(tile, group, child & ~GLINT_NODE_PRIM, open);
+            open = R(test_occluder)(tile, lamp, group, child & ~GLINT_NODE_PRIM, open);
             if (!(open >> lane & 1))
                 return open;
         }
@@ -329,70 +399,91 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, R(shadow_group) * grou
 }
 
 /// The lanes of `open` that nothing blocks, for a group that walks by itself.
-static unsigned R(walk_group)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned open)
+static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
+                              unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     bool done = !geometry->nodes;
     if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
-        open = R(test_occluder)(tile, group, group->last_blocker, open);
+        open = R(test_occluder)(tile, lamp, group, group->last_blocker, open);
     for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, group, geometry->unbounded[i], open);
+        open = R(test_occluder)(tile, lamp, group, geometry->unbounded[i], open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        open = R(walk_shaft)(tile, group, open, &done);
+        open = R(walk_shaft)(tile, lamp, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
     for (unsigned left = open; left && !done; left &= (left - 1) & open)
-        open = R(walk_lane)(tile, group, __builtin_ctz(left), open);
+        open = R(walk_lane)(tile, lamp, group, __builtin_ctz(left), open);
     return open;
 }
 
-static void R(begin_shadows)(const glint_occlude_args *args, R(shadow_tile) * tile)
+static void R(place_light)(R(shadow_tile) * tile)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_geometry_table *geometry = args->geometry;
+    const double *lower = args->lamp[0] ? args->lamp[0]->lower : args->position;
+    const double *upper = args->lamp[0] ? args->lamp[0]->upper : args->position;
+    tile->light.directional = args->directional;
+    for (int k = 0; k < 3; k++)
+        if (args->directional) {
+            tile->light.lower[k] = tile->light.upper[k] = (float)args->position[k];
+        } else {
+            tile->light.lower[k] = (float)((lower[k] - geometry->reference[k]) * geometry->scale);
+            tile->light.upper[k] = (float)((upper[k] - geometry->reference[k]) * geometry->scale);
+        }
+    if (args->lamp[0])
+        loosen(tile->light.lower, tile->light.upper, R(walk_slack)(geometry));
+}
+
+/// lit: of the light or of any of its samples, for each group.
+static void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = args->geometry;
     vf least[3], most[3];
-    float lower[3], upper[3];
     bool any = false;
     tile->args = args;
     tile->count = 0;
     for (int k = 0; k < 3; k++) {
         least[k] = f_set(HUGE_VALF);
         most[k] = f_set(-HUGE_VALF);
-        tile->light[k] = (float)(args->directional ? args->position[k]
-                                                   : (args->position[k] - geometry->reference[k]) * geometry->scale);
     }
     for (uint32_t g = 0; g < args->group_count; g++) {
-        if (!args->lit[g])
+        if (!lit[g])
             continue;
         R(index_frame)(args->point, (size_t)g * GLINT_GROUP, geometry, tile->local[g]);
         for (int k = 0; k < 3; k++)
-            widen(tile->local[g][k], args->lit[g], &least[k], &most[k]);
+            widen(tile->local[g][k], lit[g], &least[k], &most[k]);
         any = true;
     }
     if (!any)
         return;
     for (int k = 0; k < 3; k++) {
-        lower[k] = f_min_all(least[k]);
-        upper[k] = f_max_all(most[k]);
+        tile->lower[k] = f_min_all(least[k]);
+        tile->upper[k] = f_max_all(most[k]);
     }
-    R(find_occluders)(tile, lower, upper);
+    loosen(tile->lower, tile->upper, R(walk_slack)(geometry));
+    R(place_light)(tile);
+    R(find_occluders)(tile);
 }
 
-static void R(occlude)(const glint_occlude_args *args)
+static void R(occlude_point)(const glint_occlude_args *args)
 {
     R(shadow_tile) tile;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    R(begin_shadows)(args, &tile);
+    R(begin_shadows)(args, args->lit[0], &tile);
+    if (tile.count)
+        R(aim_at)(&tile, NULL);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        unsigned open = args->lit[g];
+        unsigned open = args->lit[0][g];
         *args->rays += (unsigned)__builtin_popcount(open);
         if (open && tile.count) {
-            R(begin_group)(&tile, g, &group);
+            R(begin_group)(&tile, g, open, &group);
             if (tile.count > GLINT_OCCLUDERS)
-                open = R(walk_group)(&tile, &group, open);
+                open = R(walk_group)(&tile, NULL, &group, open);
             else
                 for (int k = 0; k < tile.count && open; k++)
                     open &= ~R(blocked_by)(&tile, tile.occluders[k], &group, open);
         }
-        args->open[g] = (uint16_t)open;
+        args->open[0][g] = (uint16_t)open;
     }
 }

@@ -54,6 +54,13 @@ static float exp2_of(float y)
     return p * power;
 }
 
+/// x^exponent from log2(x) <= 0.
+static float highlight_strength(float shininess, float log2_specular)
+{
+    float y = shininess * log2_specular;
+    return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
+}
+
 // ---- errors of sums and products ---------------------------------------------------------------------------------
 
 typedef struct exact_pair {
@@ -103,30 +110,31 @@ static int sign_of(double x) { return (x > 0) - (x < 0); }
 
 static double dot_of(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
 
-static int light_side_of_plane(const glint_occlude_args *args, const glint_prim *prim)
+static int light_side_of_plane(bool directional, const double position[3], const glint_prim *prim)
 {
-    if (args->directional)
-        return sign_of(dot_of(prim->normal, args->position));
+    if (directional)
+        return sign_of(dot_of(prim->normal, position));
     double away[3];
     for (int k = 0; k < 3; k++)
-        away[k] = args->position[k] - prim->center[k];
+        away[k] = position[k] - prim->center[k];
     return sign_of(dot_of(prim->normal, away));
 }
 
-static int light_side_of_sphere(const glint_occlude_args *args, const glint_prim *prim)
+static int light_side_of_sphere(bool directional, const double position[3], const glint_prim *prim)
 {
-    if (args->directional)
+    if (directional)
         return 1;
     double f[3];
     for (int k = 0; k < 3; k++)
-        f[k] = (args->position[k] - prim->center[k]) * prim->scale;
+        f[k] = (position[k] - prim->center[k]) * prim->scale;
     return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
 }
 
 /// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
-static int light_side(const glint_occlude_args *args, const glint_prim *prim)
+static int light_side(bool directional, const double position[3], const glint_prim *prim)
 {
-    return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(args, prim) : light_side_of_plane(args, prim);
+    return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(directional, position, prim)
+                                           : light_side_of_plane(directional, position, prim);
 }
 
 // ---- geometry, in float and in double ----------------------------------------------------------------------------
@@ -156,10 +164,22 @@ typedef struct terms {
     double value[GLINT_TERM_COUNT][3];
 } terms; ///< of one sample
 
-static float highlight_strength(float shininess, float log2_specular)
+/// The factors of a light and of those joined to it: w (n.l) and w S.
+typedef struct factors {
+    float diffuse, specular;
+} factors;
+
+/// Returns whether there is a highlight.
+static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
 {
-    float y = shininess * log2_specular;
-    return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    float w = light->attenuation ? light->attenuation[i] : 1;
+    sum->diffuse += w * light->cosine[i];
+    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE ||
+        !(light->log2_specular[i] > GLINT_NO_SPECULAR))
+        return false;
+    sum->specular += w * highlight_strength(material->shininess, light->log2_specular[i]);
+    return true;
 }
 
 /// A light's share of a term is float; the term is a sum in double.
@@ -169,20 +189,31 @@ static void add_share(double *term, float factor, double color)
     *term += (double)share;
 }
 
-static void add_light(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, terms *sum)
+static bool reaches(const glint_shade_light *light, uint32_t i)
 {
-    const glint_shade_material *material = &args->materials[args->material[i]];
-    float w = light->attenuation ? light->attenuation[i] : 1;
-    float diffuse = w * light->cosine[i];
-    for (int c = 0; c < 3; c++)
-        add_share(&sum->value[GLINT_TERM_DIFFUSE][c], diffuse, material->diffuse[c] * light->diffuse[c]);
+    return light->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
 
-    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE ||
-        !(light->log2_specular[i] > GLINT_NO_SPECULAR))
-        return;
-    float specular = w * highlight_strength(material->shininess, light->log2_specular[i]);
-    for (int c = 0; c < 3; c++)
-        add_share(&sum->value[GLINT_TERM_SPECULAR][c], specular, material->specular[c] * light->specular[c]);
+/// Adds light k with those joined to it. Returns the next that is not.
+static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i, terms *sum)
+{
+    const glint_shade_light *light = &args->lights[k];
+    factors total = { 0, 0 };
+    bool any = false, shiny = false;
+    do {
+        if (reaches(&args->lights[k], i)) {
+            shiny = add_factors(args, &args->lights[k], i, &total) || shiny;
+            any = true;
+        }
+        k++;
+    } while (k < args->light_count && args->lights[k].joined);
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    for (int c = 0; c < 3 && any; c++) {
+        add_share(&sum->value[GLINT_TERM_DIFFUSE][c], total.diffuse, material->diffuse[c] * light->diffuse[c]);
+        if (shiny)
+            add_share(&sum->value[GLINT_TERM_SPECULAR][c], total.specular, material->specular[c] * light->specular[c]);
+    }
+    return k;
 }
 
 /// Rounds the terms into the film and adds them up into the beauty.
@@ -228,9 +259,8 @@ static void shade_sample(const glint_shade_args *args, uint32_t i)
         if (hit)
             sum.value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
     }
-    for (uint32_t k = 0; k < args->light_count; k++)
-        if (args->lights[k].lit[group] >> lane & 1)
-            add_light(args, &args->lights[k], i, &sum);
+    for (uint32_t k = 0; k < args->light_count;)
+        k = add_lights(args, k, i, &sum);
 
     if (args->sum[GLINT_TERM_BACKGROUND][0])
         store_sums(&sum, args->sum, i);

@@ -289,77 +289,140 @@ static float NAME(highlight)(uint32_t kind, REAL l2, REAL nl, NAME(vec3) l, NAME
     return x >= (REAL)0x1p-126 ? 0.5f * log2_of((float)x, (float)(x - 1)) : GLINT_NO_SPECULAR;
 }
 
-static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t i)
+/// Lane i of three arrays of 16 doubles.
+static NAME(vec3) NAME(lane_of)(const double array[3][GLINT_GROUP], uint32_t i)
 {
-    NAME(vec3) position = NAME(rounded)(args->position);
+    uint32_t lane = i % GLINT_GROUP;
+    return NAME(vec)((REAL)array[0][lane], (REAL)array[1][lane], (REAL)array[2][lane]);
+}
+
+static NAME(vec3) NAME(to_light)(const glint_light_args *args, const glint_lamp *lamp, uint32_t i)
+{
+    NAME(vec3) position = lamp ? NAME(lane_of)(lamp->position, i) : NAME(rounded)(args->position);
     return args->directional ? position
                              : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
 }
 
-static bool NAME(is_lit)(const glint_light_args *args, uint32_t i)
+static REAL NAME(spot_cosine)(const glint_spot *spot, NAME(vec3) l)
+{
+    return NAME(min)(-NAME(dot)(NAME(rounded)(spot->axis), l) / NAME(square_root)(NAME(length2)(l)), 1);
+}
+
+static REAL NAME(spot_x)(const glint_spot *spot, REAL c)
+{
+    return NAME(max)(NAME(min)((c - (REAL)spot->outer) * (REAL)spot->inverse, 1), 0);
+}
+
+static bool NAME(in_cone)(const glint_spot *spot, NAME(vec3) l)
+{
+    REAL c = NAME(spot_cosine)(spot, l);
+    return NAME(spot_x)(spot, c) > 0 && (spot->exponent == 0 || c >= (REAL)0x1p-126);
+}
+
+static float NAME(cone)(const glint_spot *spot, NAME(vec3) l)
+{
+    REAL c = NAME(spot_cosine)(spot, l), x = NAME(spot_x)(spot, c);
+    float step = (float)((x * x) * (3 - 2 * x));
+    if (spot->exponent == 0)
+        return step;
+    return step * highlight_strength(spot->exponent, log2_of((float)c, (float)(c - 1)));
+}
+
+/// The cosine at the lamp times the distance: positive where the sample shines at the point.
+static REAL NAME(lamp_cosine)(const glint_lamp *lamp, NAME(vec3) l, NAME(vec3) point, uint32_t i)
+{
+    REAL m = -NAME(dot)(NAME(lane_of)(lamp->normal, i), l);
+    bool both = lamp->emission == GLINT_EMIT_RADIANT_BOTH;
+    if (lamp->emission == GLINT_EMIT_RADIANT_BALL) {
+        NAME(vec3) away = NAME(sub)(point, NAME(rounded)(lamp->center));
+        REAL radius = (REAL)lamp->radius;
+        both = NAME(length2)(away) < radius * radius;
+    }
+    return both ? NAME(max)(m, -m) : m;
+}
+
+static bool NAME(is_lit)(const glint_light_args *args, const glint_lamp *lamp, uint32_t i)
 {
     uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
     if (!(args->hits[group] >> lane & 1) || args->dark[group] >> lane & 1)
         return false;
-    return NAME(dot)(NAME(load)(args->normal, i), NAME(to_light)(args, i)) > 0;
+    NAME(vec3) l = NAME(to_light)(args, lamp, i);
+    if (args->spot && !lamp && !NAME(in_cone)(args->spot, l))
+        return false;
+    if (lamp && lamp->emission != GLINT_EMIT_ALL && !(NAME(lamp_cosine)(lamp, l, NAME(load)(args->point, i), i) > 0))
+        return false;
+    return NAME(dot)(NAME(load)(args->normal, i), l) > 0;
 }
 
-static void NAME(light_sample)(const glint_light_args *args, uint32_t i)
+static float NAME(attenuation)(const glint_light_args *args, const glint_lamp *lamp, NAME(vec3) l, uint32_t i)
 {
+    NAME(vec3) k = NAME(rounded)(args->coefficients);
+    REAL l2 = NAME(length2)(l);
+    REAL d = NAME(square_root)(l2) / (REAL)args->scale;
+    REAL a = 1 / (k.x + (k.y * d + k.z * (d * d)));
+    if (lamp && lamp->emission >= GLINT_EMIT_RADIANT_FRONT) {
+        REAL m = NAME(lamp_cosine)(lamp, l, NAME(load)(args->point, i), i);
+        a = a * (m / (l2 * NAME(square_root)(l2)));
+    }
+    float w = min_float((float)a, GLINT_ATTENUATION_MAX);
+    return args->spot && !lamp ? w * NAME(cone)(args->spot, l) : w;
+}
+
+static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_t i)
+{
+    const glint_lamp *lamp = args->lamp[s];
     NAME(vec3) normal = NAME(load)(args->normal, i);
-    NAME(vec3) l = NAME(to_light)(args, i);
+    NAME(vec3) l = NAME(to_light)(args, lamp, i);
     REAL l2 = NAME(length2)(l), nl = NAME(dot)(normal, l);
     if (args->directional) {
-        args->cosine[i] = min_float((float)nl, 1);
+        args->cosine[s][i] = min_float((float)nl, 1);
     } else {
         float q = (float)l2, m = (float)nl;
-        args->cosine[i] = min_float(m / sqrtf(q), 1);
+        args->cosine[s][i] = min_float(m / sqrtf(q), 1);
     }
-    if (args->attenuated) {
-        NAME(vec3) k = NAME(rounded)(args->coefficients);
-        REAL d = NAME(square_root)(l2) / (REAL)args->scale;
-        args->attenuation[i] = min_float((float)(1 / (k.x + (k.y * d + k.z * (d * d)))), GLINT_ATTENUATION_MAX);
-    }
+    if (args->attenuated)
+        args->attenuation[s][i] = NAME(attenuation)(args, lamp, l, i);
     if (args->highlights) {
         uint32_t kind = args->materials[args->material[i]].highlight;
-        args->log2_specular[i] =
+        args->log2_specular[s][i] =
             kind == GLINT_HIGHLIGHT_NONE
                 ? GLINT_NO_SPECULAR
                 : NAME(highlight)(kind, l2, nl, l, normal, NAME(direction_of)(args->camera, args->direction, i));
     }
 }
 
-static void NAME(light_group)(const glint_light_args *args, uint32_t group)
+static void NAME(light_group)(const glint_light_args *args, uint32_t s, uint32_t group)
 {
     uint32_t first = group * GLINT_GROUP, lit = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-        lit |= (uint32_t)NAME(is_lit)(args, first + lane) << lane;
-    args->lit[group] = (uint16_t)lit;
+        lit |= (uint32_t)NAME(is_lit)(args, args->lamp[s], first + lane) << lane;
+    args->lit[s][group] = (uint16_t)lit;
     for (uint32_t lane = 0; lit && lane < GLINT_GROUP; lane++) {
         uint32_t i = first + lane;
         if (lit >> lane & 1) {
-            NAME(light_sample)(args, i);
+            NAME(light_sample)(args, s, i);
             continue;
         }
-        args->cosine[i] = 0;
+        args->cosine[s][i] = 0;
         if (args->attenuated)
-            args->attenuation[i] = 0;
+            args->attenuation[s][i] = 0;
         if (args->highlights)
-            args->log2_specular[i] = GLINT_NO_SPECULAR;
+            args->log2_specular[s][i] = GLINT_NO_SPECULAR;
     }
 }
 
 static void NAME(light)(const glint_light_args *args)
 {
-    for (uint32_t group = 0; group < args->group_count; group++)
-        NAME(light_group)(args, group);
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        for (uint32_t group = 0; group < args->group_count; group++)
+            NAME(light_group)(args, s, group);
 }
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-static bool NAME(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, int side, NAME(vec3) point)
+static bool NAME(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, int side, NAME(vec3) position,
+                                NAME(vec3) point)
 {
-    NAME(vec3) position = NAME(rounded)(args->position);
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(vec3) f = NAME(from_center)(point, prim);
     REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
@@ -379,31 +442,41 @@ static bool NAME(plane_blocks)(const glint_prim *prim, int side, NAME(vec3) poin
     return (side > 0 && h < 0) || (side < 0 && h > 0);
 }
 
-static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *prim, uint32_t i)
+/// `position`: of the light for this lane, in double.
+static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *prim, const double position[3],
+                              uint32_t i)
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    int side = light_side(args, prim);
+    int side = light_side(args->directional, position, prim);
     if (prim->coincident == args->geometry->prims[args->prim[i]].coincident)
         return sphere && args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 && side > 0;
     NAME(vec3) point = NAME(load)(args->point, i);
-    return sphere ? NAME(sphere_blocks)(args, prim, side, point) : NAME(plane_blocks)(prim, side, point);
+    return sphere ? NAME(sphere_blocks)(args, prim, side, NAME(rounded)(position), point)
+                  : NAME(plane_blocks)(prim, side, point);
 }
 
-static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t i)
+static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uint32_t i)
 {
-    bool blocked = !(args->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
+    const glint_lamp *lamp = args->lamp[s];
+    double position[3];
+    for (int k = 0; k < 3; k++)
+        position[k] = lamp ? lamp->position[k][i % GLINT_GROUP] : args->position[k];
+    bool blocked = !(args->lit[s][i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
     if (!blocked)
         ++*args->rays;
     for (uint32_t k = 0; k < args->geometry->prim_count && !blocked; k++)
-        blocked = NAME(prim_blocks)(args, &args->geometry->prims[k], i);
+        blocked = NAME(prim_blocks)(args, &args->geometry->prims[k], position, i);
     if (!blocked)
-        args->open[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        args->open[s][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
+/// The reference tests every lit lane, and counts it, where a whole light might have been settled at once.
 static void NAME(occlude)(const glint_occlude_args *args)
 {
-    for (uint32_t g = 0; g < args->group_count; g++)
-        args->open[g] = 0;
-    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
-        NAME(occlude_sample)(args, i);
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        for (uint32_t g = 0; g < args->group_count; g++)
+            args->open[s][g] = 0;
+        for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+            NAME(occlude_sample)(args, s, i);
+    }
 }

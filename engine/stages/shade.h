@@ -9,31 +9,47 @@ typedef struct light_factors {
     uint32_t count;
 } light_factors;
 
+/// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to.
+static inline void put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
+                               size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
+{
+    const unsigned lit = light->lit[at / GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf w = f_set(1);
+        if (light->attenuation)
+            w = w * f_load(light->attenuation + at + i);
+        const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
+        vf share = f_select(mask, w * f_load(light->cosine + at + i), f_set(0));
+        if (add)
+            share = f_load(diffuse + i) + share;
+        f_store(diffuse + i, share);
+        if (specular) {
+            vf log2 = f_load(light->log2_specular + at + i);
+            vf s = w * f_exp2(f_set(material->shininess) * log2);
+            const fm shiny = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
+            share = f_select(shiny, s, f_set(0));
+            if (add)
+                share = f_load(highlight + i) + share;
+            f_store(highlight + i, share);
+        }
+    }
+}
+
 static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 uint32_t g, light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
+    bool begun = false; // a light that the next ones may be joined to
     factors->count = 0;
     for (uint32_t k = 0; k < args->light_count; k++) {
         const glint_shade_light *light = &args->lights[k];
-        const unsigned lit = light->lit[g];
-        if (!lit)
+        begun = begun && light->joined;
+        if (!light->lit[g])
             continue;
-        float *diffuse = factors->diffuse[factors->count], *highlight = factors->specular[factors->count];
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf w = f_set(1);
-            if (light->attenuation)
-                w = w * f_load(light->attenuation + at + i);
-            const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
-            f_store(diffuse + i, f_select(mask, w * f_load(light->cosine + at + i), f_set(0)));
-            if (specular) {
-                vf log2 = f_load(light->log2_specular + at + i);
-                vf s = w * f_exp2(f_set(material->shininess) * log2);
-                const fm shiny = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
-                f_store(highlight + i, f_select(shiny, s, f_set(0)));
-            }
-        }
-        factors->light[factors->count++] = light;
+        const uint32_t slot = begun ? factors->count - 1 : factors->count++;
+        put_factors(light, material, specular, at, begun, factors->diffuse[slot], factors->specular[slot]);
+        factors->light[slot] = light;
+        begun = true;
     }
 }
 

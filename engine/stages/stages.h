@@ -26,7 +26,7 @@
 #define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
 #define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
 #define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< what float rounding may add to a distance, of the lengths it came from
-#define GLINT_LIGHT_CHUNK 8 ///< lights one call of shade takes at most
+#define GLINT_LIGHT_CHUNK 16 ///< lights, or samples of one light, that one call of a stage takes at most
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
 
@@ -160,6 +160,31 @@ typedef struct glint_surface_args {
 
 // ---- light: what one light does at each point, before shadows and colours ----
 
+/// The cone of a spot light.
+typedef struct glint_spot {
+    double axis[3]; ///< unit, the direction of travel
+    double outer; ///< cosine of the half angle outside of which there is no light
+    double inverse; ///< 1 / (cosine of the inner half angle - outer); +inf where both are the same
+    float exponent; ///< of the cosine; 0: none
+} glint_spot;
+
+typedef enum glint_emission {
+    GLINT_EMIT_ALL, ///< each sample is a point light
+    GLINT_EMIT_FRONT, ///< likewise, to the side of its normal
+    GLINT_EMIT_RADIANT_FRONT, ///< with cos' / distance^2, to the side of its normal
+    GLINT_EMIT_RADIANT_BOTH, ///< to both sides
+    GLINT_EMIT_RADIANT_BALL ///< to the side of its normal, and everywhere within the ball
+} glint_emission;
+
+/// One sample of an area light: a place on its surface for each lane, so that the pixels of a 4 x 4 block see sixteen.
+typedef struct glint_lamp {
+    _Alignas(64) double position[3][GLINT_GROUP];
+    double normal[3][GLINT_GROUP]; ///< unit, of the surface there
+    double center[3], radius; ///< a ball around the whole light, of GLINT_EMIT_RADIANT_BALL the light itself
+    double lower[3], upper[3]; ///< a box around the whole light
+    uint32_t emission;
+} glint_lamp;
+
 typedef struct glint_light_args {
     uint32_t group_count;
     const uint16_t *hits;
@@ -169,24 +194,35 @@ typedef struct glint_light_args {
     const glint_shade_material *materials; ///< of which `highlight` is read
     const uint16_t *dark;
     bool directional;
-    double position[3]; ///< of the light; directional: the unit vector towards it
+    double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
     double scale; ///< a power of two that brings distances to the light near 1
-    bool attenuated; ///< false: attenuation is not written
+    const glint_spot *spot; ///< NULL: light in all directions
+    uint32_t sample_count; ///< of an area light; else 1
+    const glint_lamp *lamp[GLINT_LIGHT_CHUNK]; ///< the samples; lamp[0] is NULL when it is no area light
+    bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written
-    uint16_t *lit; ///< out: a bit a lane where the light is above the surface's horizon
-    float *cosine; ///< out: n.l in 0 .. 1; 0 where unlit
-    float *attenuation; ///< out: A, at most GLINT_ATTENUATION_MAX; 0 where unlit
-    float *log2_specular; ///< out: log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
+    // out, for each sample:
+    uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< a bit a lane where the light is above the surface's horizon and shines there
+    float *cosine[GLINT_LIGHT_CHUNK]; ///< n.l in 0 .. 1; 0 where unlit
+    float *attenuation[GLINT_LIGHT_CHUNK]; ///< w; 0 where unlit
+    float *log2_specular
+        [GLINT_LIGHT_CHUNK]; ///< log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
 // l = (position - point) scale (directional: l = position); l2 = length2(l); nl = dot(normal, l)
-// lit = hit and nl > 0 and not dark
+// lit = hit and nl > 0 and not dark and, of spots and lamps, as below
 // cosine:      point light: q = (float)l2, m = (float)nl, min(m / sqrt(q), 1) in float
 //              directional: min((float)nl, 1)
-// attenuation: d = sqrt(l2) / scale; min((float)(1 / (c0 + (c1 d + c2 (d d)))), GLINT_ATTENUATION_MAX)
+// attenuation: d = sqrt(l2) / scale, A = 1 / (c0 + (c1 d + c2 (d d))); min((float)A, GLINT_ATTENUATION_MAX)
+//   spot       c = min(-dot(axis, l) / sqrt(l2), 1), x = max(min((c - outer) inverse, 1), 0);  lit where x > 0
+//              w = min((float)A, GLINT_ATTENUATION_MAX) (float)((x x) (3 - 2 x))
+//              exponent not 0: lit where c >= 2^-126;  w = w S,  S as in shade with y = exponent log2(c)
+//   lamp       m = -dot(normal of the sample, l); EMIT_ALL: no m is asked
+//              EMIT_RADIANT_BOTH: m = max(m, -m);  EMIT_RADIANT_BALL: likewise where length2(point - center) < radius radius
+//              lit where m > 0;  radiant: min((float)(A (m / (l2 sqrt(l2)))), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
@@ -198,7 +234,9 @@ typedef struct glint_light_args {
 
 typedef struct glint_occlude_args {
     uint32_t group_count;
-    const uint16_t *lit;
+    uint32_t sample_count; ///< as in glint_light_args
+    const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
+    const uint16_t *lit[GLINT_LIGHT_CHUNK];
     const void *point[3];
     const uint32_t *prim; ///< on which the points are
     const uint16_t *back;
@@ -206,9 +244,10 @@ typedef struct glint_occlude_args {
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
     const glint_geometry_table *geometry;
-    uint16_t *open; ///< out: the lit lanes that nothing blocks
-    uint64_t *rays; ///< added to: lit lanes
+    uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes that nothing blocks
+    uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled
 } glint_occlude_args;
+// `position` stands for each lane's own in what follows.
 // light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1
 //         where length2(f) overflows; directional: 1.  plane: the sign of dot(normal, position - center); directional: of
 //         dot(normal, position)
@@ -232,6 +271,7 @@ typedef enum glint_term {
 } glint_term;
 
 typedef struct glint_shade_light {
+    bool joined; ///< a further sample of the light before it in this call, with the same colours
     const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `open` where it casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation: NULL = 1 everywhere
     double diffuse[3], specular[3]; ///< colour times intensity
@@ -255,12 +295,13 @@ typedef struct glint_shade_args {
 } glint_shade_args;
 // What a light adds to a term is float; terms are added up in double:
 //   background += background where active and not hit; ambient += materials[m].ambient where hit
-//   for each light where its lit bit is set, in order:
+//   for each light (with those joined to it) that has its lit bit set, in order:
 //     w = attenuation (NULL: 1); all of this in float:
 //     diffuse[c]  += (w cosine) (kd[c] diffuse[c]), the product p of the colours made in double: p < FLT_MAX ? (float)p : FLT_MAX
 //     where the material has a highlight, highlights is true and log2_specular > GLINT_NO_SPECULAR:
 //     y = shininess log2_specular, S = y < -40 ? 0 : exp2(y)
 //     specular[c] += (w S) (ks[c] specular[c])
+//     joined lights: w cosine and w S are added up first, in order, in float from 0, over those with the lit bit set
 // Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 

@@ -135,7 +135,7 @@ static void boxes_on_screen(const glint_node *node, const tile_view *view, int a
 /// Bits first .. last.
 static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
 
-// ---- A shaft: all segments from a box of points to one light, or along one direction ----
+// ---- A shaft: all segments from a box of points to a light's box (of a point light, a point), or along one direction ----
 
 /// Grows a box by the rounding of its points and by `slack`.
 static inline void loosen(float lower[3], float upper[3], float slack)
@@ -147,6 +147,12 @@ static inline void loosen(float lower[3], float upper[3], float slack)
     }
 }
 
+/// Where a light is, in the index's frame.
+typedef struct light_place {
+    float lower[3], upper[3]; ///< directional: both are the direction towards it
+    bool directional;
+} light_place;
+
 typedef struct light_shaft {
     float lower[3], upper[3]; ///< the box around all of it; infinite where it runs on
     int plane_count;
@@ -154,49 +160,73 @@ typedef struct light_shaft {
     float normal[6][2], bound[6]; ///< inside, normal . x <= bound
 } light_shaft;
 
-/// The planes of one pair of axes: the lines from the light that touch the rectangle of the points.
-static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const float lower[3], const float upper[3],
-                                    const float light[3], bool directional)
+static inline float reach_of(float x, float lower, float upper) { return larger(x * lower, x * upper); }
+
+static inline float largest_of(float lower, float upper) { return larger(fabsf(lower), fabsf(upper)); }
+
+/// A plane of the axes a, b through (x, y) along (ex, ey), if it has the points and the light on one side.
+static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
+                                   const float lower[3], const float upper[3], const light_place *light)
 {
+    // both rectangles on one side of the line: their extent along its normal
+    float most = reach_of(-ey, lower[a] - x, upper[a] - x) + reach_of(ex, lower[b] - y, upper[b] - y);
+    float least = -(reach_of(ey, lower[a] - x, upper[a] - x) + reach_of(-ex, lower[b] - y, upper[b] - y));
+    if (!light->directional) {
+        const float *l = light->lower, *u = light->upper;
+        if (l[a] != u[a] || l[b] != u[b]) {
+            most = larger(most, reach_of(-ey, l[a] - x, u[a] - x) + reach_of(ex, l[b] - y, u[b] - y));
+            least = smaller(least, -(reach_of(ey, l[a] - x, u[a] - x) + reach_of(-ex, l[b] - y, u[b] - y)));
+        }
+    }
+    if (!(most <= 0 || least >= 0) || shaft->plane_count == 6)
+        return;
+    const float sign = most <= 0 ? 1 : -1, nx = -ey * sign, ny = ex * sign;
+    const int p = shaft->plane_count++;
+    shaft->axis[p][0] = a;
+    shaft->axis[p][1] = b;
+    shaft->normal[p][0] = nx;
+    shaft->normal[p][1] = ny;
+    float bound = reach_of(nx, lower[a], upper[a]) + reach_of(ny, lower[b], upper[b]);
+    float size = fabsf(nx) * largest_of(lower[a], upper[a]) + fabsf(ny) * largest_of(lower[b], upper[b]);
+    if (!light->directional) { // the light touches the line up to rounding, which grows with how far it is
+        const float *l = light->lower, *u = light->upper;
+        if (l[a] != u[a] || l[b] != u[b])
+            bound = larger(bound, reach_of(nx, l[a], u[a]) + reach_of(ny, l[b], u[b]));
+        size += fabsf(nx) * largest_of(l[a], u[a]) + fabsf(ny) * largest_of(l[b], u[b]);
+    }
+    shaft->bound[p] = bound + WALK_SLACK * size;
+}
+
+/// The planes of one pair of axes: the lines that touch the rectangles of the points and of the light.
+static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const float lower[3], const float upper[3],
+                                    const light_place *light)
+{
+    const int last_a = light->lower[a] != light->upper[a], last_b = light->lower[b] != light->upper[b];
     for (int corner = 0; corner < 4; corner++) {
         const float x = corner & 1 ? upper[a] : lower[a], y = corner & 2 ? upper[b] : lower[b];
-        const float ex = directional ? light[a] : light[a] - x, ey = directional ? light[b] : light[b] - y;
-        // the rectangle on one side of the line through the corner: its extent along the line's normal
-        const float left_x = -ey * (lower[a] - x), right_x = -ey * (upper[a] - x);
-        const float left_y = ex * (lower[b] - y), right_y = ex * (upper[b] - y);
-        const float most = larger(left_x, right_x) + larger(left_y, right_y);
-        const float least = smaller(left_x, right_x) + smaller(left_y, right_y);
-        if (!(most <= 0 || least >= 0) || shaft->plane_count == 6)
-            continue;
-        const float sign = most <= 0 ? 1 : -1;
-        const int p = shaft->plane_count++;
-        const float nx = -ey * sign, ny = ex * sign;
-        const float size =
-            fabsf(nx) * larger(fabsf(lower[a]), fabsf(upper[a])) + fabsf(ny) * larger(fabsf(lower[b]), fabsf(upper[b]));
-        shaft->axis[p][0] = a;
-        shaft->axis[p][1] = b;
-        shaft->normal[p][0] = nx;
-        shaft->normal[p][1] = ny;
-        // the light itself is on the line up to rounding, which grows with how far it is
-        const float far = directional ? 0 : fabsf(nx * light[a]) + fabsf(ny * light[b]);
-        shaft->bound[p] =
-            larger(nx * lower[a], nx * upper[a]) + larger(ny * lower[b], ny * upper[b]) + WALK_SLACK * (size + far);
+        for (int i = 0; i <= last_a; i++)
+            for (int j = 0; j <= last_b; j++) {
+                const float lx = i ? light->upper[a] : light->lower[a], ly = j ? light->upper[b] : light->lower[b];
+                add_shaft_plane(shaft, a, b, x, y, light->directional ? lx : lx - x, light->directional ? ly : ly - y,
+                                lower, upper, light);
+            }
     }
 }
 
-/// lower, upper: box of the points; light: the position, or the direction towards it; in the index's frame.
-static void make_shaft(const float lower[3], const float upper[3], const float light[3], bool directional,
-                       light_shaft *shaft)
+/// lower, upper: box of the points, in the index's frame.
+static void make_shaft(const float lower[3], const float upper[3], const light_place *light, light_shaft *shaft)
 {
     shaft->plane_count = 0;
     for (int k = 0; k < 3; k++) {
-        const float slack = WALK_SLACK * fabsf(light[k]);
-        shaft->lower[k] = directional ? (light[k] < 0 ? -HUGE_VALF : lower[k]) : smaller(lower[k], light[k] - slack);
-        shaft->upper[k] = directional ? (light[k] > 0 ? HUGE_VALF : upper[k]) : larger(upper[k], light[k] + slack);
+        const float low = light->lower[k], high = light->upper[k];
+        shaft->lower[k] =
+            light->directional ? (low < 0 ? -HUGE_VALF : lower[k]) : smaller(lower[k], low - WALK_SLACK * fabsf(low));
+        shaft->upper[k] =
+            light->directional ? (high > 0 ? HUGE_VALF : upper[k]) : larger(upper[k], high + WALK_SLACK * fabsf(high));
     }
     for (int a = 0; a < 2; a++)
         for (int b = a + 1; b < 3; b++)
-            add_shaft_planes(shaft, a, b, lower, upper, light, directional);
+            add_shaft_planes(shaft, a, b, lower, upper, light);
 }
 
 static unsigned boxes_in_shaft(const glint_node *node, const light_shaft *shaft)

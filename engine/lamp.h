@@ -1,0 +1,25 @@
+/// The surfaces of area lights: checks, areas, and where their samples lie. Internal.
+#ifndef GLINT_LAMP_H
+#define GLINT_LAMP_H
+
+#include "engine/glint.h"
+#include "engine/stages/stages.h"
+
+/// At least three corners, finite, different, in one plane, convex, with an area.
+glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error *error);
+
+/// Of the side or sides that shine; 0 for a light without a surface.
+double glint_lamp_area(const glint_light_desc *desc);
+
+/// How many patterns samples of a pixel take turns in: a power of two.
+uint32_t glint_lamp_turns(const glint_light_desc *desc, double pixel_samples);
+
+/// Fills turns x samples lamps: all turns of sample 0, then of sample 1 ...
+///
+/// Sample s of N takes the point ((s + a) / N, frac(s g + b)) of the unit square, g the golden ratio: a lattice that is
+/// even for any N. (a, b) is another for each of the 16 pixels of a block and for each turn, a (0,2) sequence, so that
+/// means over blocks and over samples of a pixel are of an even set too. The square is laid on the surface so that areas
+/// stay in proportion.
+void glint_lamp_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_lamp *out);
+
+#endif

@@ -1,0 +1,64 @@
+// lamp: what spot and area lights add to a light's arithmetic. Contract: stages.h, at glint_light_args.
+
+#define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
+#define LIGHT_SPOT 1
+#define LIGHT_LAMP 2
+
+/// A lamp's lanes as the stage computes with them.
+typedef struct R(lamp_lanes) {
+    _Alignas(64) real position[3][GLINT_GROUP];
+    _Alignas(64) real normal[3][GLINT_GROUP];
+} R(lamp_lanes);
+
+static inline void R(load_lamps)(const glint_light_args *args, R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK])
+{
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i++) {
+                lanes[s].position[k][i] = (real)args->lamp[s]->position[k][i];
+                lanes[s].normal[k][i] = (real)args->lamp[s]->normal[k][i];
+            }
+}
+
+/// The lanes within the cone; their cosine, less 1 too, and the smooth step there.
+static inline rm R(in_cone)(const glint_spot *spot, const vr l[3], vr l2, float cosine[], float less_1[], float step[])
+{
+    const vr axis[3] = { r_set(spot->axis[0]), r_set(spot->axis[1]), r_set(spot->axis[2]) };
+    const vr one = r_set(1);
+    vr c = r_min(-DOT(axis, l) / r_sqrt(l2), one);
+    vr x = r_max(r_min((c - r_set(spot->outer)) * r_set(spot->inverse), one), r_set(0));
+    rm lit = r_lt(r_set(0), x);
+    if (spot->exponent != 0)
+        lit = rm_and(lit, r_le(r_set(0x1p-126), c));
+    r_store_f(cosine, c);
+    r_store_f(less_1, c - one);
+    r_store_f(step, (x * x) * (r_set(3) - r_set(2) * x));
+    return lit;
+}
+
+/// The cone's factor in float; the lanes that are not lit mean nothing.
+static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf less_1, vf step)
+{
+    if (spot->exponent == 0)
+        return step;
+    const vf one = f_set(1);
+    return step * f_exp2(f_set(spot->exponent) * f_log2(f_select(lit, cosine, one), f_select(lit, less_1, f_set(0))));
+}
+
+/// The lanes that a sample shines at; *m: the cosine at the lamp, times the distance in the light's units.
+static inline rm R(in_front)(const glint_lamp *lamp, const R(lamp_lanes) * lanes, int i, const vr l[3],
+                             const vr point[3], vr *m)
+{
+    const vr n[3] = { r_load(lanes->normal[0] + i), r_load(lanes->normal[1] + i), r_load(lanes->normal[2] + i) };
+    *m = -DOT(n, l);
+    if (lamp->emission == GLINT_EMIT_RADIANT_BOTH) {
+        *m = r_max(*m, -*m);
+    } else if (lamp->emission == GLINT_EMIT_RADIANT_BALL) {
+        vr away[3];
+        for (int k = 0; k < 3; k++)
+            away[k] = point[k] - r_set(lamp->center[k]);
+        const vr radius = r_set(lamp->radius);
+        *m = r_select(r_lt(DOT(away, away), radius * radius), r_max(*m, -*m), *m);
+    }
+    return r_lt(r_set(0), *m);
+}
