@@ -117,6 +117,11 @@ double glint_lamp_area(const glint_light_desc *desc)
     }
 }
 
+double glint_lamp_size(const glint_light_desc *desc)
+{
+    return desc->kind == GLINT_LIGHT_POLYGON ? polygon_size(desc) : desc->radius;
+}
+
 // ---- From the unit square to the surface ----
 
 /// What the maps need of a light besides its description.

@@ -11,6 +11,9 @@ glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error 
 /// Of the side or sides that shine; 0 for a light without a surface.
 double glint_lamp_area(const glint_light_desc *desc);
 
+/// How far it reaches from its middle or a corner of it, about.
+double glint_lamp_size(const glint_light_desc *desc);
+
 /// How many patterns samples of a pixel take turns in: a power of two.
 uint32_t glint_lamp_turns(const glint_light_desc *desc, double pixel_samples);
 

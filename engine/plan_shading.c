@@ -93,8 +93,10 @@ static void light_init(glint_plan_light *out, const glint_light_desc *desc, cons
     }
     if (desc->kind == GLINT_LIGHT_SPOT)
         spot_init(out, desc);
-    if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units
+    if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
+        const double size = glint_lamp_size(desc);
         out->attenuated = true;
+        out->scale = size > 0 ? power_of_two_scale(size) : 1;
         strength = desc->radiance * (glint_lamp_area(desc) / desc->samples) * (out->scale * out->scale);
     }
     bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);

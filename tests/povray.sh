@@ -44,6 +44,9 @@ for model in phong blinn_phong; do
         compare $model $light perspective
     done
 done
+for light in spot fade area; do
+    compare phong $light perspective
+done
 compare phong point orthographic
 compare blinn_phong directional orthographic
 exit $bad

@@ -235,6 +235,83 @@ function tests.lights()
   raises("directional_light.position: no such field", function() return sun.position end)
 end
 
+function tests.spot_lights()
+  local spot = glint.spot_light { position = { 1, 2, 3 }, direction = { 0, -2, 0 }, inner = 20, outer = 30 }
+  check(spot.inner == 20 and spot.outer == 30 and spot.exponent == 0 and is(spot.direction, 0, -2, 0) and spot.y == 2,
+    "spot")
+  spot.outer = 90
+  spot.inner, spot.exponent, spot.x = 45, 2.5, 7
+  check(spot.inner == 45 and spot.outer == 90 and spot.exponent == 2.5 and is(spot.position, 7, 2, 3), "each is set")
+  raises("spot_light.inner: half angles 0 <= inner <= outer <= 180 expected, got inner 91 and outer 90",
+    function() spot.inner = 91 end)
+  raises("spot_light.outer: half angles 0 <= inner <= outer <= 180 expected, got inner 45 and outer 181",
+    function() spot.outer = 181 end)
+  raises("spot_light.inner: half angles 0 <= inner <= outer <= 180 expected, got inner -1 and outer 90",
+    function() spot.inner = -1 end)
+  raises("spot_light.exponent: number >= 0 expected, got -1", function() spot.exponent = -1 end)
+  raises("spot_light.direction: vector that is not zero expected, got {0, 0, 0}",
+    function() spot.direction = { 0, 0, 0 } end)
+  raises("spot_light.outer: number expected, got nil",
+    function() glint.spot_light { position = { 0, 0, 0 }, direction = { 0, -1, 0 }, inner = 5 } end)
+  raises("spot_light.radius: no such field", function() spot.radius = 1 end)
+end
+
+function tests.area_lights()
+  local disk = glint.disk_light { position = { 0, 4, 0 }, normal = { 0, -2, 0 }, radius = 2 }
+  check(disk.samples == 16 and disk.radiance == nil and is(disk.normal, 0, -2, 0) and disk.radius == 2, "disk")
+  disk.radiance, disk.samples = 5, 64
+  check(disk.radiance == 5 and disk.samples == 64 and disk.intensity == 1, "radiance")
+  raises("disk_light.intensity: 1 expected beside a radiance, got 2", function() disk.intensity = 2 end)
+  disk.radiance = nil
+  disk.intensity = 2
+  check(disk.radiance == nil and disk.intensity == 2, "back to intensity")
+  raises("disk_light.samples: whole number 1 .. 65536 expected, got 0", function() disk.samples = 0 end)
+  raises("disk_light.samples: whole number 1 .. 65536 expected, got 1000000000", function() disk.samples = 1e9 end)
+  raises("disk_light.samples: whole number 1 .. 65536 expected, got 2.5", function() disk.samples = 2.5 end)
+  raises("disk_light.radius: number >= 0 expected, got -1", function() disk.radius = -1 end)
+  raises("disk_light.normal: vector that is not zero expected, got {0, 0, 0}", function() disk.normal = { 0, 0, 0 } end)
+  raises("disk_light.visible: false expected: the surface of a light cannot be seen yet", function() disk.visible = true end)
+  local ball = glint.sphere_light { position = { 0, 4, 0 }, radius = 0, name = "bulb" }
+  check(ball.radius == 0 and tostring(ball) == "sphere_light 'bulb'", "sphere of radius 0")
+  raises("sphere_light.radius: number expected, got nil", function() glint.sphere_light { position = { 0, 0, 0 } } end)
+  raises("sphere_light.normal: no such field", function() ball.normal = { 0, 1, 0 } end)
+  raises("point_light.samples: no such field", function() return glint.point_light(LAMP).samples end)
+end
+
+function tests.polygon_lights()
+  local function polygon(...) return glint.polygon_light { vertices = { ... } } end
+  local light = polygon({ 0, 4, 0 }, { 1, 4, 0 }, { 1, 4, 1 })
+  check(#light.vertices == 3 and is(light.vertices[2], 1, 4, 0) and light.two_sided == false, "triangle")
+  light.vertices = { { 0, 4, 0 }, { 1, 4, 0 }, { 1, 4, 1 }, { 0, 4, 1 } }
+  light.vertices = light.vertices
+  light.two_sided = true
+  collectgarbage()
+  check(#light.vertices == 4 and is(light.vertices[4], 0, 4, 1) and light.two_sided, "square")
+  raises("polygon_light.vertices: 3 to 4096 corners expected, got 2",
+    function() polygon({ 0, 0, 0 }, { 1, 0, 0 }) end)
+  raises("polygon_light.vertices: corners in one plane expected, got corner 2 -0.0499 out of it",
+    function() polygon({ 0, 0, 0 }, { 1, 0, 0 }, { 1, 0, 1 }, { 0, 0.1, 1 }) end)
+  raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 2",
+    function() polygon({ 0, 0, 0 }, { 4, 0, 0 }, { 1, 0, 1 }, { 0, 0, 4 }) end)
+  raises("polygon_light.vertices: convex polygon expected, got corner 4 outside of the edge from corner 1", function()
+    local star = {} -- of five corners
+    for i = 0, 4 do star[i + 1] = { math.cos(i * 4 * math.pi / 5), math.sin(i * 4 * math.pi / 5), 0 } end
+    glint.polygon_light { vertices = star }
+  end)
+  raises("polygon_light.vertices: corners that differ expected, got corner 1 again as corner 5", function()
+    local square = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }
+    for i = 1, 4 do square[4 + i] = square[i] end
+    glint.polygon_light { vertices = square }
+  end)
+  raises("polygon_light.vertices: polygon with an area expected, got area 0",
+    function() polygon({ 0, 0, 0 }, { 1, 1, 1 }, { 2, 2, 2 }) end)
+  raises("polygon_light.vertices[2]: {x, y, z} expected, got 5", function() polygon({ 0, 0, 0 }, 5, { 1, 0, 0 }) end)
+  raises("polygon_light.vertices: list of {x, y, z} expected, got nil", function() glint.polygon_light {} end)
+  raises('polygon_light.vertices: a list expected, got a table with the key string "x"', function() light.vertices = { x = 1 } end)
+  raises("polygon_light.position: no such field", function() return light.position end)
+  check(#light.vertices == 4, "unchanged by what was refused")
+end
+
 function tests.camera()
   local c = glint.camera(CAMERA)
   check(is(c.eye, 0, 0, 5) and is(c.at, 0, 0, 0) and c.direction == nil and is(c.up, 0, 1, 0) and c.fov == 40

@@ -17,7 +17,8 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "camera", "directional_light", "material", "plane", "point_light", "scene", "sphere", "spheres", "vector",
+  "camera", "directional_light", "disk_light", "material", "plane", "point_light", "polygon_light", "scene", "sphere",
+  "sphere_light", "spheres", "spot_light", "vector",
 }
 
 local function objects()
@@ -27,6 +28,10 @@ local function objects()
   return {
     material = material, sphere = ball, point_light = lamp,
     directional_light = glint.directional_light { direction = { 0, -1, 0 } },
+    spot_light = glint.spot_light { position = { 0, 5, 0 }, direction = { 0, -1, 0 }, inner = 10, outer = 20 },
+    disk_light = glint.disk_light { position = { 0, 5, 0 }, normal = { 0, -1, 0 }, radius = 1 },
+    polygon_light = glint.polygon_light { vertices = { { 0, 5, 0 }, { 1, 5, 0 }, { 0, 5, 1 } } },
+    sphere_light = glint.sphere_light { position = { 0, 5, 0 }, radius = 1 },
     camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
     plane = glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
     spheres = glint.spheres { data = { 0, 0, 0, 1, 2, 0, 0, 1 }, material = material },

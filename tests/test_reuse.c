@@ -15,7 +15,7 @@
 #include "engine/stages/stages.h"
 
 #define SHAPES 6
-#define LIGHTS 3
+#define LIGHTS 6 ///< one of each kind
 
 static uint64_t state;
 
@@ -79,10 +79,13 @@ static const field material_fields[] = {
 
 static const field light_fields[] = {
 #define L(...) FIELD(glint_light_desc, __VA_ARGS__)
-    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),   L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
-    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1), L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
-    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),  L(visible, FLAG, 0, 1),     L(position, VECTOR, -6, 6),
-    L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),
+    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),    L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
+    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1),  L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
+    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),   L(visible, FLAG, 0, 1),     L(position, VECTOR, -6, 6),
+    L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),     L(inner_rad, NUMBER, 0, 1), L(outer_rad, NUMBER, 0.5, 3),
+    L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1), L(radius, NUMBER, 0, 2),    L(vertices, FIXED, 0, 0),
+    L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1), L(samples, WHOLE, 1, 20),   L(has_radiance, FLAG, 0, 1),
+    L(radiance, NUMBER, 0, 9),
 #undef L
 };
 
@@ -201,6 +204,8 @@ static void edit_material(world *w)
     glint_material_set(material, &d, NULL);
 }
 
+static double corners[4][3] = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } };
+
 static void edit_light(world *w)
 {
     uint32_t i = draw(LIGHTS);
@@ -213,7 +218,14 @@ static void edit_light(world *w)
         w->shining[i] = !w->shining[i];
         return;
     }
-    set_field(pick(light_fields, COUNT(light_fields)), &d);
+    if (d.kind == GLINT_LIGHT_POLYGON && draw(4) == 0) {
+        corners[2][0] = corners[2][2] = uniform(0.5, 3);
+        d.vertices = (const double(*)[3])corners;
+        d.vertex_count = 3 + draw(2);
+    } else {
+        set_field(pick(light_fields, COUNT(light_fields)), &d);
+        d.intensity = d.has_radiance ? 1 : d.intensity;
+    }
     glint_light_set(w->lights[i], &d, NULL);
 }
 
@@ -278,7 +290,10 @@ static void make_world(world *w)
         w->in_scene[i] = true;
     }
     for (int i = 0; i < LIGHTS; i++) {
-        glint_light_desc d = glint_light_desc_default(i == 2 ? GLINT_LIGHT_DIRECTIONAL : GLINT_LIGHT_POINT);
+        glint_light_desc d = glint_light_desc_default((glint_light_kind)i);
+        d.vertices = (const double(*)[3])corners;
+        d.vertex_count = 4;
+        d.samples = 3;
         d.position[1] = 5;
         d.position[0] = i;
         assert_int_equal(glint_light_create(&d, &w->lights[i], NULL), GLINT_OK);

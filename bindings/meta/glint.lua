@@ -89,7 +89,8 @@ function glint.material(fields) end
 ---@field specular? glint.color  >= 0; follows `color` until set; nil: follows again
 ---@field attenuation? glint.vec3  {c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0. Default {1, 0, 0}
 ---@field shadows? boolean  whether it casts shadows. Default true
----@field visible? boolean  whether rays see its surface; point and directional lights have none. Default false
+---@field visible? boolean  whether rays see its surface; true does nothing to lights without one, and is refused by
+--- area lights as yet. Default false
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@class glint.point_light_fields: glint.light_fields
@@ -120,6 +121,83 @@ function directional_light:close() end
 ---@param fields glint.directional_light_fields
 ---@return glint.directional_light
 function glint.directional_light(fields) end
+
+---@class glint.spot_light_fields: glint.light_fields
+---@field position glint.vec3  world units
+---@field direction glint.vec3  in which its axis points; not zero, need not be unit
+---@field inner number  half angle of the full light, degrees, 0 <= inner <= outer
+---@field outer number  half angle beyond which there is none, degrees, <= 180; between the two a smoothstep of the cosine
+---@field exponent? number  >= 0: the light also falls off as cos^exponent from the axis. Default 0
+
+---@class glint.spot_light: glint.spot_light_fields
+---@field x number  of position
+---@field y number  of position
+---@field z number  of position
+local spot_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function spot_light:close() end
+
+---@param fields glint.spot_light_fields
+---@return glint.spot_light
+function glint.spot_light(fields) end
+
+--- Lights with a surface, and soft shadows. With `intensity` each adds the mean over its surface of what a point light
+--- there adds; with `radiance` L the integral of L cos cos' / distance^2 over its surface, in place of A V (n.l).
+---@class glint.area_light_fields: glint.light_fields
+---@field samples? integer  points of the surface a sample of a pixel, 1 .. 65536; other ones for each pixel of a 4 x 4
+--- block, so that 16 samples look like 256 from afar. Default 16
+---@field radiance? number  >= 0, beside an intensity of 1. nil: `intensity` counts. Default nil
+
+---@class glint.disk_light_fields: glint.area_light_fields
+---@field position glint.vec3  its centre, world units
+---@field normal glint.vec3  the side that shines; not zero, need not be unit
+---@field radius number  world units, >= 0; 0 is a point
+
+---@class glint.disk_light: glint.disk_light_fields
+---@field x number  of position
+---@field y number  of position
+---@field z number  of position
+local disk_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function disk_light:close() end
+
+---@param fields glint.disk_light_fields
+---@return glint.disk_light
+function glint.disk_light(fields) end
+
+---@class glint.polygon_light_fields: glint.area_light_fields
+---@field vertices glint.vec3[]  3 .. 4096 corners, convex, in one plane; it shines to the side from which they run
+--- counter-clockwise
+---@field two_sided? boolean  shines to both sides. Default false
+
+---@class glint.polygon_light: glint.polygon_light_fields
+local polygon_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function polygon_light:close() end
+
+---@param fields glint.polygon_light_fields
+---@return glint.polygon_light
+function glint.polygon_light(fields) end
+
+---@class glint.sphere_light_fields: glint.area_light_fields
+---@field position glint.vec3  its centre, world units
+---@field radius number  world units, >= 0; 0 is a point light, bit for bit
+
+---@class glint.sphere_light: glint.sphere_light_fields
+---@field x number  of position
+---@field y number  of position
+---@field z number  of position
+local sphere_light = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function sphere_light:close() end
+
+---@param fields glint.sphere_light_fields
+---@return glint.sphere_light
+function glint.sphere_light(fields) end
 
 -- ---- Camera ----
 
@@ -152,7 +230,8 @@ function glint.camera(fields) end
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@alias glint.shape glint.sphere|glint.plane|glint.spheres
----@alias glint.light glint.point_light|glint.directional_light
+---@alias glint.light glint.point_light|glint.directional_light|glint.spot_light|glint.area_light
+---@alias glint.area_light glint.disk_light|glint.polygon_light|glint.sphere_light
 
 ---@class glint.sphere_fields: glint.shape_fields
 ---@field center glint.vec3  world units

@@ -8,6 +8,8 @@
 --   Blinn-Phong  finish { specular ks roughness 1/n phong 0 }       S = (n.h)^n
 --   camera       location E, direction f, right and up scaled to the view's width and height at distance 1, and neither
 --                `angle` nor `look_at`; a pixel's ray goes through its centre. With f, r, u given, handedness is ours.
+--   spot         light_source { position rgb c  spotlight radius INNER falloff OUTER tightness 0 point_at target }
+--   fall-off     fade_distance d0 fade_power 2 is 2 / (1 + (d/d0)^2): attenuation = { 1/2, 0, 1/(2 d0^2) }
 --   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
 local model, light, projection, width, height = table.unpack(arg)
@@ -34,6 +36,20 @@ line("camera { %s location %s direction %s right %s up %s }", projection, vector
   vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
 if light == "point" then
   line("light_source { %s rgb %s }", vector(w.light.position), vector(w.light.color))
+elseif light == "spot" then
+  local p, d = w.light.position, w.spot.direction
+  line("light_source { %s rgb %s spotlight radius %.17g falloff %.17g tightness 0 point_at %s }", vector(p),
+    vector(w.light.color), w.spot.inner, w.spot.outer, vector { p[1] + d[1], p[2] + d[2], p[3] + d[3] })
+elseif light == "fade" then
+  line("light_source { %s rgb %s fade_distance %.17g fade_power 2 }", vector(w.light.position), vector(w.light.color),
+    w.fade)
+elseif light == "area" then
+  local p, side, across = w.light.position, w.grid.side, w.grid.width
+  for i = 0, side * side - 1 do
+    local x, z = (i % side / (side - 1) - 0.5) * across, (i // side / (side - 1) - 0.5) * across
+    line("light_source { %s rgb %s }", vector { p[1] + x, p[2], p[3] + z },
+      vector(scaled(w.light.color, 1 / (side * side))))
+  end
 else
   local far = scaled(w.light.direction, -1e6)
   line("light_source { %s rgb %s parallel point_at 0 }", vector(far), vector(w.light.color))

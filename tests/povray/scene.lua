@@ -2,17 +2,32 @@
 local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
-  light = { "point", choices = { "point", "directional" } },
+  light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
 
-local light
-if P.light == "point" then
-  light = glint.point_light { position = w.light.position, color = w.light.color }
-else
-  light = glint.directional_light { direction = w.light.direction, color = w.light.color }
-end
+local place, color, spot = w.light.position, w.light.color, w.spot
+local lights = {
+  point = function() return { glint.point_light { position = place, color = color } } end,
+  directional = function() return { glint.directional_light { direction = w.light.direction, color = color } } end,
+  spot = function()
+    return { glint.spot_light { position = place, color = color, direction = spot.direction, inner = spot.inner,
+      outer = spot.outer } }
+  end,
+  fade = function()
+    return { glint.point_light { position = place, color = color, attenuation = { 0.5, 0, 0.5 / w.fade ^ 2 } } }
+  end,
+  area = function()
+    local list, side = {}, w.grid.side
+    for i = 0, side * side - 1 do
+      local x, z = (i % side / (side - 1) - 0.5) * w.grid.width, (i // side / (side - 1) - 0.5) * w.grid.width
+      list[i + 1] = glint.point_light { position = { place[1] + x, place[2], place[3] + z }, color = color,
+        intensity = 1 / (side * side) }
+    end
+    return list
+  end,
+}
 
 local camera = { eye = w.eye, at = w.at, projection = P.projection }
 if P.projection == "perspective" then
@@ -21,7 +36,8 @@ else
   camera.height = w.height
 end
 
-local scene = glint.scene { camera = glint.camera(camera), ambient = 1, background = w.background, light }
+local scene = glint.scene { camera = glint.camera(camera), ambient = 1, background = w.background }
+for _, light in ipairs(lights[P.light]()) do scene:add(light) end
 for _, sphere in ipairs(w.spheres) do
   local center, radius, c = sphere[1], sphere[2], sphere[3]
   scene:add(glint.sphere {

@@ -7,6 +7,9 @@ return {
   height = 15, -- world units, of the orthographic view
   background = { 0.2, 0.3, 0.5 },
   light = { color = { 0.8, 0.75, 0.7 }, position = { 0, 20, 0 }, direction = { -3, -5, -2 } },
+  spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- at the light's place; POV-Ray: radius, falloff
+  fade = 15, -- distance at which the light is as strong as without fall-off
+  grid = { side = 5, width = 4 }, -- an area light: side x side point lights
   ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },

@@ -1,0 +1,225 @@
+/// Area lights by the C API: what their shadows cost, and that every way to render them gives the same picture.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/glint.h"
+
+#define SIDE 96
+
+static void add_ball(glint_scene *scene, double x, double y, double z, double radius)
+{
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_shape *shape;
+    d.center[0] = x;
+    d.center[1] = y;
+    d.center[2] = z;
+    d.radius = radius;
+    assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
+    glint_shape_release(shape);
+}
+
+/// A floor seen from above at a slant, without a light.
+static glint_scene *make_floor(void)
+{
+    glint_scene *scene;
+    glint_camera_desc c = glint_camera_desc_default();
+    glint_camera *camera;
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    glint_shape *floor;
+    memcpy(c.eye, (double[3]) { 0, 8, 9 }, sizeof c.eye);
+    assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
+    glint_scene_desc s = { .camera = camera };
+    assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
+    memcpy(d.normal, (double[3]) { 0, 1, 0 }, sizeof d.normal);
+    assert_int_equal(glint_shape_create(&d, &floor, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(scene, floor, NULL), GLINT_OK);
+    glint_shape_release(floor);
+    glint_camera_release(camera);
+    return scene;
+}
+
+static void add_light(glint_scene *scene, glint_light_kind kind, double height, double radius, double samples)
+{
+    static const double square[4][3] = { { -1, 6, -1 }, { 1, 6, -1 }, { 1, 6, 1 }, { -1, 6, 1 } };
+    glint_light_desc d = glint_light_desc_default(kind);
+    glint_light *light;
+    d.position[1] = height;
+    d.radius = radius;
+    d.samples = samples;
+    d.vertices = square;
+    d.vertex_count = 4;
+    assert_int_equal(glint_light_create(&d, &light, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_light(scene, light, NULL), GLINT_OK);
+    glint_light_release(light);
+}
+
+typedef struct setting {
+    const char *isa;
+    int threads;
+    bool no_reuse;
+    double samples; ///< of a pixel
+    glint_precision precision;
+} setting;
+
+static glint_image *render(const glint_scene *scene, setting set, glint_frame_stats *stats, glint_ray_counts *expected)
+{
+    glint_render_desc desc = glint_render_desc_default();
+    glint_renderer_desc r = glint_renderer_desc_default();
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    desc.width = desc.height = SIDE;
+    desc.samples = set.samples ? set.samples : 1;
+    desc.precision = set.precision;
+    r.isa = set.isa;
+    r.threads = set.threads ? set.threads : 1;
+    r.no_reuse = set.no_reuse;
+    glint_status status = glint_renderer_create(&r, &renderer, NULL);
+    if (status == GLINT_ERR_UNSUPPORTED)
+        return NULL;
+    assert_int_equal(status, GLINT_OK);
+    assert_int_equal(glint_plan_create(scene, &desc, &plan, NULL), GLINT_OK);
+    if (expected)
+        *expected = glint_plan_expected_rays(plan);
+    assert_int_equal(glint_render(renderer, plan, &image, stats, NULL), GLINT_OK);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+static uint64_t shadow_rays(const glint_scene *scene)
+{
+    glint_frame_stats stats;
+    glint_image_release(render(scene, (setting) { .no_reuse = true }, &stats, NULL));
+    return stats.rays.shadow;
+}
+
+static void nothing_between_costs_no_rays(void **state)
+{
+    (void)state;
+    glint_scene *scene = make_floor();
+    add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 16);
+    add_ball(scene, 0, 20, 0, 1); // above the lamp
+    assert_int_equal(shadow_rays(scene), 0);
+    glint_scene_release(scene);
+}
+
+static void one_ball_hides_the_whole(void **state)
+{
+    (void)state;
+    glint_scene *scene = make_floor();
+    glint_frame_stats stats;
+    add_light(scene, GLINT_LIGHT_SPHERE, 20, 0.5, 16);
+    add_ball(scene, 0, 15, 0, 4); // between the lamp and all of the floor that is seen
+    glint_image *image = render(scene, (setting) { .no_reuse = true }, &stats, NULL);
+    float black[3];
+    assert_int_equal(glint_image_pixel(image, GLINT_PASS_BEAUTY, SIDE / 2, SIDE / 2, black, NULL), GLINT_OK);
+    assert_true(black[0] == 0 && stats.rays.shadow < SIDE * SIDE);
+    glint_image_release(image);
+    glint_scene_release(scene);
+}
+
+static void rays_are_of_the_penumbra(void **state)
+{
+    (void)state;
+    glint_scene *scene = make_floor();
+    add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 64);
+    add_ball(scene, 1, 2, 0, 1);
+    const uint64_t rays = shadow_rays(scene);
+    assert_true(rays > 0 && rays < (uint64_t)SIDE * SIDE * 64 / 3);
+    glint_scene_release(scene);
+}
+
+static void point_like_lights_cost_one_ray(void **state)
+{
+    (void)state;
+    const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_SPHERE, GLINT_LIGHT_DISK, GLINT_LIGHT_SPOT };
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        glint_ray_counts expected;
+        glint_frame_stats stats;
+        glint_scene *scene = make_floor();
+        add_light(scene, kinds[i], 6, 0, 16);
+        glint_image_release(render(scene, (setting) { .no_reuse = true }, &stats, &expected));
+        assert_int_equal(expected.shadow, SIDE * SIDE);
+        glint_scene_release(scene);
+    }
+}
+
+static bool same_picture(const glint_image *a, const glint_image *b)
+{
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            float p[3], q[3];
+            glint_image_pixel(a, GLINT_PASS_BEAUTY, x, y, p, NULL);
+            glint_image_pixel(b, GLINT_PASS_BEAUTY, x, y, q, NULL);
+            if (memcmp(p, q, sizeof p))
+                return false;
+        }
+    return true;
+}
+
+/// The reference has no index and settles nothing at once.
+static void every_way_gives_one_picture(void **state)
+{
+    (void)state;
+    static const setting ways[] = {
+        { .isa = "sse2" }, { .isa = "avx2" }, { .isa = "avx512" }, { .threads = 3 }, { .no_reuse = true },
+    };
+    const glint_light_kind kinds[] = { GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK, GLINT_LIGHT_POLYGON, GLINT_LIGHT_SPHERE };
+    glint_scene *scene = make_floor();
+    for (int i = 0; i < 30; i++) // so many between that groups walk by themselves
+        add_ball(scene, i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2, 0.3);
+    add_ball(scene, 0, 6, 0, 1.2); // a lamp's samples inside and outside
+    for (int precision = 0; precision < 2; precision++)
+        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+            add_light(scene, kinds[k], 5 + (double)k, 1, 19);
+            setting set = { .isa = "ref", .samples = 2, .precision = (glint_precision)precision };
+            glint_image *want = render(scene, set, NULL, NULL);
+            for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+                set = ways[i];
+                set.samples = 2;
+                set.precision = (glint_precision)precision;
+                glint_image *got = render(scene, set, NULL, NULL);
+                if (got && !same_picture(got, want))
+                    fail_msg("kind %zu, way %zu: another picture", k, i);
+                glint_image_release(got);
+            }
+            glint_image_release(want);
+        }
+    glint_scene_release(scene);
+}
+
+static void bad_descriptions_are_refused(void **state)
+{
+    (void)state;
+    glint_error error;
+    glint_light *light;
+    glint_light_desc d = glint_light_desc_default((glint_light_kind)17);
+    assert_int_equal(glint_light_create(&d, &light, &error), GLINT_ERR_INVALID);
+    d = glint_light_desc_default(GLINT_LIGHT_POLYGON);
+    assert_int_equal(glint_light_create(&d, &light, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "vertices: 3 to 4096 corners expected, got 0");
+    static const double corners[3][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1.0 / 0.0, 0 } };
+    d.vertices = corners;
+    d.vertex_count = 3;
+    assert_int_equal(glint_light_create(&d, &light, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "vertices: corner 3: finite numbers expected, got {0, inf, 0}");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_between_costs_no_rays), cmocka_unit_test(one_ball_hides_the_whole),
+        cmocka_unit_test(rays_are_of_the_penumbra),      cmocka_unit_test(point_like_lights_cost_one_ray),
+        cmocka_unit_test(every_way_gives_one_picture),   cmocka_unit_test(bad_descriptions_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
