@@ -27,7 +27,7 @@ struct glint_renderer {
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     glint_image
         *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
-    ///< them
+        ///< them
     glint_key last_key;
     glint_frame_stats last_stats;
 };
