@@ -64,16 +64,18 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
     out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
 }
 
-static double distance_scale(const double position[3], const double eye[3])
+/// The power of two that brings the largest distance from here to a surface that has an end near 1: then no square of a
+/// distance overflows a float, and none that is 2^-60 of it vanishes.
+static double distance_scale(const double position[3], const glint_geometry_table *geometry)
 {
     double away[3];
-    vec_sub(away, position, eye);
-    const double distance = vec_max_abs(away);
+    vec_sub(away, position, geometry->reference);
+    const double distance = fmax(vec_max_abs(away), 1 / geometry->scale);
     return distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
 }
 
 /// A light, or what all samples of one have in common.
-static void light_init(glint_plan_light *out, const glint_light_desc *desc, const double eye[3])
+static void light_init(glint_plan_light *out, const glint_light_desc *desc, const glint_geometry_table *geometry)
 {
     *out = (glint_plan_light) { .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
                                 .shadows = desc->shadows,
@@ -89,7 +91,7 @@ static void light_init(glint_plan_light *out, const glint_light_desc *desc, cons
         vec_copy(out->position, place);
         vec_copy(out->coefficients, a);
         out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
-        out->scale = distance_scale(place, eye);
+        out->scale = distance_scale(place, geometry);
     }
     if (desc->kind == GLINT_LIGHT_SPOT)
         spot_init(out, desc);
@@ -183,7 +185,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         glint_plan_light light;
-        light_init(&light, desc, plan->camera.eye);
+        light_init(&light, desc, &plan->geometry->table);
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
         glossy_light = glossy_light || !is_black(light.specular);

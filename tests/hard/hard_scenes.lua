@@ -54,6 +54,17 @@ for _, k in ipairs { -40, -20, 20, 40 } do
   local differ = difference(plain, still_life(2.0 ^ k, origin):render(size))
   check(differ == 0, ("S36: scale 2^%d gives the same bits"):format(k), differ .. " pixels differ")
 end
+-- A lamp next to the eye, nearer than any length of the scene; and at the eye of a scene of any size.
+for _, c in ipairs { { 1e-19, 1 }, { 1e-25, 1 }, { 1e-300, 1 }, { 0, 1 }, { 0, 1e19 }, { 0, 1e-19 }, { 0, 1e60 } } do
+  local x, s = c[1], c[2]
+  local image = glint.scene {
+    camera = glint.camera { eye = { 0, 0, 0 }, at = { 0, 0, -s }, fov = 30 },
+    glint.point_light { position = { x, 0, 0 } },
+    glint.sphere { center = { 0, 0, -5 * s }, radius = s, material = glint.material { diffuse = 1 } },
+  }:render { width = 33, height = 33 }
+  local lit = image:pixel(16, 16)
+  check(math.abs(lit - 1) < 1e-6, ("L: a lamp %g from the eye, lengths times %g"):format(x, s), tostring(lit))
+end
 for _, s in ipairs { 1e6, 1e-6 } do
   local _, worst = difference(plain, still_life(s, origin):render(size))
   check(worst <= 1, ("S36: scale %g within one code"):format(s), worst .. " codes")
