@@ -93,8 +93,9 @@ side_scene side_scene_create(const bench_options *options)
     side_must(glint_scene_create(&s.scene, &error), &error);
     make_materials(&s);
     add_spheres(&s);
-    glint_light_desc l = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light_desc l = glint_light_desc_default(options->area ? GLINT_LIGHT_SPHERE : GLINT_LIGHT_POINT);
     widen(s.plain.light, l.position);
+    l.radius = (double)s.plain.light_radius;
     l.shadows = options->shadows;
     side_must(glint_light_create(&l, &s.lamp, &error), &error);
     side_must(glint_scene_add_light(s.scene, s.lamp, &error), &error);
