@@ -176,6 +176,9 @@ int luaopen_glint(lua_State *L);
 
 /// The constructor glint.spheres, of spheres.c.
 int glintL_new_spheres(lua_State *L);
+/// The constructors glint.mesh and glint.sphere_mesh, of mesh.c.
+int glintL_new_mesh(lua_State *L);
+int glintL_new_sphere_mesh(lua_State *L);
 
 /// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
 /// Works on anything with __newindex; raises as the assignment would.

@@ -163,7 +163,8 @@ static int cast(lua_State *L)
     if (!cast_ray(L, &r, &hit))
         return 1; // nil
     const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
-    bool numbered = shape && glint_shape_get(shape)->kind == GLINT_SHAPE_SPHERES;
+    const glint_shape_kind kind = shape ? glint_shape_get(shape)->kind : GLINT_SHAPE_SPHERE;
+    bool numbered = kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_MESH;
     lua_createtable(L, 0, 5);
     lua_insert(L, -2);
     lua_setfield(L, -2, "object");

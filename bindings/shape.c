@@ -1,4 +1,4 @@
-// glint.sphere, glint.plane; the fields of glint.spheres, whose constructor is in spheres.c
+// glint.sphere, glint.plane; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/glintL.h"
@@ -32,6 +32,14 @@ static const glintL_field PLANE_FIELDS[] = {
 };
 
 static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
+
+static const char *const SHADINGS[] = { "flat", "phong", "gouraud", NULL };
+
+static const glintL_field MESH_FIELDS[] = {
+    { .name = "shading", .kind = GLINTL_ENUM, .offset = AT(shading), .names = SHADINGS },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
 
 // Pushes the list of materials given to glint.spheres{materials = ...}; nil for other shapes.
 static void push_kept_list(lua_State *L)
@@ -69,10 +77,13 @@ static int get_materials(lua_State *L)
 
 static const luaL_Reg SPHERES_GETTERS[] = { { "count", get_count }, { "materials", get_materials }, { NULL, NULL } };
 
+static const luaL_Reg MESH_GETTERS[] = { { "count", get_count }, { NULL, NULL } };
+
 static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
     [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
     [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS },
+    [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MESH_GETTERS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
@@ -140,6 +151,8 @@ void glintL_open_shape(lua_State *L)
         { "sphere", new_sphere },
         { "plane", new_plane },
         { "spheres", glintL_new_spheres },
+        { "mesh", glintL_new_mesh },
+        { "sphere_mesh", glintL_new_sphere_mesh },
         { NULL, NULL },
     };
     glintL_open_class(L, &CLASS);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- One primitive ----
+// ---- What is equal ----
 
 static float float_up(double x)
 {
@@ -17,117 +17,28 @@ static float float_up(double x)
 
 static float float_down(double x) { return -float_up(-x); }
 
-static void sphere_init(glint_prim *prim, const double center[3], double radius)
-{
-    prim->kind = GLINT_PRIM_SPHERE;
-    for (int c = 0; c < 3; c++)
-        prim->center[c] = center[c] + 0.0; // -0 and 0 are one place
-    prim->radius = radius;
-    prim->scale = power_of_two_scale(radius);
-    const double r = radius * prim->scale;
-    prim->r2 = r * r;
-    prim->r2_low = fma(r, r, -prim->r2);
-}
-
-static void plane_init(glint_prim *prim, const double point[3], const double normal[3])
-{
-    prim->kind = GLINT_PRIM_PLANE;
-    for (int c = 0; c < 3; c++)
-        prim->center[c] = point[c] + 0.0;
-    vec_normalize(prim->normal, normal);
-    prim->scale = 1;
-}
-
-static bool is_bounded(const glint_prim *prim) { return prim->kind != GLINT_PRIM_PLANE; }
-
-/// All that a primitive's place is made of.
-static void prim_place(const glint_prim *prim, double out[8])
-{
-    out[0] = prim->kind;
-    vec_copy(out + 1, prim->center);
-    vec_copy(out + 4, prim->normal);
-    out[7] = prim->radius;
-}
-
-// ---- From shapes to primitives ----
-
-/// The number of the shape's material in `materials`, which grows as new ones appear.
-static glint_status material_number(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error)
-{
-    size_t index = glint_list_find(materials, material);
-    glint_status status = GLINT_OK;
-    if (index == materials->count)
-        status = glint_list_add(materials, material, error);
-    *out = (uint32_t)index;
-    return status;
-}
-
-static glint_status add_shape(glint_geometry *geometry, const glint_shape *shape, uint32_t number, uint32_t *numbers,
-                              glint_error *error)
-{
-    const glint_shape_desc *desc = &shape->desc;
-    for (size_t i = 0; i < shape->material_count; i++) {
-        glint_status status = material_number(&geometry->materials, shape->materials[i], &numbers[i], error);
-        if (status)
-            return status;
-    }
-    for (size_t i = 0; i < shape->count; i++) {
-        const uint32_t at = geometry->table.prim_count++;
-        glint_prim *prim = &geometry->prims[at];
-        if (desc->kind == GLINT_SHAPE_SPHERES)
-            sphere_init(prim, shape->spheres[i], shape->spheres[i][3]);
-        else if (desc->kind == GLINT_SHAPE_SPHERE)
-            sphere_init(prim, desc->center, desc->radius);
-        else
-            plane_init(prim, desc->point, desc->normal);
-        prim->id = at;
-        prim->two_sided = desc->two_sided;
-        prim->material = numbers[shape->index ? shape->index[i] : 0];
-        geometry->prim_shape[at] = number;
-    }
-    return GLINT_OK;
-}
-
-static glint_status add_shapes(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
-{
-    size_t count = 0, materials = 0;
-    for (size_t i = 0; i < scene->shapes.count; i++) {
-        const glint_shape *shape = glint_scene_shape(scene, i);
-        count += shape->count;
-        materials = shape->material_count > materials ? shape->material_count : materials;
-    }
-    if (count >= INT32_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", count);
-    uint32_t *numbers = glint_alloc(materials, sizeof *numbers);
-    geometry->prims = glint_alloc(count, sizeof *geometry->prims);
-    geometry->prim_shape = glint_alloc(count, sizeof *geometry->prim_shape);
-    glint_status status = GLINT_OK;
-    if (!numbers || !geometry->prims || !geometry->prim_shape)
-        status = glint_fail_nomem(error);
-    for (size_t i = 0; i < scene->shapes.count && !status; i++)
-        status = add_shape(geometry, glint_scene_shape(scene, i), (uint32_t)i, numbers, error);
-    free(numbers);
-    geometry->table.prims = geometry->prims;
-    return status;
-}
-
 /// Finds, for each primitive, the first one with bit-equal geometry.
 static glint_status find_coincident(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
-    size_t size = 16;
-    while (size < 2 * (size_t)count)
+    size_t size = 16, unlike = 0;
+    for (uint32_t i = 0; i < count; i++)
+        unlike += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
+    while (size < 2 * unlike)
         size *= 2;
     uint32_t *slots = calloc(size, sizeof *slots); // index + 1
     if (!slots)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < count; i++) {
-        double place[8], other[8];
-        prim_place(&geometry->prims[i], place);
-        size_t at = glint_key_add((glint_key) { 0 }, place, sizeof place).low & (size - 1);
+        double place[GLINT_PLACE_MAX], other[GLINT_PLACE_MAX];
+        geometry->prims[i].coincident = i;
+        if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
+            continue; // has a rule for all triangles of its plane
+        const size_t bytes = (size_t)glint_prim_place(&geometry->prims[i], place) * sizeof *place;
+        size_t at = glint_key_add((glint_key) { 0 }, place, bytes).low & (size - 1);
         for (; slots[at]; at = (at + 1) & (size - 1)) {
-            prim_place(&geometry->prims[slots[at] - 1], other);
-            if (memcmp(place, other, sizeof place) == 0)
+            glint_prim_place(&geometry->prims[slots[at] - 1], other);
+            if (memcmp(place, other, bytes) == 0) // the kind comes first: other counts differ there
                 break;
         }
         if (!slots[at])
@@ -143,18 +54,22 @@ static glint_status find_coincident(glint_geometry *geometry, glint_error *error
 static void make_keys(glint_geometry *geometry)
 {
     enum { CHUNK = 32 };
+    size_t smooth = 0;
     for (uint32_t i = 0; i < geometry->table.prim_count; i += CHUNK) {
-        double place[CHUNK][8];
+        double place[CHUNK * GLINT_PLACE_MAX];
         uint32_t look[CHUNK][2], n = 0;
+        size_t numbers = 0;
         for (; n < CHUNK && i + n < geometry->table.prim_count; n++) {
             const glint_prim *prim = &geometry->prims[i + n];
-            prim_place(prim, place[n]);
-            look[n][0] = prim->two_sided;
+            numbers += (size_t)glint_prim_place(prim, place + numbers);
+            look[n][0] = prim->two_sided | (prim->kind == GLINT_PRIM_TRIANGLE && prim->item != GLINT_MISS ? 2u : 0);
             look[n][1] = prim->material;
+            smooth += look[n][0] >> 1;
         }
-        geometry->where = glint_key_add(geometry->where, place, n * sizeof place[0]);
+        geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
         geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
     }
+    geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
 }
 
 // ---- The index's frame ----
@@ -176,18 +91,23 @@ static void choose_frame(glint_geometry *geometry)
         double sample[SAMPLES + 1] = { 0 };
         size_t n = 0;
         for (uint32_t i = 0; i < count; i += step)
-            sample[n++] = geometry->prims[i].center[c];
+            sample[n++] = geometry->prims[i].center[c]; // of a triangle, a corner
         qsort(sample, n, sizeof *sample, by_value);
         table->reference[c] = n ? sample[n / 2] : 0;
     }
     double largest = 0;
     for (uint32_t i = 0; i < count; i++) {
         const glint_prim *prim = &geometry->prims[i];
-        double offset[3];
-        vec_sub(offset, prim->center, table->reference);
-        if (is_bounded(prim))
-            largest = fmax(largest, vec_max_abs(offset) + prim->radius);
-        table->extent = fmax(table->extent, vec_max_abs(prim->center) + prim->radius);
+        double lower[3], upper[3];
+        if (!glint_prim_bounded(prim)) {
+            table->extent = fmax(table->extent, vec_max_abs(prim->center));
+            continue;
+        }
+        glint_prim_bounds(prim, lower, upper);
+        table->extent = fmax(table->extent, fmax(vec_max_abs(lower), vec_max_abs(upper)));
+        vec_sub(lower, lower, table->reference);
+        vec_sub(upper, upper, table->reference);
+        largest = fmax(largest, fmax(vec_max_abs(lower), vec_max_abs(upper)));
     }
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
@@ -195,19 +115,23 @@ static void choose_frame(glint_geometry *geometry)
 /// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
 #define BOX_MAX 0x1p120
 
+/// Its box, and a sphere around it: its own, or that of the box.
 static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
 {
-    double center[3];
-    vec_sub(center, prim->center, table->reference);
-    vec_scale(center, center, table->scale);
-    const double radius = prim->radius * table->scale, distance = sqrt(vec_dot(center, center));
+    double lower[3], upper[3], center[3], half[3];
+    glint_prim_bounds(prim, lower, upper);
     for (int c = 0; c < 3; c++) {
-        const double slack = 0x1p-50 * (fabs(center[c]) + radius);
+        half[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0.5 * upper[c] - 0.5 * lower[c];
+        center[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->center[c] : 0.5 * upper[c] + 0.5 * lower[c];
+        center[c] = (center[c] - table->reference[c]) * table->scale;
+        half[c] *= table->scale;
+        const double slack = 0x1p-50 * (fabs(center[c]) + half[c]);
         prim->filter_center[c] = (float)center[c];
-        box->lower[c] = float_down(fmax(center[c] - radius - slack, -BOX_MAX));
-        box->upper[c] = float_up(fmin(center[c] + radius + slack, BOX_MAX));
+        box->lower[c] = float_down(fmax(center[c] - half[c] - slack, -BOX_MAX));
+        box->upper[c] = float_up(fmin(center[c] + half[c] + slack, BOX_MAX));
     }
-    prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * distance + FLT_MIN);
+    const double radius = prim->kind == GLINT_PRIM_SPHERE ? half[0] : sqrt(vec_dot(half, half));
+    prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(center, center)) + FLT_MIN);
 }
 
 static glint_status index_create(glint_geometry *geometry, glint_error *error)
@@ -226,7 +150,7 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
         prim->filter_bound = HUGE_VALF;
-        if (is_bounded(prim)) {
+        if (glint_prim_bounded(prim)) {
             place_in_frame(&geometry->table, prim, &index->boxes[index->box_count]);
             index->bounded[index->box_count++] = i;
         } else {
@@ -353,7 +277,9 @@ void glint_geometry_release(glint_geometry *geometry)
     index_release(geometry->index);
     glint_list_free(&geometry->materials);
     free(geometry->prims);
-    free(geometry->prim_shape);
+    free(geometry->prim_part);
+    free(geometry->parts);
+    free(geometry->normals);
     free(geometry->unbounded);
     free(geometry);
 }
@@ -361,7 +287,7 @@ void glint_geometry_release(glint_geometry *geometry)
 static glint_status fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
 {
     const glint_geometry *last = scene->geometry;
-    glint_status status = add_shapes(geometry, scene, error);
+    glint_status status = glint_geometry_fill(geometry, scene, error);
     if (!status)
         status = find_coincident(geometry, error);
     if (status)
@@ -375,6 +301,12 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
         atomic_fetch_add(&geometry->index->references, 1);
     }
     return status;
+}
+
+uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
+{
+    const glint_part *part = &geometry->parts[geometry->prim_part[id]];
+    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim);
 }
 
 /// Every change of a shape gives it a number that no other state of any shape has.

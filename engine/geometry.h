@@ -22,12 +22,21 @@ typedef struct glint_index {
     glint_bvh bvh;
 } glint_index;
 
+/// A shape's run of primitives.
+typedef struct glint_part {
+    glint_shape *shape; ///< the scene's
+    uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
+} glint_part;
+
 struct glint_geometry {
     atomic_size_t references;
     glint_key revision; ///< of the shapes it was made from
     glint_prim *prims; ///< in order of definition, and in that of the index once it is built
     bool arranged; ///< the latter
-    uint32_t *prim_shape; ///< which shape of the scene each is of
+    uint32_t *prim_part; ///< which part each is of, by id
+    glint_part *parts; ///< in order of definition
+    uint32_t part_count;
+    glint_corner_normals *normals; ///< of triangles that are shaded smoothly
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
@@ -43,5 +52,18 @@ void glint_geometry_release(glint_geometry *geometry);
 /// Builds the index unless it is there. Any thread; `pool` may be NULL. *table: with the index.
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error);
+
+/// The number of a primitive's object in order of definition, from 0: a mesh is one object, a sphere of many is one.
+uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
+
+/// geometry_prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
+glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
+/// All that a primitive's place is made of. Returns how many numbers.
+enum { GLINT_PLACE_MAX = 10 };
+int glint_prim_place(const glint_prim *prim, double out[GLINT_PLACE_MAX]);
+/// A box around a primitive that has an end.
+void glint_prim_bounds(const glint_prim *prim, double lower[3], double upper[3]);
+
+static inline bool glint_prim_bounded(const glint_prim *prim) { return prim->kind != GLINT_PRIM_PLANE; }
 
 #endif

@@ -158,21 +158,35 @@ void glint_camera_release(glint_camera *camera);
 
 typedef struct glint_shape glint_shape;
 
-typedef enum glint_shape_kind { GLINT_SHAPE_SPHERE, GLINT_SHAPE_PLANE, GLINT_SHAPE_SPHERES } glint_shape_kind;
+typedef enum glint_shape_kind {
+    GLINT_SHAPE_SPHERE,
+    GLINT_SHAPE_PLANE,
+    GLINT_SHAPE_SPHERES, ///< made by glint_spheres_create
+    GLINT_SHAPE_MESH ///< made by the functions of meshes
+} glint_shape_kind;
+
+/// Where a mesh's normals come from.
+typedef enum glint_shading {
+    GLINT_SHADING_FLAT, ///< each face has its own
+    GLINT_SHADING_PHONG, ///< between those of the corners, for each sample
+    GLINT_SHADING_GOURAUD ///< light is worked out at the vertices; refused: not there yet
+} glint_shading;
 
 typedef struct glint_shape_desc {
-    glint_shape_kind kind; ///< GLINT_SHAPE_SPHERE or GLINT_SHAPE_PLANE
+    glint_shape_kind kind; ///< of glint_shape_create: GLINT_SHAPE_SPHERE or GLINT_SHAPE_PLANE
     glint_material *material; ///< retained by the shape; NULL: a material with default fields
     bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
     double center[3], radius; ///< sphere: finite, radius > 0
     double point[3], normal[3]; ///< plane: finite, normal not zero, need not be unit
+    glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
 
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
-/// The description; of a GLINT_SHAPE_SPHERES shape only kind, two_sided, name and material (its first) mean anything.
+/// The description; of a GLINT_SHAPE_SPHERES shape only kind, two_sided, name and material (its first) mean anything, of
+/// a mesh these and `shading`.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 glint_shape *glint_shape_retain(glint_shape *shape);
 void glint_shape_release(glint_shape *shape);
@@ -191,7 +205,44 @@ typedef struct glint_spheres_desc {
 
 /// A message names the sphere at fault, counted from 1: "data: sphere 12: radius > 0 expected, got -1".
 glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **out, glint_error *error);
-size_t glint_spheres_count(const glint_shape *shape); ///< 1 for other shapes
+size_t glint_spheres_count(const glint_shape *shape); ///< of a mesh its triangles; 1 for other shapes
+
+/// Polygons that share vertices. A face of more than three corners is cut into triangles: a fan from its first corner,
+/// or, where that would leave the polygon, ear by ear. Corners that run counter-clockwise are seen from the front.
+typedef struct glint_mesh_desc {
+    const double *vertices; ///< x, y, z each; finite; copied, like everything here
+    size_t vertex_count; ///< 3 .. 2^31 - 2
+    const uint32_t *corners; ///< numbers of vertices, from 0, face after face
+    const uint32_t *face_sizes; ///< corners of each face, 3 or more
+    size_t face_count; ///< 1 .. 2^31 - 2; so is the number of triangles
+    const double *normals; ///< x, y, z each; finite, not zero, need not be unit; NULL: none
+    size_t normal_count;
+    const uint32_t
+        *normal_corners; ///< a number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none
+        ///< there. NULL: normals belong to vertices, one each
+    bool has_shading; ///< false: phong where there are normals, flat where there are none
+    glint_shading shading; ///< phong without normals: those of the faces around a vertex are averaged by area
+    glint_material *material; ///< retained; NULL: one with default fields
+    bool two_sided;
+    char name[GLINT_NAME_SIZE];
+} glint_mesh_desc;
+
+#define GLINT_NO_NORMAL 0xffffffffu
+
+/// No faces, two-sided.
+glint_mesh_desc glint_mesh_desc_default(void);
+/// A message names the face and the vertex at fault, counted from 1: "faces[3]: vertex 1 .. 8 expected, got 9",
+/// "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle of no area within a larger
+/// face is left out.
+glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
+/// Reads a Wavefront .obj file: v, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative).
+/// Texture coordinates, groups, materials, lines and points are passed over. `desc` gives the fields that are not in the
+/// file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT with the number of the line when it is not as it should be.
+glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
+/// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,
+/// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.
+glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
+                                      const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 
 // ---- Scene --------------------------------------------------------------------------------------------------------
 
@@ -220,9 +271,10 @@ size_t glint_scene_light_count(const glint_scene *scene);
 typedef struct glint_hit {
     double t; ///< point = origin + t direction; t > 0
     double point[3];
-    double normal[3]; ///< unit, geometric, outward (a plane's own normal)
+    double normal[3]; ///< unit, geometric, outward (a plane's own normal; a triangle's faces where its corners run
+        ///< counter-clockwise)
     glint_shape *shape; ///< borrowed from the scene
-    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, from 0
+    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, which triangle of a mesh, from 0
 } glint_hit;
 
 /// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero.

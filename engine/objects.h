@@ -21,11 +21,21 @@ struct glint_camera {
     glint_camera_desc desc;
 };
 
+/// A mesh's triangles.
+typedef struct glint_mesh {
+    double (*vertices)[3];
+    uint32_t (*triangles)[3]; ///< numbers of vertices
+    size_t vertex_count, triangle_count;
+    double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
+    uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
+} glint_mesh;
+
 struct glint_shape {
     size_t references;
     uint64_t revision; ///< another one after every change; no two shapes ever have the same
     glint_shape_desc desc;
-    size_t count; ///< spheres; 1 for other kinds
+    size_t count; ///< spheres, or triangles; 1 for other kinds
+    glint_mesh *mesh; ///< GLINT_SHAPE_MESH
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
     uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
     glint_material **materials;
@@ -43,6 +53,15 @@ struct glint_scene {
 
 static inline glint_shape *glint_scene_shape(const glint_scene *scene, size_t i) { return scene->shapes.items[i]; }
 static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i) { return scene->lights.items[i]; }
+
+/// A shape of `count` primitives with room for `material_count` materials, none there yet; NULL: no memory.
+glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
+/// Takes a reference to `material`, or makes one with default fields.
+glint_material *glint_material_or_default(glint_material *material, glint_error *error);
+void glint_mesh_free(glint_mesh *mesh);
+/// Makes normals of the vertices where a mesh that is to be smooth has none.
+glint_status glint_mesh_smooth(glint_mesh *mesh, glint_error *error);
+glint_status glint_check_shading(glint_shading shading, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);

@@ -128,6 +128,25 @@ static void highlights(explainer *e, const glint_scene *scene, const char *effec
     glint_list_free(&seen);
 }
 
+typedef bool shape_test(const glint_shape *shape);
+
+static bool is_mesh(const glint_shape *shape) { return shape->mesh; }
+static bool is_smooth(const glint_shape *shape) { return shape->mesh && shape->desc.shading == GLINT_SHADING_PHONG; }
+
+static void shapes(explainer *e, const glint_scene *scene, const char *effect, shape_test *test)
+{
+    char caller[2 * GLINT_NAME_SIZE];
+    begin(e, effect);
+    for (size_t i = 0; i < scene->shapes.count; i++) {
+        const glint_shape *shape = glint_scene_shape(scene, i);
+        if (!test(shape))
+            continue;
+        glint_describe_shape(&shape->desc, i + 1, caller, sizeof caller);
+        called_by(e, caller);
+    }
+    end(e);
+}
+
 static void one(explainer *e, bool called, const char *effect, const char *format, ...)
 {
     if (!called)
@@ -161,6 +180,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "light by radiance", radiates);
         lights(e, scene, "hard shadow", casts_hard_shadows);
         lights(e, scene, "soft shadow", casts_soft_shadows);
+        shapes(e, scene, "triangles", is_mesh);
+        shapes(e, scene, "smooth normals", is_smooth);
     }
     if (plan->highlights) {
         highlights(e, scene, "Phong highlight", GLINT_MODEL_PHONG);

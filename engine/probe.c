@@ -26,6 +26,7 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
                                    .hits = &g->hits,
                                    .prim = g->prim,
                                    .prims = geometry->prims,
+                                   .scale = geometry->scale,
                                    .t = g->t,
                                    .material = g->material,
                                    .back = &g->back,
@@ -41,14 +42,10 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
-static void read_hit(const glint_scene *scene, const uint32_t *prim_shape, uint32_t id, const lane_group *g,
-                     double scale, glint_hit *out)
+static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_group *g, double scale, glint_hit *out)
 {
-    const uint32_t shape = prim_shape[id];
-    uint32_t first = id;
-    while (first > 0 && prim_shape[first - 1] == shape)
-        first--;
-    *out = (glint_hit) { .t = g->t[0] * scale, .shape = glint_scene_shape(scene, shape), .element = id - first };
+    const glint_part *part = &geometry->parts[geometry->prim_part[id]];
+    *out = (glint_hit) { .t = g->t[0] * scale, .shape = part->shape, .element = id - part->first_prim };
     const double turn = g->back & 1 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         out->point[c] = g->point[c][0];
@@ -87,7 +84,7 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
         cast_lane(stages, &table, g);
         *hit = g->hits & 1;
         if (*hit)
-            read_hit(scene, geometry->prim_shape, table.prims[g->prim[0]].id, g, scale, out);
+            read_hit(geometry, table.prims[g->prim[0]].id, g, scale, out);
     }
     glint_geometry_release(geometry);
     free(g);

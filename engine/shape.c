@@ -26,7 +26,7 @@ static glint_status check(const glint_shape_desc *desc, glint_error *error)
         glint_status status = glint_check_vector("point", desc->point, error);
         return status ? status : glint_check_direction("normal", desc->normal, error);
     }
-    return GLINT_OK;
+    return desc->kind == GLINT_SHAPE_MESH ? glint_check_shading(desc->shading, error) : GLINT_OK;
 }
 
 static uint64_t next_revision(void)
@@ -35,8 +35,7 @@ static uint64_t next_revision(void)
     return atomic_fetch_add(&last, 1) + 1;
 }
 
-/// Takes a reference to `material`, or makes one with default fields.
-static glint_material *material_or_default(glint_material *material, glint_error *error)
+glint_material *glint_material_or_default(glint_material *material, glint_error *error)
 {
     if (material)
         return glint_material_retain(material);
@@ -45,7 +44,7 @@ static glint_material *material_or_default(glint_material *material, glint_error
     return material;
 }
 
-static glint_shape *shape_alloc(const glint_shape_desc *desc, size_t material_count)
+glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count)
 {
     glint_shape *shape = calloc(1, sizeof *shape);
     if (!shape)
@@ -69,10 +68,10 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
     glint_status status = check(desc, error);
     if (status)
         return status;
-    glint_shape *shape = shape_alloc(desc, 1);
+    glint_shape *shape = glint_shape_alloc(desc, 1);
     if (!shape)
         return glint_fail_nomem(error);
-    shape->materials[0] = material_or_default(desc->material, error);
+    shape->materials[0] = glint_material_or_default(desc->material, error);
     if (!shape->materials[0]) {
         glint_shape_release(shape);
         return GLINT_ERR_NOMEM;
@@ -90,7 +89,11 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     glint_status status = check(desc, error);
     if (status)
         return status;
-    glint_material *material = material_or_default(desc->material, error);
+    if (shape->mesh && desc->shading == GLINT_SHADING_PHONG)
+        status = glint_mesh_smooth(shape->mesh, error);
+    if (status)
+        return status;
+    glint_material *material = glint_material_or_default(desc->material, error);
     if (!material)
         return GLINT_ERR_NOMEM;
     glint_material_release(shape->materials[0]);
@@ -117,6 +120,7 @@ void glint_shape_release(glint_shape *shape)
     for (size_t i = 0; i < shape->material_count; i++)
         glint_material_release(shape->materials[i]);
     free(shape->materials);
+    glint_mesh_free(shape->mesh);
     free(shape->spheres);
     free(shape->index);
     free(shape);
@@ -185,12 +189,12 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
     base.two_sided = desc->two_sided;
     memcpy(base.name, desc->name, sizeof base.name);
     const size_t materials = desc->material_count ? desc->material_count : 1;
-    glint_shape *shape = shape_alloc(&base, materials);
+    glint_shape *shape = glint_shape_alloc(&base, materials);
     if (!shape)
         return glint_fail_nomem(error);
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < materials && !status; i++) {
-        shape->materials[i] = material_or_default(desc->material_count ? desc->materials[i] : NULL, error);
+        shape->materials[i] = glint_material_or_default(desc->material_count ? desc->materials[i] : NULL, error);
         if (shape->materials[i])
             shape->material_count++;
         else
@@ -209,7 +213,7 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
 
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
 {
-    static const char *const kinds[] = { "sphere", "plane", "spheres" };
+    static const char *const kinds[] = { "sphere", "plane", "spheres", "mesh" };
     if (desc->name[0])
         snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
     else

@@ -55,6 +55,7 @@ typedef struct glint_tile {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double slack[GLINT_TILE_SAMPLES]; ///< see glint_surface_args
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];

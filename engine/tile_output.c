@@ -55,7 +55,8 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const bool hit = tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
         depth[i] = HUGE_VALF;
-        id[i] = hit ? (float)(frame->geometry.prims[tile->at.prim[i]].id + 1) : 0;
+        id[i] =
+            hit ? (float)(glint_geometry_object(plan->geometry, frame->geometry.prims[tile->at.prim[i]].id) + 1) : 0;
         double d[3] = { 0 };
         for (int c = 0; c < 3; c++) {
             normal[c][i] = hit ? (float)real_at(tile->normal[c], precision, i) : 0;

@@ -135,6 +135,9 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
                                 .hits = tile->at.hits,
                                 .prim = tile->at.prim,
                                 .prims = frame->geometry.prims,
+                                .scale = frame->geometry.scale,
+                                .corner_normals = frame->geometry.corner_normals,
+                                .slack = frame->geometry.triangles ? tile->slack : NULL,
                                 .camera = rays_of(tile),
                                 .t = tile->at.t,
                                 .material = tile->material,
@@ -216,6 +219,8 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
                                 .directional = light->directional,
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
+                                .camera = rays_of(tile),
+                                .slack = tile->slack,
                                 .rays = &tile->counts.shadow };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
@@ -223,8 +228,10 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.open[i] = tile->at.light[slot[i]].open;
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         args.point[c] = tile->point[c];
+        args.direction[c] = tile->direction[c];
+    }
     frame->stages->geometry[plan->desc.precision].occlude(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
     tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;

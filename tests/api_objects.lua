@@ -39,6 +39,64 @@ function tests.sphere_and_plane()
   raises("plane.radius: no such field", function() p.radius = 1 end)
 end
 
+-- The message holds `expected`.
+local function refused(expected, f)
+  local ok, message = pcall(f)
+  check(not ok and tostring(message):find(expected, 1, true), "expected an error with <" .. expected .. ">, got " .. tostring(message))
+end
+
+function tests.meshes()
+  local corners = { { 0, 0, 0 }, { 2, 0, 0 }, { 2, 2, 0 }, { 0, 2, 0 } }
+  local flat = { 0, 0, 0, 2, 0, 0, 2, 2, 0, 0, 2, 0 }
+  local function square(t)
+    t.vertices = t.vertices or corners
+    t.faces = t.faces or { { 1, 2, 3, 4 } }
+    return glint.mesh(t)
+  end
+  local red = glint.material { name = "red" }
+  local m = square { material = red, name = "tile", two_sided = false }
+  check(m.count == 2 and m.material == red and m.shading == "flat" and not m.two_sided and tostring(m) == "mesh 'tile'", "fields")
+  for _, t in ipairs {
+    {}, { vertices = flat }, { faces = { 1, 2, 3, 1, 3, 4 } }, { faces = { { 1, 2.0, 3 }, { 1, 3, 4 } } },
+    { vertices = string.pack("=" .. ("f"):rep(12), table.unpack(flat)), format = "f32" },
+    { vertices = string.pack("=" .. ("d"):rep(12), table.unpack(flat)), format = "f64" },
+    { faces = string.pack("=I4I4I4I4I4I4", 1, 2, 3, 1, 3, 4) },
+  } do
+    local h = glint.scene { square(t) }:cast({ 0.5, 1.5, 9 }, { 0, 0, -1 })
+    check(h and h.t == 9 and h.element == 2 and is(h.normal, 0, 0, 1) and is(h.point, 0.5, 1.5, 0), "the second is hit")
+  end
+  local up = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } }
+  check(square { normals = up }.shading == "phong" and square { normals = up, shading = "flat" }.shading == "flat", "shading")
+  local six = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 1 } }
+  check(square { normals = six, faces = { { 1, 2, 3 }, { 1, 3, 4 } } }.shading == "phong", "one a corner")
+  m.shading = "phong"
+  check(m.shading == "phong", "smooth now")
+  check(glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 16 }.count == 16 * 14, "a sphere of triangles")
+  refused("mesh.shading: \"flat\" or \"phong\" expected", function() m.shading = "gouraud" end)
+  refused("mesh.count: this field is only read", function() m.count = 3 end)
+  refused("mesh.faces[1]: vertex 1 .. 4 expected, got 5", function() square { faces = { { 1, 2, 5 } } } end)
+  refused("mesh.faces[2]: vertex 1 .. 4 expected, got 0", function() square { faces = { 1, 2, 3, 1, 2, 0 } } end)
+  refused("mesh.faces[1]: 3 vertices or more expected, got 2", function() square { faces = { { 1, 2 } } } end)
+  refused("mesh.faces[1]: number of a vertex expected, got 1.5", function() square { faces = { { 1.5, 2, 3 } } } end)
+  refused("mesh.faces: 1 .. 2147483646 expected, got 0", function() square { faces = {} } end)
+  refused("mesh.vertices: 3 .. 2147483646 expected, got 0", function() square { vertices = {}, faces = {} } end)
+  refused("mesh.faces[1]: a face with an area expected", function() square { faces = { { 1, 2, 2 } } } end)
+  refused("mesh.vertices[2][3]: finite number expected, got nan",
+    function() square { vertices = { { 0, 0, 0 }, { 1, 0, 0 / 0 }, { 0, 1, 0 } }, faces = { { 1, 2, 3 } } } end)
+  refused("mesh.vertices[2]: three finite numbers expected, got {1, 0, inf}",
+    function() square { vertices = { 0, 0, 0, 1, 0, 1 / 0, 0, 1, 0 }, faces = { { 1, 2, 3 } } } end)
+  refused("mesh.normals[3]: three finite numbers, not all 0, expected",
+    function() square { normals = { { 0, 0, 1 }, { 0, 0, 1 }, { 0, 0, 0 }, { 0, 0, 1 } } } end)
+  refused("mesh.normals: one a vertex (4) or one a corner of a face (4) expected, got 1", function() square { normals = { { 0, 0, 1 } } } end)
+  refused("mesh: file or faces expected, got both", function() glint.mesh { file = "x.obj", faces = {} } end)
+  refused("mesh: none.obj: No such file or directory", function() glint.mesh { file = "none.obj" } end)
+  refused("mesh.vertices: list of {x, y, z}, flat table or packed string expected, got nil", function() glint.mesh {} end)
+  refused("mesh.format: only packed numbers have a format", function() square { format = "f32" } end)
+  refused("sphere_mesh.segments: whole number", function() glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 2 } end)
+  refused("sphere_mesh.radius: number > 0 expected, got 0",
+    function() glint.sphere_mesh { center = { 0, 0, 0 }, radius = 0, segments = 8 } end)
+end
+
 function tests.spheres()
   local red, blue = glint.material { name = "red" }, glint.material { name = "blue" }
   local rows = { 0, 0, 0, 1, 5, 0, 0, 1 }

@@ -17,8 +17,8 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "camera", "directional_light", "disk_light", "material", "plane", "point_light", "polygon_light", "scene", "sphere",
-  "sphere_light", "spheres", "spot_light", "vector",
+  "camera", "directional_light", "disk_light", "material", "mesh", "plane", "point_light", "polygon_light", "scene",
+  "sphere", "sphere_light", "spheres", "spot_light", "vector",
 }
 
 local function objects()
@@ -35,6 +35,7 @@ local function objects()
     camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
     plane = glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
     spheres = glint.spheres { data = { 0, 0, 0, 1, 2, 0, 0, 1 }, material = material },
+    mesh = glint.mesh { vertices = { 0, 0, 0, 1, 0, 0, 0, 1, 0 }, faces = { { 1, 2, 3 } }, material = material },
     scene = glint.scene { ball, lamp },
     vector = ball.center,
   }
@@ -59,7 +60,7 @@ local function value(depth)
   local t = {}
   for i = 1, math.random(0, 4) do t[i] = value(depth - 1) end
   for _ = 1, math.random(0, 3) do
-    t[any { "name", "center", "position", "diffuse", "data", "camera", "at", "eye", "x", "n", 0, 1.5, true }] =
+    t[any { "name", "center", "position", "diffuse", "data", "vertices", "faces", "normals", "camera", "at", "eye", "x", "n", 0, 1.5, true }] =
       value(depth - 1)
   end
   if math.random() < 0.2 then

@@ -100,7 +100,8 @@ static const field camera_fields[] = {
 static const field shape_fields[] = {
 #define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
     S(kind, FIXED, 0, 0),      S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
-    S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(name, FIXED, 0, 0),
+    S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
+    S(name, FIXED, 0, 0),
 #undef S
 };
 
@@ -266,6 +267,15 @@ static void edit_frame(world *w)
     glint_scene_set(w->scene, &s, NULL);
 }
 
+static glint_shape *new_mesh(const glint_shape_desc *like)
+{
+    glint_mesh_desc d = glint_mesh_desc_default();
+    glint_shape *shape = NULL;
+    d.material = like->material;
+    assert_int_equal(glint_sphere_mesh_create(like->center, 1.5, 9, &d, &shape, NULL), GLINT_OK);
+    return shape;
+}
+
 static void make_world(world *w)
 {
     memset(w, 0, sizeof *w);
@@ -285,7 +295,9 @@ static void make_world(world *w)
         d.point[1] = -2;
         for (int k = 0; k < 3; k++)
             d.center[k] = uniform(-2, 2);
-        assert_int_equal(glint_shape_create(&d, &w->shapes[i], NULL), GLINT_OK);
+        w->shapes[i] = i == 1 ? new_mesh(&d) : NULL;
+        if (!w->shapes[i])
+            assert_int_equal(glint_shape_create(&d, &w->shapes[i], NULL), GLINT_OK);
         assert_int_equal(glint_scene_add_shape(w->scene, w->shapes[i], NULL), GLINT_OK);
         w->in_scene[i] = true;
     }

@@ -229,7 +229,7 @@ function glint.camera(fields) end
 ---@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
----@alias glint.shape glint.sphere|glint.plane|glint.spheres
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh
 ---@alias glint.light glint.point_light|glint.directional_light|glint.spot_light|glint.area_light
 ---@alias glint.area_light glint.disk_light|glint.polygon_light|glint.sphere_light
 
@@ -283,6 +283,41 @@ function spheres:close() end
 ---@return glint.spheres
 function glint.spheres(fields) end
 
+---@alias glint.shading "flat"|"gouraud"|"phong"
+
+--- Polygons that share vertices, from tables or from a Wavefront .obj file; copied once. Give `file`, or `vertices` and
+--- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
+---@class glint.mesh_fields: glint.shape_fields
+---@field file? string  an .obj file (v, vn, f); relative to the working directory
+---@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
+---@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
+---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
+---@field format? "f32"|"f64"  of packed vertices and normals; required there and refused otherwise
+---@field shading? glint.shading  "flat": each face has its own normal; "phong": between those of the vertices (without `normals`, the mean of the faces around). Default "phong" with normals, else "flat". "gouraud" is not there yet
+
+---@class glint.mesh: glint.shape_fields
+---@field shading glint.shading
+---@field count integer  how many triangles; only read
+local mesh = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function mesh:close() end
+
+---@param fields glint.mesh_fields
+---@return glint.mesh
+function glint.mesh(fields) end
+
+---@class glint.sphere_mesh_fields: glint.shape_fields
+---@field center glint.vec3  world units
+---@field radius number  world units, > 0; the vertices are on the sphere
+---@field segments integer  around the equator, 3 to 16384; half as many from pole to pole
+---@field shading? glint.shading  Default "phong", with the sphere's own normals at the vertices
+
+--- A mesh in the shape of a sphere, to set beside the exact one.
+---@param fields glint.sphere_mesh_fields
+---@return glint.mesh
+function glint.sphere_mesh(fields) end
+
 -- ---- Scene ----
 
 ---@class glint.scene_fields
@@ -311,7 +346,7 @@ function scene:remove(object) end
 ---@field point glint.vector  world units
 ---@field normal glint.vector  unit, geometric, outward (a plane's own)
 ---@field object glint.shape
----@field element? integer  which of a glint.spheres, from 1; nil for other shapes
+---@field element? integer  which of a glint.spheres, or which triangle of a mesh, from 1; nil for other shapes
 
 --- The nearest hit of one ray, in doubles, by the kernels a frame uses.
 ---@param origin glint.vec3  world units

@@ -97,9 +97,11 @@ static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_
     return f_set(prim->filter_bound) + f_load(rays->bound + i);
 #else // where float decides, the filter must see what it sees: the same f, with all its error
     for (int k = 0; k < 3; k++)
-        f[k] = (f_load(rays->origin[k] + i) - f_set((float)prim->center[k])) * f_set((float)prim->scale);
+        f[k] = f_load(rays->origin[k] + i);
     if (prim->kind != GLINT_PRIM_SPHERE)
         return f_set(HUGE_VALF);
+    for (int k = 0; k < 3; k++)
+        f[k] = (f[k] - f_set((float)prim->center[k])) * f_set((float)prim->scale);
     return f_set((float)(prim->radius * prim->scale * (1 + 2e-6))) +
            f_set(GLINT_FILTER_SLACK) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
 #endif
@@ -244,7 +246,9 @@ typedef struct R(candidate) {
     float depth; ///< where its box begins
     unsigned columns, rows; ///< of groups that it may show in, a bit each
     real f[3], c; ///< see R(offset) and R(offset_constant)
-    float base[3], along_s[3], along_t[3], limit2; ///< the filter of a sphere: f x d is linear in s and t
+    float base[3], along_s[3], along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle
+    float limit; ///< sphere: square of how long f x d may be; triangle: how far below 0 e may be
+    real corner[3][3]; ///< of a triangle, from the eye
     _Alignas(64) float row[3][GLINT_GROUP]; ///< base and along_t for the row of groups at hand
 } R(candidate);
 
@@ -307,7 +311,41 @@ static inline void R(make_filter)(const glint_camera_args *camera, R(candidate) 
         candidate->along_t[k] = (float)x[2][k];
     }
     const double limit = prim->radius * prim->scale * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(DOT(f, f));
-    candidate->limit2 = (float)(limit * limit * (1 + 1e-6));
+    candidate->limit = (float)(limit * limit * (1 + 1e-6));
+}
+
+/// A ray meets the triangle where it passes all edges on the side of `volume`, the corners seen from the eye; each is
+/// linear in s and t.
+static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * candidate)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    const double *axis[3] = { camera->forward, camera->right, camera->up };
+    const double s = fmax(fabs(tile->view.s[0]), fabs(tile->view.s[1])) + 2;
+    const double t = fmax(fabs(tile->view.t[0]), fabs(tile->view.t[1])) + 2;
+    double p[3][3], n[3][3], size[3], limit = 0, rays = 0;
+    for (int j = 0; j < 3; j++) {
+        for (int k = 0; k < 3; k++)
+            p[j][k] = candidate->corner[j][k];
+        size[j] = (fabs(p[j][0]) + fabs(p[j][1])) + fabs(p[j][2]);
+        rays += (fabs(axis[0][j]) + s * fabs(axis[1][j])) + t * fabs(axis[2][j]);
+    }
+    for (int j = 0; j < 3; j++) {
+        const double *a = p[(j + 1) % 3], *b = p[(j + 2) % 3];
+        for (int k = 0; k < 3; k++)
+            n[j][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+    }
+    const double rounding = GLINT_REAL == 64 ? 0x1p-46 : 0x1p-17, volume = DOT(p[0], n[0]);
+    const double side = volume < 0 ? -1 : 1;
+    for (int j = 0; j < 3; j++) {
+        const double base = DOT(n[j], axis[0]), along_s = DOT(n[j], axis[1]), along_t = DOT(n[j], axis[2]);
+        candidate->base[j] = (float)(side * base);
+        candidate->along_s[j] = (float)(side * along_s);
+        candidate->along_t[j] = (float)(side * along_t);
+        limit = fmax(limit, 0x1p-20 * ((fabs(base) + s * fabs(along_s)) + t * fabs(along_t)) +
+                                rounding * size[(j + 1) % 3] * size[(j + 2) % 3] * rays);
+    }
+    const bool edge_on = !(fabs(volume) > rounding * size[0] * size[1] * size[2]);
+    candidate->limit = edge_on ? HUGE_VALF : (float)limit + FLT_MIN;
 }
 
 static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
@@ -319,6 +357,15 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
     _Alignas(64) real lanes[VR];
     vr f[3];
     candidate->id = id;
+    if (prim->kind != GLINT_PRIM_PLANE && !tile->scaled)
+        R(scale_tile)(tile);
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                candidate->corner[j][k] = ((real)prim->corner[j][k] - (real)eye[k]) * (real)args->geometry->scale;
+        R(make_triangle_filter)(tile, candidate);
+        return;
+    }
     R(offset)(origin, prim, f);
     for (int k = 0; k < 3; k++) {
         r_store(lanes, f[k]);
@@ -326,28 +373,42 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
     }
     r_store(lanes, R(offset_constant)(f, prim));
     candidate->c = lanes[0];
-    if (prim->kind != GLINT_PRIM_SPHERE)
-        return;
-    if (!tile->scaled)
-        R(scale_tile)(tile);
-    R(make_filter)(args->camera, candidate);
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        R(make_filter)(args->camera, candidate);
 }
 
 /// Lanes of group (x, y) that pass near the candidate.
 static inline unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
-    if (candidate->prim->kind != GLINT_PRIM_SPHERE)
+    if (candidate->prim->kind == GLINT_PRIM_PLANE)
         return 0xffff;
+    const bool triangle = candidate->prim->kind == GLINT_PRIM_TRIANGLE;
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const vf s = f_load(tile->s[x] + i);
         vf v[3];
         for (int k = 0; k < 3; k++)
             v[k] = f_load(candidate->row[k] + i) + s * f_set(candidate->along_s[k]);
-        const vf reach2 = f_set(candidate->limit2) * (f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i));
+        if (triangle) {
+            near |= (~fm_bits(f_lt(f_min(f_min(v[0], v[1]), v[2]), f_set(-candidate->limit))) & ((1u << VF) - 1)) << i;
+            continue;
+        }
+        const vf reach2 = f_set(candidate->limit) * (f_load(tile->ss[x] + i) + f_load(tile->tt[y] + i));
         near |= (~fm_bits(f_lt(reach2, DOT(v, v))) & ((1u << VF) - 1)) << i;
     }
     return near;
+}
+
+/// f: the candidate's, in every lane.
+static inline rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3],
+                                   const vr d[3], vr *t)
+{
+    vr corner[3][3];
+    if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)
+        return R(meet)(f, r_set(candidate->c), d, candidate->prim, t);
+    for (int j = 0; j < 9; j++)
+        corner[j / 3][j % 3] = r_set(candidate->corner[j / 3][j % 3]);
+    return R(meet_triangle)(corner, d, r_set(args->geometry->scale), t);
 }
 
 /// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.
@@ -364,7 +425,7 @@ static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate
             continue;
         vr d[3], t;
         R(load_direction)(directions, args->direction, 0, i, d);
-        const rm hit = R(meet)(f, r_set(candidate->c), d, candidate->prim, &t);
+        const rm hit = R(meet_candidate)(args, candidate, f, d, &t);
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + i, candidate->id, hit, t);
@@ -470,7 +531,7 @@ static inline void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) *
         rm hit = rm_from_bits(0);
         if (lanes) {
             R(load_direction)(directions, args->direction, 0, i, d);
-            hit = rm_and(rm_from_bits(lanes), R(meet)(f, r_set(candidate->c), d, candidate->prim, &t));
+            hit = rm_and(rm_from_bits(lanes), R(meet_candidate)(args, candidate, f, d, &t));
             hit = rm_and(hit, r_lt(t, r_set(HUGE_VAL)));
         }
         r_store((real *)args->t + at + i, r_select(hit, t, r_set(HUGE_VAL)));
@@ -614,11 +675,17 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
-        vr o[3], d[3], f[3], t;
+        vr o[3], d[3], f[3], p[3][3], t;
         R(load3)(args->origin, at + i, o);
         R(load3)(args->direction, at + i, d);
-        R(offset)(o, prim, f);
-        const rm hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
+        rm hit;
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            R(corners_from)(o, prim, args->geometry->scale, p);
+            hit = R(meet_triangle)(p, d, r_set(args->geometry->scale), &t);
+        } else {
+            R(offset)(o, prim, f);
+            hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
+        }
         if (rm_bits(hit))
             R(keep_nearest)(args, at + i, id, hit, t);
     }

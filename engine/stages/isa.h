@@ -13,6 +13,7 @@
 #define GLINT_REAL 64
 #include "engine/stages/real.h"
 #include "engine/stages/camera.h"
+#include "engine/stages/triangle.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
 #include "engine/stages/lamp.h"
@@ -24,6 +25,7 @@
 #define GLINT_REAL 32
 #include "engine/stages/real.h"
 #include "engine/stages/camera.h"
+#include "engine/stages/triangle.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/surface.h"
 #include "engine/stages/lamp.h"

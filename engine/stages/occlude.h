@@ -49,6 +49,8 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     double f[3], height;
     for (int k = 0; k < 3; k++)
         f[k] = position[k] - prim->center[k];
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return 0; // asked for each lane
     if (prim->kind == GLINT_PRIM_PLANE) {
         height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {
@@ -176,6 +178,39 @@ static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
     return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
 }
 
+/// The lanes of `wanted` that a triangle blocks from lights at `position`; of these, `own` are its own points.
+static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const glint_prim *prim,
+                                       const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted)
+{
+    const double scale = args->geometry->scale;
+    const unsigned back = args->back[at / GLINT_GROUP];
+    const uint32_t g = (uint32_t)(at / GLINT_GROUP), across = args->camera ? args->camera->groups_across : 1;
+    const R(group_directions) viewing = R(directions_of)(args->camera, g % across, g / across);
+    const vr zero = r_set(0);
+    unsigned blocked = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1), own_lanes = own >> i & lanes;
+        if (!lanes)
+            continue;
+        const vr light[3] = { r_load(position[0] + i), r_load(position[1] + i), r_load(position[2] + i) };
+        const R(triangle_plane) plane = R(plane_of)(prim, scale, light, args->directional);
+        unsigned hit = 0;
+        if (own_lanes)
+            hit = own_lanes &
+                  ((rm_bits(r_lt(zero, plane.light)) & back >> i) | (rm_bits(r_lt(plane.light, zero)) & ~(back >> i)));
+        if (lanes & ~own_lanes) {
+            vr p[3], d[3], ray[3];
+            R(load3)(args->point, at + i, p);
+            R(load_direction)(viewing, args->direction, at, i, ray);
+            R(directions_to)(args, position, at, i, d);
+            const vr slack = r_load((const real *)args->slack + at + i);
+            hit |= rm_bits(R(triangle_blocks)(prim, scale, p, d, slack, &plane, ray)) & lanes & ~own_lanes;
+        }
+        blocked |= hit << i;
+    }
+    return blocked;
+}
+
 /// The lanes of `wanted` that the primitive blocks.
 static inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
                                      unsigned wanted)
@@ -185,6 +220,12 @@ static inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) oc
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     const unsigned own = R(own_lanes)(args, group, prim, occluder.id, wanted), all = (1u << VR) - 1;
     unsigned blocked = 0;
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        wanted &= own | R(near_rays)(&group->rays, prim);
+        return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
+    }
     if (own && sphere)
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
     wanted &= ~own;

@@ -25,6 +25,7 @@
 #undef r_mantissa
 #undef r_put_index
 #undef GLINT_PARALLEL
+#undef GLINT_POINT_SLACK
 
 #if GLINT_REAL == 64
 #define real double
@@ -52,6 +53,7 @@
 #define r_mantissa d_mantissa
 #define r_put_index d_put_index
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
+#define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #else
 #define real float
 #define vr vf
@@ -78,4 +80,5 @@
 #define r_mantissa f_mantissa
 #define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
 #define GLINT_PARALLEL 1e-30
+#define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
 #endif

@@ -133,6 +133,8 @@ static int light_side_of_sphere(bool directional, const double position[3], cons
 /// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
 static int light_side(bool directional, const double position[3], const glint_prim *prim)
 {
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return 0; // is asked for each lane
     return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(directional, position, prim)
                                            : light_side_of_plane(directional, position, prim);
 }
@@ -145,6 +147,8 @@ static double square_root_double(double x) { return sqrt(x); }
 
 #define PLANE_GRAZING_float 1e-30f
 #define PLANE_GRAZING_double 1e-60
+#define POINT_SLACK_float ((float)GLINT_POINT_SLACK_FLOAT)
+#define POINT_SLACK_double GLINT_POINT_SLACK_DOUBLE
 
 #define REAL float
 #define NAME(x) x##_float

@@ -105,6 +105,8 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
                      NAME(load_part)(camera->down, group / camera->groups_across, lane));
 }
 
+#include "engine/stages/ref_triangle.h"
+
 // ---- cast --------------------------------------------------------------------------------------------------------
 
 /// The hybrid discriminant: from afar by the distance of the line from the centre, close by as b^2 - a c.
@@ -137,8 +139,11 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 }
 
 /// Likewise for any primitive.
-static REAL NAME(prim_t)(const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
+static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
+                         NAME(vec3) direction)
 {
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return NAME(triangle_t)(prim, geometry->scale, origin, direction);
     if (prim->kind == GLINT_PRIM_PLANE) {
         NAME(vec3) away = NAME(sub)(origin, NAME(rounded)(prim->center));
         return NAME(plane_t)(NAME(dot)(NAME(rounded)(prim->normal), away), direction, prim);
@@ -156,7 +161,7 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
-            REAL t = NAME(prim_t)(&args->geometry->prims[index], origin, direction);
+            REAL t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
             bool first = t == best && best_prim != GLINT_MISS &&
                          args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
@@ -224,16 +229,26 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
     NAME(vec3) origin = args->camera ? NAME(rounded)(args->camera->eye) : NAME(load)(args->origin, i);
     REAL t = ((const REAL *)args->t)[i];
     NAME(vec3) n, point;
+    REAL weight[3] = { 0 }, slack = 0;
     if (prim->kind == GLINT_PRIM_SPHERE) {
         n = NAME(sphere_normal)(NAME(from_center)(origin, prim), direction, t, prim);
         point = NAME(add)(NAME(rounded)(prim->center), NAME(times)(n, (REAL)prim->radius));
+    } else if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        n = NAME(flat_normal)(prim, args->scale);
+        point = NAME(triangle_point)(args, prim, origin, direction, weight, &slack);
     } else {
         n = NAME(rounded)(prim->normal);
         point = NAME(add)(origin, NAME(times)(direction, t));
     }
     bool back = NAME(dot)(n, direction) > 0;
+    if (prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS)
+        n = NAME(smooth_normal)(&args->corner_normals[prim->item], weight, n, back);
+    else if (back)
+        n = NAME(negated)(n);
     NAME(store)(args->point, i, point);
-    NAME(store)(args->normal, i, back ? NAME(negated)(n) : n);
+    NAME(store)(args->normal, i, n);
+    if (args->slack)
+        ((REAL *)args->slack)[i] = slack;
     args->material[i] = prim->material;
     return back;
 }
@@ -242,6 +257,8 @@ static void NAME(surface_miss)(const glint_surface_args *args, uint32_t i)
 {
     NAME(store)(args->point, i, NAME(vec)(0, 0, 0));
     NAME(store)(args->normal, i, NAME(vec)(0, 0, 0));
+    if (args->slack)
+        ((REAL *)args->slack)[i] = 0;
     args->material[i] = 0;
 }
 
@@ -448,8 +465,16 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     int side = light_side(args->directional, position, prim);
-    if (prim->coincident == args->geometry->prims[args->prim[i]].coincident)
-        return sphere && args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 && side > 0;
+    bool own = prim->coincident == args->geometry->prims[args->prim[i]].coincident;
+    bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        NAME(parted) plane = NAME(part)(args, prim, NAME(rounded)(position));
+        if (own)
+            return back ? plane.light > 0 : plane.light < 0;
+        return NAME(triangle_blocks)(args, prim, plane, NAME(rounded)(position), i);
+    }
+    if (own)
+        return sphere && back && side > 0;
     NAME(vec3) point = NAME(load)(args->point, i);
     return sphere ? NAME(sphere_blocks)(args, prim, side, NAME(rounded)(position), point)
                   : NAME(plane_blocks)(prim, side, point);

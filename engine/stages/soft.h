@@ -77,7 +77,7 @@ static int R(classify)(const R(shadow_tile) * tile, const glint_prim *prim, cons
         return R(classify_plane)(tile, prim, lower, upper);
     if (R(sphere_apart)(prim, lower, upper, &tile->light))
         return SOFT_APART;
-    return R(sphere_hides)(tile, prim, lower, upper) ? SOFT_HIDES : SOFT_NEAR;
+    return prim->kind == GLINT_PRIM_SPHERE && R(sphere_hides)(tile, prim, lower, upper) ? SOFT_HIDES : SOFT_NEAR;
 }
 
 /// Which occluders of the tile matter to a group of which some sample lights `lit`.
@@ -91,7 +91,9 @@ static R(soft_group) R(sort_group)(const R(shadow_tile) * tile, R(shadow_group) 
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = R(own_lanes)(args, group, prim, id, lit);
-        if (own == lit && (prim->kind == GLINT_PRIM_PLANE || !(own & args->back[g])))
+        const bool passes_own =
+            prim->kind == GLINT_PRIM_PLANE || (prim->kind == GLINT_PRIM_SPHERE && !(own & args->back[g]));
+        if (own == lit && passes_own)
             continue; // it is what all of them leave
         const int class = own ? SOFT_NEAR : R(classify)(tile, prim, lower, upper);
         out.hidden = class == SOFT_HIDES;
@@ -132,6 +134,12 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, R(shadow
     for (uint32_t s = 0; s < args->sample_count; s++)
         any |= samples->open[s];
     const unsigned own = R(own_lanes)(args, group, prim, id, any);
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        for (uint32_t s = 0; s < args->sample_count; s++)
+            samples->open[s] &= ~R(blocked_by_triangle)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s],
+                                                        group->at, own & samples->open[s], samples->open[s]);
+        return;
+    }
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned others = any & ~own;
         vr c = r_set(0), p[3], d[3], f[3] = { c, c, c };

@@ -30,7 +30,7 @@
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
 
-typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE } glint_prim_kind;
+typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE, GLINT_PRIM_TRIANGLE } glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
 typedef struct glint_prim {
@@ -39,13 +39,21 @@ typedef struct glint_prim {
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
     uint32_t coincident; ///< id of the first primitive with bit-equal geometry: what a leaving ray skips
-    float filter_center[3]; ///< sphere: (center - reference) * scale, in the index's frame
-    float filter_bound; ///< sphere: >= radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
-    double center[3]; ///< sphere: centre; plane: a point of it
-    double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
-    double normal[3]; ///< plane: unit
-    double radius; ///< sphere, world units
-    double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+    float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
+    float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
+    union {
+        struct {
+            double center[3]; ///< sphere: centre; plane: a point of it
+            double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
+            double normal[3]; ///< plane: unit
+            double radius; ///< sphere, world units
+            double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+        };
+        struct {
+            double corner[3][3]; ///< triangle
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it is shaded flat
+        };
+    };
 } glint_prim;
 
 #define GLINT_NODE_WIDTH 16
@@ -58,6 +66,11 @@ typedef struct glint_node {
     uint32_t child[GLINT_NODE_WIDTH];
 } glint_node;
 
+/// Unit normals at the corners of a triangle that is shaded smoothly.
+typedef struct glint_corner_normals {
+    double normal[3][3];
+} glint_corner_normals;
+
 /// What rays meet: the surfaces, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
@@ -68,6 +81,8 @@ typedef struct glint_geometry_table {
     uint32_t unbounded_count;
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
+    bool triangles; ///< there are some
+    const glint_corner_normals *corner_normals;
 } glint_geometry_table;
 
 typedef enum glint_highlight { GLINT_HIGHLIGHT_NONE, GLINT_HIGHLIGHT_PHONG, GLINT_HIGHLIGHT_BLINN } glint_highlight;
@@ -127,6 +142,17 @@ typedef struct glint_cast_args {
 //          float: c = dot(f, f) - (float)r2
 // plane, real:    h = dot(normal, origin - center); nd = dot(normal, direction)
 //                 t = -h / nd; a hit where nd nd >= 1e-60 length2(direction) (float: 1e-30) and t > 0
+// triangle, real: P_j = (corner_j - origin) * scale of the table, j = 0, 1, 2; edges (e, dz, depth) of these and direction:
+//                 det = (e_0 + e_1) + e_2;  t = depth / ((det dz) * scale)
+//                 a hit where (min(min(e_0, e_1), e_2) >= 0 or max(max(e_0, e_1), e_2) <= 0) and t > 0
+// edges(P, d):    z = 0; z = 1 where max(d_1, -d_1) > max(d_0, -d_0); z = 2 where max(d_2, -d_2) > that of the larger of
+//                 these; x = (z + 1) mod 3, y = (z + 2) mod 3; dz = d_z
+//                 X_j = P_jx d_z - P_jz d_x, Y_j = P_jy d_z - P_jz d_y: the corners as seen along the ray
+//                 e_0 = X_2 Y_1 - Y_2 X_1, e_1 = X_0 Y_2 - Y_0 X_2, e_2 = X_1 Y_0 - Y_1 X_0
+//                 depth = (e_0 P_0z + e_1 P_1z) + e_2 P_2z
+//                 Neighbours see their common corners at the same X, Y and, since rounding is monotonic, no e has the
+//                 wrong sign for them: no ray goes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1)
+//                 2013; here without the division, in the scaled plane).
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
@@ -137,6 +163,8 @@ typedef struct glint_surface_args {
     const uint16_t *hits;
     const uint32_t *prim;
     const glint_prim *prims;
+    double scale; ///< of the table
+    const glint_corner_normals *corner_normals; ///< NULL: every triangle is shaded flat
     const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: they are in origin and direction
     const void *origin[3], *direction[3]; ///< real, one a ray
     const void *t;
@@ -144,9 +172,11 @@ typedef struct glint_surface_args {
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
+    void
+        *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; NULL: not asked
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
-// and material = 0.
+// and material = 0. Where it is asked, `slack` of lanes that hit no triangle is 0.
 // sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
 //         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
 //         where length2(f) < 2^40: n = n (1.5 - 0.5 length2(n))
@@ -156,7 +186,19 @@ typedef struct glint_surface_args {
 //                 where not m > 0: n = -direction / sqrt(a)
 //         point = center + radius n
 // plane:  n = normal; point = origin + t direction
+// triangle: e as in cast; inverse = 1 / ((e_0 + e_1) + e_2), w_j = e_j inverse; f = corner_1 - corner_0, g = corner_2 - corner_0
+//         point = corner_0 + (w_1 f + w_2 g): within slack of the plane, for any w_1, w_2 within [0, 1 + 2^-50]:
+//         slack = point_slack ((|f|_max + |g|_max) + |point|_max), |v|_max = max(max(|v_0|, |v_1|), |v_2|): f and g are one
+//         rounding off, the products, their sum and the point one each
+//         n, double, then rounded: m = cross(f scale, g scale), n = m / sqrt(length2(m)) (each component divided)
+//         where it has corner normals: s = (w_0 normal_0 + w_1 normal_1) + w_2 normal_2, l = length2(s), s = s / sqrt(l); where
+//         not l > 0: s = n. The geometric n decides what is `back`; s = dot(s, back ? -n : n) < 0 ? -s : s is the normal.
 // then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
+
+/// Sixteen roundings. Four move a point off its triangle, eight are in the height of a point over a plane (three in m, one in
+/// q, four in products and sums); the rest is for products of roundings and for the rounding of the bounds themselves.
+#define GLINT_POINT_SLACK_DOUBLE 0x1p-49
+#define GLINT_POINT_SLACK_FLOAT 0x1p-20
 
 // ---- light: what one light does at each point, before shadows and colours ----
 
@@ -244,6 +286,9 @@ typedef struct glint_occlude_args {
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
     const glint_geometry_table *geometry;
+    const glint_camera_args *camera; ///< the rays that found the points, of a perspective camera; NULL: in direction
+    const void *direction[3];
+    const void *slack; ///< of surface; read where the table has triangles
     uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes that nothing blocks
     uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled
 } glint_occlude_args;
@@ -259,6 +304,21 @@ typedef struct glint_occlude_args {
 //         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b scale < a scale_of_prim)
 // plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
 // The own sphere: blocked where `back` and its light_side > 0. The own plane never blocks.
+// triangle: f, g as in surface times scale of the table, m = cross(f, g) (both real); light = dot(m, position - corner_0)
+//         (directional: dot(m, position))
+//   The own: blocked = back ? light > 0 : light < 0.
+//   Another: q = point - corner_0, h = dot(m, q); (e, dz) = edges of P_j = (corner_j - point) * scale and d
+//         M_x = |f_y g_z| + |f_z g_y|, M_y = |f_z g_x| + |f_x g_z|, M_z = |f_x g_y| + |f_y g_x|
+//         bound = ((|m_x| + |m_y|) + |m_z|) slack + point_slack ((M_x |q_x| + M_y |q_y|) + M_z |q_z|)
+//         on = slack > 0 and |h| <= bound: as far as rounding lets us know the point lies in this plane too
+//         not on: blocked = h and light have strictly opposite signs and (all e >= 0 or all e <= 0) and the sum of e is not 0
+//         on:     a segment from there leaves the plane at once and can meet the triangle at its own beginning alone. It is
+//                 blocked where the triangle reaches to the point and parts it from the light as seen by the viewer's ray:
+//                 r = max of all |P_jk|, move = |dz| (2 (slack scale) + point_slack r)
+//                 reach = move ((((((|X_0| + |Y_0|) + |X_1|) + |Y_1|) + |X_2|) + |Y_2|) + 2 move): what e may be off by
+//                 away = dot(m, direction of the viewer's ray)
+//                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach)
+//   So a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
 
 // ---- shade: the terms of each sample ----
 

@@ -56,14 +56,21 @@ typedef struct R(seen_prim) {
     real inverse_radius; ///< of a sphere, in its own units
     bool near; ///< see sphere_surface
     real f[3];
+    real normal[3]; ///< of a plane or triangle
 } R(seen_prim);
 
 static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen)
 {
     const glint_prim *prim = &args->prims[id];
     *seen = (R(seen_prim)) { .id = id, .prim = prim };
-    if (prim->kind != GLINT_PRIM_SPHERE)
+    if (prim->kind != GLINT_PRIM_SPHERE) {
+        double n[3] = { prim->normal[0], prim->normal[1], prim->normal[2] };
+        if (prim->kind == GLINT_PRIM_TRIANGLE)
+            R(triangle_normal)(prim, args->scale, n);
+        for (int k = 0; k < 3; k++)
+            seen->normal[k] = (real)n[k];
         return;
+    }
     seen->inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
     if (!args->camera)
         return;
@@ -82,7 +89,8 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
     const glint_prim *prim = seen->prim;
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
-    vr d[3], n[3], p[3], from[3], f[3];
+    const bool smooth = prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
+    vr d[3], n[3], p[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) }, slack = r_set(0);
     R(load_direction)(directions, args->direction, at, i, d);
     if (!args->camera)
         R(load3)(args->origin, at + i, from);
@@ -97,15 +105,24 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
         for (int k = 0; k < 3; k++) {
             if (args->camera)
                 from[k] = r_set(args->camera->eye[k]);
-            n[k] = r_set(prim->normal[k]);
+            n[k] = r_set(seen->normal[k]);
             p[k] = from[k] + t * d[k];
         }
+        if (prim->kind == GLINT_PRIM_TRIANGLE)
+            R(triangle_point)(prim, args->scale, from, d, w, p, &slack);
     }
-    rm back = r_lt(r_set(0), DOT(n, d));
+    const rm back = r_lt(r_set(0), DOT(n, d));
+    vr turned[3] = { r_select(back, -n[0], n[0]), r_select(back, -n[1], n[1]), r_select(back, -n[2], n[2]) };
+    if (smooth) {
+        const vr facing[3] = { turned[0], turned[1], turned[2] };
+        R(smooth_normal)(&args->corner_normals[prim->item], w, n, facing, turned);
+    }
     for (int k = 0; k < 3; k++) {
         R(put)(args->point[k], at + i, whole, mask, p[k]);
-        R(put)(args->normal[k], at + i, whole, mask, r_select(back, -n[k], n[k]));
+        R(put)(args->normal[k], at + i, whole, mask, turned[k]);
     }
+    if (args->slack)
+        R(put)(args->slack, at + i, whole, mask, slack);
     return rm_bits(back) & lanes;
 }
 
@@ -116,6 +133,8 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
         for (int i = 0; i < GLINT_GROUP; i += VR) {
             r_store((real *)args->point[k] + at + i, r_set(0));
             r_store((real *)args->normal[k] + at + i, r_set(0));
+            if (args->slack)
+                r_store((real *)args->slack + at + i, r_set(0));
         }
     lanes_put(args->material + at, 0xffff, 0);
 }

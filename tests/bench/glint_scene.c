@@ -67,6 +67,32 @@ static void add_spheres(side_scene *s)
     }
 }
 
+static void add_mesh(side_scene *s)
+{
+    const bench_scene *p = &s->plain;
+    glint_error error;
+    glint_shape *shape;
+    double *vertices = malloc(3 * p->vertex_count * sizeof *vertices);
+    uint32_t *sizes = malloc(p->triangle_count * sizeof *sizes);
+    if (!vertices || !sizes)
+        bench_fail("glint", "out of memory");
+    for (size_t i = 0; i < 3 * p->vertex_count; i++)
+        vertices[i] = (double)p->vertices[i];
+    for (size_t i = 0; i < p->triangle_count; i++)
+        sizes[i] = 3;
+    glint_mesh_desc d = glint_mesh_desc_default();
+    d.vertices = vertices;
+    d.vertex_count = p->vertex_count;
+    d.corners = p->triangles;
+    d.face_sizes = sizes;
+    d.face_count = p->triangle_count;
+    d.material = s->materials[0];
+    side_must(glint_mesh_create(&d, &shape, &error), &error);
+    add_shape(s, shape);
+    free(vertices);
+    free(sizes);
+}
+
 static void set_camera(side_scene *s)
 {
     glint_error error;
@@ -93,6 +119,8 @@ side_scene side_scene_create(const bench_options *options)
     side_must(glint_scene_create(&s.scene, &error), &error);
     make_materials(&s);
     add_spheres(&s);
+    if (s.plain.triangle_count)
+        add_mesh(&s);
     glint_light_desc l = glint_light_desc_default(options->area ? GLINT_LIGHT_SPHERE : GLINT_LIGHT_POINT);
     widen(s.plain.light, l.position);
     l.radius = (double)s.plain.light_radius;

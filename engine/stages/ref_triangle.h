@@ -1,0 +1,158 @@
+// The reference of triangles, for one type of real; included by ref_real.h. One line of stages.h after the other.
+
+static REAL NAME(abs)(REAL x) { return NAME(max)(x, -x); }
+
+static REAL NAME(component)(NAME(vec3) v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+
+static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v.x), NAME(abs)(v.y)), NAME(abs)(v.z)); }
+
+typedef struct NAME(seen_edges) {
+    REAL e[3], dz, depth, sum_of_sizes;
+} NAME(seen_edges);
+
+static int NAME(main_axis)(NAME(vec3) d)
+{
+    int z = NAME(abs)(d.y) > NAME(abs)(d.x) ? 1 : 0;
+    return NAME(abs)(d.z) > NAME(abs)(NAME(component)(d, z)) ? 2 : z;
+}
+
+static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d)
+{
+    int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3;
+    REAL dx = NAME(component)(d, x), dy = NAME(component)(d, y), dz = NAME(component)(d, z);
+    REAL px[3], py[3], pz[3];
+    NAME(seen_edges) out = { .dz = dz };
+    for (int j = 0; j < 3; j++) {
+        pz[j] = NAME(component)(corner[j], z);
+        px[j] = NAME(component)(corner[j], x) * dz - pz[j] * dx;
+        py[j] = NAME(component)(corner[j], y) * dz - pz[j] * dy;
+    }
+    out.e[0] = px[2] * py[1] - py[2] * px[1];
+    out.e[1] = px[0] * py[2] - py[0] * px[2];
+    out.e[2] = px[1] * py[0] - py[1] * px[0];
+    out.depth = (out.e[0] * pz[0] + out.e[1] * pz[1]) + out.e[2] * pz[2];
+    out.sum_of_sizes = NAME(abs)(px[0]) + NAME(abs)(py[0]);
+    for (int j = 1; j < 3; j++)
+        out.sum_of_sizes = (out.sum_of_sizes + NAME(abs)(px[j])) + NAME(abs)(py[j]);
+    return out;
+}
+
+static REAL NAME(sum_of_edges)(NAME(seen_edges) s) { return (s.e[0] + s.e[1]) + s.e[2]; }
+
+static bool NAME(all_on_one_side)(NAME(seen_edges) s, REAL reach)
+{
+    REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
+    return least >= -reach || most <= reach;
+}
+
+static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
+{
+    for (int j = 0; j < 3; j++)
+        out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
+}
+
+/// The distance at which a ray meets a triangle; 0 stands for a miss.
+static REAL NAME(triangle_t)(const glint_prim *prim, double scale, NAME(vec3) origin, NAME(vec3) direction)
+{
+    NAME(vec3) corner[3];
+    NAME(corners_seen)(prim, origin, scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL t = seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
+    return NAME(all_on_one_side)(seen, 0) && t > 0 ? t : 0;
+}
+
+static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
+{
+    double f[3], g[3], m[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = (prim->corner[1][k] - prim->corner[0][k]) * scale;
+        g[k] = (prim->corner[2][k] - prim->corner[0][k]) * scale;
+    }
+    m[0] = f[1] * g[2] - f[2] * g[1];
+    m[1] = f[2] * g[0] - f[0] * g[2];
+    m[2] = f[0] * g[1] - f[1] * g[0];
+    double length = sqrt(dot_of(m, m));
+    return NAME(vec)((REAL)(m[0] / length), (REAL)(m[1] / length), (REAL)(m[2] / length));
+}
+
+/// The point, the weights of the corners there, and how far rounding may have moved it.
+static NAME(vec3) NAME(triangle_point)(const glint_surface_args *args, const glint_prim *prim, NAME(vec3) origin,
+                                       NAME(vec3) direction, REAL weight[3], REAL *slack)
+{
+    NAME(vec3) corner[3], v0 = NAME(rounded)(prim->corner[0]);
+    NAME(corners_seen)(prim, origin, args->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL inverse = 1 / NAME(sum_of_edges)(seen);
+    for (int j = 0; j < 3; j++)
+        weight[j] = seen.e[j] * inverse;
+    NAME(vec3) f = NAME(sub)(NAME(rounded)(prim->corner[1]), v0), g = NAME(sub)(NAME(rounded)(prim->corner[2]), v0);
+    NAME(vec3) point = NAME(add)(v0, NAME(add)(NAME(times)(f, weight[1]), NAME(times)(g, weight[2])));
+    *slack = NAME(POINT_SLACK) * ((NAME(largest)(f) + NAME(largest)(g)) + NAME(largest)(point));
+    return point;
+}
+
+static NAME(vec3)
+    NAME(smooth_normal)(const glint_corner_normals *corners, const REAL weight[3], NAME(vec3) flat, bool back)
+{
+    NAME(vec3) s = NAME(times)(NAME(rounded)(corners->normal[0]), weight[0]);
+    s = NAME(add)(s, NAME(times)(NAME(rounded)(corners->normal[1]), weight[1]));
+    s = NAME(add)(s, NAME(times)(NAME(rounded)(corners->normal[2]), weight[2]));
+    REAL l = NAME(length2)(s);
+    s = l > 0 ? NAME(over)(s, NAME(square_root)(l)) : flat;
+    return NAME(dot)(s, back ? NAME(negated)(flat) : flat) < 0 ? NAME(negated)(s) : s;
+}
+
+// ---- occlude ----
+
+typedef struct NAME(parted) {
+    NAME(vec3) m, sizes;
+    REAL light;
+} NAME(parted);
+
+static NAME(parted) NAME(part)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position)
+{
+    REAL scale = (REAL)args->geometry->scale;
+    NAME(vec3) v0 = NAME(rounded)(prim->corner[0]);
+    NAME(vec3) f = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[1]), v0), scale);
+    NAME(vec3) g = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[2]), v0), scale);
+    NAME(parted) out = { .m = NAME(cross)(f, g) };
+    out.sizes = NAME(vec)(NAME(abs)(f.y * g.z) + NAME(abs)(f.z * g.y), NAME(abs)(f.z * g.x) + NAME(abs)(f.x * g.z),
+                          NAME(abs)(f.x * g.y) + NAME(abs)(f.y * g.x));
+    out.light = NAME(dot)(out.m, args->directional ? position : NAME(sub)(position, v0));
+    return out;
+}
+
+static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(parted) plane, NAME(seen_edges) seen,
+                                          const NAME(vec3) corner[3], REAL slack, NAME(vec3) ray)
+{
+    REAL r = 0;
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            r = NAME(max)(r, NAME(abs)(NAME(component)(corner[j], k)));
+    REAL move = NAME(abs)(seen.dz) * (2 * (slack * (REAL)args->geometry->scale) + NAME(POINT_SLACK) * r);
+    REAL reach = move * (seen.sum_of_sizes + 2 * move);
+    REAL away = NAME(dot)(plane.m, ray);
+    bool other_side = (away < 0 && plane.light < 0) || (away > 0 && plane.light > 0);
+    return other_side && NAME(all_on_one_side)(seen, reach);
+}
+
+/// Sample i, of another surface.
+static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(parted) plane,
+                                  NAME(vec3) position, uint32_t i)
+{
+    NAME(vec3) point = NAME(load)(args->point, i);
+    NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
+    NAME(vec3) ray = NAME(direction_of)(args->camera, args->direction, i);
+    REAL slack = ((const REAL *)args->slack)[i];
+    NAME(vec3) corner[3], q = NAME(sub)(point, NAME(rounded)(prim->corner[0])), m = plane.m, sizes = plane.sizes;
+    NAME(corners_seen)(prim, point, args->geometry->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, d);
+    REAL h = NAME(dot)(m, q);
+    REAL rounding = NAME(dot)(sizes, NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z)));
+    REAL bound = ((NAME(abs)(m.x) + NAME(abs)(m.y)) + NAME(abs)(m.z)) * slack + NAME(POINT_SLACK) * rounding;
+    if (slack > 0 && NAME(abs)(h) <= bound)
+        return NAME(touched_triangle_blocks)(args, plane, seen, corner, slack, ray);
+    bool crosses = (h < 0 && plane.light > 0) || (h > 0 && plane.light < 0);
+    REAL det = NAME(sum_of_edges)(seen);
+    return crosses && NAME(all_on_one_side)(seen, 0) && (det < 0 || det > 0);
+}

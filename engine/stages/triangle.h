@@ -1,0 +1,222 @@
+// triangle: what cast, surface and occlude ask of one. Which side of a ray an edge passes on is decided from the corners
+// as seen along that ray, the same for all triangles that share them. Contract: stages.h.
+
+/// What a ray sees of a triangle.
+typedef struct R(seen_edges) {
+    vr e[3]; ///< weights of the corners, but for a common factor
+    vr dz; ///< the direction's largest component
+    vr depth; ///< weighted sum of the corners along that axis
+    vr reach; ///< sum of the absolute values of what e was made of; written on request
+} R(seen_edges);
+
+static inline vr R(abs)(vr x) { return r_max(x, -x); }
+
+/// `z`: the axis of the direction's largest component.
+static inline R(seen_edges) R(edges_along)(vr p[3][3], const vr d[3], int z, bool want_reach)
+{
+    const int x = (z + 1) % 3, y = (z + 2) % 3;
+    vr X[3], Y[3];
+    R(seen_edges) out;
+    for (int j = 0; j < 3; j++) {
+        X[j] = p[j][x] * d[z] - p[j][z] * d[x];
+        Y[j] = p[j][y] * d[z] - p[j][z] * d[y];
+    }
+    out.e[0] = X[2] * Y[1] - Y[2] * X[1];
+    out.e[1] = X[0] * Y[2] - Y[0] * X[2];
+    out.e[2] = X[1] * Y[0] - Y[1] * X[0];
+    out.dz = d[z];
+    out.depth = (out.e[0] * p[0][z] + out.e[1] * p[1][z]) + out.e[2] * p[2][z];
+    out.reach = r_set(0);
+    if (want_reach)
+        out.reach = ((((R(abs)(X[0]) + R(abs)(Y[0])) + R(abs)(X[1])) + R(abs)(Y[1])) + R(abs)(X[2])) + R(abs)(Y[2]);
+    return out;
+}
+
+static inline R(seen_edges) R(select_edges)(rm mask, const R(seen_edges) * a, const R(seen_edges) * b)
+{
+    R(seen_edges) out;
+    for (int j = 0; j < 3; j++)
+        out.e[j] = r_select(mask, a->e[j], b->e[j]);
+    out.dz = r_select(mask, a->dz, b->dz);
+    out.depth = r_select(mask, a->depth, b->depth);
+    out.reach = r_select(mask, a->reach, b->reach);
+    return out;
+}
+
+/// p: the corners from where the rays start. Rays of a group nearly always have one axis.
+static inline R(seen_edges) R(see_edges)(vr p[3][3], const vr d[3], bool want_reach)
+{
+    const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
+    const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
+    const unsigned ys = rm_bits(y), zs = rm_bits(z), all = (1u << VR) - 1;
+    if (zs == all)
+        return R(edges_along)(p, d, 2, want_reach);
+    R(seen_edges) out, other;
+    if (ys == all) {
+        out = R(edges_along)(p, d, 1, want_reach);
+    } else {
+        out = R(edges_along)(p, d, 0, want_reach);
+        if (ys) {
+            other = R(edges_along)(p, d, 1, want_reach);
+            out = R(select_edges)(y, &other, &out);
+        }
+    }
+    if (zs) {
+        other = R(edges_along)(p, d, 2, want_reach);
+        out = R(select_edges)(z, &other, &out);
+    }
+    return out;
+}
+
+static inline vr R(det)(const R(seen_edges) * edges) { return (edges->e[0] + edges->e[1]) + edges->e[2]; }
+
+/// Whether the ray passes all edges on one side, edges included, give or take `reach`.
+static inline rm R(within)(const R(seen_edges) * edges, vr reach)
+{
+    const vr *e = edges->e;
+    return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
+}
+
+/// p: the corners from the ray's origin, in units of the table.
+static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
+{
+    const R(seen_edges) edges = R(see_edges)(p, d, false);
+    *t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
+    return rm_and(R(within)(&edges, r_set(0)), r_lt(r_set(0), *t));
+}
+
+/// The corners from a place.
+static inline void R(corners_from)(const vr from[3], const glint_prim *prim, double scale, vr p[3][3])
+{
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            p[j][k] = (r_set(prim->corner[j][k]) - from[k]) * r_set(scale);
+}
+
+// ---- Surface ----
+
+/// A triangle's unit normal, to the side from which its corners run counter-clockwise.
+static inline void R(triangle_normal)(const glint_prim *prim, double scale, double n[3])
+{
+    double f[3], g[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = (prim->corner[1][k] - prim->corner[0][k]) * scale;
+        g[k] = (prim->corner[2][k] - prim->corner[0][k]) * scale;
+    }
+    for (int k = 0; k < 3; k++)
+        n[k] = f[(k + 1) % 3] * g[(k + 2) % 3] - f[(k + 2) % 3] * g[(k + 1) % 3];
+    const double length = sqrt(DOT(n, n));
+    for (int k = 0; k < 3; k++)
+        n[k] /= length;
+}
+
+static inline vr R(largest)(const vr v[3]) { return r_max(r_max(R(abs)(v[0]), R(abs)(v[1])), R(abs)(v[2])); }
+
+/// The point where rays from `from` meet a triangle, the weights of its corners there, and what rounding made of it.
+static inline void R(triangle_point)(const glint_prim *prim, double scale, const vr from[3], const vr d[3], vr w[3],
+                                     vr point[3], vr *slack)
+{
+    vr p[3][3], f[3], g[3];
+    R(corners_from)(from, prim, scale, p);
+    const R(seen_edges) edges = R(see_edges)(p, d, false);
+    const vr inverse = r_set(1) / R(det)(&edges);
+    for (int j = 0; j < 3; j++)
+        w[j] = edges.e[j] * inverse;
+    for (int k = 0; k < 3; k++) {
+        f[k] = r_set(prim->corner[1][k]) - r_set(prim->corner[0][k]);
+        g[k] = r_set(prim->corner[2][k]) - r_set(prim->corner[0][k]);
+        point[k] = r_set(prim->corner[0][k]) + (w[1] * f[k] + w[2] * g[k]);
+    }
+    *slack = r_set(GLINT_POINT_SLACK) * ((R(largest)(f) + R(largest)(g)) + R(largest)(point));
+}
+
+/// The normal between those of the corners, on the side of `facing`, the geometric one turned to the viewer.
+static inline void R(smooth_normal)(const glint_corner_normals *corners, const vr w[3], const vr flat[3],
+                                    const vr facing[3], vr out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = (w[0] * r_set(corners->normal[0][k]) + w[1] * r_set(corners->normal[1][k])) +
+                 w[2] * r_set(corners->normal[2][k]);
+    const vr l = DOT(out, out), length = r_sqrt(l);
+    const rm defined = r_lt(r_set(0), l);
+    for (int k = 0; k < 3; k++)
+        out[k] = r_select(defined, out[k] / length, flat[k]);
+    const rm away = r_lt(DOT(out, facing), r_set(0));
+    for (int k = 0; k < 3; k++)
+        out[k] = r_select(away, -out[k], out[k]);
+}
+
+// ---- Occlude ----
+
+/// A triangle's plane.
+typedef struct R(triangle_plane) {
+    vr m[3]; ///< normal, not unit
+    vr light; ///< on which side the light is
+    vr size[3]; ///< what m was made of, absolute
+} R(triangle_plane);
+
+/// light: position, or direction towards it.
+static inline R(triangle_plane) R(plane_of)(const glint_prim *prim, double scale, const vr light[3], bool directional)
+{
+    R(triangle_plane) plane;
+    vr f[3], g[3], q[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = (r_set(prim->corner[1][k]) - r_set(prim->corner[0][k])) * r_set(scale);
+        g[k] = (r_set(prim->corner[2][k]) - r_set(prim->corner[0][k])) * r_set(scale);
+        q[k] = light[k];
+        if (!directional)
+            q[k] = q[k] - r_set(prim->corner[0][k]);
+    }
+    for (int k = 0; k < 3; k++) {
+        const int x = (k + 1) % 3, y = (k + 2) % 3;
+        const vr a = f[x] * g[y], b = f[y] * g[x];
+        plane.m[k] = a - b;
+        plane.size[k] = R(abs)(a) + R(abs)(b);
+    }
+    plane.light = DOT(plane.m, q);
+    return plane;
+}
+
+/// Whether the triangle stands between the light and points that lie in its plane: they touch it, and the light is on
+/// the other side than the viewer, from whom `ray` came.
+static inline rm R(parts_from_light)(vr p[3][3], const R(seen_edges) * edges, const R(triangle_plane) * plane, vr slack,
+                                     double scale, const vr ray[3])
+{
+    const vr zero = r_set(0);
+    vr r = zero;
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            r = r_max(r, R(abs)(p[j][k]));
+    const vr move = R(abs)(edges->dz) * (r_set(2) * (slack * r_set(scale)) + r_set(GLINT_POINT_SLACK) * r);
+    const vr reach = move * (edges->reach + r_set(2) * move);
+    const vr away = DOT(plane->m, ray);
+    const rm other_side =
+        rm_or(rm_and(r_lt(away, zero), r_lt(plane->light, zero)), rm_and(r_lt(zero, away), r_lt(zero, plane->light)));
+    return rm_and(other_side, R(within)(edges, reach));
+}
+
+/// Segments from points of another surface.
+static inline rm R(triangle_blocks)(const glint_prim *prim, double scale, const vr point[3], const vr d[3], vr slack,
+                                    const R(triangle_plane) * plane, const vr ray[3])
+{
+    const vr zero = r_set(0);
+    vr p[3][3], q[3];
+    R(corners_from)(point, prim, scale, p);
+    for (int k = 0; k < 3; k++)
+        q[k] = point[k] - r_set(prim->corner[0][k]);
+    const vr h = DOT(plane->m, q);
+    const vr spread = (R(abs)(plane->m[0]) + R(abs)(plane->m[1])) + R(abs)(plane->m[2]);
+    const vr rounding = (plane->size[0] * R(abs)(q[0]) + plane->size[1] * R(abs)(q[1])) + plane->size[2] * R(abs)(q[2]);
+    const vr bound = spread * slack + r_set(GLINT_POINT_SLACK) * rounding;
+    const rm on = rm_and(r_lt(zero, slack), r_le(R(abs)(h), bound));
+    const bool any_on = rm_bits(on);
+    const R(seen_edges) edges = R(see_edges)(p, d, any_on);
+    const vr det = R(det)(&edges);
+    const rm crosses =
+        rm_or(rm_and(r_lt(h, zero), r_lt(zero, plane->light)), rm_and(r_lt(zero, h), r_lt(plane->light, zero)));
+    const rm through = rm_and(R(within)(&edges, zero), rm_or(r_lt(det, zero), r_lt(zero, det)));
+    const rm blocks = rm_andnot(rm_and(crosses, through), on);
+    if (!any_on)
+        return blocks;
+    return rm_or(blocks, rm_and(on, R(parts_from_light)(p, &edges, plane, slack, scale, ray)));
+}

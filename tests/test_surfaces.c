@@ -1,0 +1,557 @@
+/// Meshes: the same pictures on every instruction set, no ray between neighbours, no light by an edge and no shadow on a
+/// flat mesh by itself, distances and normals against 113-bit arithmetic, .obj files and what is wrong with them.
+#include "engine/glint.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+__extension__ typedef __float128 quad;
+
+static uint64_t state;
+
+static uint64_t random_bits(void)
+{
+    uint64_t z = state += 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+static uint32_t draw(uint32_t n) { return (uint32_t)((random_bits() >> 32) * n >> 32); }
+
+static double uniform(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
+
+static void random_vector(double v[3], double size)
+{
+    for (int c = 0; c < 3; c++)
+        v[c] = uniform(-size, size);
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void random_turn(double m[3][3])
+{
+    double length;
+    random_vector(m[0], 1);
+    random_vector(m[1], 1);
+    length = sqrt(dot(m[0], m[0]));
+    for (int c = 0; c < 3; c++)
+        m[0][c] /= length;
+    const double along = dot(m[0], m[1]);
+    for (int c = 0; c < 3; c++)
+        m[1][c] -= along * m[0][c];
+    length = sqrt(dot(m[1], m[1]));
+    for (int c = 0; c < 3; c++)
+        m[1][c] /= length;
+    for (int c = 0; c < 3; c++)
+        m[2][c] = m[0][(c + 1) % 3] * m[1][(c + 2) % 3] - m[0][(c + 2) % 3] * m[1][(c + 1) % 3];
+}
+
+// ---- Things to look at ----
+
+enum { MOST = 4096 };
+
+typedef struct soup {
+    double vertices[MOST][3];
+    uint32_t corners[4 * MOST], sizes[MOST];
+    size_t vertex_count, corner_count, face_count;
+} soup;
+
+static glint_shape *mesh_of(const soup *s, glint_shading shading, bool two_sided)
+{
+    glint_shape *shape = NULL;
+    glint_error error = { .message = "" };
+    glint_mesh_desc d = glint_mesh_desc_default();
+    d.vertices = &s->vertices[0][0];
+    d.vertex_count = s->vertex_count;
+    d.corners = s->corners;
+    d.face_sizes = s->sizes;
+    d.face_count = s->face_count;
+    d.has_shading = true;
+    d.shading = shading;
+    d.two_sided = two_sided;
+    if (glint_mesh_create(&d, &shape, &error))
+        fail_msg("%s", error.message);
+    return shape;
+}
+
+static void add_face(soup *s, uint32_t size, const uint32_t *corners)
+{
+    memcpy(s->corners + s->corner_count, corners, size * sizeof *corners);
+    s->corner_count += size;
+    s->sizes[s->face_count++] = size;
+}
+
+/// Triangles anywhere, some of them slivers, some sharing corners.
+static void make_soup(soup *s, size_t triangles)
+{
+    memset(s, 0, sizeof *s);
+    for (size_t i = 0; i < triangles; i++) {
+        const uint32_t n = (uint32_t)s->vertex_count;
+        double center[3], size = pow(10, uniform(-2, 0.5));
+        random_vector(center, 4);
+        for (int j = 0; j < 3; j++) {
+            random_vector(s->vertices[n + (uint32_t)j], size);
+            for (int c = 0; c < 3; c++)
+                s->vertices[n + (uint32_t)j][c] += center[c];
+        }
+        if (i > 0 && draw(3) == 0)
+            memcpy(s->vertices[n], s->vertices[n - 1], sizeof s->vertices[n]);
+        s->vertex_count += 3;
+        add_face(s, 3, (const uint32_t[]) { n, n + 1, n + 2 });
+    }
+}
+
+/// A closed box of n x n quadrangles a side; `roundness` pushes its vertices towards a sphere.
+static void make_box(soup *s, uint32_t n, double half, double roundness, double m[3][3])
+{
+    memset(s, 0, sizeof *s);
+    static uint32_t number[33][33][33];
+    assert_true(n <= 32);
+    for (uint32_t x = 0; x <= n; x++)
+        for (uint32_t y = 0; y <= n; y++)
+            for (uint32_t z = 0; z <= n; z++) {
+                if (x % n && y % n && z % n)
+                    continue;
+                const double p[3] = { 2.0 * x / n - 1, 2.0 * y / n - 1, 2.0 * z / n - 1 };
+                const double push = half * pow(sqrt(dot(p, p)), -roundness);
+                number[x][y][z] = (uint32_t)s->vertex_count;
+                for (int c = 0; c < 3; c++)
+                    s->vertices[s->vertex_count][c] = push * ((p[0] * m[0][c] + p[1] * m[1][c]) + p[2] * m[2][c]);
+                s->vertex_count++;
+            }
+    for (int axis = 0; axis < 3; axis++)
+        for (uint32_t side = 0; side < 2; side++)
+            for (uint32_t i = 0; i < n; i++)
+                for (uint32_t j = 0; j < n; j++) {
+                    uint32_t corner[4], at[3];
+                    for (uint32_t k = 0; k < 4; k++) {
+                        at[axis] = side * n;
+                        at[(axis + 1) % 3] = i + (k == 1 || k == 2);
+                        at[(axis + 2) % 3] = j + (k >= 2);
+                        corner[side ? k : 3 - k] = number[at[0]][at[1]][at[2]];
+                    }
+                    add_face(s, 4, corner);
+                }
+}
+
+#define PARALLEL 1234 ///< as at[2]
+
+static glint_scene *new_scene(const double eye[3], const double at[3], double fov, const double light[3], bool shadows)
+{
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_light *lamp;
+    glint_camera_desc c = glint_camera_desc_default();
+    memcpy(c.eye, eye, sizeof c.eye);
+    memcpy(c.at, at, sizeof c.at);
+    c.fov_y_rad = fov;
+    if (at[2] == PARALLEL) { // down the z axis; of 129 pixels across every eighth ray is at a whole number
+        c.projection = GLINT_ORTHOGRAPHIC;
+        c.has_direction = true;
+        c.direction[2] = -1;
+        c.height = 129 / 16.0;
+    }
+    glint_light_desc l = glint_light_desc_default(GLINT_LIGHT_POINT);
+    memcpy(l.position, light, sizeof l.position);
+    l.shadows = shadows;
+    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&l, &lamp, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_light(scene, lamp, NULL), GLINT_OK);
+    glint_camera_release(camera);
+    glint_light_release(lamp);
+    return scene;
+}
+
+static void add(glint_scene *scene, glint_shape *shape)
+{
+    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
+    glint_shape_release(shape);
+}
+
+static glint_image *render(const glint_scene *scene, const char *isa, int threads, int size, glint_precision precision)
+{
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    glint_renderer_desc r = { .threads = threads, .isa = isa };
+    glint_render_desc d = glint_render_desc_default();
+    glint_error error;
+    d.width = d.height = size;
+    d.precision = precision;
+    d.passes = 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID;
+    glint_status status = glint_renderer_create(&r, &renderer, &error);
+    if (status == GLINT_ERR_UNSUPPORTED)
+        return NULL;
+    assert_int_equal(status, GLINT_OK);
+    assert_int_equal(glint_plan_create(scene, &d, &plan, &error), GLINT_OK);
+    assert_int_equal(glint_render(renderer, plan, &image, NULL, &error), GLINT_OK);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+static int differing(const glint_image *a, const glint_image *b)
+{
+    static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID };
+    int count = 0;
+    for (int pass = 0; pass < 4; pass++)
+        for (int y = 0; y < glint_image_height(a); y++)
+            for (int x = 0; x < glint_image_width(a); x++) {
+                float p[3], q[3];
+                glint_image_pixel(a, passes[pass], x, y, p, NULL);
+                glint_image_pixel(b, passes[pass], x, y, q, NULL);
+                count += memcmp(p, q, sizeof p) != 0;
+            }
+    return count;
+}
+
+// ---- The same everywhere ----
+
+static glint_scene *random_scene(uint64_t seed)
+{
+    static soup s;
+    double eye[3], light[3], m[3][3];
+    state = seed;
+    random_vector(eye, 9);
+    random_vector(light, 9);
+    const double at[3] = { 0, 0, draw(4) ? 0 : PARALLEL };
+    glint_scene *scene = new_scene(eye, at, uniform(0.3, 1.5), light, true);
+    make_soup(&s, 1 + draw(60));
+    add(scene, mesh_of(&s, draw(2) ? GLINT_SHADING_FLAT : GLINT_SHADING_PHONG, draw(2)));
+    random_turn(m);
+    make_box(&s, 1 + draw(6), uniform(0.5, 3), draw(2), m);
+    add(scene, mesh_of(&s, draw(2) ? GLINT_SHADING_FLAT : GLINT_SHADING_PHONG, draw(2)));
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_shape *ball;
+    random_vector(d.center, 3);
+    assert_int_equal(glint_shape_create(&d, &ball, NULL), GLINT_OK);
+    add(scene, ball);
+    return scene;
+}
+
+static void same_on_every_instruction_set(void **unused)
+{
+    static const char *const sets[] = { "sse2", "avx2", "avx512" };
+    (void)unused;
+    for (uint64_t seed = 1; seed <= 40; seed++)
+        for (int precision = 0; precision < 2; precision++) {
+            glint_scene *scene = random_scene(seed);
+            glint_image *want = render(scene, "ref", 1, 50, (glint_precision)precision);
+            for (int i = 0; i < 3; i++) {
+                glint_image *got = render(scene, sets[i], 1 + i, 50, (glint_precision)precision);
+                if (got && differing(want, got))
+                    fail_msg("seed %d, %s, precision %d: %d pixels", (int)seed, sets[i], precision,
+                             differing(want, got));
+                glint_image_release(got);
+            }
+            glint_image_release(want);
+            glint_scene_release(scene);
+        }
+}
+
+// ---- No ray between neighbours ----
+
+/// From within a closed mesh every ray hits: towards its corners, its edges, points next to them, and anywhere.
+static void no_cracks(void **unused)
+{
+    static soup s;
+    (void)unused;
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        state = seed;
+        double m[3][3], eye[3], offset = draw(2) ? 0 : pow(10, uniform(0, 6));
+        random_turn(m);
+        make_box(&s, 1 + draw(8), 1, draw(2), m);
+        for (size_t i = 0; i < s.vertex_count; i++)
+            for (int c = 0; c < 3; c++)
+                s.vertices[i][c] += offset;
+        random_vector(eye, 0.4);
+        for (int c = 0; c < 3; c++)
+            eye[c] += offset;
+        glint_scene *scene = new_scene(eye, (double[3]) { 9, 9, 9 }, 1, eye, true);
+        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        for (int k = 0; k < 3000; k++) {
+            const size_t face = draw((uint32_t)s.face_count);
+            const double *a = s.vertices[s.corners[4 * face + draw(4)]];
+            const uint32_t turn = draw(4);
+            const double *b = s.vertices[s.corners[4 * face + turn]], *c = s.vertices[s.corners[4 * face + (turn + 1) % 4]];
+            double d[3], w = uniform(0, 1);
+            for (int i = 0; i < 3; i++)
+                d[i] = k % 3 == 0 ? a[i] - eye[i] : (b[i] + w * (c[i] - b[i])) - eye[i];
+            if (k % 2)
+                d[draw(3)] *= 1 + uniform(-4, 4) * DBL_EPSILON;
+            bool hit = false;
+            glint_hit where;
+            assert_int_equal(glint_scene_cast(scene, eye, d, &hit, &where, NULL), GLINT_OK);
+            if (!hit)
+                fail_msg("seed %d: a ray got through", (int)seed);
+        }
+        glint_scene_release(scene);
+    }
+}
+
+/// A camera in a closed box, corners and edges on its pixels' rays: no light from outside gets in.
+static void no_light_by_an_edge(void **unused)
+{
+    static soup s;
+    (void)unused;
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        state = seed;
+        double m[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, light[3];
+        const double eye[3] = { 0, 0, 0 }, at[3] = { 0, 0, -1 };
+        if (seed % 2)
+            random_turn(m);
+        make_box(&s, 1 + draw(5), 1, seed % 3 ? 0 : 1, m);
+        random_vector(light, 6);
+        light[draw(3)] = 3;
+        glint_scene *scene = new_scene(eye, at, 2 * atan(1 + draw(2)), light, true);
+        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        for (int precision = 0; precision < 2; precision++) {
+            glint_image *image = render(scene, NULL, 1, 129, (glint_precision)precision);
+            glint_image *same = render(scene, seed % 8 ? "sse2" : "ref", 1, 129, (glint_precision)precision);
+            assert_int_equal(differing(image, same), 0);
+            glint_image_release(same);
+            for (int y = 0; y < 129; y++)
+                for (int x = 0; x < 129; x++) {
+                    float p[3], id[3];
+                    glint_image_pixel(image, GLINT_PASS_BEAUTY, x, y, p, NULL);
+                    glint_image_pixel(image, GLINT_PASS_OBJECT_ID, x, y, id, NULL);
+                    if (p[0] != 0 || id[0] != 1)
+                        fail_msg("seed %d precision %d: light at %d, %d", (int)seed, precision, x, y);
+                }
+            glint_image_release(image);
+        }
+        glint_scene_release(scene);
+    }
+}
+
+/// A tessellated floor, whichever way it lies, under a light however low: with shadows and without, the same picture.
+static void no_acne(void **unused)
+{
+    static soup s;
+    (void)unused;
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        enum { SIDE = 24 };
+        state = seed;
+        double m[3][3], eye[3], at[3], light[3], low = pow(10, uniform(-5, 0.5)), offset = draw(2) ? 0 : 1e5;
+        memset(&s, 0, sizeof s);
+        random_turn(m);
+        const bool aligned = seed % 2;
+        if (aligned) { // edges on the pixels' rays, and a slope that is rounded at every vertex
+            offset = 0;
+            memcpy(m, (const double[3][3]) { { 1, 0, uniform(-1, 1) }, { 0, 1, uniform(-1, 1) }, { 0, 0, 1 } },
+                   sizeof m);
+        }
+        for (uint32_t i = 0; i <= SIDE; i++)
+            for (uint32_t j = 0; j <= SIDE; j++) {
+                for (int c = 0; c < 3; c++)
+                    s.vertices[s.vertex_count][c] = offset + (i - 12.0) * m[0][c] + (j - 12.0) * m[1][c];
+                s.vertex_count++;
+                const uint32_t n = i * (SIDE + 1) + j;
+                if (i < SIDE && j < SIDE)
+                    add_face(&s, 4, (const uint32_t[]) { n, n + 1, n + SIDE + 2, n + SIDE + 1 });
+            }
+        for (int c = 0; c < 3; c++) {
+            eye[c] = offset + 14 * m[2][c] + 3 * m[0][c];
+            at[c] = offset;
+            light[c] = offset + low * m[2][c] + 9 * m[0][c] - 5 * m[1][c];
+        }
+        at[2] = aligned ? PARALLEL : at[2];
+        glint_image *image[2];
+        for (int shadows = 0; shadows < 2; shadows++) {
+            glint_scene *scene = new_scene(eye, at, 1, light, shadows);
+            add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+            image[shadows] = render(scene, NULL, 1, 129, GLINT_DOUBLE);
+            glint_scene_release(scene);
+        }
+        if (differing(image[0], image[1]))
+            fail_msg("seed %d: %d pixels", (int)seed, differing(image[0], image[1]));
+        glint_image_release(image[0]);
+        glint_image_release(image[1]);
+    }
+}
+
+// ---- Against 113-bit arithmetic ----
+
+static quad quad_dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void quad_cross(const quad a[3], const quad b[3], quad out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+/// t, the weights of corners 1 and 2, and the normal (not unit).
+static void triangle_truth(const soup *s, const double o[3], const double d[3], quad *t, quad w[2], quad n[3])
+{
+    quad e[3], f[3], g[3], q[3], p[3];
+    for (int c = 0; c < 3; c++) {
+        f[c] = (quad)s->vertices[1][c] - s->vertices[0][c];
+        g[c] = (quad)s->vertices[2][c] - s->vertices[0][c];
+        e[c] = (quad)o[c] - s->vertices[0][c];
+        p[c] = d[c];
+    }
+    quad_cross(f, g, n);
+    const quad down = quad_dot(n, p);
+    *t = -quad_dot(n, e) / down;
+    for (int c = 0; c < 3; c++)
+        e[c] += *t * p[c]; // the point, from corner 0
+    quad_cross(e, g, q);
+    w[0] = quad_dot(q, n) / quad_dot(n, n);
+    quad_cross(f, e, q);
+    w[1] = quad_dot(q, n) / quad_dot(n, n);
+}
+
+static void triangles_against_oracle(void **unused)
+{
+    static soup s;
+    int hits = 0;
+    (void)unused;
+    state = 7;
+    for (int k = 0; k < 20000; k++) {
+        double o[3], d[3], scale = pow(10, uniform(-6, 6));
+        make_soup(&s, 1);
+        for (int i = 0; i < 9; i++)
+            s.vertices[i / 3][i % 3] *= scale;
+        random_vector(o, 10 * scale);
+        const double u = uniform(0, 1.1), v = uniform(0, 1.1 - u);
+        for (int c = 0; c < 3; c++)
+            d[c] = s.vertices[0][c] + u * (s.vertices[1][c] - s.vertices[0][c]) + v * (s.vertices[2][c] - s.vertices[0][c]) - o[c];
+        quad t, w[2], n[3];
+        triangle_truth(&s, o, d, &t, w, n);
+        bool hit = false;
+        glint_hit got;
+        glint_scene *scene = new_scene((double[3]) { 0, 0, 9 }, (double[3]) { 0 }, 1, o, true);
+        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        assert_int_equal(glint_scene_cast(scene, o, d, &hit, &got, NULL), GLINT_OK);
+        glint_scene_release(scene);
+        const double least = fmin(fmin((double)w[0], (double)w[1]), (double)(1 - w[0] - w[1]));
+        double length = sqrt((double)quad_dot(n, n)), along = 0;
+        for (int c = 0; c < 3; c++)
+            along += (double)n[c] * d[c];
+        const double sine = fabs(along) / (length * sqrt(dot(d, d)));
+        // what 53 bits of the corners as seen from the origin leave, over the angle at which the ray comes in
+        double size = 0, far = 0;
+        for (int i = 0; i < 9; i++) {
+            size = fmax(size, fabs(s.vertices[i / 3][i % 3] - s.vertices[0][i % 3]));
+            far = fmax(far, fabs(s.vertices[i / 3][i % 3] - o[i % 3]));
+        }
+        const double thin = length / (size * size), tolerance = 64 * DBL_EPSILON * (far / size) / (sine * thin);
+        if (tolerance > 1e-6)
+            continue;
+        if (least > tolerance && !hit)
+            fail_msg("case %d: a hit is missed by %g", k, least);
+        if (least < -tolerance && hit)
+            fail_msg("case %d: hit at %g outside", k, least);
+        if (!hit || least < -tolerance)
+            continue;
+        hits++;
+        // t is that of a point of the triangle, off by what its weights are off
+        assert_true(fabs(got.t - (double)t) <= (8 * DBL_EPSILON + tolerance * size / far) * (double)t);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(got.normal[c] - (double)(n[c] / length)) <= 16 * DBL_EPSILON / thin);
+    }
+    assert_true(hits > 5000);
+}
+
+// ---- Files ----
+
+static glint_status load_text(const char *text, glint_shape **out, glint_error *error)
+{
+    char path[] = "/tmp/glint_obj_XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, text, strlen(text)), strlen(text));
+    close(fd);
+    glint_mesh_desc d = glint_mesh_desc_default();
+    const glint_status status = glint_mesh_load(path, &d, out, error);
+    unlink(path);
+    return status;
+}
+
+#define CORNERS "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
+static void good_files(void **unused)
+{
+    static const struct {
+        const char *text;
+        size_t triangles;
+        glint_shading shading;
+    } files[] = {
+        { CORNERS "f 1 2 3 4", 2, GLINT_SHADING_FLAT },
+        { "# c\nmtllib a.mtl\no x\n" CORNERS "vt 0 0\nvn 0 0 1\ng a b\ns off\nusemtl m\nf 1/1/1 2/1/1 3/1/1\n\n", 1,
+          GLINT_SHADING_PHONG },
+        { CORNERS "vn 0 0 2\nf -4//-1 -3//-1 -2//1 -1//1\r\n", 2, GLINT_SHADING_PHONG },
+        { CORNERS "f 1/ 2 3", 0, 0 },
+        { CORNERS "vt 1 1\nf 1/1 2/1 \\\n 3/1\nv 2 2 2 0.5 1 1\n", 1, GLINT_SHADING_FLAT },
+        { "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 5 1 2 3 4 # concave", 3, GLINT_SHADING_FLAT },
+        { "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4", 1, GLINT_SHADING_FLAT },
+    };
+    (void)unused;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        glint_shape *shape = NULL;
+        glint_error error = { .message = "" };
+        const glint_status status = load_text(files[i].text, &shape, &error);
+        if (files[i].triangles == 0) {
+            assert_int_equal(status, GLINT_ERR_FORMAT);
+            continue;
+        }
+        if (status)
+            fail_msg("file %zu: %s", i, error.message);
+        assert_int_equal(glint_spheres_count(shape), files[i].triangles);
+        assert_int_equal(glint_shape_get(shape)->shading, files[i].shading);
+        glint_shape_release(shape);
+    }
+}
+
+static void bad_files(void **unused)
+{
+    static const char *const files[][2] = {
+        { CORNERS "f 1 2 5", "line 5: the number of a vertex, 1 .. 4, expected, got '5'" },
+        { CORNERS "f 1 2 -5", "line 5: the number of a vertex, 1 .. 4, expected, got '-5'" },
+        { CORNERS "f 1 2 0", "line 5: the number of a vertex, 1 .. 4, expected, got '0'" },
+        { CORNERS "f 1 2 3//1", "line 5: the number of a normal, 1 .. 0, expected, got '1'" },
+        { CORNERS "f 1 2", "line 5: 3 corners or more expected, got ' 1 2'" },
+        { CORNERS "f 1 2 3x", "line 5: v, v/vt, v//vn or v/vt/vn expected, got '3x'" },
+        { "v 0 0 zero", "line 1: a number expected, got 'zero'" },
+        { "v 0 0\nv 1 1 1", "line 1: a number expected, got ''" },
+        { "v 0 0 inf", "line 1: a finite number expected, got 'inf'" },
+        { "vertex 0 0 0", "line 1: v, vn, vt, f, g, o, s, usemtl, mtllib, l, p or # expected, got 'vertex 0 0 0'" },
+        { CORNERS, "faces expected, got 4 vertices and none" },
+        { "", "faces expected, got 0 vertices and none" },
+        { CORNERS "f 1 1 2", "faces[1]: a face with an area expected: its vertices 1, 1, 2 are on one line" },
+        { CORNERS "vn 0 0 0\nf 1//1 2//1 3//1", "normals[1]: three finite numbers, not all 0, expected" },
+    };
+    (void)unused;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        glint_shape *shape = NULL;
+        glint_error error = { .message = "" };
+        assert_int_not_equal(load_text(files[i][0], &shape, &error), GLINT_OK);
+        assert_null(shape);
+        if (!strstr(error.message, files[i][1]))
+            fail_msg("got: %s", error.message);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_on_every_instruction_set), cmocka_unit_test(no_cracks),
+        cmocka_unit_test(no_light_by_an_edge),           cmocka_unit_test(no_acne),
+        cmocka_unit_test(triangles_against_oracle),      cmocka_unit_test(good_files),
+        cmocka_unit_test(bad_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
