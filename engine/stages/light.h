@@ -120,8 +120,11 @@ static inline void R(finish_light)(const glint_light_args *args, const int kind,
                                                  f_load(group->cone_less_1 + i), f_load(group->cone_step + i));
             f_store(args->attenuation[s] + at + i, f_select(lit, attenuation, f_set(0)));
         }
-        if (args->highlights) {
-            const fm shiny = fm_from_bits(group->shiny >> i & ((1u << VF) - 1));
+        const unsigned shiny_lanes = group->shiny >> i & ((1u << VF) - 1);
+        if (args->highlights && !shiny_lanes) {
+            f_store(args->log2_specular[s] + at + i, f_set(GLINT_NO_SPECULAR));
+        } else if (args->highlights) {
+            const fm shiny = fm_from_bits(shiny_lanes);
             vf log2 = f_log2(f_select(shiny, f_load(group->x + i), f_set(1)), f_load(group->x_less_1 + i));
             f_store(args->log2_specular[s] + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
         }

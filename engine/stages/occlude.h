@@ -85,15 +85,24 @@ static inline R(light_sides) R(sides_of)(const glint_occlude_args *args, const g
     return sides;
 }
 
-/// Points the tile at a sample of its light.
+/// Points the tile at its light, or at one sample of it.
 static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
     for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            if (lamp)
+                for (int j = i; j < i + VR; j++)
+                    tile->position[k][j] = (real)lamp->position[k][j];
+            else
+                r_store(tile->position[k] + i, r_set(args->position[k]));
+        }
+    if (tile->count <= GLINT_OCCLUDERS)
+        return; // only lone segments ask where the light is in the index's frame
+    for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
             const double x = lamp ? lamp->position[k][i] : args->position[k];
-            tile->position[k][i] = (real)x;
             tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
         }
 }
@@ -212,8 +221,8 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
 }
 
 /// The lanes of `wanted` that the primitive blocks.
-static inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
-                                     unsigned wanted)
+static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder,
+                                                                    R(shadow_group) * group, unsigned wanted)
 {
     const glint_occlude_args *args = tile->args;
     const glint_prim *prim = &args->geometry->prims[occluder.id];
@@ -477,7 +486,7 @@ static void R(place_light)(R(shadow_tile) * tile)
 }
 
 /// lit: of the light or of any of its samples, for each group.
-static void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
+static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = args->geometry;
     vf least[3], most[3];
@@ -509,13 +518,15 @@ static void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit
 
 static void R(occlude_point)(const glint_occlude_args *args)
 {
+    const uint16_t *lit = args->lit[0];
+    uint16_t *out = args->open[0];
     R(shadow_tile) tile;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    R(begin_shadows)(args, args->lit[0], &tile);
+    R(begin_shadows)(args, lit, &tile);
     if (tile.count)
         R(aim_at)(&tile, NULL);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        unsigned open = args->lit[0][g];
+        unsigned open = lit[g];
         *args->rays += (unsigned)__builtin_popcount(open);
         if (open && tile.count) {
             R(begin_group)(&tile, g, open, &group);
@@ -525,6 +536,6 @@ static void R(occlude_point)(const glint_occlude_args *args)
                 for (int k = 0; k < tile.count && open; k++)
                     open &= ~R(blocked_by)(&tile, tile.occluders[k], &group, open);
         }
-        args->open[0][g] = (uint16_t)open;
+        out[g] = (uint16_t)open;
     }
 }

@@ -47,7 +47,10 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
         if (!light->lit[g])
             continue;
         const uint32_t slot = begun ? factors->count - 1 : factors->count++;
-        put_factors(light, material, specular, at, begun, factors->diffuse[slot], factors->specular[slot]);
+        if (begun)
+            put_factors(light, material, specular, at, true, factors->diffuse[slot], factors->specular[slot]);
+        else
+            put_factors(light, material, specular, at, false, factors->diffuse[slot], factors->specular[slot]);
         factors->light[slot] = light;
         begun = true;
     }

@@ -164,37 +164,43 @@ static inline float reach_of(float x, float lower, float upper) { return larger(
 
 static inline float largest_of(float lower, float upper) { return larger(fabsf(lower), fabsf(upper)); }
 
-/// A plane of the axes a, b through (x, y) along (ex, ey), if it has the points and the light on one side.
-static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
-                                   const float lower[3], const float upper[3], const light_place *light)
+/// The extent of a rectangle along the normal (-ey, ex) of a line through (x, y).
+static inline void beside_line(int a, int b, float x, float y, float ex, float ey, const float lower[3],
+                               const float upper[3], float *least, float *most)
 {
-    // both rectangles on one side of the line: their extent along its normal
-    float most = reach_of(-ey, lower[a] - x, upper[a] - x) + reach_of(ex, lower[b] - y, upper[b] - y);
-    float least = -(reach_of(ey, lower[a] - x, upper[a] - x) + reach_of(-ex, lower[b] - y, upper[b] - y));
-    if (!light->directional) {
-        const float *l = light->lower, *u = light->upper;
-        if (l[a] != u[a] || l[b] != u[b]) {
-            most = larger(most, reach_of(-ey, l[a] - x, u[a] - x) + reach_of(ex, l[b] - y, u[b] - y));
-            least = smaller(least, -(reach_of(ey, l[a] - x, u[a] - x) + reach_of(-ex, l[b] - y, u[b] - y)));
-        }
-    }
-    if (!(most <= 0 || least >= 0) || shaft->plane_count == 6)
+    const float left_x = -ey * (lower[a] - x), right_x = -ey * (upper[a] - x);
+    const float left_y = ex * (lower[b] - y), right_y = ex * (upper[b] - y);
+    *most = larger(left_x, right_x) + larger(left_y, right_y);
+    *least = smaller(left_x, right_x) + smaller(left_y, right_y);
+}
+
+/// A plane of the axes a, b through (x, y) along (ex, ey), if it has the points and the light on one side. `wide`: the
+/// light is no point.
+static inline void add_shaft_plane(light_shaft *shaft, int a, int b, float x, float y, float ex, float ey,
+                                   const float lower[3], const float upper[3], const light_place *light, bool wide)
+{
+    float least, most, light_least = 0, light_most = 0;
+    beside_line(a, b, x, y, ex, ey, lower, upper, &least, &most);
+    if (wide)
+        beside_line(a, b, x, y, ex, ey, light->lower, light->upper, &light_least, &light_most);
+    const bool left = most <= 0 && light_most <= 0;
+    if (!(left || (least >= 0 && light_least >= 0)) || shaft->plane_count == 6)
         return;
-    const float sign = most <= 0 ? 1 : -1, nx = -ey * sign, ny = ex * sign;
+    const float sign = left ? 1 : -1, nx = -ey * sign, ny = ex * sign;
     const int p = shaft->plane_count++;
     shaft->axis[p][0] = a;
     shaft->axis[p][1] = b;
     shaft->normal[p][0] = nx;
     shaft->normal[p][1] = ny;
-    float bound = reach_of(nx, lower[a], upper[a]) + reach_of(ny, lower[b], upper[b]);
-    float size = fabsf(nx) * largest_of(lower[a], upper[a]) + fabsf(ny) * largest_of(lower[b], upper[b]);
-    if (!light->directional) { // the light touches the line up to rounding, which grows with how far it is
-        const float *l = light->lower, *u = light->upper;
-        if (l[a] != u[a] || l[b] != u[b])
-            bound = larger(bound, reach_of(nx, l[a], u[a]) + reach_of(ny, l[b], u[b]));
-        size += fabsf(nx) * largest_of(l[a], u[a]) + fabsf(ny) * largest_of(l[b], u[b]);
-    }
-    shaft->bound[p] = bound + WALK_SLACK * size;
+    const float size = fabsf(nx) * largest_of(lower[a], upper[a]) + fabsf(ny) * largest_of(lower[b], upper[b]);
+    float bound = reach_of(nx, lower[a], upper[a]) + reach_of(ny, lower[b], upper[b]), far = 0;
+    if (!light->directional) // the light touches the line up to rounding, which grows with how far it is
+        far = fabsf(nx) * largest_of(light->lower[a], light->upper[a]) +
+              fabsf(ny) * largest_of(light->lower[b], light->upper[b]);
+    if (wide)
+        bound = larger(bound,
+                       reach_of(nx, light->lower[a], light->upper[a]) + reach_of(ny, light->lower[b], light->upper[b]));
+    shaft->bound[p] = bound + WALK_SLACK * (size + far);
 }
 
 /// The planes of one pair of axes: the lines that touch the rectangles of the points and of the light.
@@ -208,7 +214,7 @@ static inline void add_shaft_planes(light_shaft *shaft, int a, int b, const floa
             for (int j = 0; j <= last_b; j++) {
                 const float lx = i ? light->upper[a] : light->lower[a], ly = j ? light->upper[b] : light->lower[b];
                 add_shaft_plane(shaft, a, b, x, y, light->directional ? lx : lx - x, light->directional ? ly : ly - y,
-                                lower, upper, light);
+                                lower, upper, light, last_a || last_b);
             }
     }
 }
