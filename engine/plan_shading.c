@@ -6,6 +6,8 @@
 
 #include <float.h>
 
+#define SAMPLES_MAX 0x1p27 ///< of all lights, for all turns
+
 /// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
 #define STRENGTH_MAX 1e150
 
@@ -142,9 +144,9 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
         if (is_area(desc))
             lamps += (double)sample_count(desc) * glint_lamp_turns(desc, plan->desc.samples);
     }
-    if (lamps + rows > 1u << 28)
-        return glint_fail(error, GLINT_ERR_INVALID,
-                          "samples: at most %u samples of all lights together expected, got %.0f", 1u << 28, lamps);
+    if (fmax(rows, lamps) > SAMPLES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "lights: at most %.0f samples of all together expected, got %.0f",
+                          SAMPLES_MAX, fmax(rows, lamps));
     plan->lights = glint_alloc((size_t)rows, sizeof *plan->lights);
     plan->lamps = glint_alloc((size_t)lamps, sizeof *plan->lamps);
     return plan->lights && plan->lamps ? GLINT_OK : glint_fail_nomem(error);

@@ -214,12 +214,64 @@ static void bad_descriptions_are_refused(void **state)
     assert_string_equal(error.message, "vertices: corner 3: finite numbers expected, got {0, inf, 0}");
 }
 
+static bool has_effect(const glint_scene *scene, const char *effect)
+{
+    glint_render_desc desc = glint_render_desc_default();
+    const glint_effect *list;
+    glint_plan *plan;
+    bool found = false;
+    assert_int_equal(glint_plan_create(scene, &desc, &plan, NULL), GLINT_OK);
+    const size_t count = glint_plan_effects(plan, &list);
+    for (size_t i = 0; i < count; i++)
+        found = found || strcmp(list[i].effect, effect) == 0;
+    glint_plan_destroy(plan);
+    return found;
+}
+
+static void effects_are_those_called_for(void **state)
+{
+    (void)state;
+    static const struct {
+        glint_light_kind kind;
+        const char *effect;
+        bool soft;
+    } lights[] = {
+        { GLINT_LIGHT_SPOT, "spot light", false },      { GLINT_LIGHT_DISK, "disk light", true },
+        { GLINT_LIGHT_POLYGON, "polygon light", true }, { GLINT_LIGHT_SPHERE, "sphere light", true },
+        { GLINT_LIGHT_POINT, "point light", false },
+    };
+    for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
+        glint_scene *scene = make_floor();
+        add_light(scene, lights[i].kind, 6, 1, 16);
+        for (size_t k = 0; k < sizeof lights / sizeof *lights; k++)
+            assert_int_equal(has_effect(scene, lights[k].effect), i == k);
+        assert_int_equal(has_effect(scene, "soft shadow"), lights[i].soft);
+        assert_int_equal(has_effect(scene, "hard shadow"), !lights[i].soft);
+        glint_scene_release(scene);
+    }
+}
+
+static void too_many_samples_are_refused(void **state)
+{
+    (void)state;
+    glint_error error;
+    glint_plan *plan;
+    glint_render_desc desc = glint_render_desc_default();
+    glint_scene *scene = make_floor();
+    for (int i = 0; i < 2049; i++)
+        add_light(scene, GLINT_LIGHT_SPHERE, 6, 1, 65536);
+    assert_int_equal(glint_plan_create(scene, &desc, &plan, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "lights: at most 134217728 samples of all together expected, got 134283264");
+    glint_scene_release(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_between_costs_no_rays), cmocka_unit_test(one_ball_hides_the_whole),
         cmocka_unit_test(rays_are_of_the_penumbra),      cmocka_unit_test(point_like_lights_cost_one_ray),
         cmocka_unit_test(every_way_gives_one_picture),   cmocka_unit_test(bad_descriptions_are_refused),
+        cmocka_unit_test(effects_are_those_called_for),  cmocka_unit_test(too_many_samples_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
