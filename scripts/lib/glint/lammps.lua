@@ -1,0 +1,178 @@
+-- LAMMPS dump files (text, `dump custom` and `dump atom`): any number of frames, orthogonal and triclinic boxes.
+--     for frame in lammps.frames("melt.dump", { wrap = true }) do
+--       print(frame.step, frame.count, frame.box.size[1])
+--       for label, x, y, z, radius in frame:atoms() do ... end
+--     end
+-- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
+-- box); `radius` or `diameter` where it is given. A label is the column `element`, or `types[type]` of the options, or
+-- "type1", "type2" ... The u columns lie outside a periodic box where an atom has left it: wrap = true brings it back.
+local frames = require "glint.frames"
+
+local lammps = {}
+
+local POSITIONS = {
+  { "x", "y", "z" }, { "xs", "ys", "zs", scaled = true }, { "xu", "yu", "zu" }, { "xsu", "ysu", "zsu", scaled = true },
+}
+
+local function words(text)
+  local list = {}
+  for word in text:gmatch "%S+" do list[#list + 1] = word end
+  return list
+end
+
+local function bounds(source, what, count)
+  local line = source:next()
+  local list = words(line or "")
+  if #list ~= count then source:fail(("%d numbers (%s of the box)"):format(count, what), line) end
+  for i = 1, count do list[i] = source:number_of(list[i], what .. " of the box") end
+  if list[1] >= list[2] then source:fail(("%s of the box, the lower one first"):format(what), line) end
+  return list
+end
+
+-- The box from the three lines of its bounds. What LAMMPS writes for a tilted box is the box around it.
+local function read_box(source, header)
+  local kinds = words(header)
+  local tilted = kinds[1] == "xy"
+  if #kinds ~= (tilted and 6 or 3) or header:find "abc" then
+    source:fail("ITEM: BOX BOUNDS with three boundary kinds such as pp pp pp, after xy xz yz when tilted", header)
+  end
+  local n = tilted and 3 or 2
+  local x, y, z = bounds(source, "x bounds", n), bounds(source, "y bounds", n), bounds(source, "z bounds", n)
+  local xy, xz, yz = x[3] or 0, y[3] or 0, z[3] or 0
+  local low = { x[1] - math.min(0, xy, xz, xy + xz), y[1] - math.min(0, yz), z[1] }
+  local high = { x[2] - math.max(0, xy, xz, xy + xz), y[2] - math.max(0, yz), z[2] }
+  local box = { low = low, high = high, size = {}, periodic = {}, xy = xy, xz = xz, yz = yz }
+  for i = 1, 3 do
+    box.size[i] = high[i] - low[i]
+    box.periodic[i] = kinds[#kinds - 3 + i] == "pp"
+    if box.size[i] <= 0 then source:fail("a box larger than its tilt", header) end
+  end
+  return box
+end
+
+-- A point from its shares of the box, and the other way round.
+local function unscale(box, u, v, w)
+  local size, low = box.size, box.low
+  return low[1] + u * size[1] + v * box.xy + w * box.xz, low[2] + v * size[2] + w * box.yz, low[3] + w * size[3]
+end
+
+local function scale(box, x, y, z)
+  local size, low = box.size, box.low
+  local w = (z - low[3]) / size[3]
+  local v = (y - low[2] - w * box.yz) / size[2]
+  return (x - low[1] - v * box.xy - w * box.xz) / size[1], v, w
+end
+
+local function wrapped(box, u, v, w)
+  local periodic = box.periodic
+  return periodic[1] and u - math.floor(u) or u, periodic[2] and v - math.floor(v) or v,
+    periodic[3] and w - math.floor(w) or w
+end
+
+-- Which columns hold what.
+local function find_columns(source, header)
+  local names, place = words(header), {}
+  for i, name in ipairs(names) do place[name] = i end
+  local columns = { count = #names, element = place.element, type = place.type, radius = place.radius,
+    diameter = place.diameter }
+  for _, set in ipairs(POSITIONS) do
+    if place[set[1]] and place[set[2]] and place[set[3]] then
+      columns.x, columns.y, columns.z, columns.scaled = place[set[1]], place[set[2]], place[set[3]], set.scaled
+      break
+    end
+  end
+  if not columns.x then source:fail("columns x y z, xs ys zs, xu yu zu or xsu ysu zsu", header) end
+  if not columns.element and not columns.type then source:fail("a column element or type", header) end
+  return columns
+end
+
+local function label_of(source, columns, list, options)
+  if columns.element then return list[columns.element] end
+  local number = source:whole(list[columns.type], "the type of an atom", 1)
+  if not options.types then return "type" .. number end
+  return options.types[number] or source:fail(("a type among the %d of the option types"):format(#options.types),
+    list[columns.type])
+end
+
+local function read_atom(source, frame, columns, options)
+  local line = source:next()
+  if not line then source:fail(("atom %d of %d"):format(frame.done, frame.count), nil) end
+  local list = words(line)
+  if #list ~= columns.count then
+    source:fail(("atom %d of %d, with %d columns"):format(frame.done, frame.count, columns.count), line)
+  end
+  local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
+  local z, radius = source:number_of(list[columns.z], "z"), nil
+  if columns.scaled or options.wrap then
+    if not columns.scaled then x, y, z = scale(frame.box, x, y, z) end
+    if options.wrap then x, y, z = wrapped(frame.box, x, y, z) end
+    x, y, z = unscale(frame.box, x, y, z)
+  end
+  if columns.radius then
+    radius = source:number_of(list[columns.radius], "radius")
+  elseif columns.diameter then
+    radius = source:number_of(list[columns.diameter], "diameter") / 2
+  end
+  return label_of(source, columns, list, options), x, y, z, radius
+end
+
+-- What stands below each ITEM line, up to the atoms.
+local function read_header(source, line, frame)
+  while true do
+    local item = line and line:match "^ITEM:%s*(.*)"
+    if not item then source:fail("a line ITEM: ...", line) end
+    if item == "TIMESTEP" then
+      frame.step = source:whole(source:next(), "the time step", 0)
+    elseif item == "NUMBER OF ATOMS" then
+      frame.count = source:whole(source:next(), "the number of atoms", 0)
+    elseif item:find "^BOX BOUNDS" then
+      frame.box = read_box(source, item:sub(#"BOX BOUNDS" + 1))
+    elseif item == "UNITS" or item == "TIME" then
+      frame[item:lower()] = source:next()
+    elseif item:find "^ATOMS" then
+      return item:sub(#"ATOMS" + 1)
+    else
+      source:fail("ITEM: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS, UNITS, TIME or ATOMS", line)
+    end
+    line = source:next()
+  end
+end
+
+local function start(source, number, options)
+  local line = source:next()
+  while line and not line:find "%S" do line = source:next() end
+  if not line and number > 1 then return nil end
+  if not line or not line:find "^ITEM:" then
+    source:fail(number > 1 and ("ITEM: ... of frame %d (the frame before it is complete)"):format(number) or
+      "ITEM: TIMESTEP", line)
+  end
+  local frame = { done = 0 }
+  local header = read_header(source, line, frame)
+  for _, name in ipairs { "step", "count", "box" } do
+    if not frame[name] then source:fail(("the %s of the frame above ITEM: ATOMS"):format(name), "ITEM: ATOMS") end
+  end
+  local columns = find_columns(source, header)
+  return frame, function()
+    if frame.done == frame.count then return nil end
+    frame.done = frame.done + 1
+    return read_atom(source, frame, columns, options)
+  end
+end
+
+--- Iterates over the frames of a file: number, step, count, box { low, high, size, periodic, xy, xz, yz }, and
+--- frame:atoms() -> label, x, y, z, radius or nil.
+---@param path string
+---@param options? { types: string[], wrap: boolean }
+function lammps.frames(path, options)
+  return frames.each(path, function(source, number) return start(source, number, options or {}) end)
+end
+
+--- One frame, from 1. Default 1.
+---@param path string
+---@param number? integer
+---@param options? { types: string[], wrap: boolean }
+function lammps.frame(path, number, options)
+  return frames.pick(lammps.frames(path, options), number)
+end
+
+return lammps

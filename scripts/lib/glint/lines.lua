@@ -1,0 +1,89 @@
+-- The lines of a text file one at a time, and errors that say where: every reader of scripts/lib/glint stands on it.
+--     local source = require "glint.lines".open(path)
+--     for line in function() return source:next() end do ... end
+-- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the line at hand, nothing else.
+local lines = {}
+
+local source = {}
+source.__index = source
+
+local LONGEST = 40 -- characters of a line that an error shows
+
+local function shown(text)
+  if text == nil then return "the end of the file" end
+  return #text > LONGEST and ("%q..."):format(text:sub(1, LONGEST)) or ("%q"):format(text)
+end
+
+--- Opens a file. Raises when it cannot be read.
+---@param path string
+function lines.open(path)
+  local file, message = io.open(path, "r")
+  if not file then error(message, 0) end
+  return setmetatable({ path = path, number = 0, file = file }, source)
+end
+
+--- The next line without its end (LF or CRLF), nil after the last.
+function source:next()
+  if self.held ~= nil then
+    local line = self.held
+    self.held = nil
+    self.number = self.number + 1
+    return line
+  end
+  if not self.file then return nil end
+  local line, message = self.file:read "l"
+  if not line then
+    self.file:close()
+    self.file = nil
+    if message then error(("%s: %s"):format(self.path, message), 0) end
+    return nil
+  end
+  self.number = self.number + 1
+  return line:byte(-1) == 13 and line:sub(1, -2) or line
+end
+
+--- Takes one line back: the next call of next() returns it again.
+function source:back(line)
+  self.held = line
+  self.number = self.number - 1
+end
+
+--- Raises an error at the last line read, or after it when `got` is nil: the file ended.
+---@param expected string
+---@param got string?
+function source:fail(expected, got)
+  error(("%s:%d: %s expected, got %s"):format(self.path, self.number + (got and 0 or 1), expected, shown(got)), 0)
+end
+
+--- The finite number that a text stands for, in decimal; else an error that names `what` it was to be.
+---@param text string?
+---@param what string
+---@return number
+function source:number_of(text, what)
+  local value = text and not text:find "[xX]" and tonumber(text)
+  if not value or value - value ~= 0 then
+    self:fail(what .. " (a finite number)", text or "nothing")
+  end
+  return value
+end
+
+--- The whole number >= `least` that a text stands for; else an error that names `what` it was to be.
+---@param text string?
+---@param what string
+---@param least integer
+---@return integer
+function source:whole(text, what, least)
+  local value = text and text:match "^%s*[+-]?%d+%s*$" and math.tointeger(tonumber(text))
+  if not value or value < least then
+    self:fail(("%s (a whole number >= %d)"):format(what, least), text or "nothing")
+  end
+  return value
+end
+
+--- Closes the file before its end.
+function source:close()
+  if self.file then self.file:close() end
+  self.file, self.held = nil, nil
+end
+
+return lines

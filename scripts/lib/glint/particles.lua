@@ -1,0 +1,168 @@
+-- Builds one glint.spheres of any number of atoms or points, with one material for each kind of them.
+--     local set = particles.new()
+--     set:add_frame(xyz.frame "caffeine.xyz")        -- or set:add("C", x, y, z) by hand
+--     scene:add(set:spheres())
+-- A label is a kind of options.kinds, an element (color and radius from glint.elements), "type1" ... "type999" (a
+-- palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5).
+-- Memory: numbers are packed in chunks, there is no table for each sphere. A sphere takes 36 bytes (20 as "f32"), twice
+-- that for the moment in which spheres() puts the chunks together, then what the engine keeps.
+local glint = require "glint"
+local elements = require "glint.elements"
+
+local particles = {}
+
+local CHUNK = 256 -- spheres packed at a time
+local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
+local POINT = { color = "#b8b8b8", radius = 0.5 }
+
+local set = {}
+set.__index = set
+
+--- An empty set.
+--- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
+--- stand in place of color); scale, what the kinds' radii are multiplied by (default 1); radius, of every kind instead;
+--- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory.
+---@param options? table
+function particles.new(options)
+  options = options or {}
+  for name in pairs(options) do
+    if not ("kinds scale radius material format"):find(name, 1, true) then
+      error(("particles.%s: no such option; kinds, scale, radius, material, format are"):format(name), 2)
+    end
+  end
+  local format = options.format or "f64"
+  if format ~= "f32" and format ~= "f64" then
+    error(("particles.format: \"f32\" or \"f64\" expected, got %q"):format(format), 2)
+  end
+  return setmetatable({
+    count = 0, format = format, options = options, kinds = {}, materials = {}, counts = {},
+    low = { math.huge, math.huge, math.huge }, high = { -math.huge, -math.huge, -math.huge },
+    data = {}, index = {}, numbers = {}, places = {}, pending = 0,
+    code = format == "f32" and "f" or "d",
+  }, set)
+end
+
+local function known(label)
+  local symbol = elements.symbol(label)
+  if symbol then return symbol, elements[symbol] end
+  local number = math.tointeger(tonumber(label:match "^type([1-9]%d?%d?)$"))
+  if number then return label, { color = PALETTE[(number - 1) % #PALETTE + 1], radius = 0.5 } end
+  if label == "point" then return label, POINT end
+end
+
+-- Finds or makes the kind of a label: its place among the materials and its radius. Nil when there is none.
+local function kind_of(self, label)
+  local options = self.options
+  local name, found = label, (options.kinds or {})[label]
+  if not found then name, found = known(label) end
+  if not found then return nil end
+  local kind = self.kinds[name]
+  if not kind then
+    local fields = { name = name, diffuse = found.color }
+    for field, value in pairs(options.material or {}) do fields[field] = value end
+    local material = found.material or glint.material(fields)
+    self.materials[#self.materials + 1] = material
+    local radius = options.radius or (options.scale or 1) * (found.radius or POINT.radius)
+    kind = { name = name, place = #self.materials, radius = radius }
+    self.kinds[name] = kind
+    self.counts[name] = 0
+  end
+  self.kinds[label] = kind
+  return kind
+end
+
+-- Packs what is pending into one string.
+local function pack(self)
+  local n = self.pending
+  if n == 0 then return end
+  self.data[#self.data + 1] = (self.code:rep(4 * n)):pack(table.unpack(self.numbers, 1, 4 * n))
+  self.index[#self.index + 1] = (("I4"):rep(n)):pack(table.unpack(self.places, 1, n))
+  self.pending = 0
+end
+
+local function stretch(self, x, y, z, radius)
+  local low, high = self.low, self.high
+  if x - radius < low[1] then low[1] = x - radius end
+  if y - radius < low[2] then low[2] = y - radius end
+  if z - radius < low[3] then low[3] = z - radius end
+  if x + radius > high[1] then high[1] = x + radius end
+  if y + radius > high[2] then high[2] = y + radius end
+  if z + radius > high[3] then high[3] = z + radius end
+end
+
+-- Adds a sphere. Returns false, what was expected and what was got when it cannot be.
+local function put(self, label, x, y, z, radius)
+  local kind = self.kinds[label] or kind_of(self, label)
+  if not kind then
+    return false, "an element, its number, or one of the option kinds", label
+  end
+  radius = radius or kind.radius
+  if radius <= 0 then return false, "a radius > 0", ("%.14g"):format(radius) end
+  local numbers, at = self.numbers, 4 * self.pending
+  numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4] = x, y, z, radius
+  stretch(self, x, y, z, radius)
+  self.pending = self.pending + 1
+  self.places[self.pending] = kind.place
+  self.count = self.count + 1
+  self.counts[kind.name] = self.counts[kind.name] + 1
+  if self.pending == CHUNK then pack(self) end
+  return true
+end
+
+--- Adds one sphere.
+---@param label string
+---@param radius? number  Default: the kind's
+function set:add(label, x, y, z, radius)
+  local done, expected, got = put(self, label, x, y, z, radius)
+  if not done then error(("%s expected, got %q"):format(expected, got), 2) end
+end
+
+--- Adds the atoms of a frame that a reader gave. What cannot be added is an error with file and line.
+---@return table set  the same
+function set:add_frame(frame)
+  for label, x, y, z, radius in frame:atoms() do
+    local done, expected, got = put(self, label, x, y, z, radius)
+    if not done then frame:fail(expected, got) end
+  end
+  return self
+end
+
+--- The spheres, as one shape. The set's own copy of them goes: to be called once.
+---@param fields? table  further fields of the shape, such as { name = "melt" }
+function set:spheres(fields)
+  if self.count == 0 then error("particles: one sphere at least expected, got none", 2) end
+  if not self.data then error("particles: the spheres of this set have been taken", 2) end
+  pack(self)
+  local all = { format = self.format, materials = self.materials }
+  all.data, self.data = table.concat(self.data), nil
+  all.index, self.index = table.concat(self.index), nil
+  for name, value in pairs(fields or {}) do all[name] = value end
+  return glint.spheres(all)
+end
+
+--- The centre of the box around all spheres, and half its diagonal.
+---@return number[] center
+---@return number radius
+function set:extent()
+  local low, high, center, squares = self.low, self.high, {}, 0
+  for i = 1, 3 do
+    center[i] = (low[i] + high[i]) / 2
+    squares = squares + ((high[i] - low[i]) / 2) ^ 2
+  end
+  return center, math.sqrt(squares)
+end
+
+--- A camera that has all spheres in view in a picture at least as wide as high.
+---@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: distance in place of the one
+--- that fits, as a factor (default 1); and a camera's fov (default 30), up, name
+function set:camera(fields)
+  local center, radius = self:extent()
+  local from, fov = fields.from, fields.fov or 30
+  local length = math.sqrt(from[1] ^ 2 + from[2] ^ 2 + from[3] ^ 2)
+  local distance = (fields.margin or 1) * radius / glint.sin(math.rad(fov) / 2) / length
+  local eye = {}
+  for i = 1, 3 do eye[i] = center[i] + distance * from[i] end
+  return glint.camera { eye = eye, at = center, fov = fov, up = fields.up, name = fields.name }
+end
+
+return particles

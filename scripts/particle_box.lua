@@ -1,0 +1,32 @@
+-- A box of particles: 100,000, made up on the spot, a crystal of two kinds that melts towards one side.
+--     glint scripts/particle_box.lua                             particle_box.png
+--     glint scripts/particle_box.lua --set count=1000000 --set format=f32
+--     glint scripts/particle_box.lua --set file=melt.dump --set frame=3     a frame of a LAMMPS dump instead
+local glint = require "glint"
+local particles, lammps = require "glint.particles", require "glint.lammps"
+
+local P = glint.params {
+  count = { 100000, min = 1, max = 1e8, doc = "particles" },
+  format = { "f64", choices = { "f64", "f32" }, doc = "how the numbers are kept; f32 takes half the memory" },
+  file = { "", doc = "a LAMMPS dump file" },
+  frame = { 1, min = 1, max = 1e9, doc = "which frame of it" },
+}
+local set = particles.new { format = P.format, material = { specular = 0.15, shininess = 30 } }
+if P.file ~= "" then
+  set:add_frame(lammps.frame(P.file, P.frame, { wrap = true }))
+else
+  local side, state = math.ceil(P.count ^ (1 / 3)), 1
+  local function noise(size) -- the same numbers on every machine
+    state = state * 48271 % 0x7fffffff
+    return (state / 0x7fffffff - 0.5) * size
+  end
+  for i = 0, P.count - 1 do
+    local x, y, z = i // (side * side), i // side % side, i % side
+    local melt = 1.6 * math.max(0, x / side - 0.4)
+    set:add("type" .. (x + y + z) % 2 + 1, x + noise(melt), y + noise(melt), z + noise(melt))
+  end
+end
+local scene = glint.scene { ambient = 0.25, background = "#10131a", camera = set:camera { from = { -0.8, 1.1, 1.5 } } }
+scene:add(glint.directional_light { direction = { 1, -2, -1.4 }, intensity = 0.75 })
+scene:add(set:spheres())
+scene:render { width = 800, height = 600, samples = 4, output = "particle_box.png" }

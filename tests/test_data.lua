@@ -1,0 +1,436 @@
+-- scripts/lib/glint: the readers on good and bad files, elements, builder; and the scripts that make figures of them.
+local build = os.getenv "BUILD" or "build"
+package.cpath = build .. "/?.so;" .. package.cpath
+package.path = "scripts/lib/?.lua;" .. package.path
+local glint = require "glint"
+local elements, particles, xyz = require "glint.elements", require "glint.particles", require "glint.xyz"
+local pdb, lammps, points = require "glint.pdb", require "glint.lammps", require "glint.points"
+local nff, helix, sphereflake = require "glint.nff", require "glint.helix", require "glint.sphereflake"
+
+local passed, failed = 0, 0
+local function check(ok, format, ...)
+  if ok then
+    passed = passed + 1
+  else
+    failed = failed + 1
+    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(2, "l").currentline))
+  end
+end
+
+local function near(got, want, tolerance, what)
+  check(math.abs(got - want) <= tolerance, "%s: %.17g expected, got %.17g", what, want, got)
+end
+
+local folder = build .. "/tests/data"
+assert(os.execute(("rm -rf '%s' && mkdir -p '%s'"):format(folder, folder)))
+
+local function write(name, text)
+  local path = folder .. "/" .. name
+  local file = assert(io.open(path, "wb"))
+  assert(file:write(text))
+  assert(file:close())
+  return path
+end
+
+local function slurp(path)
+  local file = assert(io.open(path, "rb"))
+  local text = file:read "a"
+  file:close()
+  return text
+end
+
+-- All that a frame has, as a list of { label, x, y, z, radius }.
+local function all(frame)
+  local list = {}
+  for label, x, y, z, radius in frame:atoms() do list[#list + 1] = { label, x, y, z, radius } end
+  return list
+end
+
+local function is(atom, ...)
+  local want = { ... }
+  for i = 1, 5 do
+    if atom[i] ~= want[i] then return false end
+  end
+  return true
+end
+
+-- What reads a file of this text raises exactly FILE:LINE: the message.
+local function refuses(text, line, message, f)
+  local path = write("bad", text)
+  local ok, got = pcall(f, path)
+  local want = ("%s:%d: %s"):format(path, line, message)
+  check(not ok and got == want, "<%s> expected, got <%s>", want, tostring(got))
+end
+
+local function read_all(each)
+  for frame in each do all(frame) end
+end
+local function read_xyz(path) read_all(xyz.frames(path)) end
+local function read_pdb(path) read_all(pdb.frames(path)) end
+local function read_lammps(path) read_all(lammps.frames(path)) end
+local function read_points(path) all(points.frame(path)) end
+
+local tests = {}
+
+function tests.elements()
+  check(elements.H.number == 1 and elements.C.number == 6 and elements.U.number == 92 and elements.Mt.number == 109,
+    "numbers")
+  check(elements.C.color == "#909090" and elements.O.color == "#ff0d0d" and elements.Au.color == "#ffd123" and
+    elements.Mt.color == "#eb0026", "colours")
+  check(elements.H.radius == 1.2 and elements.C.radius == 1.7 and elements.I.radius == 1.98 and
+    elements.Fe.radius == 2 and elements.Fe.guessed and not elements.C.guessed, "radii")
+  check(elements.symbol "CL" == "Cl" and elements.symbol "8" == "O" and elements.symbol "d" == "H", "symbols")
+  check(not elements.symbol "Xx" and not elements.symbol "0" and not elements.symbol "110" and
+    not elements.symbol "Symbol" and not elements.symbol "6.5", "no symbols")
+  local count = 0
+  for _, element in pairs(elements) do
+    if type(element) == "table" then
+      count = count + 1
+      check(element.color:match "^#%x%x%x%x%x%x$" and element.radius > 0, "element %d", element.number)
+    end
+  end
+  check(count == 109, "109 elements, got %d", count)
+end
+
+-- Bonds are pairs nearer than a bond of their elements can be long.
+function tests.caffeine()
+  local frame = xyz.frame "scripts/data/caffeine.xyz"
+  local atoms, formula, bonds = all(frame), {}, {}
+  check(frame.count == 24 and #atoms == 24, "24 atoms, got %d", #atoms)
+  for i, a in ipairs(atoms) do
+    formula[a[1]] = (formula[a[1]] or 0) + 1
+    for j = 1, i - 1 do
+      local b = atoms[j]
+      local distance = math.sqrt((a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2 + (a[4] - b[4]) ^ 2)
+      check(distance > 1, "atoms %d and %d are %g apart", i, j, distance)
+      if distance < ((a[1] == "H" or b[1] == "H") and 1.25 or 1.65) then bonds[#bonds + 1] = { i, j } end
+    end
+  end
+  check(formula.C == 8 and formula.H == 10 and formula.N == 4 and formula.O == 2, "C8H10N4O2")
+  check(#bonds == 25, "25 bonds (24 atoms, two rings), got %d", #bonds)
+end
+
+function tests.xyz()
+  local path = write("two.xyz", "2\nfirst\nO 0 0.5 -1e1\r\nh 1 2 3 extra 7\n\n1\n\n 8 +4 5. .5\n")
+  local seen = {}
+  for frame in xyz.frames(path) do seen[#seen + 1] = { frame.number, frame.count, frame.comment, all(frame) } end
+  check(#seen == 2 and seen[1][1] == 1 and seen[1][2] == 2 and seen[1][3] == "first" and seen[2][3] == "", "frames")
+  check(is(seen[1][4][1], "O", 0, 0.5, -10) and is(seen[1][4][2], "h", 1, 2, 3), "frame 1")
+  check(#seen[2][4] == 1 and is(seen[2][4][1], "8", 4, 5, 0.5), "frame 2")
+  check(is(all(xyz.frame(path, 2))[1], "8", 4, 5, 0.5), "frame 2 alone; the atoms of frame 1 are read over")
+  check(select(2, pcall(xyz.frame, path, 3)) == "frame 3 expected, got a file of 2", "frame 3")
+  check(select(2, pcall(xyz.frame, folder .. "/none")) == folder .. "/none: No such file or directory", "no file")
+  local frame = xyz.frame(path)
+  all(frame)
+  check(not pcall(frame.atoms, frame), "atoms are read once")
+  local whole = "the number of atoms"
+  refuses("", 1, whole .. " expected, got the end of the file", read_xyz)
+  refuses("two\n\n", 1, whole .. ' expected, got "two"', read_xyz)
+  refuses("0\n\n", 1, whole .. ' (a whole number >= 1) expected, got "0"', read_xyz)
+  refuses("1", 2, "a line of comment expected, got the end of the file", read_xyz)
+  refuses("2\n\nC 0 0 0\n", 4, "atom 2 of 2 expected, got the end of the file", read_xyz)
+  refuses("2\n\nC 0 0 0\nC 0 0\n", 4, 'atom 2 of 2 (element x y z) expected, got "C 0 0"', read_xyz)
+  refuses("1\n\nC 0 zero 0\n", 3, 'y (a finite number) expected, got "zero"', read_xyz)
+  refuses("1\n\nC 0 0 nan\n", 3, 'z (a finite number) expected, got "nan"', read_xyz)
+  refuses("1\n\nC 1e999 0 0\n", 3, 'x (a finite number) expected, got "1e999"', read_xyz)
+  refuses("1\n\nC 0x10 0 0\n", 3, 'x (a finite number) expected, got "0x10"', read_xyz)
+  refuses("1\n\nC 0 0 0\nC 0 0 1\n", 4,
+    'the number of atoms of frame 2 (the frame before it is complete) expected, got "C 0 0 1"', read_xyz)
+  refuses(("x"):rep(100), 1, whole .. ' expected, got "' .. ("x"):rep(40) .. '"...', read_xyz)
+end
+
+local ATOM = "ATOM      1  CA  ALA A   1      11.104  -6.134   0.500  1.00  0.00           C\n"
+local CALCIUM = "HETATM    2 CA    CA A   2       1.000   2.000   3.000\n"
+
+function tests.pdb()
+  local atoms = all(pdb.frame(write("a.pdb", "HEADER\n" .. ATOM .. "TER\n" .. CALCIUM .. "END\n")))
+  check(#atoms == 2 and is(atoms[1], "C", 11.104, -6.134, 0.5) and is(atoms[2], "CA", 1, 2, 3), "atoms")
+  check(#all(pdb.frame(folder .. "/a.pdb", 1, { hetatm = false })) == 1, "ATOM alone")
+  local two = write("b.pdb", "MODEL        1\n" .. ATOM .. "ENDMDL\nMODEL        2\n" .. CALCIUM .. ATOM .. "ENDMDL\nEND\n")
+  check(pdb.frame(two, 2).model == 2 and #all(pdb.frame(two, 2)) == 2, "models")
+  local other = ATOM:sub(1, 16) .. "B" .. ATOM:sub(18)
+  check(#all(pdb.frame(write("c.pdb", ATOM .. other))) == 1, "alternate locations: the first alone")
+  local nameless = ATOM:sub(1, 12) .. "HG11" .. ATOM:sub(17, 60) .. "\n"
+  check(is(all(pdb.frame(write("d.pdb", nameless)))[1], "H", 11.104, -6.134, 0.5), "a hydrogen by its name")
+  refuses("HEADER\n", 2, "an ATOM or HETATM record expected, got the end of the file", read_pdb)
+  refuses(ATOM:sub(1, 50), 1, "a record of at least 54 columns (z is in 47-54) expected, got \"" .. ATOM:sub(1, 40) ..
+    '"...', read_pdb)
+  refuses((ATOM:gsub("%-6.134", "*6.134")), 1, 'y, columns 39-46, (a finite number) expected, got "  *6.134"', read_pdb)
+  refuses("MODEL        1\n" .. ATOM, 3, "ENDMDL expected, got the end of the file", read_pdb)
+  refuses("MODEL        1\n" .. ATOM .. "MODEL        2\n", 3, 'ENDMDL expected, got "MODEL        2"', read_pdb)
+  refuses("MODEL      one\n", 1, 'the number of the model (a whole number >= 0) expected, got "     one"', read_pdb)
+end
+
+local function dump(step, count, bounds, columns, body)
+  return ("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS %s\nITEM: ATOMS %s\n%s"):format(step, count,
+    bounds, columns, body)
+end
+local BOX = "pp pp ff\n-1 3\n0 2\n0 10"
+local TILTED = "xy xz yz pp pp pp\n0 5 1\n0 4 0\n0 4 0"
+
+function tests.lammps()
+  local path = write("a.dump", dump(100, 2, BOX, "id type xs ys zs", "1 1 0.25 0.5 0.1\n2 3 1.25 0 1.5\n") ..
+    dump(200, 1, BOX, "type id z y x diameter", "2 1 9 8 7 3\n"))
+  local frame = lammps.frame(path)
+  local atoms = all(frame)
+  check(frame.step == 100 and frame.count == 2 and frame.box.size[1] == 4 and frame.box.periodic[2] and
+    not frame.box.periodic[3], "header")
+  check(is(atoms[1], "type1", 0, 1, 1) and is(atoms[2], "type3", 4, 0, 15), "scaled")
+  check(is(all(lammps.frame(path, 1, { wrap = true }))[2], "type3", 0, 0, 15), "wrapped where the box is periodic")
+  check(is(all(lammps.frame(path, 2))[1], "type2", 7, 8, 9, 1.5), "frame 2: unscaled, columns in another order")
+  check(is(all(lammps.frame(path, 2, { types = { "Na", "Cl", "Ar" } }))[1], "Cl", 7, 8, 9, 1.5), "types")
+  local tilted = write("b.dump", dump(0, 2, TILTED, "element xsu ysu zsu", "Ar 0.5 0.5 0.5\nAr 0.5 1.5 0.5\n"))
+  local box = lammps.frame(tilted).box
+  check(box.low[1] == 0 and box.high[1] == 4 and box.xy == 1, "a tilted box: what is around it is longer by its tilt")
+  check(is(all(lammps.frame(tilted))[1], "Ar", 2.5, 2, 2), "scaled and tilted")
+  check(is(all(lammps.frame(tilted, 1, { wrap = true }))[2], "Ar", 2.5, 2, 2), "wrapped and tilted")
+  local unwrapped = write("c.dump", dump(0, 1, TILTED, "element xu yu zu", "Ar 7.5 6 2\n"))
+  check(is(all(lammps.frame(unwrapped, 1, { wrap = true }))[1], "Ar", 2.5, 2, 2), "unscaled, wrapped and tilted")
+  refuses("", 1, "ITEM: TIMESTEP expected, got the end of the file", read_lammps)
+  refuses("LAMMPS\n", 1, 'ITEM: TIMESTEP expected, got "LAMMPS"', read_lammps)
+  refuses("ITEM: TIMESTEP\nlate\n", 2, 'the time step (a whole number >= 0) expected, got "late"', read_lammps)
+  refuses("ITEM: ATOMS id\n", 1, 'the step of the frame above ITEM: ATOMS expected, got "ITEM: ATOMS"', read_lammps)
+  refuses(dump(0, 2, BOX, "type x y z", "1 0 0 0\n"), 11, "atom 2 of 2 expected, got the end of the file", read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "1 0 0\n"), 10, 'atom 1 of 1, with 4 columns expected, got "1 0 0"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y", ""), 9,
+    'columns x y z, xs ys zs, xu yu zu or xsu ysu zsu expected, got " type x y"', read_lammps)
+  refuses(dump(0, 1, BOX, "x y z", ""), 9, 'a column element or type expected, got " x y z"', read_lammps)
+  refuses(dump(0, 1, "pp pp\n0 1\n", "type x y z", ""), 5, "ITEM: BOX BOUNDS with three boundary kinds such as " ..
+    'pp pp pp, after xy xz yz when tilted expected, got " pp pp"', read_lammps)
+  refuses(dump(0, 1, "pp pp pp\n3 1\n0 1\n0 1", "type x y z", ""), 6,
+    'x bounds of the box, the lower one first expected, got "3 1"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "1 0 0 0\n1 0 0 1\n"), 11,
+    'ITEM: ... of frame 2 (the frame before it is complete) expected, got "1 0 0 1"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "3 0 0 0\n"), 10, 'a type among the 2 of the option types expected, got "3"',
+    function(bad) read_all(lammps.frames(bad, { types = { "Na", "Cl" } })) end)
+end
+
+function tests.points()
+  local list = all(points.frame(write("a.csv", "# stars\nName,X,Z,Y,radius,Label\n\"a \"\"b\"\", c\",1,3,2,0.5,\"C\"\n\nd,4,6,5,1,O\n")))
+  check(#list == 2 and is(list[1], "C", 1, 2, 3, 0.5) and is(list[2], "O", 4, 5, 6, 1), "named columns, quotes")
+  check(is(all(points.frame(write("c.txt", " 1 2  3\n")))[1], "point", 1, 2, 3), "blanks")
+  check(is(all(points.frame(write("d.tsv", "1\t2\t3\t4\n")))[1], "point", 1, 2, 3, 4), "tabs, a radius")
+  check(is(all(points.frame(write("e.csv", "1;2;3;C\n"), { columns = { "z", "y", "x", "label" } }))[1], "C", 3, 2, 1),
+    "columns by options")
+  refuses("# nothing\n", 2, "a line of points expected, got the end of the file", read_points)
+  refuses("x,y,w\n", 1, 'a column named z expected, got "x,y,w"', read_points)
+  refuses("1,2\n", 1, 'a column named z expected, got "1,2"', read_points)
+  refuses("x,y,z\n1,2\n", 2, '3 columns, as many as in the first line, expected, got "1,2"', read_points)
+  refuses("x,y,z\n1,2,three\n", 2, 'z (a finite number) expected, got "three"', read_points)
+  refuses("x,1,2\n", 1, 'numbers, or the names of the columns expected, got "x,1,2"', read_points)
+  refuses("x,y,z\n1,2,\"3\n", 2, 'a closing quote in this line expected, got "1,2,\\"3"', read_points)
+end
+
+function tests.particles()
+  for _, format in ipairs { "f64", "f32" } do
+    local set = particles.new { format = format, scale = 2, material = { specular = 0.25 }, kinds = {
+      A = { color = "red", radius = 3 }, B = { material = glint.material { name = "mine" } } } }
+    for i = 0, 999 do set:add(({ "C", "o", "A", "8", "type2" })[i % 5 + 1], 10 * i, 0.5, -1) end
+    set:add("B", -5, 0, 0, 0.25)
+    check(set.count == 1001 and set.counts.O == 400 and set.counts.A == 200 and set.counts.B == 1, "%s: counts", format)
+    check(set.low[1] == -5.25 and set.high[1] == 9990 + 1 and set.high[2] == 0.5 + 6, "%s: extent", format)
+    local spheres = set:spheres { name = "all" }
+    check(spheres.count == 1001 and spheres.name == "all" and #spheres.materials == 5, "%s: a material a kind", format)
+    check(spheres.materials[2].name == "O" and spheres.materials[2].specular.r == 0.25, "%s: the material of O", format)
+    check(spheres.materials[5].name == "mine", "%s: a material of one's own", format)
+    local hit = glint.scene { spheres }:cast({ 6020, 50, -1 }, { 0, -1, 0 })
+    near(hit.point.y, 6.5, 1e-6, format .. ": the top of an A")
+    check(hit.element == 603, "%s: the 603rd, got %d", format, hit.element)
+    check(not pcall(set.spheres, set), "%s: the spheres are taken once", format)
+  end
+  local ok, message = pcall(particles.new, { colour = "red" })
+  check(not ok and message:find("particles.colour: no such option", 1, true), "unknown option: %s", message)
+  check(not pcall(particles.new, { format = "f16" }), "unknown format")
+  local set = particles.new()
+  check(select(2, pcall(set.add, set, "Xx", 0, 0, 0)):find(
+    'an element, its number, or one of the option kinds expected, got "Xx"', 1, true), "unknown element")
+  check(not pcall(set.add, set, "C", 0, 0, 0, 0) and set.count == 0, "no radius")
+  check(not pcall(set.spheres, set), "no spheres")
+  local function add_xyz(path) particles.new():add_frame(xyz.frame(path)) end
+  refuses("2\n\nC 0 0 0\nXx 0 0 0\n", 4, 'an element, its number, or one of the option kinds expected, got "Xx"', add_xyz)
+  refuses("x,y,z,radius\n0,0,0,-1\n", 2, 'a radius > 0 expected, got "-1"',
+    function(path) particles.new():add_frame(points.frame(path)) end)
+end
+
+-- The camera of a set sees the box around it whole.
+function tests.camera()
+  local set = particles.new { radius = 0.1 }
+  for _, x in ipairs { -3, 5 } do set:add("C", x, 2 * x, 1) end
+  local center, radius = set:extent()
+  near(center[1], 1, 1e-12, "centre")
+  near(radius, math.sqrt(4.1 ^ 2 + 8.1 ^ 2 + 0.1 ^ 2), 1e-12, "radius")
+  local camera = set:camera { from = { 0, 0, 2 }, fov = 60, up = { 1, 0, 0 } }
+  near(camera.eye.z - 1, 2 * radius, 1e-9, "distance for 60 degrees")
+  check(camera.fov == 60 and camera.up.x == 1 and camera.at.x == center[1], "camera")
+end
+
+function tests.helix()
+  local place, count = {}, 0
+  helix.each(2, 12, function(atom, x, y, z, residue, chain)
+    count = count + 1
+    place[atom .. residue .. "/" .. chain] = { x, y, z }
+  end)
+  check(count == 2 * 12 * 5, "atoms: %d", count)
+  local function distance(a, b)
+    a, b = place[a], place[b]
+    return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
+  end
+  for _, bond in ipairs { { "N3/1", "CA3/1", 1.458 }, { "CA3/1", "C3/1", 1.525 }, { "C3/1", "N4/1", 1.329 },
+    { "C3/1", "O3/1", 1.231 }, { "CA3/2", "CB3/2", 1.53 }, { "O3/2", "N7/2", 2.9 } } do
+    near(distance(bond[1], bond[2]), bond[3], 0.03, bond[1] .. " to " .. bond[2])
+  end
+  near(distance("CA3/1", "CB3/1"), distance("CA9/1", "CB9/1"), 1e-9, "every residue alike")
+  local path = folder .. "/chain.pdb"
+  helix.write_pdb(path, 2, 12)
+  local atoms = all(pdb.frame(path))
+  check(#atoms == count and atoms[1][1] == "N" and atoms[5][1] == "C", "what is written is read")
+  near(atoms[5][2], place["CB1/1"][1], 0.0005, "x of CB 1")
+end
+
+function tests.sphereflake()
+  local list = {}
+  sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)
+  check(#list == 91, "1 + 9 + 81 spheres, got %d", #list)
+  for i = 2, #list do -- each touches its parent: for those of the first ring that is the first sphere
+    local s = list[i]
+    if s[4] > 0.1 then near(math.sqrt(s[1] ^ 2 + s[2] ^ 2 + s[3] ^ 2), 2 / 3, 1e-12, "distance of a child") end
+  end
+  near(list[2][1], math.sqrt(2 / 27), 1e-12, "x of the first child, as published: 0.272166")
+  near(list[2][3], math.sqrt(8 / 27), 1e-12, "z of the first child, as published: 0.544331")
+  near(list[12][1], 0.643951, 5e-7, "x of the second child, as published")
+  near(list[12][2], 0.172546, 5e-7, "y of the second child, as published")
+end
+
+function tests.nff()
+  local path = folder .. "/flake.nff"
+  sphereflake.write_nff(path, 2)
+  local picture = nff.load(path)
+  check(picture.width == 512 and picture.height == 512 and picture.set.count == 91 and picture.material_count == 1, "size")
+  check(picture.scene.camera.fov == 45 and picture.scene.camera.up.z == 1 and picture.scene.background.b == 0.753, "view")
+  local hit = picture.scene:cast({ 0, 0, -5 }, { 0, 0, 1 })
+  near(hit.point.z, -0.5, 1e-12, "the first sphere from below")
+  check(hit.object.materials[1].diffuse.g == 0.45 and hit.object.materials[1].shininess == 5, "material")
+  sphereflake.write_nff(path, 0, true)
+  local ok, message = pcall(nff.load, path)
+  check(not ok and message == path .. ":13: a primitive that glint has (polygons are none; skip = { p = true } passes " ..
+    'over them) expected, got "p 4"', "a polygon is refused: %s", message)
+  picture = nff.load(path, { skip = { p = true } })
+  check(picture.skipped.p == 1 and picture.set.count == 1 and picture.material_count == 2, "skipped on request")
+  local head, f = sphereflake.NFF_HEADER, sphereflake.NFF_SPHERES
+  refuses("b 0 0 0\n", 2, "v (a view) expected, got the end of the file", nff.load)
+  refuses("v\nfrom 0 0 1\nup 0 1 0\n", 3, 'at, 3 numbers, expected, got "up 0 1 0"', nff.load)
+  refuses("v\nfrom 0 0\n", 2, 'from, 3 numbers, expected, got "0 0"', nff.load)
+  refuses((head:gsub("angle 45", "angle 180")), 7, 'an angle between 0 and 180 expected, got "180"', nff.load)
+  refuses((head:gsub("512 512", "512 0")), 7, 'resolution (a whole number >= 1) expected, got "0"', nff.load)
+  refuses(head .. "l 1 2\n", 12, 'l (a light, x y z, or x y z r g b), 3 to 6 numbers, expected, got " 1 2"', nff.load)
+  refuses(head .. "l 1 2 3 4\n", 12, '3 or 6 numbers of a light expected, got " 1 2 3 4"', nff.load)
+  refuses(head .. "s 0 0 0 1\n", 12, 'f (a material) before the first primitive expected, got "s 0 0 0 1"', nff.load)
+  refuses(head .. f .. "s 0 0 0\n", 13, 's (a sphere, x y z radius) expected, got " 0 0 0"', nff.load)
+  refuses(head .. f .. "s 0 0 0 0\n", 13, 'a radius > 0 expected, got "0"', nff.load)
+  refuses(head .. f .. "s 0 0 z 1\n", 13, 'z (a finite number) expected, got "z"', nff.load)
+  refuses(head .. "f 1 1 1 1 0 0 0.5 1.5\n", 12,
+    'T = 0 (glint does not read transparent surfaces yet) expected, got " 1 1 1 1 0 0 0.5 1.5"', nff.load)
+  refuses(head .. "f 1 1 1\n", 12, 'f (r g b Kd Ks Shine T index), 8 numbers, expected, got " 1 1 1"', nff.load)
+  refuses(head .. "torus 1 2\n", 12, 'v, b, l, f, s, p, pp, c or # expected, got "torus 1 2"', nff.load)
+end
+
+-- A script by the command, in a folder that is not its own; what it printed.
+local root = assert(io.popen "pwd"):read "l"
+local command = os.getenv "GLINT" or root .. "/" .. build .. "/glint"
+local function run(arguments)
+  local pipe = assert(io.popen(("cd '%s' && '%s' %s 2>&1"):format(folder, command, arguments)))
+  local text = pipe:read "a"
+  local ok = pipe:close()
+  return ok, text
+end
+
+-- Numbers of a .pfm: width, height, and a function of x, y (from the top left), channel.
+local function read_pfm(path)
+  local text = slurp(path)
+  local kind, width, height, start = text:match "^(P[Ff])%s(%d+)%s(%d+)%s%-[%d.]+%s()"
+  local channels = kind == "PF" and 3 or 1
+  width, height = tonumber(width), tonumber(height)
+  return width, height, function(x, y, channel)
+    return (("<f"):unpack(text, start + 4 * (((height - 1 - y) * width + x) * channels + channel - 1)))
+  end
+end
+
+-- How many different colours a picture has, of those on a grid.
+local function colors_of(path)
+  local width, height, at = read_pfm(path)
+  local seen, count = {}, 0
+  for y = 0, height - 1, 2 do
+    for x = 0, width - 1, 2 do
+      local key = ("%.3f %.3f %.3f"):format(at(x, y, 1), at(x, y, 2), at(x, y, 3))
+      if not seen[key] then
+        seen[key] = true
+        count = count + 1
+      end
+    end
+  end
+  return count
+end
+
+function tests.pictures()
+  for _, case in ipairs { "molecule", "protein --set residues=20", "sphereflake --set size=2 --set nff=balls.nff",
+    "particle_box --set count=4000", "nff --set file=balls.nff" } do
+    local name = case:match "^%S+"
+    local ok, text = run(("%s/scripts/%s.lua %s --size 96x72 --samples 1 -o %s.pfm --quiet"):format(root, name,
+      case:sub(#name + 1), name))
+    check(ok, "%s: %s", name, text)
+    if ok then
+      local count = colors_of(folder .. "/" .. name .. ".pfm")
+      check(count > 60, "%s: a picture of more than 60 colours, got %d", name, count)
+    end
+  end
+  local ok, text = run(("%s/scripts/molecule.lua --set file=nothing.xyz"):format(root))
+  check(not ok and text:find("nothing.xyz: No such file", 1, true), "no file: %s", text)
+end
+
+-- Light k costs no cast; and three lights of a matt scene give its normals back.
+function tests.photometric()
+  local ok, text = run(root .. "/scripts/photometric.lua --json --size 64x64 --set lights=4 --set shadows=false " ..
+    "--set spread=30 --set exact=true")
+  check(ok, "photometric: %s", text)
+  local frames, reused = 0, 0
+  for line in text:gmatch '[^\n]*"event":"frame"[^\n]*' do
+    frames = frames + 1
+    local is_reused = line:find('"cast":"reused"', 1, true) and line:find('"primary":0,"shadow":0', 1, true)
+    if is_reused then reused = reused + 1 end
+  end
+  check(frames == 5 and reused == 3, "4 lights and the truth, 3 with the hits of the first; got %d and %d", frames, reused)
+  local set, lights = folder .. "/photometric/", {}
+  for file, x, y, z, intensity in slurp(set .. "lights.csv"):gmatch "(light_%d+.pfm),([^,]+),([^,]+),([^,]+),([^\n]+)" do
+    local _, _, at = read_pfm(set .. file)
+    lights[#lights + 1] = { tonumber(x), tonumber(y), tonumber(z), at = at }
+    near(x ^ 2 + y ^ 2 + z ^ 2, 1, 1e-12, "unit direction")
+    check(tonumber(intensity) == 1, "intensity")
+  end
+  check(#lights == 4, "lights.csv: 4 lights, got %d", #lights)
+  local _, _, normal = read_pfm(set .. "normal.pfm")
+  local _, _, depth = read_pfm(set .. "depth.pfm")
+  check(normal(0, 0, 3) == 0 and depth(0, 0, 1) == math.huge, "nothing in the corner")
+  near(normal(32, 32, 3), 1, 1e-3, "the middle faces the camera")
+  near(depth(32, 32, 1), 8.4, 1e-2, "and is 8.4 away")
+  for _, p in ipairs { { 32, 32 }, { 26, 34 }, { 38, 40 } } do
+    local x, y = p[1], p[2]
+    for k = 1, 4 do -- red is 0.75 (n.l) on the large ball
+      local l = lights[k]
+      local n_l = normal(x, y, 1) * l[1] + normal(x, y, 2) * l[2] + normal(x, y, 3) * l[3]
+      near(l.at(x, y, 1), 0.75 * n_l, 1e-6, ("light %d at %d, %d"):format(k, x, y))
+    end
+  end
+  for _, name in ipairs { "mask.png", "normal.png", "depth.png" } do
+    check(slurp(set .. name):sub(25, 25):byte() == 16, "%s has 16 bits", name)
+  end
+end
+
+local names = {}
+for name in pairs(tests) do names[#names + 1] = name end
+table.sort(names)
+for _, name in ipairs(names) do
+  local ok, message = xpcall(tests[name], debug.traceback)
+  check(ok, "%s: %s", name, message)
+end
+print(("%d passed, %d failed"):format(passed, failed))
+os.exit(failed == 0)
