@@ -275,6 +275,9 @@ demo-run: all
 	@echo "  ffmpeg -framerate 24 -i $(BUILD)/demo/moving_light_%04d.png -pix_fmt yuv420p $(BUILD)/demo/moving_light.mp4"
 	@echo "Try:  $(BUILD)/glint scripts/moving_light.lua --help"
 
+# The modules in Lua: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
+LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))
+
 # What is installed: mode, from, to.
 define INSTALLED
 755 $(BUILD)/glint $(bindir)/glint
@@ -287,7 +290,7 @@ define INSTALLED
 644 $(BUILD)/completion/bash $(datadir)/bash-completion/completions/glint
 644 $(BUILD)/completion/zsh $(datadir)/zsh/site-functions/_glint
 644 $(BUILD)/completion/fish $(datadir)/fish/vendor_completions.d/glint.fish
-$(foreach module,$(notdir $(wildcard scripts/lib/*.lua)),644 scripts/lib/$(module) $(luasharedir)/$(module)
+$(foreach module,$(LUA_LIBRARY),644 scripts/lib/$(module) $(luasharedir)/$(module)
 )
 endef
 export INSTALLED
@@ -308,12 +311,13 @@ install: all $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) #
 install-rock: all
 	install -D -m 755 $(BUILD)/glint $(bindir)/glint
 	install -D -m 755 $(BUILD)/glint.so $(luadir)/glint.so
-	@for module in $(wildcard scripts/lib/*.lua); do install -D -m 644 $$module $(luasharedir)/$${module##*/} || exit 1; done
+	@for module in $(LUA_LIBRARY); do install -D -m 644 scripts/lib/$$module $(luasharedir)/$$module || exit 1; done
 
 uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
-	@if [ -d "$(DESTDIR)$(datadir)/glint" ]; then rmdir "$(DESTDIR)$(datadir)/glint"; fi
+	@for folder in $(datadir)/glint $(luasharedir)/glint; do \
+	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test

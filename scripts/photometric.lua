@@ -6,8 +6,8 @@
 --     mask.png             1 where an object is, 0 elsewhere (16 bits)
 --     normal.png           normal * 0.5 + 0.5 in the same axes (16 bits), and normal.pfm: exact, 0 where nothing is
 --     depth.png            nearest / distance (16 bits), and depth.pfm: the distance from the eye, inf where nothing is
--- Only the light changes: image 2 and later keep the hits of image 1 and pay for light and shading (and for shadows,
--- unless --set shadows=false). `--json` shows it: "cast":"reused".
+-- Only the light changes. The engine keeps the hits when a second frame has read the same, so that from image 3 on a
+-- picture costs light and shading (and shadows, unless --set shadows=false): --json shows "cast":"reused".
 --     glint scripts/photometric.lua --set lights=96 --set shadows=false
 --     glint scripts/photometric.lua --set specular=0.4          surfaces that are not matt
 -- For a scene of your own put its shapes in place of `objects`; a camera along -z keeps the axes.
@@ -34,7 +34,7 @@ local objects = {
 local lamp = glint.directional_light { direction = { 0, 0, -1 }, shadows = P.shadows }
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 0, 10 }, at = { 0, 0, 0 }, projection = "orthographic", height = 4.6 },
-  table.unpack(objects),
+  lamp, table.unpack(objects),
 }
 local SIZE = { width = 512, height = 512, bits = 16, transfer = "linear" }
 
@@ -47,20 +47,6 @@ end
 
 local function path(name) return P.folder .. "/" .. name end
 
--- The truth: every material has ambient = 1, so that white ambient light alone shows where objects are.
-scene.ambient = 1
-local truth = scene:render { width = SIZE.width, height = SIZE.height, passes = "normal,depth" }
-if truth then -- not on a machine that has another part of the job
-  local codes = { bits = 16, transfer = "linear" }
-  assert(truth:save(path "mask.png", codes))
-  for _, pass in ipairs { "normal", "depth" } do
-    assert(truth:save(path(pass .. ".png"), { bits = 16, pass = pass }))
-    assert(truth:save(path(pass .. ".pfm"), { pass = pass }))
-  end
-end
-scene.ambient = 0
-scene:add(lamp)
-
 local rows = { "file,x,y,z,intensity\n" }
 for k = 1, P.lights do
   local x, y, z = direction(k)
@@ -71,7 +57,16 @@ for k = 1, P.lights do
   rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
 end
 
-if truth then
+-- The truth: every material has ambient = 1, so that white ambient light alone shows where objects are.
+scene:remove(lamp)
+scene.ambient = 1
+local truth = scene:render { width = SIZE.width, height = SIZE.height, passes = "normal,depth" }
+if truth then -- not on a machine that has another part of the job
+  assert(truth:save(path "mask.png", { bits = 16, transfer = "linear" }))
+  for _, pass in ipairs { "normal", "depth" } do
+    assert(truth:save(path(pass .. ".png"), { bits = 16, pass = pass }))
+    assert(truth:save(path(pass .. ".pfm"), { pass = pass }))
+  end
   local csv = assert(io.open(path "lights.csv", "w"))
   assert(csv:write(table.concat(rows)))
   assert(csv:close())

@@ -23,6 +23,8 @@ check "make install" quiet_make install PREFIX="$prefix"
 check "the command" "$prefix/bin/glint" --version
 check "the module, in plain Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" "${LUA:-lua5.4}" -e \
     'assert(require("glint").version)'
+check "the modules in Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" LUA_PATH="$prefix/share/lua/5.4/?.lua" \
+    "${LUA:-lua5.4}" -e 'assert(require("glint.particles").new and require("glint.xyz").frames)'
 check "the manual page" grep -q '^\.TH GLINT 1' "$prefix/share/man/man1/glint.1"
 check "its version" grep -q "\"glint $("$prefix/bin/glint" --version | cut -d ' ' -f 2)\"" "$prefix/share/man/man1/glint.1"
 for file in bash-completion/completions/glint zsh/site-functions/_glint fish/vendor_completions.d/glint.fish; do
@@ -51,7 +53,7 @@ check "the same scene from Lua" eval '(cd "$work" && "$prefix/bin/glint" same.lu
 check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$work/same.png" --fail 0 --warn 0
 
 check "make uninstall" quiet_make uninstall PREFIX="$prefix"
-check "nothing is left" test -z "$(find "$prefix" -type f)" -a ! -e "$prefix/share/glint"
+check "nothing is left" test -z "$(find "$prefix" -type f)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
 check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
 exit $bad

@@ -1,11 +1,12 @@
--- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s.
+-- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s, p, pp.
 --     local picture = nff.load "balls.nff"
 --     return glint.animation { scene = picture.scene, width = picture.width, height = picture.height, ... }
 -- What becomes of it: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is
 -- diffuse, Ks the strength of a white highlight and Shine its exponent (no mirror); a light without a colour has the
--- intensity 1 / sqrt(number of lights). All spheres become one glint.spheres.
--- Refused with their line: cones and cylinders `c`, polygons `p`, patches `pp`, and T > 0 in `f`. With
--- options.skip = { p = true } a kind of primitive is passed over instead, and counted in picture.skipped.
+-- intensity 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one
+-- glint.mesh, its patches (polygons with a normal a corner) another.
+-- Refused with their line: cones and cylinders `c`, and T > 0 in `f`. With options.skip = { c = true } they are passed
+-- over instead, and counted in picture.skipped.
 local glint = require "glint"
 local lines = require "glint.lines"
 local particles = require "glint.particles"
@@ -13,7 +14,7 @@ local particles = require "glint.particles"
 local nff = {}
 
 local VIEW = { { "from", 3 }, { "at", 3 }, { "up", 3 }, { "angle", 1 }, { "hither", 1 }, { "resolution", 2 } }
-local NAMES = { p = "polygons", pp = "polygonal patches", c = "cones and cylinders" }
+local NAMES = { p = "polygons", pp = "patches" }
 
 -- The numbers of a text, between `least` and `most` of them.
 local function numbers(source, text, what, least, most)
@@ -80,21 +81,63 @@ function read.s(picture, source, rest)
   picture.set:add(picture.material, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z"), size)
 end
 
--- How many lines belong to a primitive below its own.
-local function lines_below(source, name, rest)
-  if name == "c" then return 2 end
-  return source:whole(rest, ("the number of corners of %s"):format(name), 3)
+-- The polygons of the material at hand: `numbers` a corner, 3 without and 6 with a normal.
+local function bunch_of(picture, source, name)
+  local key = name .. picture.material
+  local bunch = picture.bunches[key]
+  if not bunch then
+    bunch = {
+      name = name, material = picture.kinds[picture.material].material, line = source.number,
+      vertices = {}, normals = name == "pp" and {} or nil, faces = {}, corners = 0,
+    }
+    picture.bunches[key] = bunch
+    picture.bunches[#picture.bunches + 1] = bunch
+  end
+  return bunch
 end
 
-local function pass_over(picture, source, name, rest)
-  if not picture.skip[name] then
-    source:fail(("a primitive that glint has (%s are none; skip = { %s = true } passes over them)"):format(
-      NAMES[name], name), name .. rest)
+local function read_polygon(picture, source, name, rest)
+  if not picture.material then source:fail("f (a material) before the first primitive", name .. rest) end
+  local count = source:whole(rest, "the number of corners of " .. name, 3)
+  local bunch, face = bunch_of(picture, source, name), {}
+  for corner = 1, count do
+    local what = ("corner %d of %d"):format(corner, count)
+    local line = next_line(source)
+    if not line then source:fail(what, nil) end
+    local list = numbers(source, line, what, bunch.normals and 6 or 3)
+    bunch.corners = bunch.corners + 1
+    bunch.vertices[bunch.corners] = ("ddd"):pack(list[1], list[2], list[3])
+    if bunch.normals then bunch.normals[bunch.corners] = ("ddd"):pack(list[4], list[5], list[6]) end
+    face[corner] = bunch.corners
   end
-  for _ = 1, lines_below(source, name, rest) do
-    if not next_line(source) then source:fail(("a line of %s"):format(name), nil) end
+  bunch.faces[#bunch.faces + 1] = face
+  picture.polygon_count = picture.polygon_count + 1
+end
+
+function read.p(picture, source, rest) read_polygon(picture, source, "p", rest) end
+function read.pp(picture, source, rest) read_polygon(picture, source, "pp", rest) end
+
+function read.c(picture, source, rest)
+  if not picture.skip.c then
+    source:fail("a primitive that glint reads (cones and cylinders are none; skip = { c = true } passes over them)",
+      "c" .. rest)
   end
-  picture.skipped[name] = (picture.skipped[name] or 0) + 1
+  for _ = 1, 2 do
+    if not next_line(source) then source:fail("the two ends of c", nil) end
+  end
+  picture.skipped.c = (picture.skipped.c or 0) + 1
+end
+
+-- The engine looks at the shape of polygons when it has all of them: its message is about the bunch.
+local function add_meshes(picture, source)
+  for _, bunch in ipairs(picture.bunches) do
+    local ok, mesh = pcall(glint.mesh, {
+      vertices = table.concat(bunch.vertices), normals = bunch.normals and table.concat(bunch.normals),
+      format = "f64", faces = bunch.faces, material = bunch.material,
+    })
+    if not ok then error(("%s: %s from line %d on: %s"):format(source.path, NAMES[bunch.name], bunch.line, mesh), 0) end
+    picture.scene:add(mesh)
+  end
 end
 
 local function add_lights(picture)
@@ -115,19 +158,22 @@ local function finish(picture, source)
   }
   picture.width, picture.height = view.resolution[1], view.resolution[2]
   add_lights(picture)
+  add_meshes(picture, source)
   if picture.set.count > 0 then picture.scene:add(picture.set:spheres()) end
   return picture
 end
 
 --- Reads a file into a scene. Errors have file and line. Memory: see glint.particles.
 ---@param path string
----@param options? { skip: table<string, boolean>, format: string }  skip: p, pp, c; format: of the spheres
----@return table picture  scene, width, height, skipped, material_count, set (of glint.particles, with its count)
+---@param options? { skip: { c: boolean }, format: string }  format: of the spheres, "f64" (default) or "f32"
+---@return table picture  scene, width, height, skipped, material_count, polygon_count, set (of
+--- glint.particles, with its count)
 function nff.load(path, options)
   local source = lines.open(path)
   local kinds = {}
   local picture = {
-    view = {}, lights = {}, kinds = kinds, material_count = 0, background = { 0, 0, 0 }, skipped = {},
+    view = {}, lights = {}, kinds = kinds, material_count = 0, polygon_count = 0, bunches = {},
+    background = { 0, 0, 0 }, skipped = {},
     skip = options and options.skip or {},
     set = particles.new { kinds = kinds, format = options and options.format },
   }
@@ -135,8 +181,6 @@ function nff.load(path, options)
     local name, rest = line:match "^%s*(%a+)(.*)$"
     if read[name] then
       read[name](picture, source, rest)
-    elseif NAMES[name] then
-      pass_over(picture, source, name, rest)
     else
       source:fail("v, b, l, f, s, p, pp, c or #", line)
     end
