@@ -118,7 +118,7 @@ function tests.xyz()
   check(is(seen[1][4][1], "O", 0, 0.5, -10) and is(seen[1][4][2], "h", 1, 2, 3), "frame 1")
   check(#seen[2][4] == 1 and is(seen[2][4][1], "8", 4, 5, 0.5), "frame 2")
   check(is(all(xyz.frame(path, 2))[1], "8", 4, 5, 0.5), "frame 2 alone; the atoms of frame 1 are read over")
-  check(select(2, pcall(xyz.frame, path, 3)) == "frame 3 expected, got a file of 2", "frame 3")
+  check(select(2, pcall(xyz.frame, path, 3)) == path .. ": frame 3 expected, got a file of 2", "frame 3")
   check(select(2, pcall(xyz.frame, folder .. "/none")) == folder .. "/none: No such file or directory", "no file")
   local frame = xyz.frame(path)
   all(frame)
@@ -252,6 +252,20 @@ function tests.particles()
     function(path) particles.new():add_frame(points.frame(path)) end)
 end
 
+-- What is kept of an atom while a file is read: 36 bytes, not a table.
+function tests.memory()
+  local rows = { "50000\n" }
+  for i = 1, 50000 do rows[i + 1] = ("\nC %d %d.5 0"):format(i % 50, i // 50) end
+  local path = write("large.xyz", table.concat(rows))
+  rows = nil
+  collectgarbage()
+  local before, set = collectgarbage "count", particles.new()
+  set:add_frame(xyz.frame(path))
+  collectgarbage()
+  local bytes = (collectgarbage "count" - before) * 1024 / 50000
+  check(set.count == 50000 and bytes > 30 and bytes < 45, "36 bytes an atom and little more, got %g", bytes)
+end
+
 -- The camera of a set sees the box around it whole.
 function tests.camera()
   local set = particles.new { radius = 0.1 }
@@ -340,6 +354,8 @@ function tests.nff()
   refuses(head .. f .. "p 3\n0 0 0\n1 0 0\n", 16, "corner 3 of 3 expected, got the end of the file", nff.load)
   refuses(head .. f .. "p 3\n0 0 0\n1 0 0 1\n", 15, 'corner 2 of 3, 3 numbers, expected, got "1 0 0 1"', nff.load)
   refuses(head .. f .. "pp 3\n0 0 0\n", 14, 'corner 1 of 3, 6 numbers, expected, got "0 0 0"', nff.load)
+  refuses(head .. f .. "p 3\n0 0 0\n1 0 0\n0 1 0\np 3\n0 0 0\n1 0 0\n2 0 0\n", 17,
+    "a face with an area expected: its vertices 4, 5, 6 are on one line", nff.load)
   refuses(head .. f .. "c\n0 0 0 1\n0 0 1 1\n", 13, 'a primitive that glint reads (cones and cylinders are none; ' ..
     'skip = { c = true } passes over them) expected, got "c"', nff.load)
   picture = nff.load(write("cone.nff", head .. f .. "c\n0 0 0 1\n0 0 1 1\ns 0 0 0 1\n"), { skip = { c = true } })

@@ -53,16 +53,17 @@ function frames.each(path, start)
 end
 
 --- One frame of what a reader's frames() iterates over. Raises when there are fewer.
+---@param path string
 ---@param each function
 ---@param number integer  from 1. Default 1
-function frames.pick(each, number)
+function frames.pick(path, each, number)
   number = number or 1
   local last = 0
   for found in each do
     last = found.number
     if last == number then return found end
   end
-  error(("frame %d expected, got a file of %d"):format(number, last), 0)
+  error(("%s: frame %d expected, got a file of %d"):format(path, number, last), 0)
 end
 
 return frames

@@ -14,10 +14,15 @@ local POSITIONS = {
   { "x", "y", "z" }, { "xs", "ys", "zs", scaled = true }, { "xu", "yu", "zu" }, { "xsu", "ysu", "zsu", scaled = true },
 }
 
-local function words(text)
-  local list = {}
-  for word in text:gmatch "%S+" do list[#list + 1] = word end
-  return list
+-- The words of a text, in a new list or one to be filled again, and how many they are.
+local function words(text, list)
+  local count = 0
+  list = list or {}
+  for word in text:gmatch "%S+" do
+    count = count + 1
+    list[count] = word
+  end
+  return list, count
 end
 
 local function bounds(source, what, count)
@@ -73,7 +78,7 @@ end
 local function find_columns(source, header)
   local names, place = words(header), {}
   for i, name in ipairs(names) do place[name] = i end
-  local columns = { count = #names, element = place.element, type = place.type, radius = place.radius,
+  local columns = { words = {}, count = #names, element = place.element, type = place.type, radius = place.radius,
     diameter = place.diameter }
   for _, set in ipairs(POSITIONS) do
     if place[set[1]] and place[set[2]] and place[set[3]] then
@@ -97,8 +102,8 @@ end
 local function read_atom(source, frame, columns, options)
   local line = source:next()
   if not line then source:fail(("atom %d of %d"):format(frame.done, frame.count), nil) end
-  local list = words(line)
-  if #list ~= columns.count then
+  local list, count = words(line, columns.words)
+  if count ~= columns.count then
     source:fail(("atom %d of %d, with %d columns"):format(frame.done, frame.count, columns.count), line)
   end
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
@@ -172,7 +177,7 @@ end
 ---@param number? integer
 ---@param options? { types: string[], wrap: boolean }
 function lammps.frame(path, number, options)
-  return frames.pick(lammps.frames(path, options), number)
+  return frames.pick(path, lammps.frames(path, options), number)
 end
 
 return lammps

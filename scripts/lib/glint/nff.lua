@@ -14,7 +14,6 @@ local particles = require "glint.particles"
 local nff = {}
 
 local VIEW = { { "from", 3 }, { "at", 3 }, { "up", 3 }, { "angle", 1 }, { "hither", 1 }, { "resolution", 2 } }
-local NAMES = { p = "polygons", pp = "patches" }
 
 -- The numbers of a text, between `least` and `most` of them.
 local function numbers(source, text, what, least, most)
@@ -82,13 +81,13 @@ function read.s(picture, source, rest)
 end
 
 -- The polygons of the material at hand: `numbers` a corner, 3 without and 6 with a normal.
-local function bunch_of(picture, source, name)
+local function bunch_of(picture, name)
   local key = name .. picture.material
   local bunch = picture.bunches[key]
   if not bunch then
     bunch = {
-      name = name, material = picture.kinds[picture.material].material, line = source.number,
-      vertices = {}, normals = name == "pp" and {} or nil, faces = {}, corners = 0,
+      material = picture.kinds[picture.material].material,
+      vertices = {}, normals = name == "pp" and {} or nil, faces = {}, lines = {}, corners = 0,
     }
     picture.bunches[key] = bunch
     picture.bunches[#picture.bunches + 1] = bunch
@@ -99,7 +98,7 @@ end
 local function read_polygon(picture, source, name, rest)
   if not picture.material then source:fail("f (a material) before the first primitive", name .. rest) end
   local count = source:whole(rest, "the number of corners of " .. name, 3)
-  local bunch, face = bunch_of(picture, source, name), {}
+  local bunch, face, line_number = bunch_of(picture, name), {}, source.number
   for corner = 1, count do
     local what = ("corner %d of %d"):format(corner, count)
     local line = next_line(source)
@@ -110,7 +109,7 @@ local function read_polygon(picture, source, name, rest)
     if bunch.normals then bunch.normals[bunch.corners] = ("ddd"):pack(list[4], list[5], list[6]) end
     face[corner] = bunch.corners
   end
-  bunch.faces[#bunch.faces + 1] = face
+  bunch.faces[#bunch.faces + 1], bunch.lines[#bunch.lines + 1] = face, line_number
   picture.polygon_count = picture.polygon_count + 1
 end
 
@@ -128,14 +127,17 @@ function read.c(picture, source, rest)
   picture.skipped.c = (picture.skipped.c or 0) + 1
 end
 
--- The engine looks at the shape of polygons when it has all of them: its message is about the bunch.
+-- The engine looks at the shapes of polygons when it has all of them: its message names the face, ours the line.
 local function add_meshes(picture, source)
   for _, bunch in ipairs(picture.bunches) do
     local ok, mesh = pcall(glint.mesh, {
       vertices = table.concat(bunch.vertices), normals = bunch.normals and table.concat(bunch.normals),
       format = "f64", faces = bunch.faces, material = bunch.material,
     })
-    if not ok then error(("%s: %s from line %d on: %s"):format(source.path, NAMES[bunch.name], bunch.line, mesh), 0) end
+    if not ok then
+      local face, message = mesh:match "mesh%.faces%[(%d+)%]: (.*)"
+      error(("%s:%d: %s"):format(source.path, bunch.lines[tonumber(face)] or bunch.lines[1], message or mesh), 0)
+    end
     picture.scene:add(mesh)
   end
 end

@@ -67,7 +67,7 @@ end
 ---@param number? integer
 ---@param options? { hetatm: boolean }
 function pdb.frame(path, number, options)
-  return frames.pick(pdb.frames(path, options), number)
+  return frames.pick(path, pdb.frames(path, options), number)
 end
 
 return pdb

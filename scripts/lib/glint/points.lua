@@ -95,7 +95,7 @@ end
 ---@param path string
 ---@param options? { columns: string[], separator: string }
 function points.frame(path, options)
-  return frames.pick(frames.each(path, function(source, number) return start(source, number, options or {}) end))
+  return frames.pick(path, frames.each(path, function(source, number) return start(source, number, options or {}) end))
 end
 
 return points

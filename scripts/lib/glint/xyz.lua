@@ -41,7 +41,7 @@ end
 ---@param path string
 ---@param number? integer
 function xyz.frame(path, number)
-  return frames.pick(xyz.frames(path), number)
+  return frames.pick(path, xyz.frames(path), number)
 end
 
 return xyz
