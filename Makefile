@@ -150,8 +150,8 @@ check-run: tests
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/povray.sh tests/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
-# popen (test_api.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/cli.sh tests/films.sh tests/test_api.lua tests/test_misuse.lua,$(SANITIZED))
+# popen (test_api.lua, test_data.lua), and lets through any allocation that ought to fail (test_misuse.lua).
+WATCHED   := $(filter-out tests/cli.sh tests/films.sh tests/test_api.lua tests/test_data.lua tests/test_misuse.lua,$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test

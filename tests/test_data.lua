@@ -254,10 +254,7 @@ end
 
 -- What is kept of an atom while a file is read: 36 bytes, not a table.
 function tests.memory()
-  local rows = { "50000\n" }
-  for i = 1, 50000 do rows[i + 1] = ("\nC %d %d.5 0"):format(i % 50, i // 50) end
-  local path = write("large.xyz", table.concat(rows))
-  rows = nil
+  local path = write("large.xyz", "50000\n" .. ("\nC 1 2.5 0"):rep(50000))
   collectgarbage()
   local before, set = collectgarbage "count", particles.new()
   set:add_frame(xyz.frame(path))
