@@ -80,10 +80,11 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
-# Only these files are compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in them alone.
+# Only isa_*.c is compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in these files alone.
 $(BUILD)/engine/stages/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) -mavx2 -mfma
 $(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
+$(BUILD)/engine/image/flip.o:         ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch_page.html.h has the bytes of bindings/watch_page.html.

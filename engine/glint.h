@@ -191,6 +191,9 @@ const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 glint_shape *glint_shape_retain(glint_shape *shape);
 void glint_shape_release(glint_shape *shape);
 
+/// The materials of a shape, one for most; returns how many. The list belongs to the shape.
+size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list);
+
 /// Many spheres in one shape, from one array.
 typedef struct glint_spheres_desc {
     const void *data; ///< count times x, y, z, radius; any alignment; copied
@@ -267,6 +270,10 @@ glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, gl
 glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error);
 size_t glint_scene_shape_count(const glint_scene *scene);
 size_t glint_scene_light_count(const glint_scene *scene);
+
+/// One of them, `index` < the count, in the order they were added; borrowed from the scene.
+glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
+glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
 
 typedef struct glint_hit {
     double t; ///< point = origin + t direction; t > 0
@@ -456,6 +463,11 @@ typedef struct glint_write_desc {
 /// GLINT_ERR_NO_SPACE for ENOSPC and EDQUOT, GLINT_ERR_IO otherwise; the message names the file.
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error);
 
+/// The bytes that glint_image_write would write; `desc->path` gives the format by its ending. The caller frees *data
+/// with free().
+glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
+                                  glint_error *error);
+
 /// Identifies a finished frame: 32 hex digits over engine version, everything the plan reads, `desc`'s tone, encode,
 /// encoder version and pass. Threads, instruction set, shard and path are not in it.
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
@@ -506,6 +518,40 @@ typedef struct glint_compare_desc {
 /// GLINT_ERR_IO or GLINT_ERR_FORMAT when one cannot be read.
 glint_status glint_compare_files(const char *a, const char *b, const glint_compare_desc *desc,
                                  glint_compare_result *out, glint_error *error);
+
+// ---- How far a picture is from a reference ------------------------------------------------------------------------
+
+/// A picture that others are measured against: the mean of pictures that ought to be the same. Immutable.
+typedef struct glint_reference glint_reference;
+
+typedef struct glint_picture_error {
+    double rmse; ///< root of the mean squared difference of linear light, over pixels and channels
+    double relmse; ///< mean of (x - r)^2 / (r^2 + 0.01)
+    double max_code; ///< largest difference of codes, in steps of 8 bits; fractions at 16 bits
+    double over1, over8; ///< share of pixels with a channel off by more than 1, 8 such steps
+    double flip; ///< mean LDR-FLIP, 0 .. 1 (Andersson et al. 2020), at 67 pixels a degree
+} glint_picture_error;
+
+/// images  `count` >= 1 of them, of one size, each with the beauty pass; read only, not kept.
+/// tone    how the codes that are compared are made; its `bits` mean nothing here.
+glint_status glint_reference_create(const glint_image *const *images, size_t count, const glint_tone_desc *tone,
+                                    glint_reference **out, glint_error *error);
+void glint_reference_destroy(glint_reference *reference);
+/// The mean, with the beauty pass; borrowed.
+const glint_image *glint_reference_image(const glint_reference *reference);
+
+/// Measures a picture of the reference's size that has the beauty pass.
+///
+/// file_bits  0: the linear light itself; 8 or 16: what the codes of such a file keep of it, exposure and curve undone.
+///            Light above white, which no file keeps, counts as it is either way, so that the numbers compare.
+///
+/// Where a channel is not finite, rmse and relmse are not.
+glint_status glint_reference_measure(const glint_reference *reference, const glint_image *image, int file_bits,
+                                     glint_picture_error *out, glint_error *error);
+
+/// A picture of codes for the eye: `scale` times the difference of the 8-bit codes in each channel, white at most.
+glint_status glint_reference_difference(const glint_reference *reference, const glint_image *image, double scale,
+                                        glint_image **out, glint_error *error);
 
 // ---- Finished files, sheets and films -------------------------------------------------------------------------------
 

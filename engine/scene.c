@@ -102,3 +102,7 @@ glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, gl
 size_t glint_scene_shape_count(const glint_scene *scene) { return scene->shapes.count; }
 
 size_t glint_scene_light_count(const glint_scene *scene) { return scene->lights.count; }
+
+glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index) { return glint_scene_shape(scene, index); }
+
+glint_light *glint_scene_light_at(const glint_scene *scene, size_t index) { return glint_scene_light(scene, index); }

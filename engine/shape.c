@@ -219,3 +219,9 @@ void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out
     else
         snprintf(out, size, "%s #%zu", kinds[desc->kind], number);
 }
+
+size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list)
+{
+    *list = shape->materials;
+    return shape->material_count;
+}

@@ -213,6 +213,20 @@ glint_status glint_image_write(const glint_image *image, const glint_write_desc 
     return status;
 }
 
+glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
+                                  glint_error *error)
+{
+    glint_bytes bytes = { 0 };
+    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
+    if (status) {
+        free(bytes.data);
+        return status;
+    }
+    *data = bytes.data;
+    *size = bytes.size;
+    return GLINT_OK;
+}
+
 bool glint_file_has_key(const char *path, const char *key)
 {
     struct glint_bytes bytes = { 0 };
