@@ -223,7 +223,13 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
         glint_error error;
         if (glint_plan_create(scene, &render.desc, &run->explain_plan, &error))
             return glintL_error(L, PATH "%s", error.message);
+        glintL_run_keep_scene(run, scene, &render);
         return glintL_stop_script(L);
+    }
+    if (run->keeps_scene && run->count == run->explain_frame - 1) {
+        glint_error error;
+        if (glint_plan_create(scene, &render.desc, &run->kept_neighbour, &error))
+            return glintL_error(L, PATH "%s", error.message);
     }
     if (run->mode == GLINTL_MODE_EXPLAIN || !is_selected(run)) {
         run->since_ms = glintL_now_ms();

@@ -62,6 +62,9 @@ typedef struct cli_options {
     cli_sweep *sweeps;
     size_t sweep_count;
     glintL_asked asked; ///< moved into the run
+    bool quick; ///< of cost
+    double budget_s; ///< of cost; 0: none
+    const char *report, *knobs; ///< of cost; NULL: none, all
     char width[16], height[16]; ///< of --size
     int64_t start, end, jump; ///< -s -e -j; 0: not given
     bool has_frames;
@@ -80,7 +83,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 41
+#define CLI_OPTION_COUNT 45
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -149,6 +152,9 @@ void cli_end_line(cli_output *output);
 cli_progress *cli_progress_create(bool color);
 void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
+/// What one step of a study does, how long the steps before it took and those after it will, as far as is known.
+void cli_progress_step(cli_progress *progress, const glintL_run *run, const char *what, double done_ms, double step_ms,
+                       double left_ms);
 /// Wipes the bar, so that a line can be printed; it comes back with the next update.
 void cli_progress_clear(cli_progress *progress);
 
@@ -185,6 +191,7 @@ void cli_release_signals(void);
 int cli_render(cli_options *options, cli_output *output, glintL_run *run);
 int cli_explain(cli_options *options, cli_output *output, glintL_run *run);
 int cli_describe(cli_options *options, cli_output *output, glintL_run *run);
+int cli_cost(cli_options *options, cli_output *output, glintL_run *run);
 int cli_watch(cli_options *options, cli_output *output, glintL_run *run);
 int cli_completion(const cli_options *options, cli_output *output); ///< its shell is options->script
 int cli_compare(const cli_options *options, cli_output *output);

@@ -249,6 +249,14 @@ static bool keep_place(job_walk *walk, glintL_work *work)
     return false;
 }
 
+static glint_scene *scene_of(job_walk *walk)
+{
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_SCENE);
+    glint_scene *scene = glintL_test_object(walk->L, -1, GLINTL_SCENE);
+    lua_pop(walk->L, 1);
+    return scene;
+}
+
 // Sets the scene to frame n and plans it. NULL: the run has failed.
 static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
 {
@@ -257,9 +265,7 @@ static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
     double start = glintL_now_ms();
     if (!call(walk, build, n, number) || !call(walk, observe, number, number) || walk->run->exit_code)
         return NULL;
-    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_SCENE);
-    const glint_scene *scene = glintL_test_object(walk->L, -1, GLINTL_SCENE);
-    lua_pop(walk->L, 1);
+    const glint_scene *scene = scene_of(walk);
     if (!scene) {
         glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "frame %" PRId64 ": the scene is closed", number);
         return NULL;
@@ -374,6 +380,26 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     return good;
 }
 
+// Plans frame n of the job at hand, and keeps its scene and the plan of a frame next to it when the run is to.
+static void explain_frame(job_walk *walk, int64_t n)
+{
+    glintL_run *run = walk->run;
+    const bool keeps = run->keeps_scene && walk->job->frames > 1;
+    glintL_work *next = keeps ? plan_frame(walk, n > 1 ? n - 1 : 2, run->explain_frame) : NULL;
+    glintL_work *work = keeps && !next ? NULL : plan_frame(walk, n, run->explain_frame);
+    if (work) {
+        run->explain_plan = work->plan;
+        work->plan = NULL;
+        glintL_run_keep_scene(run, scene_of(walk), &walk->render);
+    }
+    if (next) {
+        run->kept_neighbour = next->plan;
+        next->plan = NULL;
+    }
+    glintL_work_destroy(work);
+    glintL_work_destroy(next);
+}
+
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
 {
     int top = lua_gettop(L);
@@ -382,13 +408,8 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
     for (lua_Integer i = 1; n >= 1 && n <= total; i++) {
         begin_job(walk, i);
         if (n <= walk->job->frames) {
-            bool settled = settle_before(walk, i, run->explain_frame - n + 1);
-            glintL_work *work = settled ? plan_frame(walk, n, run->explain_frame) : NULL;
-            if (work) {
-                run->explain_plan = work->plan;
-                work->plan = NULL;
-            }
-            glintL_work_destroy(work);
+            if (settle_before(walk, i, run->explain_frame - n + 1))
+                explain_frame(walk, n);
             break;
         }
         n -= walk->job->frames;

@@ -23,6 +23,8 @@ static int run_command(cli_options *options, cli_output *output, glintL_run *run
         return cli_assemble(options, output, run);
     case CLI_REPRODUCE:
         return cli_reproduce(options, output, run);
+    case CLI_COST:
+        return cli_cost(options, output, run);
     default:
         return cli_render(options, output, run);
     }
@@ -64,7 +66,7 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
         return GLINTL_EXIT_FAILED;
     }
     run->is_command = true;
-    run->times_stages = options->json;
+    run->times_stages = options->json && options->command == CLI_RENDER;
     snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
     run->asked = options->asked; // which now owns what it points to
     options->asked.sets = NULL;
@@ -92,10 +94,6 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
     if (options->help && !options->script) {
         cli_print_usage(output->data);
         return GLINTL_EXIT_DONE;
-    }
-    if (options->command == CLI_COST) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "cost: it is not in this version");
-        return GLINTL_EXIT_USAGE;
     }
     if (options->command == CLI_COMPARE)
         return cli_compare(options, output);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/cli.h"
+#include "bindings/cost.h"
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
@@ -31,9 +31,9 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    bool *const flags[] = { &options->json,        &options->quiet,          &options->help,      &options->version,
-                            &options->asked.force, &options->asked.no_reuse, &options->asked.apng };
-    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse", "apng" };
+    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse", "apng", "quick" };
+    bool *const flags[] = { &options->json,        &options->quiet,          &options->help,       &options->version,
+                            &options->asked.force, &options->asked.no_reuse, &options->asked.apng, &options->quick };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(option->name, names[i]) == 0)
             *flags[i] = true;
@@ -240,6 +240,34 @@ static bool read_threshold(cli_options *options, const cli_option *option, char 
     return true;
 }
 
+static bool read_budget(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || *end || !(value > 0 && value <= 1e6)) {
+        snprintf(message, MESSAGE, "seconds, a number above 0 and up to 1000000, expected, got '%.200s'", text);
+        return false;
+    }
+    options->budget_s = value;
+    return true;
+}
+
+static bool read_report(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    options->report = text;
+    return cost_report_check(text, message);
+}
+
+// The names are checked here, whether the scene responds later.
+static bool read_knobs(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    options->knobs = text;
+    return cost_knobs_check(text, message);
+}
+
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "frames", 'f', true, CLI_RENDER | CLI_ASSEMBLE, read_frames },
     { "start", 's', true, CLI_RENDER, read_step },
@@ -273,6 +301,10 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "reuse-memory", 0, true, CLI_RENDER | CLI_WATCH, read_memory },
     { "force", 0, false, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag },
     { "repeat", 0, true, CLI_RENDER, read_count },
+    { "quick", 0, false, CLI_COST, read_flag },
+    { "budget", 0, true, CLI_COST, read_budget },
+    { "report", 0, true, CLI_COST, read_report },
+    { "knobs", 0, true, CLI_COST, read_knobs },
     { "json", 0, false, ALL, read_flag },
     { "quiet", 'q', false, ALL, read_flag },
     { "warnings", 0, true, CLI_RENDER | CLI_WATCH, read_warnings },

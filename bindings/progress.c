@@ -19,6 +19,8 @@ struct cli_progress {
     bool stops, is_drawn, color;
     double start_ms;
     int64_t done, kept, todo; // todo 0: nobody knows
+    char what[32]; // of a step of a study; "": it is frames that are counted
+    double done_ms, step_ms, left_ms;
     glint_renderer *renderer; // while it renders, else NULL
 };
 
@@ -31,10 +33,33 @@ static void format_time(char out[32], double seconds)
         snprintf(out, 32, "%d:%02d", (int)(whole / 60), (int)(whole % 60));
 }
 
+static void draw_bar(const cli_progress *progress, double share)
+{
+    char bar[BAR_WIDTH + 1];
+    share = share < 1 ? share : 1;
+    memset(bar, '.', BAR_WIDTH);
+    memset(bar, '#', (size_t)(share * BAR_WIDTH));
+    bar[BAR_WIDTH] = '\0';
+    fprintf(stderr, "\r\033[K%s[%s]%s", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
+}
+
+static void draw_step(cli_progress *progress)
+{
+    char left[32];
+    double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
+    double done_ms = progress->done_ms + now * progress->step_ms;
+    double left_ms = progress->left_ms + (1 - now) * progress->step_ms;
+    draw_bar(progress, done_ms / (done_ms + left_ms));
+    format_time(left, left_ms * 1e-3);
+    fprintf(stderr, " %s, %s left", progress->what, left);
+    fflush(stderr);
+    progress->is_drawn = true;
+}
+
 // The lock is held.
 static void draw(cli_progress *progress)
 {
-    char bar[BAR_WIDTH + 1], left[32] = "", total[32] = "";
+    char left[32] = "", total[32] = "";
     double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing of the speed
@@ -43,15 +68,11 @@ static void draw(cli_progress *progress)
         share = ((double)progress->done + now) / (double)progress->todo;
         snprintf(total, sizeof total, "/%" PRId64, progress->todo);
     }
-    share = share < 1 ? share : 1;
-    int filled = (int)(share * BAR_WIDTH);
-    memset(bar, '.', BAR_WIDTH);
-    memset(bar, '#', (size_t)filled);
-    bar[BAR_WIDTH] = '\0';
     if (rate > 0 && progress->todo > 0)
         format_time(left, ((double)progress->todo - (double)progress->done - now) / rate);
-    fprintf(stderr, "\r\033[K%s[%s]%s %" PRId64 "%s frames, %.*f/s%s%s", progress->color ? "\033[36m" : "", bar,
-            progress->color ? "\033[0m" : "", progress->done, total, rate < 10 ? 2 : 0, rate, *left ? ", " : "", left);
+    draw_bar(progress, share);
+    fprintf(stderr, " %" PRId64 "%s frames, %.*f/s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
+            *left ? ", " : "", left);
     fputs(*left ? " left" : "", stderr);
     fflush(stderr);
     progress->is_drawn = true;
@@ -68,7 +89,11 @@ static void *draw_until_stopped(void *argument)
         until.tv_sec += until.tv_nsec / 1000000000L;
         until.tv_nsec %= 1000000000L;
         pthread_cond_timedwait(&progress->wake, &progress->lock, &until);
-        if (!progress->stops && glintL_now_ms() - progress->start_ms > DELAY_MS)
+        if (progress->stops || glintL_now_ms() - progress->start_ms <= DELAY_MS)
+            continue;
+        if (*progress->what)
+            draw_step(progress);
+        else
             draw(progress);
     }
     pthread_mutex_unlock(&progress->lock);
@@ -136,6 +161,18 @@ void cli_progress_update(cli_progress *progress, const glintL_run *run, bool ren
     progress->kept = run->kept;
     progress->todo = run->todo;
     progress->renderer = rendering ? run->renderer : NULL;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_step(cli_progress *progress, const glintL_run *run, const char *what, double done_ms, double step_ms,
+                       double left_ms)
+{
+    pthread_mutex_lock(&progress->lock);
+    snprintf(progress->what, sizeof progress->what, "%s", what);
+    progress->done_ms = done_ms;
+    progress->step_ms = step_ms;
+    progress->left_ms = left_ms > 0 ? left_ms : 0;
+    progress->renderer = run->renderer;
     pthread_mutex_unlock(&progress->lock);
 }
 

@@ -48,6 +48,8 @@ void glintL_run_destroy(glintL_run *run)
     glint_writer_destroy(run->writer); // before the records its results point to
     glint_renderer_destroy(run->renderer);
     glint_plan_destroy(run->explain_plan);
+    glint_plan_destroy(run->kept_neighbour);
+    glint_scene_release(run->kept_scene);
     glintL_work_destroy(run->deferred);
     while (run->head) {
         glintL_record *next = run->head->next;
@@ -85,6 +87,14 @@ void glintL_run_reset(glintL_run *run)
     run->message[0] = '\0';
     for (size_t i = 0; i < run->asked.set_count; i++)
         run->asked.sets[i].is_known = false;
+}
+
+void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render)
+{
+    if (!run->keeps_scene)
+        return;
+    run->kept_scene = glint_scene_retain(scene);
+    run->kept_render = *render;
 }
 
 // ---- The run of a Lua state ----

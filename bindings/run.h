@@ -183,6 +183,10 @@ struct glintL_run {
     glintL_mode mode;
     int64_t explain_frame;
     glint_plan *explain_plan; ///< owned
+    bool keeps_scene; ///< of the frame that is explained; then there are, too:
+    glint_scene *kept_scene; ///< owned; as it is in that frame
+    glintL_render kept_render;
+    glint_plan *kept_neighbour; ///< owned; the frame before it, or after the first; NULL: none
     char script[256]; ///< base name
     char source[33]; ///< of glintL_find_source; "": not looked for yet
     glintL_asked asked;
@@ -237,6 +241,8 @@ void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZ
 /// The exit code that answers an engine's error.
 int glintL_run_exit_code(glint_status status);
 bool glintL_run_open(glintL_run *run, glint_error *error); ///< the renderer and the writer exist afterwards
+/// Keeps the scene of the frame that is explained, when the run is to.
+void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render);
 /// Adds a record to be reported in its turn. False: out of memory, and the run has failed.
 glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
 /// Reports what is complete; waits for all of it when `wait`. False: the run has failed.
@@ -357,7 +363,8 @@ int64_t glintL_jobs_total(lua_State *L, int index);
 /// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Raises
 /// for want of memory only. False: the run has failed.
 bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
-/// The plan of one frame of the list into run->explain_plan, when the frame is among them.
+/// The plan of one frame of the list into run->explain_plan, when the frame is among them; run->keeps_scene: what else
+/// is kept of it.
 bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 // ---- call.c ----

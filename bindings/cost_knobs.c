@@ -1,0 +1,256 @@
+// The knobs of glint cost. A setting that trades accuracy for time is a row of the table at the end: its name, what it
+// asks of the plan, its values, how a value is applied, and where its error comes from. A new stage adds its row.
+#include <string.h>
+
+#include "bindings/cost.h"
+
+#define COUNT(array) ((int)(sizeof(array) / sizeof *(array)))
+
+static bool has_stage(const glint_plan *plan, const char *name)
+{
+    const glint_stage_info *stages;
+    size_t count = glint_plan_stages(plan, &stages);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(stages[i].name, name) == 0)
+            return true;
+    return false;
+}
+
+static bool has_effect(const glint_plan *plan, const char *name)
+{
+    const glint_effect *effects;
+    size_t count = glint_plan_effects(plan, &effects);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(effects[i].effect, name) == 0)
+            return true;
+    return false;
+}
+
+// The numbers in order, with the script's own among them.
+static void list_numbers(const double *numbers, int count, double own, cost_values *out)
+{
+    int at = 0;
+    while (at < count && numbers[at] < own)
+        at++;
+    const bool is_new = at == count || numbers[at] != own;
+    for (int i = 0; i < count; i++)
+        out->value[i + (is_new && i >= at)].number = numbers[i];
+    out->value[at].number = own;
+    out->count = count + is_new;
+    out->own = out->base = at;
+}
+
+static void list_words(const char *const *words, int count, int own, cost_values *out)
+{
+    for (int i = 0; i < count; i++)
+        out->value[i].text = words[i];
+    out->count = count;
+    out->own = out->base = own;
+}
+
+static int find_word(const cost_value value, const char *const *words, int count)
+{
+    int at = 0;
+    while (at < count - 1 && strcmp(words[at], value.text) != 0)
+        at++;
+    return at;
+}
+
+// ---- samples: rays a pixel ----
+
+static void list_samples(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 1, 4, 16, 64 };
+    if (has_stage(subject->plan, "cast"))
+        list_numbers(counts, COUNT(counts), subject->render->desc.samples, out);
+}
+
+static glint_status apply_samples(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.desc.samples = value.number;
+    return GLINT_OK;
+}
+
+// ---- shadows ----
+
+static const char *const SHADOWS[] = { "off", "hard" };
+
+static void list_shadows(const cost_subject *subject, cost_values *out)
+{
+    if (has_stage(subject->plan, "occlude"))
+        list_words(SHADOWS, COUNT(SHADOWS), 1, out);
+}
+
+static glint_status apply_shadows(cost_draft *draft, cost_value value, glint_error *error)
+{
+    cost_scene *scene = draft->scene;
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < scene->light_count && strcmp(value.text, "off") == 0 && !status; i++) {
+        glint_light_desc desc = scene->light_descs[i];
+        desc.shadows = false;
+        status = cost_scene_set_light(scene, i, &desc, error);
+    }
+    return status;
+}
+
+// ---- precision: what decides hits and shadows ----
+
+static const char *const PRECISIONS[] = { [GLINT_DOUBLE] = "double", [GLINT_FLOAT] = "float" };
+
+static void list_precision(const cost_subject *subject, cost_values *out)
+{
+    if (has_stage(subject->plan, "cast"))
+        list_words(PRECISIONS, COUNT(PRECISIONS), (int)subject->render->desc.precision, out);
+}
+
+static glint_status apply_precision(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.desc.precision = (glint_precision)find_word(value, PRECISIONS, COUNT(PRECISIONS));
+    return GLINT_OK;
+}
+
+// ---- model: what a highlight looks like ----
+
+static const char *const MODELS[] = { "phong", "blinn_phong", "matched_blinn_phong" };
+
+// Matched: every Phong highlight as a Blinn-Phong one of four times the exponent, which is as wide. A scene with
+// highlights of both sorts is neither "phong" nor "blinn_phong": its own setting is called "mixed".
+static void list_model(const cost_subject *subject, cost_values *out)
+{
+    const bool phong = has_effect(subject->plan, "Phong highlight");
+    const bool blinn = has_effect(subject->plan, "Blinn-Phong highlight");
+    if (!phong && !blinn)
+        return;
+    list_words(MODELS, phong ? 3 : 2, phong ? 0 : 1, out);
+    if (phong && blinn) {
+        out->value[3].text = "mixed";
+        out->count = 4;
+        out->own = out->base = 3;
+    }
+}
+
+static glint_status apply_model(cost_draft *draft, cost_value value, glint_error *error)
+{
+    cost_scene *scene = draft->scene;
+    const int model = find_word(value, MODELS, COUNT(MODELS));
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < scene->material_count && !status && strcmp(value.text, "mixed") != 0; i++) {
+        glint_material_desc desc = scene->material_descs[i];
+        if (desc.model != GLINT_MODEL_PHONG && desc.model != GLINT_MODEL_BLINN_PHONG)
+            continue;
+        if (model == 2 && desc.model == GLINT_MODEL_PHONG)
+            desc.shininess *= 4;
+        desc.model = model == 0 ? GLINT_MODEL_PHONG : GLINT_MODEL_BLINN_PHONG;
+        status = cost_scene_set_material(scene, i, &desc, error);
+    }
+    return status;
+}
+
+// ---- bits, encode: the file ----
+
+static void list_bits(const cost_subject *subject, cost_values *out)
+{
+    static const double depths[] = { 8, 16 };
+    if (!subject->is_pfm)
+        list_numbers(depths, COUNT(depths), subject->render->desc.tone.bits, out);
+}
+
+static glint_status apply_bits(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.desc.tone.bits = (int)value.number;
+    return GLINT_OK;
+}
+
+static const char *const ENCODERS[] = { [GLINT_ENCODE_FAST] = "fast", [GLINT_ENCODE_SMALL] = "small" };
+
+static void list_encode(const cost_subject *subject, cost_values *out)
+{
+    if (!subject->is_pfm)
+        list_words(ENCODERS, COUNT(ENCODERS), (int)subject->render->encode, out);
+}
+
+static glint_status apply_encode(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.encode = (glint_encode)find_word(value, ENCODERS, COUNT(ENCODERS));
+    return GLINT_OK;
+}
+
+// ---- reuse: a frame after its neighbour, with what that left ----
+
+static const char *const SWITCH[] = { "off", "on" };
+
+static void list_reuse(const cost_subject *subject, cost_values *out)
+{
+    if (!subject->has_neighbour)
+        return;
+    list_words(SWITCH, COUNT(SWITCH), 1, out);
+    out->base = 0; // every other row is a whole frame
+}
+
+static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->reuses = strcmp(value.text, "on") == 0;
+    return GLINT_OK;
+}
+
+// ---- The table, in the order of the output ----
+
+#define SURFACES "a surface to be seen"
+#define PNG "an output in .png"
+
+const cost_knob cost_knobs[] = {
+    { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, apply_samples },
+    { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
+    { "precision", SURFACES, COST_ERROR_FILM, true, false, list_precision, apply_precision },
+    { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
+    { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
+    { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
+    { "reuse", "a second frame (of a loop of scene:render, name a later one than the first by --frame)",
+      COST_ERROR_FILM, false, true, list_reuse, apply_reuse },
+};
+const int cost_knob_count = COUNT(cost_knobs);
+_Static_assert(COUNT(cost_knobs) <= COST_KNOBS_MAX, "a study has room for every knob");
+
+int cost_knob_find(const char *name, size_t length)
+{
+    for (int i = 0; i < cost_knob_count; i++)
+        if (strlen(cost_knobs[i].name) == length && strncmp(cost_knobs[i].name, name, length) == 0)
+            return i;
+    return -1;
+}
+
+bool cost_knobs_check(const char *list, char message[GLINTL_MESSAGE_SIZE])
+{
+    for (const char *at = list; at; at = *at ? at + 1 : NULL) {
+        const size_t length = strcspn(at, ",");
+        char name[64], allowed[256];
+        const char *near = NULL;
+        size_t used = 0;
+        if (cost_knob_find(at, length) < 0) {
+            snprintf(name, sizeof name, "%.*s", length < 60 ? (int)length : 60, at);
+            for (int i = 0; i < cost_knob_count; i++) {
+                near = glintL_nearer(name, near, cost_knobs[i].name);
+                used +=
+                    (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s", i ? ", " : "", cost_knobs[i].name);
+            }
+            snprintf(message, GLINTL_MESSAGE_SIZE, "list of %s expected, got '%s'%s%s%s", allowed, name,
+                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+            return false;
+        }
+        at += length;
+    }
+    return true;
+}
+
+void cost_value_text(cost_value value, char out[32])
+{
+    if (value.text)
+        snprintf(out, 32, "%s", value.text);
+    else
+        glintL_format_number(out, value.number);
+}

@@ -1,0 +1,101 @@
+// The scene of a study: its materials and lights, edited for one plan and put back.
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cost.h"
+
+static int by_address(const void *a, const void *b)
+{
+    const glint_material *left = *(glint_material *const *)a, *right = *(glint_material *const *)b;
+    return (left > right) - (left < right);
+}
+
+// Each material once: shapes share them.
+static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
+{
+    glint_material *const *list;
+    size_t count = 0;
+    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++) {
+        size_t part = glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
+        memcpy(scene->materials + count, list, part * sizeof *list);
+        count += part;
+    }
+    qsort(scene->materials, count, sizeof *scene->materials, by_address);
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0 && scene->materials[i] == scene->materials[scene->material_count - 1])
+            continue;
+        scene->material_descs[scene->material_count] = *glint_material_get(scene->materials[i]);
+        scene->materials[scene->material_count++] = scene->materials[i];
+    }
+}
+
+bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
+{
+    glint_material *const *list;
+    size_t shapes = glint_scene_shape_count(engine_scene), lights = glint_scene_light_count(engine_scene), most = 1;
+    for (size_t i = 0; i < shapes; i++)
+        most += glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
+    *scene = (cost_scene) { .scene = engine_scene };
+    scene->materials = calloc(most, sizeof *scene->materials);
+    scene->material_descs = calloc(most, sizeof *scene->material_descs);
+    scene->lights = calloc(lights + 1, sizeof *scene->lights);
+    scene->light_descs = calloc(lights + 1, sizeof *scene->light_descs);
+    if (!scene->materials || !scene->material_descs || !scene->lights || !scene->light_descs)
+        return false;
+    list_materials(scene, engine_scene);
+    for (size_t i = 0; i < lights; i++) {
+        scene->lights[i] = glint_scene_light_at(engine_scene, i);
+        scene->light_descs[i] = *glint_light_get(scene->lights[i]);
+    }
+    scene->light_count = lights;
+    return true;
+}
+
+void cost_scene_close(cost_scene *scene)
+{
+    free(scene->materials);
+    free(scene->material_descs);
+    free(scene->lights);
+    free(scene->light_descs);
+    memset(scene, 0, sizeof *scene);
+}
+
+void cost_scene_restore(cost_scene *scene)
+{
+    for (size_t i = 0; i < scene->material_count; i++) // they were good before
+        glint_material_set(scene->materials[i], &scene->material_descs[i], NULL);
+    for (size_t i = 0; i < scene->light_count; i++)
+        glint_light_set(scene->lights[i], &scene->light_descs[i], NULL);
+}
+
+glint_status cost_scene_set_material(cost_scene *scene, size_t i, const glint_material_desc *desc, glint_error *error)
+{
+    return glint_material_set(scene->materials[i], desc, error);
+}
+
+glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light_desc *desc, glint_error *error)
+{
+    return glint_light_set(scene->lights[i], desc, error);
+}
+
+static void set_three(double out[3], double value) { out[0] = out[1] = out[2] = value; }
+
+glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error)
+{
+    glint_material_desc white = glint_material_desc_default();
+    glint_status status = GLINT_OK;
+    white.model = GLINT_MODEL_LAMBERT;
+    set_three(white.diffuse, 1);
+    for (size_t i = 0; i < scene->material_count && !status; i++)
+        status = glint_material_set(scene->materials[i], &white, error);
+    for (size_t i = 0; i < scene->light_count && !status; i++) {
+        glint_light_desc desc = *glint_light_get(scene->lights[i]);
+        desc.has_diffuse = desc.has_specular = false;
+        desc.intensity = light >= scene->light_count || i == light ? 1 : 0;
+        set_three(desc.color, 1);
+        set_three(desc.attenuation, 0);
+        desc.attenuation[0] = 1;
+        status = glint_light_set(scene->lights[i], &desc, error);
+    }
+    return status;
+}
