@@ -222,8 +222,8 @@ void cost_print_json(const cost_study *study, FILE *out);
 /// Makes sure that the folder is there and can be written to. False: the message is written.
 bool cost_report_check(const char *folder, char message[GLINTL_MESSAGE_SIZE]);
 bool cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE]);
-/// The plot of time against error. `is_alone`: a file of its own, with its style.
-void cost_plot(const cost_study *study, FILE *out, bool is_alone);
+/// The plot of time against error, an SVG element that is a file of its own, too; nothing when no error is known.
+void cost_plot(const cost_study *study, FILE *out);
 void cost_machine(const cost_study *study, char out[256]); ///< "AMD EPYC, 2 threads, avx512, gcc 12.2.0"
 void cost_html_text(FILE *out, const char *text);
 

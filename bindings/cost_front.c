@@ -121,14 +121,15 @@ static bool is_point(const cost_study *study, const cost_row *row)
     return !(knob && knob->is_other_time) && cost_row_error(study, row) && study->cases[row->measured].run_count > 0;
 }
 
-// A row beats another when it is no farther from the truth and faster, or nearer and not slower: by more than the
-// quartile range, but for pictures of the same error, where any difference decides.
+// A row beats another when it is nearer to the truth and not slower by more than both quartile ranges (a row that was
+// disturbed must not pass for fast), or as near and faster by anything.
 static bool beats(const cost_study *study, const cost_row *a, const cost_row *b)
 {
     const cost_case *ca = &study->cases[a->measured], *cb = &study->cases[b->measured];
     const double ea = cost_row_error(study, a)->rmse, eb = cost_row_error(study, b)->rmse;
     const double ta = ca->time[COST_TOTAL].median, tb = cb->time[COST_TOTAL].median;
-    return ea < eb ? ta <= tb + range_of(ca, cb) : ea == eb && ta < tb;
+    const double noise = fmin(cost_quartile_range(ca), cost_quartile_range(cb));
+    return ea < eb ? ta <= tb + noise : ea == eb && ta < tb;
 }
 
 static void judge_row(cost_study *study, cost_row *row)
