@@ -159,8 +159,8 @@ check-run: tests
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/povray.sh tests/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
-# popen (test_api.lua, test_data.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/cli.sh tests/films.sh tests/test_api.lua tests/test_data.lua tests/test_misuse.lua,$(SANITIZED))
+# popen (test_api.lua, test_cost.lua, test_data.lua), and lets through any allocation that ought to fail (test_misuse.lua).
+WATCHED   := $(filter-out tests/cli.sh tests/films.sh $(addprefix tests/test_,$(addsuffix .lua,api cost data misuse)),$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
@@ -174,11 +174,14 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
-.PHONY: check-films check-watch check-rock check-farm
+.PHONY: check-films check-report check-watch check-rock check-farm
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
 	@$(RUNNER) tests/real_films.sh
+
+check-report: all ## the page of glint cost --report in headless Chromium, where that is installed
+	@$(RUNNER) tests/report.sh
 
 check-watch: all ## the page of glint watch in headless Chromium, where that is installed
 	@$(RUNNER) tests/watch_page.sh

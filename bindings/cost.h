@@ -18,6 +18,7 @@
 #define COST_KNOBS_MAX 16
 #define COST_VALUES_MAX 12
 #define COST_RUNS_MAX 64
+#define COST_RUNS_LEAST 3 ///< a quartile of fewer means nothing
 #define COST_COMBINATIONS_MAX 8
 #define COST_LABEL_SIZE 128
 
@@ -155,6 +156,7 @@ typedef struct cost_study {
     cost_row *rows;
     int row_count;
     int runs; ///< wanted of each case, the first not counted
+    double overhead_ms; ///< of finding the error of a picture
     double start_ms, deadline_ms; ///< deadline 0: none
     uint64_t random;
 

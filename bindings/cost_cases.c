@@ -80,6 +80,22 @@ static bool is_asked(const char *list, const char *name)
     return list == NULL;
 }
 
+// None of --knobs changes anything in this scene: says which would.
+static bool refuse_knobs(cost_study *study, const cost_subject *subject)
+{
+    char others[256] = "";
+    size_t used = 0;
+    for (int i = 0; i < cost_knob_count; i++) {
+        cost_values values = { 0 };
+        cost_knobs[i].list(subject, &values);
+        if (values.count > 0 && used < sizeof others)
+            used += (size_t)snprintf(others + used, sizeof others - used, "%s%s", used ? ", " : "", cost_knobs[i].name);
+    }
+    return glintL_run_fail(study->run, GLINTL_EXIT_USAGE, 0,
+                           "--knobs: one that the scene responds to (%s) expected, got '%.200s'", others,
+                           study->options->knobs);
+}
+
 static bool list_values(cost_study *study, const cost_subject *subject)
 {
     const char *asked = study->options->knobs;
@@ -94,10 +110,7 @@ static bool list_values(cost_study *study, const cost_subject *subject)
             !cost_leave_out(study, "%s: the scene does not respond to it: it would need %s", knob->name, knob->needs))
             return false;
     }
-    if (found == 0) // without --knobs there are those of the file
-        return glintL_run_fail(study->run, GLINTL_EXIT_USAGE, 0,
-                               "--knobs: one that the scene responds to expected, got '%.200s'", asked);
-    return true;
+    return found > 0 || refuse_knobs(study, subject);
 }
 
 bool cost_list_cases(cost_study *study, const cost_subject *subject)

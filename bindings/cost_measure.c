@@ -9,6 +9,7 @@
 #define LIGHTS_MAX 8 // looked at one by one
 #define LIT 0x1p-10 // less than a quarter of a code: a surface that a light grazes counts as dark
 #define TIMES 64 // samples of a half of the reference for each of the script's
+#define LEAST_TIMES 4 // where a budget forces fewer; below it no error would be worth showing
 
 // How a case is to be planned, where that is not its own way.
 typedef struct shot {
@@ -297,11 +298,11 @@ static double choose_samples(const cost_study *study, double allowance_ms)
     double most = own, samples = TIMES * own;
     for (int i = 0; i < study->values[knob].count; i++)
         most = fmax(most, study->values[knob].value[i].number);
-    while (study->deadline_ms > 0 && samples > own && each * samples > allowance_ms)
+    while (study->deadline_ms > 0 && samples >= LEAST_TIMES * own && each * samples > allowance_ms)
         samples /= 4;
-    while (samples < TIMES * most && each * samples * 4 <= allowance_ms)
-        samples *= 4;
-    return samples <= own ? 0 : fmin(samples, 65536);
+    while (samples < TIMES * most && each * samples * 2 <= allowance_ms)
+        samples *= 2;
+    return samples < LEAST_TIMES * own ? 0 : fmin(samples, 65536);
 }
 
 static glint_status render_halves(cost_study *study, glint_image *halves[2], glint_error *error)

@@ -5,8 +5,6 @@
 
 #include "bindings/cost.h"
 
-#define RUNS_LEAST 3 // a quartile of fewer means nothing
-
 // SplitMix64: the order of the runs needs no better, and no library's.
 static uint64_t next_random(cost_study *study)
 {
@@ -59,13 +57,13 @@ static bool drop_slowest(cost_study *study)
         return false;
     study->cases[slowest].is_left_out = true;
     name_case(study, slowest, name);
-    return cost_leave_out(study, "%s: timed once, the budget leaves no time for %d runs", name, RUNS_LEAST);
+    return cost_leave_out(study, "%s: timed once, the budget leaves no time for %d runs", name, COST_RUNS_LEAST);
 }
 
 static bool fit_budget(cost_study *study)
 {
     const int wanted = study->runs;
-    while (round_ms(study) * RUNS_LEAST > cost_left_ms(study) && drop_slowest(study))
+    while (round_ms(study) * COST_RUNS_LEAST > cost_left_ms(study) && drop_slowest(study))
         ;
     const double fitting = floor(cost_left_ms(study) / round_ms(study));
     if (fitting < study->runs)

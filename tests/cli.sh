@@ -296,7 +296,6 @@ options() {
     exits 2 "unknown command" explian ten.lua
     says "unknown command names the nearest" "did you mean 'explain'"
     exits 2 "two scripts" ten.lua one.lua
-    exits 2 "cost" cost ten.lua
     local wrong
     for wrong in '-f x' '-f 3-1' '-f 1,' '-f -3' '-f 1-5:0' '-s 0' '-e x' '-j 0' '-s 5 -e 4' '-f 1 -s 1' '--shard 0/2' \
         '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \

@@ -1,0 +1,339 @@
+-- glint cost from outside: its rows, what they must say of each other, and what it does with bad input.
+local build = os.getenv "BUILD" or "build"
+local glint = os.getenv "GLINT" or build .. "/glint"
+local work = build .. "/tests/cost"
+os.execute(("rm -rf %s && mkdir -p %s"):format(work, work))
+
+local passed, failed = 0, 0
+local function check(ok, ...)
+  if ok then
+    passed = passed + 1
+  else
+    failed = failed + 1
+    print("not ok - " .. string.format(...))
+  end
+end
+
+local function write(name, text)
+  local file <close> = assert(io.open(work .. "/" .. name, "w"))
+  file:write(text)
+  return work .. "/" .. name
+end
+
+local function read(name)
+  local file <close> = assert(io.open(work .. "/" .. name, "rb"))
+  return file:read "a"
+end
+
+-- ---- JSON, as much as is printed ----
+
+local parse
+local function skip(text, at) return text:match("^%s*()", at) end
+
+local function parse_list(text, at, close)
+  local out, key = {}, nil
+  at = skip(text, at + 1)
+  if text:sub(at, at) == close then return out, at + 1 end
+  repeat
+    if close == "}" then
+      key, at = parse(text, at)
+      at = skip(text, at)
+      assert(text:sub(at, at) == ":", "a colon is missing")
+      at = at + 1
+    end
+    local value
+    value, at = parse(text, at)
+    out[close == "}" and key or #out + 1] = value
+    at = skip(text, at)
+    local mark = text:sub(at, at)
+    at = skip(text, at + 1)
+    assert(mark == "," or mark == close, "a comma is missing")
+  until mark == close
+  return out, at
+end
+
+local null = setmetatable({}, { __name = "null" })
+local words = { ["true"] = true, ["false"] = false, null = null }
+function parse(text, at)
+  at = skip(text, at)
+  local c = text:sub(at, at)
+  if c == "{" then return parse_list(text, at, "}") end
+  if c == "[" then return parse_list(text, at, "]") end
+  if c == '"' then
+    local stop = at + 1
+    while text:sub(stop, stop) ~= '"' do
+      stop = stop + (text:sub(stop, stop) == "\\" and 2 or 1)
+    end
+    return text:sub(at + 1, stop - 1):gsub('\\"', '"'), stop + 1
+  end
+  local word = text:match("^%a+", at)
+  if word then
+    assert(words[word] ~= nil, word)
+    return words[word], at + #word
+  end
+  local number = text:match("^-?[%d.]+[eE]?[+-]?%d*", at)
+  return assert(tonumber(number), "a value is missing"), at + #number
+end
+
+-- ---- Running ----
+
+-- Runs `glint cost ARGUMENTS`; returns the exit code. Its streams are in the files out and err.
+local function run(arguments, before, after)
+  local _, _, code = os.execute(("%s %s cost %s >%s/out 2>%s/err </dev/null %s"):format(before or "", glint, arguments,
+    work, work, after or ""))
+  return code
+end
+
+local function says(pattern) return read("err"):find(pattern) ~= nil end
+
+-- Rows and advice of the last run; fails the test when a line is something else.
+local function rows_of(name)
+  local rows, advice = {}, nil
+  for line in read("out"):gmatch "[^\n]+" do
+    local good, object = pcall(parse, line, 1)
+    check(good and not advice, "%s: a row, or the advice at the end: %s", name, line)
+    if good and object.event == "advice" then
+      advice = object
+    elseif good and object.event ~= "error" then
+      rows[#rows + 1] = object
+    end
+  end
+  check(advice and type(advice.text) == "string" and #advice.text > 5, "%s: advice", name)
+  return rows, advice or {}
+end
+
+local function study(name, arguments)
+  local code = run(arguments .. " --json --quick")
+  check(code == 0, "%s: exit %s: %s", name, code, read "err")
+  return rows_of(name)
+end
+
+local function find(rows, knob, value)
+  for _, row in ipairs(rows) do
+    if row.knob == knob and row.value == value then return row end
+  end
+  return error(("no row %s %s"):format(knob, value))
+end
+
+local function knobs_of(rows)
+  local seen, list = {}, {}
+  for _, row in ipairs(rows) do
+    if not seen[row.knob] and row.knob ~= "combination" then list[#list + 1] = row.knob end
+    seen[row.knob] = true
+  end
+  return table.concat(list, " ")
+end
+
+-- ---- What every study's rows must be ----
+
+local fields = { knob = "string", ms = "table", x_fastest = "number", rmse = "number", relmse = "number", max_code = "number",
+  over1 = "number", over8 = "number", flip = "number", wrong_object = "number", wrong_shadow = "number", counters = "table",
+  pareto = "boolean", default = "boolean", resolved = "boolean", difference = "string", runs = "number",
+  partial = "boolean" }
+
+local function is_dominated(rows, row)
+  for _, other in ipairs(rows) do
+    local e, t = other.rmse, other.ms.median
+    if other.knob ~= "reuse" and e <= row.rmse and t <= row.ms.median and (e < row.rmse or t < row.ms.median) then
+      return true
+    end
+  end
+  return false
+end
+
+local function check_rows(name, rows)
+  local defaults, fastest, least = {}, math.huge, math.huge
+  for _, row in ipairs(rows) do
+    local where = ("%s: %s %s"):format(name, row.knob, row.value)
+    for field, kind in pairs(fields) do
+      check(type(row[field]) == kind, "%s: %s is a %s", where, field, type(row[field]))
+    end
+    check(type(row.value) == "number" or type(row.value) == "string", "%s: value", where)
+    local ms = row.ms
+    check(0 <= ms.min and ms.min <= ms.q1 and ms.q1 <= ms.median and ms.median <= ms.q3, "%s: quartiles", where)
+    check(row.rmse >= 0 and row.relmse >= 0 and row.flip >= 0 and row.flip <= 1, "%s: errors in range", where)
+    check(row.over8 <= row.over1 and row.over1 <= 1, "%s: shares of pixels", where)
+    check(row.runs == 5 and not row.partial, "%s: %d runs", where, row.runs)
+    if row.default then defaults[row.knob] = (defaults[row.knob] or 0) + 1 end
+    fastest = math.min(fastest, row.x_fastest)
+    if row.knob ~= "reuse" then least = math.min(least, row.rmse) end
+    check(not (row.pareto and is_dominated(rows, row)), "%s: on the front, and another is better", where)
+    check(not (row.pareto and row.knob == "reuse"), "%s: another sort of time", where)
+  end
+  check(fastest == 1, "%s: the fastest is %s times the fastest", name, fastest)
+  for knob, count in pairs(defaults) do check(count == 1, "%s: %s has %d defaults", name, knob, count) end
+  for knob in knobs_of(rows):gmatch "%S+" do check(defaults[knob], "%s: %s has no default", name, knob) end
+  local best = false
+  for _, row in ipairs(rows) do best = best or (row.pareto and row.rmse == least) end
+  check(best, "%s: the least error is on the front", name)
+end
+
+-- ---- Scenes ----
+
+local film = write("film.lua", [[
+local glint = require "glint"
+local lamp = glint.point_light { position = { 3, 6, 4 } }
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0.5, 0 } }, ambient = 0.1, background = 0.2, lamp,
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 0.6, shininess = 40 } },
+  glint.sphere { center = { 1.6, 0.6, 1 }, radius = 0.6, material = glint.material { diffuse = { 0.6, 0.1, 0.1 } } },
+}
+return glint.animation { scene = scene, frames = 3, width = 64, height = 48, samples = 4,
+  frame = function(t) lamp.x = 3 + t end }
+]])
+
+local function still(name, inside, options)
+  return write(name, ([[
+local glint = require "glint"
+return glint.animation { scene = glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0.5, 0 } }, background = 0.25,
+  %s }, frames = 1, width = 64, height = 48, %s frame = function() end }]]):format(inside, options or ""))
+end
+
+-- ---- A scene with everything ----
+
+local rows, advice = study("film", film .. " --frame 2")
+check_rows("film", rows)
+check(knobs_of(rows) == "samples shadows precision model bits encode reuse", "film responds to: %s", knobs_of(rows))
+check(says "frame 2 of 3 %(%-%-frame N takes another%)", "which frame is taken: %s", read "err")
+check(#advice.left_out == 0 and advice.complete and advice.machine:find "thread", "advice: what was measured where")
+
+local own = find(rows, "samples", 4)
+local before = math.huge
+for _, samples in ipairs { 1, 4, 16, 64 } do
+  local row = find(rows, "samples", samples)
+  check(row.rmse < before, "error falls with the samples: %d: %g, before %g", samples, row.rmse, before)
+  check(row.counters.primary == 64 * 48 * samples, "%d samples: %d rays", samples, row.counters.primary)
+  check(row.wrong_object == 0 and row.wrong_shadow == 0, "%d samples decide as one does", samples)
+  check(row.default == (samples == 4), "%d samples: default", samples)
+  before = row.rmse
+end
+check(own.resolved and own.rmse >= 10 * advice.reference.rmse, "the reference resolves the script's own error")
+check(advice.reference.samples >= 64 * 4, "reference of %g samples", advice.reference.samples)
+
+for _, same in ipairs { { "encode", "small" }, { "encode", "fast" }, { "reuse", "on" }, { "reuse", "off" },
+  { "precision", "double" }, { "model", "phong" }, { "shadows", "hard" } } do
+  local row = find(rows, same[1], same[2])
+  check(row.rmse == own.rmse and row.flip == own.flip, "%s %s: the same picture", same[1], same[2])
+end
+check(find(rows, "reuse", "on").counters.primary == 0, "a kept cast casts no rays")
+check(find(rows, "reuse", "on").default and not find(rows, "reuse", "off").default, "reuse is on by default")
+local off = find(rows, "shadows", "off")
+check(off.wrong_shadow > 20 and off.wrong_object == 0 and off.counters.shadow == 0 and off.rmse > own.rmse,
+  "no shadows: %d wrong", off.wrong_shadow)
+check(find(rows, "model", "matched_blinn_phong").rmse < find(rows, "model", "blinn_phong").rmse,
+  "four times the exponent is nearer")
+local eight, sixteen = find(rows, "bits", 8), find(rows, "bits", 16)
+check(eight.default and sixteen.rmse <= eight.rmse and sixteen.flip < eight.flip, "16 bits keep more than 8")
+
+-- ---- The error, from files written by the renderer and read here ----
+
+local function pfm(name, options)
+  assert(os.execute(("%s %s -f 2 -q -o %s/%s_####.pfm %s"):format(glint, film, work, name, options)))
+  local text = read(name .. "_0002.pfm")
+  local at = text:match "^PF\n64 48\n%S+\n()"
+  local out = {}
+  for i = 1, 64 * 48 * 3 do out[i], at = string.unpack("<f", text, at) end
+  return out
+end
+
+local mine = pfm("mine", "")
+local halves = { pfm("a", ("--samples %d --seed 1"):format(advice.reference.samples)),
+  pfm("b", ("--samples %d --seed 2"):format(advice.reference.samples)) }
+local squares, relative, apart = 0, 0, 0
+for i = 1, #mine do
+  local r = (halves[1][i] + halves[2][i]) / 2
+  squares = squares + (mine[i] - r) ^ 2
+  relative = relative + (mine[i] - r) ^ 2 / (r ^ 2 + 0.01)
+  apart = apart + (halves[1][i] - halves[2][i]) ^ 2 / 4
+end
+local function near(got, want) return math.abs(got - want) <= 1e-5 * want end
+check(near(own.rmse, (squares / #mine) ^ 0.5), "RMSE %g, by hand %g", own.rmse, (squares / #mine) ^ 0.5)
+check(near(own.relmse, relative / #mine), "relMSE %g, by hand %g", own.relmse, relative / #mine)
+check(near(advice.reference.rmse, (apart / #mine) ^ 0.5), "the reference's own error %g, by hand %g",
+  advice.reference.rmse, (apart / #mine) ^ 0.5)
+
+-- ---- Only what the scene calls for ----
+
+local matt = [[glint.sphere { center = { 0, 1, 0 }, radius = 1 }, ]]
+local plain = study("plain", still("plain.lua", matt .. "glint.point_light { position = { 0, 9, 9 }, shadows = false }"))
+check_rows("plain", plain)
+check(knobs_of(plain) == "samples precision bits encode", "matt, without shadows: %s", knobs_of(plain))
+local bare = study("bare", still("bare.lua", ""))
+check_rows("bare", bare)
+check(knobs_of(bare) == "bits encode", "nothing to be seen: %s", knobs_of(bare))
+local floats = study("pfm", still("pfm.lua", matt, [[output = "x.pfm",]]))
+check(knobs_of(floats) == "samples precision", "no codes in a .pfm: %s", knobs_of(floats))
+local odd = study("odd", still("odd.lua", matt, [[samples = 9, precision = "float",]]) .. " --knobs samples,precision")
+check(find(odd, "samples", 9).default and find(odd, "samples", 16) and find(odd, "precision", "float").default,
+  "the script's own values are in their places")
+local mixed = study("mixed", still("mixed.lua", [[glint.directional_light { direction = { 0, -1, -1 } },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 1 } },
+  glint.sphere { center = { 2, 1, 0 }, radius = 1, material = glint.material { specular = 1, model = "blinn_phong" } }]])
+  .. " --knobs model")
+check(find(mixed, "model", "mixed").default and find(mixed, "model", "blinn_phong").rmse > 0, "highlights of both sorts")
+
+-- ---- Precision: what float gets wrong under a ground of radius 1e7 ----
+
+local ground = study("ground", still("ground.lua", matt .. [[glint.point_light { position = { 3, 6, 4 } },
+  glint.sphere { center = { 0, -1e7, 0 }, radius = 1e7 }]]) .. " --knobs precision --size 160x120")
+local float, double = find(ground, "precision", "float"), find(ground, "precision", "double")
+check(float.wrong_object + float.wrong_shadow > 0, "float on a huge ground: no pixel wrong")
+check(double.wrong_object + double.wrong_shadow == 0, "double: %d wrong", double.wrong_object + double.wrong_shadow)
+
+-- ---- For people; the report ----
+
+check(run(film .. " --quick --knobs samples,encode --report " .. work .. "/a/b") == 0, "report: %s", read "err")
+local table_text = read "out"
+check(table_text:find "\nsamples\n" and table_text:find " %*4 " and table_text:find "reference:", "the table:\n%s", table_text)
+check(not table_text:find "nan" and not table_text:find "inf", "numbers in the table")
+local page, plot = read "a/b/index.html", read "a/b/plot.svg"
+check(page:find "^<!DOCTYPE html>" and page:find "</html>%s*$" and not page:find "@%u+@", "the page is whole")
+check(not page:gsub("http://www.w3.org/2000/svg", ""):find "https?:", "the page needs no network")
+check(page:find("<svg", 1, true) and page:find("data:image/png;base64,iVBOR", 1, true), "plot and pictures are in the page")
+check(plot:find "^<svg" and plot:find "</svg>%s*$" and plot:find "samples 16", "the plot is a file of its own")
+check(table_text:match "([^\n]+)\n*$" == page:match 'class="advice">([^<]+)<':gsub("&gt;", ">"), "the same advice")
+local left_behind = io.popen("ls -A " .. work .. "/a/b"):read "a"
+check(left_behind == "index.html\nplot.svg\n", "the report's folder has: %s", left_behind)
+
+-- ---- Bad input ----
+
+local function refuses(name, arguments, pattern)
+  local code = run(arguments)
+  check(code == 2 and says(pattern), "%s: exit %s: %s", name, code, read "err")
+  check(read "out" == "", "%s: stdout", name)
+end
+refuses("nothing", write("nothing.lua", "local x = 1"), "rendered nothing")
+refuses("an empty list", write("empty.lua", "return {}"), "renders nothing")
+refuses("a frame beyond the end", film .. " --frame 4", "1 .. 3, expected, got '4'")
+refuses("no such knob", film .. " --knobs sample", "did you mean 'samples'")
+refuses("no knob", film .. " --knobs ''", "samples, shadows, precision")
+refuses("no knob that the scene has", still("bare.lua", "") .. " --knobs shadows,model",
+  "responds to %(bits, encode%) expected, got 'shadows,model'")
+refuses("a file for a folder", film .. " --report " .. film .. "/x", "a folder to write to expected")
+refuses("a folder that cannot be", film .. " --report /proc/glint", "/proc/glint")
+refuses("a budget of nothing", film .. " --budget 0", "%-%-budget: seconds")
+refuses("a budget in words", film .. " --budget soon", "got 'soon'")
+check(run(film .. " --quick --json --knobs model,reuse --frame 1 --quiet") == 0 and read "err" == "", "--quiet: %s", read "err")
+refuses("an option of another command", film .. " --force", "means nothing to this command")
+
+-- ---- Cut short ----
+
+check(run(film .. " --size 640x480 --json --budget 0.5") == 0, "--budget: %s", read "err")
+local short, short_advice = rows_of "budget"
+check(#short_advice.left_out > 0 and #short > 0 and short_advice.seconds < 10, "a budget leaves out: %d, in %g s",
+  #short_advice.left_out, short_advice.seconds)
+
+run(film .. " --size 1280x960 --json", ("sh -c 'exec \"$@\" & p=$!; sleep 1.5; kill -INT $p; wait $p; echo $? >%s/code' sh")
+  :format(work))
+check(read "code" == "130\n", "SIGINT: exit %s", read "code")
+local cut = {}
+for line in read("out"):gmatch "[^\n]+" do
+  local object = parse(line, 1)
+  if object.knob then cut[#cut + 1] = object end
+end
+check(#cut > 0 and says "interrupted", "SIGINT: %d rows", #cut)
+for _, row in ipairs(cut) do check(row.partial and row.ms.median > 0, "SIGINT: %s is partial", row.knob) end
+
+print(("%d passed, %d failed"):format(passed, failed))
+os.exit(failed == 0)
