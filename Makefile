@@ -99,14 +99,6 @@ $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(ISA) -MMD -MP -c $< -o $@
 
-# The page of `glint cost --report`, as bytes that the command carries in itself.
-$(BUILD)/bindings/cost_page.inc: bindings/cost_page.html
-	@mkdir -p $(@D)
-	$(call say,BYTES)
-	$(Q)od -An -v -tu1 $< | sed 's/ *\([0-9][0-9]*\)/\1,/g' > $@
-
-$(BUILD)/bindings/cost_report.o: $(BUILD)/bindings/cost_page.inc
-
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
 	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -ldl -o $@

@@ -14,7 +14,7 @@
 
 // bindings/cost_page.html, made into bytes by the Makefile.
 static const char PAGE[] = {
-#include "bindings/cost_page.inc"
+#include "bindings/cost_page.html.h"
 };
 
 void cost_html_text(FILE *out, const char *text)
