@@ -161,7 +161,7 @@ static bool run_study(cost_study *study)
 {
     const double quick = study->options->quick ? ALLOWANCE_QUICK_MS : ALLOWANCE_MS;
     cost_show(study, "first frame", 0, 1, 0);
-    if (!cost_open_renderers(study) || !cost_run(study, &study->cases[0], NULL))
+    if (!cost_open_renderers(study) || !cost_run(study, &study->cases[0]))
         return false;
     study->cases[0].is_first_alone = true;
     if (!guess_all(study, 1))
@@ -181,10 +181,10 @@ static bool run_study(cost_study *study)
 
 static void close_study(cost_study *study)
 {
-    if (study->keeping && study->keeping != study->run->renderer)
-        glint_renderer_destroy(study->keeping);
-    if (study->fresh && study->fresh != study->run->renderer)
-        glint_renderer_destroy(study->fresh);
+    for (int keeps = 0; keeps < 2; keeps++)
+        for (int counts = 0; counts < 2; counts++)
+            if (study->renderers[keeps][counts] != study->run->renderer)
+                glint_renderer_destroy(study->renderers[keeps][counts]);
     for (int i = 0; i < study->case_count; i++) {
         free(study->cases[i].picture);
         free(study->cases[i].difference);

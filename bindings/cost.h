@@ -118,7 +118,9 @@ typedef struct cost_case {
     cost_quartiles time[COST_PART_COUNT]; ///< of the runs, by cost_summarize
     bool is_first_alone; ///< the only run is the first, which is dropped where there are more
     bool is_left_out; ///< of the timing, for want of budget
-    glint_frame_stats stats;
+    glint_frame_stats stats; ///< of the last run
+    glint_work work;
+    bool is_counted; ///< work is known
     bool has_error;
     glint_picture_error film, file; ///< by what the error is of
     uint64_t wrong_object, wrong_shadow; ///< pixels
@@ -150,7 +152,7 @@ typedef struct cost_study {
     cost_scene scene;
     const glintL_render *own;
     cost_values values[COST_KNOBS_MAX]; ///< of each knob; count 0: not asked, or the scene does not respond
-    glint_renderer *fresh, *keeping; ///< owned, but for the one that is the run's; the second keeps stages
+    glint_renderer *renderers[2][2]; ///< [keeps stages][counts work]; owned, but for the one that is the run's
     cost_case *cases; ///< number 0 is the base
     int case_count;
     cost_row *rows;
@@ -191,13 +193,13 @@ void cost_row_name(const cost_row *row, char out[COST_LABEL_SIZE]);
 // Each returns false when the run has failed or was stopped.
 
 bool cost_open_renderers(cost_study *study);
-/// Renders, encodes and times a case once, in memory. `image`: NULL, or it gets the picture with its beauty pass.
-bool cost_run(cost_study *study, cost_case *c, glint_image **image);
+/// Renders, encodes and times a case once, in memory.
+bool cost_run(cost_study *study, cost_case *c);
 /// Rays of a case as its plan expects them, for guessing how long it takes.
 bool cost_expect(cost_study *study, const cost_case *c, double *rays);
 /// The reference, its own error and the true decisions. `allowance_ms` is for both halves.
 bool cost_make_reference(cost_study *study, double allowance_ms);
-/// A case's first run, its errors and its decisions, and pictures for the report.
+/// A case's first run, its work, errors and decisions, and pictures for the report.
 bool cost_measure(cost_study *study, cost_case *c);
 
 // ---- cost_timing.c ----

@@ -1,5 +1,6 @@
 // The rows of glint cost for programs: one object a line, the advice last.
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 #include "bindings/cost.h"
@@ -61,12 +62,17 @@ static void print_error(const cost_study *study, const cost_row *row, FILE *out)
     fprintf(out, ",\"wrong_object\":%" PRIu64 ",\"wrong_shadow\":%" PRIu64, c->wrong_object, c->wrong_shadow);
 }
 
-static void print_counters(const glint_ray_counts *rays, FILE *out)
+static void print_counters(const cost_case *c, FILE *out)
 {
+    const glint_ray_counts *rays = &c->stats.rays;
+    const double unknown = NAN; // printed as null
     fprintf(out,
             ",\"counters\":{\"primary\":%" PRIu64 ",\"shadow\":%" PRIu64 ",\"mirror\":%" PRIu64
-            ",\"refraction\":%" PRIu64 ",\"indirect\":%" PRIu64 "}",
+            ",\"refraction\":%" PRIu64 ",\"indirect\":%" PRIu64,
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
+    print_number(out, "light_samples", c->is_counted ? (double)c->work.light_samples : unknown);
+    print_number(out, "powers", c->is_counted ? (double)c->work.powers : unknown);
+    fputc('}', out);
 }
 
 static void print_choice(const cost_study *study, const cost_case *c, FILE *out)
@@ -90,7 +96,7 @@ static void print_row(const cost_study *study, const cost_row *row, FILE *out)
     print_ms(c, out);
     fprintf(out, ",\"x_fastest\":%.4f", row->x_fastest);
     print_error(study, row, out);
-    print_counters(&c->stats.rays, out);
+    print_counters(c, out);
     print_flag(out, "pareto", row->is_front);
     print_flag(out, "default", row->is_default);
     print_flag(out, "resolved", row->is_resolved);

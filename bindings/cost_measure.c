@@ -41,22 +41,20 @@ static void use_renderer(cost_study *study, glint_renderer *renderer)
         glint_renderer_cancel(renderer);
 }
 
-static bool open_renderer(cost_study *study, bool keeps, glint_renderer **out)
-{
-    glint_error error;
-    study->run->renderer = NULL;
-    study->run->asked.no_reuse = !keeps;
-    if (!glintL_run_open(study->run, &error))
-        return fail(study, &error);
-    *out = study->run->renderer;
-    return true;
-}
-
 bool cost_open_renderers(cost_study *study)
 {
-    if (study->run->kept_neighbour && !open_renderer(study, true, &study->keeping))
-        return false;
-    return open_renderer(study, false, &study->fresh);
+    glintL_run *run = study->run;
+    glint_error error;
+    for (int keeps = run->kept_neighbour ? 1 : 0; keeps >= 0; keeps--)
+        for (int counts = 1; counts >= 0; counts--) {
+            run->renderer = NULL;
+            run->asked.no_reuse = !keeps;
+            run->counts_work = counts;
+            if (!glintL_run_open(run, &error))
+                return fail(study, &error);
+            study->renderers[keeps][counts] = run->renderer;
+        }
+    return true;
 }
 
 // ---- Plans ----
@@ -127,12 +125,17 @@ static glint_status encode(const cost_draft *draft, const glint_image *image, ui
     return glint_image_to_bytes(image, &desc, data, size, error);
 }
 
-static glint_status render_neighbour(cost_study *study, glint_error *error)
+// Renders a plan, after the neighbouring frame where the case is measured so.
+static glint_status render(cost_study *study, const cost_draft *draft, bool counts, const glint_plan *plan,
+                           glint_image **out, glint_frame_stats *stats, glint_error *error)
 {
-    glint_image *image = NULL;
-    glint_status status = glint_render(study->run->renderer, study->run->kept_neighbour, &image, NULL, error);
-    glint_image_release(image);
-    return status;
+    glint_image *before = NULL;
+    glint_status status = GLINT_OK;
+    use_renderer(study, study->renderers[draft->reuses][counts]);
+    if (draft->reuses)
+        status = glint_render(study->run->renderer, study->run->kept_neighbour, &before, NULL, error);
+    glint_image_release(before);
+    return status ? status : glint_render(study->run->renderer, plan, out, stats, error);
 }
 
 static void note_run(cost_case *c, double encode_ms, double cpu)
@@ -145,32 +148,33 @@ static void note_run(cost_case *c, double encode_ms, double cpu)
 }
 
 static glint_status time_plan(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
-                              glint_image **image, glint_error *error)
+                              glint_error *error)
 {
     uint8_t *bytes = NULL;
     size_t size;
-    glint_image *made = NULL;
-    use_renderer(study, draft->reuses ? study->keeping : study->fresh);
-    glint_status status = draft->reuses ? render_neighbour(study, error) : GLINT_OK;
+    glint_image *image = NULL;
     double cpu = cpu_ms();
-    if (!status)
-        status = glint_render(study->run->renderer, plan, &made, &c->stats, error);
+    glint_status status = render(study, draft, false, plan, &image, &c->stats, error);
     double start = glintL_now_ms();
     if (!status)
-        status = encode(draft, made, &bytes, &size, error);
+        status = encode(draft, image, &bytes, &size, error);
     if (!status)
         note_run(c, glintL_now_ms() - start, cpu_ms() - cpu);
     free(bytes);
-    if (!status && image)
-        *image = glint_image_retain(made);
-    glint_image_release(made);
+    glint_image_release(image);
     return status;
 }
 
-bool cost_run(cost_study *study, cost_case *c, glint_image **image)
+// How a case is rendered when it is timed.
+static shot own_shot(const cost_study *study)
 {
     const bool codes = !glintL_name_is_pfm(study->own->output);
-    const shot how = { .passes = image || !codes ? 1u << GLINT_PASS_BEAUTY : 0, .codes = codes, .seed = -1 };
+    return (shot) { .passes = codes ? 0 : 1u << GLINT_PASS_BEAUTY, .codes = codes, .seed = -1 };
+}
+
+bool cost_run(cost_study *study, cost_case *c)
+{
+    const shot how = own_shot(study);
     glint_plan *plan = NULL;
     glint_error error;
     double start = glintL_now_ms();
@@ -184,26 +188,29 @@ bool cost_run(cost_study *study, cost_case *c, glint_image **image)
     glint_status status = plan_case(study, c, &how, draft, &plan, &error);
     c->bits = draft->render.desc.tone.bits;
     if (!status)
-        status = time_plan(study, c, plan, draft, image, &error);
+        status = time_plan(study, c, plan, draft, &error);
     glint_plan_destroy(plan);
     free(draft);
     c->estimate_ms = glintL_now_ms() - start;
     return status ? fail(study, &error) : true;
 }
 
-// A picture for the study itself, not timed.
-static glint_status take(cost_study *study, const cost_case *c, const shot *how, glint_image **out, glint_error *error)
+// A picture for the study itself, not timed. `work`: NULL, or what it took.
+static glint_status take(cost_study *study, const cost_case *c, const shot *how, glint_image **out, glint_work *work,
+                         glint_error *error)
 {
+    glint_frame_stats stats;
     glint_plan *plan = NULL;
     cost_draft *draft = malloc(sizeof *draft);
     if (!draft) {
         *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
         return GLINT_ERR_NOMEM;
     }
-    use_renderer(study, study->fresh);
     glint_status status = plan_case(study, c, how, draft, &plan, error);
     if (!status)
-        status = glint_render(study->run->renderer, plan, out, NULL, error);
+        status = render(study, draft, work != NULL, plan, out, &stats, error);
+    if (!status && work)
+        *work = stats.work;
     glint_plan_destroy(plan);
     free(draft);
     return status;
@@ -252,7 +259,7 @@ static glint_status decide(cost_study *study, const cost_case *c, bool is_exact,
                            .is_painted = true,
                            .light = out->light_count == lights ? i : lights };
         glint_image *image = NULL;
-        status = take(study, c, &how, &image, error);
+        status = take(study, c, &how, &image, NULL, error);
         if (status)
             break;
         if (i == 0)
@@ -314,9 +321,9 @@ static glint_status render_halves(cost_study *study, glint_image *halves[2], gli
                            .samples = study->reference_samples,
                            .seed = study->reference_seed[i],
                            .is_exact = true };
-        use_renderer(study, study->fresh);
+        use_renderer(study, study->renderers[false][false]);
         cost_show(study, "reference", i * half_ms, half_ms, (1 - i) * half_ms);
-        status = take(study, &study->cases[0], &how, &halves[i], error);
+        status = take(study, &study->cases[0], &how, &halves[i], NULL, error);
     }
     return status;
 }
@@ -374,25 +381,35 @@ static glint_status keep_pictures(cost_study *study, cost_case *c, const glint_i
     return status;
 }
 
+// Against the reference.
+static glint_status find_errors(cost_study *study, cost_case *c, const glint_image *image, glint_error *error)
+{
+    glint_status status = glint_reference_measure(study->reference, image, 0, &c->film, error);
+    if (!status && c->needs_file)
+        status = glint_reference_measure(study->reference, image, c->bits, &c->file, error);
+    if (!status)
+        status = count_decisions(study, c, error);
+    if (!status && study->options->report)
+        status = keep_pictures(study, c, image, error);
+    c->has_error = !status;
+    return status;
+}
+
 bool cost_measure(cost_study *study, cost_case *c)
 {
+    shot how = own_shot(study);
     glint_image *image = NULL;
     glint_error error;
     c->is_first_alone = false;
-    if (!cost_run(study, c, &image))
+    c->run_count = 0;
+    if (!cost_run(study, c))
         return false;
     c->is_first_alone = true;
-    glint_status status = GLINT_OK;
-    if (study->reference) {
-        status = glint_reference_measure(study->reference, image, 0, &c->film, &error);
-        if (!status && c->needs_file)
-            status = glint_reference_measure(study->reference, image, c->bits, &c->file, &error);
-        if (!status)
-            status = count_decisions(study, c, &error);
-        if (!status && study->options->report)
-            status = keep_pictures(study, c, image, &error);
-        c->has_error = !status;
-    }
+    how.passes |= 1u << GLINT_PASS_BEAUTY;
+    glint_status status = take(study, c, &how, &image, &c->work, &error);
+    c->is_counted = !status;
+    if (!status && study->reference)
+        status = find_errors(study, c, image, &error);
     glint_image_release(image);
     return status ? fail(study, &error) : true;
 }

@@ -18,9 +18,10 @@ void cost_machine(const cost_study *study, char out[256])
     }
     if (file)
         fclose(file);
-    int threads = glint_renderer_threads(study->fresh);
+    const glint_renderer *renderer = study->renderers[false][false];
+    int threads = glint_renderer_threads(renderer);
     snprintf(out, 256, "%.100s, %d thread%s, %s, glint " GLINT_VERSION ", compiler %.40s", model, threads,
-             threads == 1 ? "" : "s", glint_renderer_isa(study->fresh), __VERSION__);
+             threads == 1 ? "" : "s", glint_renderer_isa(renderer), __VERSION__);
 }
 
 static void print_head(const cost_study *study, FILE *out)

@@ -93,7 +93,7 @@ static bool run_round(cost_study *study, int *order, int count, int round)
         cost_case *c = &study->cases[order[i]];
         const double step = c->estimate_ms;
         cost_show(study, "timing", done, step, whole * study->runs - done - step);
-        if (cost_is_stopped(study) || !cost_run(study, c, NULL))
+        if (cost_is_stopped(study) || !cost_run(study, c))
             return false;
         done += step;
     }

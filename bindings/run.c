@@ -204,6 +204,7 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     glint_renderer *renderer = NULL;
     desc.threads = run->asked.threads;
     desc.time_stages = run->times_stages;
+    desc.count_work = run->counts_work;
     desc.no_reuse = run->asked.no_reuse || run->asked.repeat > 1; // repeats measure the whole frame
     desc.reuse_memory = run->asked.reuse_memory;
     glint_status status = glint_renderer_create(&desc, &renderer, error);

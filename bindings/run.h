@@ -175,7 +175,7 @@ typedef struct glintL_reporter {
 } glintL_reporter;
 
 struct glintL_run {
-    bool times_stages;
+    bool times_stages, counts_work;
     bool keeps_images; ///< every picture has its linear beauty pass
     int preview_side; ///< > 0: no picture has a longer side or more than one sample a pixel
     bool was_shrunk; ///< by preview_side

@@ -389,6 +389,7 @@ typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
     const char *isa; ///< "ref", "sse2", "avx2", "avx512"; NULL (default): the environment's GLINT_ISA, else the best
     bool time_stages; ///< measure each stage on each tile (costs a few per cent)
+    bool count_work; ///< fill in the work of the stats (costs some per cent)
     bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same
     size_t reuse_memory; ///< bytes that may be kept between frames; 0 (default): a quarter of the machine's memory
 } glint_renderer_desc;
@@ -407,6 +408,12 @@ double glint_renderer_progress(const glint_renderer *renderer);
 
 #define GLINT_STAGE_MAX 16
 
+/// Work that a frame took: free of noise, unlike time.
+typedef struct glint_work {
+    uint64_t light_samples; ///< pairs of a point and a light looked at
+    uint64_t powers; ///< highlights raised to their exponent
+} glint_work;
+
 typedef struct glint_frame_stats {
     double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
     double render_ms; ///< wall time of the stages up to the film
@@ -417,6 +424,7 @@ typedef struct glint_frame_stats {
     double stage_reused
         [GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     glint_ray_counts rays;
+    glint_work work; ///< 0 unless the renderer counts it; what is reused took none
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
 } glint_frame_stats;

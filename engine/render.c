@@ -18,7 +18,7 @@
 struct glint_renderer {
     glint_pool *pool;
     const glint_stages *stages;
-    bool time_stages;
+    bool time_stages, count_work;
     atomic_bool cancelled;
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
@@ -47,6 +47,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     if (!renderer)
         return glint_fail_nomem(error);
     renderer->time_stages = desc->time_stages;
+    renderer->count_work = desc->count_work;
     glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
     glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
@@ -143,12 +144,15 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.tile_ns += part->tile_ns;
         sum.primary += part->primary;
         sum.shadow += part->shadow;
+        sum.work.light_samples += part->work.light_samples;
+        sum.work.powers += part->work.powers;
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
     }
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
     stats->rays = (glint_ray_counts) { .primary = sum.primary, .shadow = sum.shadow };
+    stats->work = sum.work;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
@@ -175,7 +179,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
                             .cancelled = &renderer->cancelled,
-                            .time_stages = renderer->time_stages } };
+                            .time_stages = renderer->time_stages,
+                            .count_work = renderer->count_work } };
     const double begin = now_ms();
     glint_status status = glint_geometry_index(plan->geometry, renderer->pool, &f.shared.geometry, error);
     if (status)

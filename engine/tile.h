@@ -11,6 +11,7 @@
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, clipped, nonfinite;
+    glint_work work;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
 
@@ -25,7 +26,7 @@ typedef struct glint_tile_frame {
     float gain; ///< of the exposure
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
-    bool time_stages;
+    bool time_stages, count_work;
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -104,6 +105,10 @@ uint64_t glint_tile_now_ns(void);
 
 /// Names the material of each hit, where no surfaces were found.
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile_work.c: when work is counted, adds what the last call of a stage took.
+void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame); ///< every hit looks at one light
+void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);

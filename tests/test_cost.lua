@@ -204,6 +204,8 @@ for _, samples in ipairs { 1, 4, 16, 64 } do
   local row = find(rows, "samples", samples)
   check(row.rmse < before, "error falls with the samples: %d: %g, before %g", samples, row.rmse, before)
   check(row.counters.primary == 64 * 48 * samples, "%d samples: %d rays", samples, row.counters.primary)
+  check(row.counters.powers > 0 and row.counters.powers < row.counters.light_samples
+    and row.counters.light_samples <= row.counters.primary, "%d samples: work", samples)
   check(row.wrong_object == 0 and row.wrong_shadow == 0, "%d samples decide as one does", samples)
   check(row.default == (samples == 4), "%d samples: default", samples)
   before = row.rmse
@@ -259,6 +261,8 @@ local matt = [[glint.sphere { center = { 0, 1, 0 }, radius = 1 }, ]]
 local plain = study("plain", still("plain.lua", matt .. "glint.point_light { position = { 0, 9, 9 }, shadows = false }"))
 check_rows("plain", plain)
 check(knobs_of(plain) == "samples precision bits encode", "matt, without shadows: %s", knobs_of(plain))
+local counted = find(plain, "samples", 1).counters
+check(counted.powers == 0 and counted.shadow == 0 and counted.light_samples > 100, "matt: %d powers", counted.powers)
 local bare = study("bare", still("bare.lua", ""))
 check_rows("bare", bare)
 check(knobs_of(bare) == "bits encode", "nothing to be seen: %s", knobs_of(bare))
