@@ -209,8 +209,9 @@ double cost_left_ms(const cost_study *study); ///< of the budget; infinite witho
 bool cost_time_cases(cost_study *study);
 void cost_summarize(cost_study *study); ///< quartiles of what was measured
 double cost_quartile_range(const cost_case *c);
-/// Shows on a terminal what is being done, how far it is and how long it will take.
-void cost_show(const cost_study *study, const char *what, double done_ms, double step_ms, double left_ms);
+double cost_round_ms(const cost_study *study); ///< a run of every case that is not left out, as far as is known
+/// Shows on a terminal what is being done; this step and those of the study after it take so long.
+void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms);
 
 // ---- cost_front.c ----
 

@@ -322,7 +322,7 @@ static glint_status render_halves(cost_study *study, glint_image *halves[2], gli
                            .seed = study->reference_seed[i],
                            .is_exact = true };
         use_renderer(study, study->renderers[false][false]);
-        cost_show(study, "reference", i * half_ms, half_ms, (1 - i) * half_ms);
+        cost_show(study, "reference", half_ms, (1 - i) * half_ms + cost_round_ms(study) * (study->runs + 2));
         status = take(study, &study->cases[0], &how, &halves[i], NULL, error);
     }
     return status;

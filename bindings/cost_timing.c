@@ -19,20 +19,20 @@ double cost_left_ms(const cost_study *study)
     return study->deadline_ms > 0 ? study->deadline_ms - glintL_now_ms() : INFINITY;
 }
 
-void cost_show(const cost_study *study, const char *what, double done_ms, double step_ms, double left_ms)
+void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms)
 {
     if (study->output->progress)
-        cli_progress_step(study->output->progress, study->run, what, done_ms, step_ms, left_ms);
+        cli_progress_step(study->output->progress, study->run, what, glintL_now_ms() - study->start_ms, step_ms,
+                          left_ms);
 }
 
 // ---- What fits ----
 
-static double round_ms(const cost_study *study)
+double cost_round_ms(const cost_study *study)
 {
     double sum = 0;
     for (int i = 0; i < study->case_count; i++)
-        if (!study->cases[i].is_left_out && study->cases[i].run_count > 0)
-            sum += study->cases[i].estimate_ms;
+        sum += study->cases[i].is_left_out ? 0 : study->cases[i].estimate_ms;
     return sum;
 }
 
@@ -63,9 +63,9 @@ static bool drop_slowest(cost_study *study)
 static bool fit_budget(cost_study *study)
 {
     const int wanted = study->runs;
-    while (round_ms(study) * COST_RUNS_LEAST > cost_left_ms(study) && drop_slowest(study))
+    while (cost_round_ms(study) * COST_RUNS_LEAST > cost_left_ms(study) && drop_slowest(study))
         ;
-    const double fitting = floor(cost_left_ms(study) / round_ms(study));
+    const double fitting = floor(cost_left_ms(study) / cost_round_ms(study));
     if (fitting < study->runs)
         study->runs = fitting > 1 ? (int)fitting : 1;
     if (study->runs < wanted)
@@ -86,16 +86,16 @@ static void shuffle(cost_study *study, int *order, int count)
 
 static bool run_round(cost_study *study, int *order, int count, int round)
 {
-    const double whole = round_ms(study);
-    double done = whole * round;
+    const double whole = cost_round_ms(study);
+    double left = whole * (study->runs - round);
     shuffle(study, order, count);
     for (int i = 0; i < count; i++) {
         cost_case *c = &study->cases[order[i]];
         const double step = c->estimate_ms;
-        cost_show(study, "timing", done, step, whole * study->runs - done - step);
+        left -= step;
+        cost_show(study, "timing", step, left);
         if (cost_is_stopped(study) || !cost_run(study, c))
             return false;
-        done += step;
     }
     return true;
 }
