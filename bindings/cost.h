@@ -5,7 +5,8 @@
 ///   cost_knobs.c    the table of knobs: a setting that trades accuracy for time is a row of it
 ///   cost_scene.c    a scene whose materials and lights a knob edits, and gets back as they were
 ///   cost_cases.c    the settings to be measured, and the rows of the table that show them
-///   cost_measure.c  one setting's picture, its errors and its decisions; the reference
+///   cost_measure.c  one setting in the engine: its plan, and its picture in time
+///   cost_errors.c   how far it is from the truth: the reference, decisions pixel by pixel
 ///   cost_timing.c   runs in random order, quartiles, the time that is left
 ///   cost_front.c    who is on the Pareto front, which combinations are worth a look, what to advise
 ///   cost_table.c    the table for people; cost_json.c for programs
@@ -190,13 +191,31 @@ void cost_row_name(const cost_row *row, char out[COST_LABEL_SIZE]);
 
 // ---- cost_measure.c ----
 
-// Each returns false when the run has failed or was stopped.
+/// How a case is to be planned, where that is not its own way.
+typedef struct cost_shot {
+    uint32_t passes;
+    bool codes;
+    double samples; ///< 0: the case's
+    double seed; ///< < 0: the case's
+    bool is_exact; ///< decided in double
+    bool is_painted; ///< matt white under light number `light`
+    size_t light;
+} cost_shot;
 
+bool cost_fail(cost_study *study, const glint_error *error); ///< the run fails, unless it was stopped; false
+// Each of type bool returns false when the run has failed or was stopped.
 bool cost_open_renderers(cost_study *study);
+cost_shot cost_own_shot(const cost_study *study); ///< how a case is rendered when it is timed
 /// Renders, encodes and times a case once, in memory.
 bool cost_run(cost_study *study, cost_case *c);
+/// A picture for the study itself, not timed. `work`: NULL, or what it took.
+glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out, glint_work *work,
+                       glint_error *error);
 /// Rays of a case as its plan expects them, for guessing how long it takes.
 bool cost_expect(cost_study *study, const cost_case *c, double *rays);
+
+// ---- cost_errors.c ----
+
 /// The reference, its own error and the true decisions. `allowance_ms` is for both halves.
 bool cost_make_reference(cost_study *study, double allowance_ms);
 /// A case's first run, its work, errors and decisions, and pictures for the report.

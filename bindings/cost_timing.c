@@ -22,8 +22,7 @@ double cost_left_ms(const cost_study *study)
 void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms)
 {
     if (study->output->progress)
-        cli_progress_step(study->output->progress, study->run, what, glintL_now_ms() - study->start_ms, step_ms,
-                          left_ms);
+        cli_progress_step(study->output->progress, what, glintL_now_ms() - study->start_ms, step_ms, left_ms);
 }
 
 // ---- What fits ----

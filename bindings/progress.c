@@ -164,15 +164,20 @@ void cli_progress_update(cli_progress *progress, const glintL_run *run, bool ren
     pthread_mutex_unlock(&progress->lock);
 }
 
-void cli_progress_step(cli_progress *progress, const glintL_run *run, const char *what, double done_ms, double step_ms,
-                       double left_ms)
+void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms)
 {
     pthread_mutex_lock(&progress->lock);
     snprintf(progress->what, sizeof progress->what, "%s", what);
     progress->done_ms = done_ms;
     progress->step_ms = step_ms;
     progress->left_ms = left_ms > 0 ? left_ms : 0;
-    progress->renderer = run->renderer;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_watch(cli_progress *progress, glint_renderer *renderer)
+{
+    pthread_mutex_lock(&progress->lock);
+    progress->renderer = renderer;
     pthread_mutex_unlock(&progress->lock);
 }
 
