@@ -8,6 +8,7 @@
 #define RESOLVED 10 // times the reference's own error
 #define CANDIDATES_MAX 4096
 #define CLEARLY 0.95 // of a first run's time, or of an error, for a knob to be combined with others
+#define CHEAPER 0.8 // of the time, for a step that loses accuracy
 #define STEEP 0.8 // of the best gain an hour: the smaller step is advised
 
 static double range_of(const cost_case *a, const cost_case *b)
@@ -247,7 +248,9 @@ static const cost_row *find_cheaper(const cost_study *study)
     const cost_row *best = NULL;
     for (int i = 0; i < study->row_count; i++) {
         const cost_row *row = &study->rows[i];
-        if (is_eligible(study, row) && row->difference < 0 &&
+        const double share =
+            study->cases[row->measured].time[COST_TOTAL].median / study->cases[0].time[COST_TOTAL].median;
+        if (is_eligible(study, row) && row->is_resolved && row->difference < 0 && share < CHEAPER &&
             (!best || cost_row_error(study, row)->rmse < cost_row_error(study, best)->rmse))
             best = row;
     }
