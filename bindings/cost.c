@@ -8,6 +8,8 @@
 
 #define RUNS 11 // of each setting, the first not counted
 #define RUNS_QUICK 5
+#define RUN_MS 30.0 // of short frames as many make a run
+#define RUN_QUICK_MS 5.0
 #define ALLOWANCE_MS 45e3 // for the reference, where it may be better than it must be
 #define ALLOWANCE_QUICK_MS 5e3
 #define BUDGET_SHARE 0.3 // of a budget, for the reference
@@ -203,6 +205,7 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
     study->options = options;
     study->own = &run->kept_render;
     study->runs = options->quick ? RUNS_QUICK : RUNS;
+    study->run_ms = options->quick ? RUN_QUICK_MS : RUN_MS;
     study->start_ms = output->start_ms;
     study->deadline_ms = options->budget_s > 0 ? output->start_ms + options->budget_s * 1e3 : 0;
     cost_subject subject = { .plan = run->explain_plan,

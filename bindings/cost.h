@@ -114,6 +114,8 @@ typedef struct cost_case {
     int bits; ///< of its file, once it was run
     bool needs_file; ///< a row shows what the file keeps
     double estimate_ms; ///< of a run with all that is around it
+    int batch; ///< frames in a run, so that it takes long enough to be timed; 0: one
+    double guess_ms; ///< of the frame alone, before it is timed in earnest
     int run_count;
     double ms[COST_PART_COUNT][COST_RUNS_MAX];
     cost_quartiles time[COST_PART_COUNT]; ///< of the runs, by cost_summarize
@@ -159,6 +161,7 @@ typedef struct cost_study {
     cost_row *rows;
     int row_count;
     int runs; ///< wanted of each case, the first not counted
+    double run_ms; ///< what a run should take at least
     double overhead_ms; ///< of finding the error of a picture
     double start_ms, deadline_ms; ///< deadline 0: none
     uint64_t random;
@@ -208,9 +211,9 @@ bool cost_open_renderers(cost_study *study);
 cost_shot cost_own_shot(const cost_study *study); ///< how a case is rendered when it is timed
 /// Renders, encodes and times a case once, in memory.
 bool cost_run(cost_study *study, cost_case *c);
-/// A picture for the study itself, not timed. `work`: NULL, or what it took.
-glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out, glint_work *work,
-                       glint_error *error);
+/// A picture for the study itself, not one of the runs. `stats`: NULL, or what it took, work counted.
+glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out,
+                       glint_frame_stats *stats, glint_error *error);
 /// Rays of a case as its plan expects them, for guessing how long it takes.
 bool cost_expect(cost_study *study, const cost_case *c, double *rays);
 

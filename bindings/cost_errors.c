@@ -7,6 +7,7 @@
 
 #define LIGHTS_MAX 8 // looked at one by one
 #define LIT 0x1p-10 // less than a quarter of a code: a surface that a light grazes counts as dark
+#define BATCH_MAX 1000 // frames in a run
 #define TIMES 64 // samples of a half of the reference for each of the script's
 #define LEAST_TIMES 4 // where a budget forces fewer; below it no error would be worth showing
 
@@ -191,16 +192,25 @@ static glint_status find_errors(cost_study *study, cost_case *c, const glint_ima
 bool cost_measure(cost_study *study, cost_case *c)
 {
     cost_shot how = cost_own_shot(study);
+    glint_frame_stats stats;
     glint_image *image = NULL;
     glint_error error;
     c->is_first_alone = false;
-    c->run_count = 0;
+    c->run_count = c->batch = 0;
     if (!cost_run(study, c))
         return false;
     c->is_first_alone = true;
     how.passes |= 1u << GLINT_PASS_BEAUTY;
-    glint_status status = cost_take(study, c, &how, &image, &c->work, &error);
+    glint_status status = cost_take(study, c, &how, &image, &stats, &error);
     c->is_counted = !status;
+    if (!status) {
+        c->work = stats.work;
+        c->guess_ms = fmin(c->ms[COST_TOTAL][0], stats.render_ms + stats.tone_ms + c->ms[COST_ENCODE][0]);
+        // A frame has costs that are not timed; they may make the run longer, not much longer.
+        double frames = fmin(study->run_ms / fmax(c->guess_ms, 1e-3), 3 * study->run_ms / c->estimate_ms);
+        c->batch = (int)fmin(fmax(ceil(frames), 1), BATCH_MAX);
+        c->estimate_ms *= c->batch;
+    }
     if (!status && study->reference)
         status = find_errors(study, c, image, &error);
     glint_image_release(image);

@@ -7,7 +7,7 @@
 
 #define RESOLVED 10 // times the reference's own error
 #define CANDIDATES_MAX 4096
-#define CLEARLY 0.95 // of a first run's time, or of an error, for a knob to be combined with others
+#define CLEARLY 0.95 // of the time guessed, or of the error, for a knob to be combined with others
 #define CHEAPER 0.8 // of the time, for a step that loses accuracy
 #define STEEP 0.8 // of the best gain an hour: the smaller step is advised
 
@@ -23,14 +23,12 @@ typedef struct candidate {
     double ms, error; // foreseen
 } candidate;
 
-static double ms_of(const cost_case *c) { return c->ms[COST_TOTAL][0]; }
-
 // Whether the value is clearly faster than the script's own, or clearly nearer to the truth.
 static bool is_useful(const cost_study *study, const cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
     return c->has_error && c->run_count > 0 &&
-           (ms_of(c) < CLEARLY * ms_of(own) || c->film.rmse < CLEARLY * own->film.rmse);
+           (c->guess_ms < CLEARLY * own->guess_ms || c->film.rmse < CLEARLY * own->film.rmse);
 }
 
 // Every known candidate with one more knob turned. Times multiply; errors, being independent, add as squares.
@@ -47,7 +45,7 @@ static int extend(const cost_study *study, int knob, candidate *list, int count)
             candidate *new = &list[count++];
             *new = list[i];
             new->choice[knob] = row->value;
-            new->ms *= ms_of(c) / ms_of(base);
+            new->ms *= c->guess_ms / base->guess_ms;
             double square = new->error *new->error + c->film.rmse * c->film.rmse - base->film.rmse * base->film.rmse;
             new->error = sqrt(fmax(square, 0));
         }
@@ -99,7 +97,7 @@ bool cost_add_combinations(cost_study *study)
     int count = 1;
     if (!list)
         return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    list[0] = (candidate) { .ms = ms_of(&study->cases[0]), .error = study->cases[0].film.rmse };
+    list[0] = (candidate) { .ms = study->cases[0].guess_ms, .error = study->cases[0].film.rmse };
     for (int i = 0; i < COST_KNOBS_MAX; i++)
         list[0].choice[i] = -1;
     for (int knob = 0; knob < cost_knob_count; knob++)
@@ -122,15 +120,17 @@ static bool is_point(const cost_study *study, const cost_row *row)
     return !(knob && knob->is_other_time) && cost_row_error(study, row) && study->cases[row->measured].run_count > 0;
 }
 
-// A row beats another when it is nearer to the truth and not slower by more than both quartile ranges (a row that was
-// disturbed must not pass for fast), or as near and faster by anything.
+// A row beats another when it is nearer to the truth and not slower, or as near and faster. Not slower, faster: by more
+// than both quartile ranges, since a row that was disturbed must not pass for fast; by anything where the errors are
+// equal. As near: within what the reference itself is off.
 static bool beats(const cost_study *study, const cost_row *a, const cost_row *b)
 {
     const cost_case *ca = &study->cases[a->measured], *cb = &study->cases[b->measured];
     const double ea = cost_row_error(study, a)->rmse, eb = cost_row_error(study, b)->rmse;
     const double ta = ca->time[COST_TOTAL].median, tb = cb->time[COST_TOTAL].median;
     const double noise = fmin(cost_quartile_range(ca), cost_quartile_range(cb));
-    return ea < eb ? ta <= tb + noise : ea == eb && ta < tb;
+    return (ea < eb && ta <= tb + noise) || (ea == eb && ta < tb) ||
+           (ea <= eb + study->reference_error.rmse && ta < tb - noise);
 }
 
 static void judge_row(cost_study *study, cost_row *row)
@@ -164,18 +164,20 @@ static void spell_share(double share, char out[48])
     static const struct {
         double share;
         const char *words;
-    } known[] = { { 1.0 / 2, "half" },         { 1.0 / 3, "a third of" },        { 2.0 / 3, "two thirds of" },
-                  { 1.0 / 4, "a quarter of" }, { 3.0 / 4, "three quarters of" }, { 1.0 / 5, "a fifth of" },
-                  { 1.0 / 10, "a tenth of" } };
+    } known[] = { { 1.0 / 2, "half the" },
+                  { 1.0 / 3, "a third of the" },
+                  { 2.0 / 3, "two thirds of the" },
+                  { 1.0 / 4, "a quarter of the" },
+                  { 3.0 / 4, "three quarters of the" },
+                  { 1.0 / 5, "a fifth of the" },
+                  { 1.0 / 10, "a tenth of the" },
+                  { 1, "the same" } };
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (fabs(share / known[i].share - 1) < 0.08) {
+        if (fabs(share / known[i].share - 1) < 0.06) {
             snprintf(out, 48, "%s", known[i].words);
             return;
         }
-    if (fabs(share - 1) < 0.05)
-        snprintf(out, 48, "the same");
-    else
-        snprintf(out, 48, share < 0.1 ? "%.1g of" : "%.2g times", share);
+    snprintf(out, 48, share < 0.1 ? "%.1g of the" : "%.2g times the", share);
 }
 
 // "samples 4 -> 16", "samples=16 precision=float in place of the script's setting"
@@ -237,8 +239,8 @@ static void advise_step(cost_study *study, const cost_row *row)
     spell_share(cost_row_error(study, row)->rmse / own->film.rmse, error);
     spell_share(c->time[COST_TOTAL].median / own->time[COST_TOTAL].median, time);
     if (row->difference == 0)
-        snprintf(time, sizeof time, "no difference in");
-    snprintf(study->advice, sizeof study->advice, "%s: %s the time, %s the error%s", step, time, error,
+        snprintf(time, sizeof time, "no difference in the");
+    snprintf(study->advice, sizeof study->advice, "%s: %s time, %s error%s", step, time, error,
              row->is_resolved ? "" : " or less (the reference does not resolve it)");
 }
 

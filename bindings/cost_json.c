@@ -100,7 +100,8 @@ static void print_row(const cost_study *study, const cost_row *row, FILE *out)
     print_flag(out, "pareto", row->is_front);
     print_flag(out, "default", row->is_default);
     print_flag(out, "resolved", row->is_resolved);
-    fprintf(out, ",\"difference\":\"%s\",\"runs\":%d", differences[row->difference + 1], c->run_count);
+    fprintf(out, ",\"difference\":\"%s\",\"runs\":%d,\"frames_a_run\":%d", differences[row->difference + 1],
+            c->run_count, c->batch > 0 && !c->is_first_alone ? c->batch : 1);
     print_flag(out, "partial", row->is_partial);
     fprintf(out, ",\"parts\":{\"render\":%.4f,\"tone\":%.4f,\"encode\":%.4f},\"cpu_ms\":%.4f",
             c->time[COST_RENDER].median, c->time[COST_TONE].median, c->time[COST_ENCODE].median,

@@ -111,44 +111,57 @@ static glint_status encode(const cost_draft *draft, const glint_image *image, ui
     return glint_image_to_bytes(image, &desc, data, size, error);
 }
 
-// Renders a plan, after the neighbouring frame where the case is measured so.
-static glint_status render(cost_study *study, const cost_draft *draft, bool counts, const glint_plan *plan,
-                           glint_image **out, glint_frame_stats *stats, glint_error *error)
+// What comes before a frame of the case: the neighbouring one, where it is measured so.
+static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
 {
     glint_image *before = NULL;
-    glint_status status = GLINT_OK;
     use_renderer(study, study->renderers[draft->reuses][counts]);
-    if (draft->reuses)
-        status = glint_render(study->run->renderer, study->run->kept_neighbour, &before, NULL, error);
+    if (!draft->reuses)
+        return GLINT_OK;
+    glint_status status = glint_render(study->run->renderer, study->run->kept_neighbour, &before, NULL, error);
     glint_image_release(before);
-    return status ? status : glint_render(study->run->renderer, plan, out, stats, error);
+    return status;
 }
 
-static void note_run(cost_case *c, double encode_ms, double cpu)
-{
-    const double times[COST_PART_COUNT] = { c->stats.render_ms, c->stats.tone_ms, encode_ms,
-                                            c->stats.render_ms + c->stats.tone_ms + encode_ms, cpu };
-    for (int part = 0; part < COST_PART_COUNT; part++)
-        c->ms[part][c->run_count] = times[part];
-    c->run_count++;
-}
-
-static glint_status time_plan(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
-                              glint_error *error)
+// Renders and encodes a frame; adds its times to `sum`.
+static glint_status time_frame(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
+                               double sum[COST_PART_COUNT], glint_error *error)
 {
     uint8_t *bytes = NULL;
     size_t size;
     glint_image *image = NULL;
-    double cpu = cpu_ms();
-    glint_status status = render(study, draft, false, plan, &image, &c->stats, error);
-    double start = glintL_now_ms();
+    glint_status status = prepare(study, draft, false, error);
+    const double cpu = cpu_ms();
+    if (!status)
+        status = glint_render(study->run->renderer, plan, &image, &c->stats, error);
+    const double start = glintL_now_ms();
     if (!status)
         status = encode(draft, image, &bytes, &size, error);
-    if (!status)
-        note_run(c, glintL_now_ms() - start, cpu_ms() - cpu);
+    const double encoding = glintL_now_ms() - start;
+    sum[COST_RENDER] += c->stats.render_ms;
+    sum[COST_TONE] += c->stats.tone_ms;
+    sum[COST_ENCODE] += encoding;
+    sum[COST_TOTAL] += c->stats.render_ms + c->stats.tone_ms + encoding;
+    sum[COST_CPU] += cpu_ms() - cpu;
     free(bytes);
     glint_image_release(image);
     return status;
+}
+
+static glint_status time_run(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
+                             glint_error *error)
+{
+    double sum[COST_PART_COUNT] = { 0 };
+    const int frames = c->batch > 0 ? c->batch : 1;
+    for (int i = 0; i < frames; i++) {
+        glint_status status = time_frame(study, c, plan, draft, sum, error);
+        if (status)
+            return status;
+    }
+    for (int part = 0; part < COST_PART_COUNT; part++)
+        c->ms[part][c->run_count] = sum[part] / frames;
+    c->run_count++;
+    return GLINT_OK;
 }
 
 // How a case is rendered when it is timed.
@@ -174,17 +187,16 @@ bool cost_run(cost_study *study, cost_case *c)
     glint_status status = plan_case(study, c, &how, draft, &plan, &error);
     c->bits = draft->render.desc.tone.bits;
     if (!status)
-        status = time_plan(study, c, plan, draft, &error);
+        status = time_run(study, c, plan, draft, &error);
     glint_plan_destroy(plan);
     free(draft);
     c->estimate_ms = glintL_now_ms() - start;
     return status ? cost_fail(study, &error) : true;
 }
 
-glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out, glint_work *work,
-                       glint_error *error)
+glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *how, glint_image **out,
+                       glint_frame_stats *stats, glint_error *error)
 {
-    glint_frame_stats stats;
     glint_plan *plan = NULL;
     cost_draft *draft = malloc(sizeof *draft);
     if (!draft) {
@@ -193,9 +205,9 @@ glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *h
     }
     glint_status status = plan_case(study, c, how, draft, &plan, error);
     if (!status)
-        status = render(study, draft, work != NULL, plan, out, &stats, error);
-    if (!status && work)
-        *work = stats.work;
+        status = prepare(study, draft, stats != NULL, error);
+    if (!status)
+        status = glint_render(study->run->renderer, plan, out, stats, error);
     glint_plan_destroy(plan);
     free(draft);
     return status;

@@ -193,13 +193,15 @@ static void draw_label(plot *p, const cost_row *row, const char *text)
     const double width = CHARACTER * (double)strlen(text);
     const double x = x_of(p, p->study->cases[row->measured].time[COST_TOTAL].median);
     const double y = y_of(p, cost_row_error(p->study, row)->rmse);
+    const bool ends[] = { false, false, true, true, false, false }; // the text ends where its place does
     const box places[] = { { x + 9, y - 14, width, 13 },        { x + 9, y + 1, width, 13 },
                            { x - 9 - width, y + 1, width, 13 }, { x - 9 - width, y - 14, width, 13 },
                            { x - width / 2, y + 8, width, 13 }, { x - width / 2, y - 22, width, 13 } };
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         if (!is_free(p, &places[i]))
             continue;
-        fprintf(p->out, "<text class='label' x='%.1f' y='%.1f'>", places[i].x, places[i].y + 11);
+        fprintf(p->out, "<text class='label' x='%.1f' y='%.1f'%s>", ends[i] ? places[i].x + width : places[i].x,
+                places[i].y + 11, ends[i] ? " text-anchor='end'" : "");
         cost_html_text(p->out, text);
         fputs("</text>\n", p->out);
         take(p, places[i]);

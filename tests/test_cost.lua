@@ -141,7 +141,7 @@ local function is_dominated(rows, row)
   return false
 end
 
-local function check_rows(name, rows)
+local function check_rows(name, rows, reference)
   local defaults, fastest, least = {}, math.huge, math.huge
   for _, row in ipairs(rows) do
     local where = ("%s: %s %s"):format(name, row.knob, row.value)
@@ -164,8 +164,8 @@ local function check_rows(name, rows)
   for knob, count in pairs(defaults) do check(count == 1, "%s: %s has %d defaults", name, knob, count) end
   for knob in knobs_of(rows):gmatch "%S+" do check(defaults[knob], "%s: %s has no default", name, knob) end
   local best = false
-  for _, row in ipairs(rows) do best = best or (row.pareto and row.rmse == least) end
-  check(best, "%s: the least error is on the front", name)
+  for _, row in ipairs(rows) do best = best or (row.pareto and row.rmse <= least + 3 * reference.rmse) end
+  check(best, "%s: the least error, or one that the reference cannot tell from it, is on the front", name)
 end
 
 -- ---- Scenes ----
@@ -193,7 +193,7 @@ end
 -- ---- A scene with everything ----
 
 local rows, advice = study("film", film .. " --frame 2")
-check_rows("film", rows)
+check_rows("film", rows, advice.reference)
 check(knobs_of(rows) == "samples shadows precision model bits encode reuse", "film responds to: %s", knobs_of(rows))
 check(says "frame 2 of 3 %(%-%-frame N takes another%)", "which frame is taken: %s", read "err")
 check(#advice.left_out == 0 and advice.complete and advice.machine:find "thread", "advice: what was measured where")
@@ -258,13 +258,13 @@ check(near(advice.reference.rmse, (apart / #mine) ^ 0.5), "the reference's own e
 -- ---- Only what the scene calls for ----
 
 local matt = [[glint.sphere { center = { 0, 1, 0 }, radius = 1 }, ]]
-local plain = study("plain", still("plain.lua", matt .. "glint.point_light { position = { 0, 9, 9 }, shadows = false }"))
-check_rows("plain", plain)
+local plain, plain_advice = study("plain", still("plain.lua", matt .. "glint.point_light { position = { 0, 9, 9 }, shadows = false }"))
+check_rows("plain", plain, plain_advice.reference)
 check(knobs_of(plain) == "samples precision bits encode", "matt, without shadows: %s", knobs_of(plain))
 local counted = find(plain, "samples", 1).counters
 check(counted.powers == 0 and counted.shadow == 0 and counted.light_samples > 100, "matt: %d powers", counted.powers)
-local bare = study("bare", still("bare.lua", ""))
-check_rows("bare", bare)
+local bare, bare_advice = study("bare", still("bare.lua", ""))
+check_rows("bare", bare, bare_advice.reference)
 check(knobs_of(bare) == "bits encode", "nothing to be seen: %s", knobs_of(bare))
 local floats = study("pfm", still("pfm.lua", matt, [[output = "x.pfm",]]))
 check(knobs_of(floats) == "samples precision", "no codes in a .pfm: %s", knobs_of(floats))
