@@ -228,7 +228,10 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
     }
     if (run->keeps_scene && run->count == run->explain_frame - 1) {
         glint_error error;
-        if (glint_plan_create(scene, &render.desc, &run->kept_neighbour, &error))
+        glint_render_desc desc = render.desc;
+        desc.codes = !glintL_name_is_pfm(render.output);
+        desc.passes = desc.codes ? 0 : 1u << GLINT_PASS_BEAUTY;
+        if (glint_plan_create(scene, &desc, &run->kept_neighbour, &error))
             return glintL_error(L, PATH "%s", error.message);
     }
     if (run->mode == GLINTL_MODE_EXPLAIN || !is_selected(run)) {

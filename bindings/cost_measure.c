@@ -102,23 +102,51 @@ static double cpu_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-static glint_status encode(const cost_draft *draft, const glint_image *image, uint8_t **data, size_t *size,
+static glint_status encode_values(const glint_image *image, glint_error *error)
+{
+    const glint_write_desc desc = { .path = "frame.pfm" };
+    uint8_t *data = NULL;
+    size_t size;
+    glint_status status = glint_image_to_bytes(image, &desc, &data, &size, error);
+    free(data);
+    return status;
+}
+
+// By the writer that a job uses, with its threads and what it remembers of the picture before, and into nothing.
+static glint_status encode(cost_study *study, const glintL_render *render, glint_image *image, double *ms,
                            glint_error *error)
 {
-    glint_write_desc desc = { .path = draft->render.desc.codes ? "frame.png" : "frame.pfm",
-                              .tone = draft->render.desc.tone,
-                              .encode = draft->render.encode };
-    return glint_image_to_bytes(image, &desc, data, size, error);
+    glint_write_desc desc = { .path = "/dev/null", .tone = render->desc.tone, .encode = render->encode };
+    glint_write_result result;
+    const double start = glintL_now_ms();
+    glint_status status;
+    if (!render->desc.codes) {
+        status = encode_values(image, error);
+        *ms = glintL_now_ms() - start;
+        return status;
+    }
+    status = glint_writer_submit(study->run->writer, image, &desc, NULL, error);
+    if (status || !glint_writer_collect(study->run->writer, true, &result))
+        return status;
+    *ms = result.encode_ms;
+    if (result.status) {
+        error->status = result.status;
+        snprintf(error->message, sizeof error->message, "%s", result.message);
+    }
+    return result.status;
 }
 
 // What comes before a frame of the case: the neighbouring one, where it is measured so.
 static glint_status prepare(cost_study *study, const cost_draft *draft, bool counts, glint_error *error)
 {
     glint_image *before = NULL;
+    double ms;
     use_renderer(study, study->renderers[draft->reuses][counts]);
     if (!draft->reuses)
         return GLINT_OK;
     glint_status status = glint_render(study->run->renderer, study->run->kept_neighbour, &before, NULL, error);
+    if (!status && draft->render.desc.codes)
+        status = encode(study, &draft->render, before, &ms, error);
     glint_image_release(before);
     return status;
 }
@@ -127,25 +155,23 @@ static glint_status prepare(cost_study *study, const cost_draft *draft, bool cou
 static glint_status time_frame(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
                                double sum[COST_PART_COUNT], glint_error *error)
 {
-    uint8_t *bytes = NULL;
-    size_t size;
     glint_image *image = NULL;
+    double encode_ms = 0;
     glint_status status = prepare(study, draft, false, error);
     const double cpu = cpu_ms();
     if (!status)
         status = glint_render(study->run->renderer, plan, &image, &c->stats, error);
-    const double start = glintL_now_ms();
     if (!status)
-        status = encode(draft, image, &bytes, &size, error);
-    const double encoding = glintL_now_ms() - start;
+        status = encode(study, &draft->render, image, &encode_ms, error);
+    glint_image_release(image);
+    if (status)
+        return status;
     sum[COST_RENDER] += c->stats.render_ms;
     sum[COST_TONE] += c->stats.tone_ms;
-    sum[COST_ENCODE] += encoding;
-    sum[COST_TOTAL] += c->stats.render_ms + c->stats.tone_ms + encoding;
+    sum[COST_ENCODE] += encode_ms;
+    sum[COST_TOTAL] += c->stats.render_ms + c->stats.tone_ms + encode_ms;
     sum[COST_CPU] += cpu_ms() - cpu;
-    free(bytes);
-    glint_image_release(image);
-    return status;
+    return GLINT_OK;
 }
 
 static glint_status time_run(cost_study *study, cost_case *c, const glint_plan *plan, const cost_draft *draft,
