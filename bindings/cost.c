@@ -49,14 +49,16 @@ static void say_frame(const cost_study *study)
 
 // ---- The phases ----
 
-// What a case takes by the rays it casts, before it has run.
+// What a run of a case takes by the rays it casts, before it has run.
 static bool guess(cost_study *study, int index)
 {
     cost_case *c = &study->cases[index];
     double rays = 0, base_rays = 0;
     if (!cost_expect(study, c, &rays) || !cost_expect(study, &study->cases[0], &base_rays))
         return false;
-    c->estimate_ms = study->cases[0].estimate_ms * (base_rays > 0 ? fmax(rays / base_rays, 0.2) : 1);
+    const cost_case *base = &study->cases[0];
+    const double frame_ms = base->guess_ms > 0 ? base->guess_ms : base->estimate_ms;
+    c->estimate_ms = fmax(frame_ms * (base_rays > 0 ? fmax(rays / base_rays, 0.2) : 1), study->run_ms);
     return true;
 }
 
@@ -132,8 +134,8 @@ static bool measure_base(cost_study *study)
     double start = glintL_now_ms();
     cost_show(study, "errors", study->cases[0].estimate_ms, cost_round_ms(study) * (study->runs + 2));
     bool good = cost_measure(study, &study->cases[0]);
-    study->overhead_ms = glintL_now_ms() - start - study->cases[0].estimate_ms;
-    return good;
+    study->overhead_ms = fmax(glintL_now_ms() - start - study->cases[0].guess_ms, 0);
+    return good && guess_all(study, 1);
 }
 
 static bool name_unmeasured(cost_study *study)

@@ -328,7 +328,7 @@ local short, short_advice = rows_of "budget"
 check(#short_advice.left_out > 0 and #short > 0 and short_advice.seconds < 10, "a budget leaves out: %d, in %g s",
   #short_advice.left_out, short_advice.seconds)
 
-run(film .. " --size 1280x960 --json", ("sh -c 'exec \"$@\" & p=$!; sleep 1.5; kill -INT $p; wait $p; echo $? >%s/code' sh")
+run(film .. " --size 800x600 --json", ("sh -c 'exec \"$@\" & p=$!; sleep 1.5; kill -INT $p; wait $p; echo $? >%s/code' sh")
   :format(work))
 check(read "code" == "130\n", "SIGINT: exit %s", read "code")
 local cut = {}
