@@ -33,6 +33,7 @@ typedef struct cost_scene {
     size_t material_count;
     glint_light **lights;
     glint_light_desc *light_descs;
+    double (*corners)[3]; ///< of all polygon lights: the descriptions' vertices
     size_t light_count;
 } cost_scene;
 

@@ -74,12 +74,21 @@ static glint_status apply_samples(cost_draft *draft, cost_value value, glint_err
 
 // ---- shadows ----
 
-static const char *const SHADOWS[] = { "off", "hard" };
+static bool is_soft(const glint_light_desc *light)
+{
+    const bool has_radius = light->kind == GLINT_LIGHT_DISK || light->kind == GLINT_LIGHT_SPHERE;
+    return light->shadows && (light->kind == GLINT_LIGHT_POLYGON || (has_radius && light->radius > 0));
+}
 
+// What the script has is soft where one of its lights has a surface.
 static void list_shadows(const cost_subject *subject, cost_values *out)
 {
+    const char *words[] = { "off", "hard" };
+    for (size_t i = 0; i < subject->scene->light_count; i++)
+        if (is_soft(&subject->scene->light_descs[i]))
+            words[1] = "soft";
     if (has_stage(subject->plan, "occlude"))
-        list_words(SHADOWS, COUNT(SHADOWS), 1, out);
+        list_words(words, COUNT(words), 1, out);
 }
 
 static glint_status apply_shadows(cost_draft *draft, cost_value value, glint_error *error)

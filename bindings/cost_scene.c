@@ -29,25 +29,42 @@ static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
     }
 }
 
+// A light's own corners go when it is set: the descriptions get copies.
+static void list_lights(cost_scene *scene, const glint_scene *engine_scene)
+{
+    double(*corners)[3] = scene->corners;
+    for (size_t i = 0; i < glint_scene_light_count(engine_scene); i++) {
+        glint_light_desc *desc = &scene->light_descs[i];
+        scene->lights[i] = glint_scene_light_at(engine_scene, i);
+        *desc = *glint_light_get(scene->lights[i]);
+        if (desc->vertex_count == 0)
+            continue;
+        memcpy(corners, desc->vertices, desc->vertex_count * sizeof *corners);
+        desc->vertices = (const double(*)[3])corners;
+        corners += desc->vertex_count;
+    }
+    scene->light_count = glint_scene_light_count(engine_scene);
+}
+
 bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
 {
     glint_material *const *list;
     size_t shapes = glint_scene_shape_count(engine_scene), lights = glint_scene_light_count(engine_scene), most = 1;
+    size_t corners = 1;
     for (size_t i = 0; i < shapes; i++)
         most += glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
+    for (size_t i = 0; i < lights; i++)
+        corners += glint_light_get(glint_scene_light_at(engine_scene, i))->vertex_count;
     *scene = (cost_scene) { .scene = engine_scene };
     scene->materials = calloc(most, sizeof *scene->materials);
     scene->material_descs = calloc(most, sizeof *scene->material_descs);
     scene->lights = calloc(lights + 1, sizeof *scene->lights);
     scene->light_descs = calloc(lights + 1, sizeof *scene->light_descs);
-    if (!scene->materials || !scene->material_descs || !scene->lights || !scene->light_descs)
+    scene->corners = calloc(corners, sizeof *scene->corners);
+    if (!scene->materials || !scene->material_descs || !scene->lights || !scene->light_descs || !scene->corners)
         return false;
     list_materials(scene, engine_scene);
-    for (size_t i = 0; i < lights; i++) {
-        scene->lights[i] = glint_scene_light_at(engine_scene, i);
-        scene->light_descs[i] = *glint_light_get(scene->lights[i]);
-    }
-    scene->light_count = lights;
+    list_lights(scene, engine_scene);
     return true;
 }
 
@@ -57,6 +74,7 @@ void cost_scene_close(cost_scene *scene)
     free(scene->material_descs);
     free(scene->lights);
     free(scene->light_descs);
+    free(scene->corners);
     memset(scene, 0, sizeof *scene);
 }
 
@@ -90,7 +108,7 @@ glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error 
         status = glint_material_set(scene->materials[i], &white, error);
     for (size_t i = 0; i < scene->light_count && !status; i++) {
         glint_light_desc desc = *glint_light_get(scene->lights[i]);
-        desc.has_diffuse = desc.has_specular = false;
+        desc.has_diffuse = desc.has_specular = desc.has_radiance = false;
         desc.intensity = light >= scene->light_count || i == light ? 1 : 0;
         set_three(desc.color, 1);
         set_three(desc.attenuation, 0);

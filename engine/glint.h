@@ -410,7 +410,7 @@ double glint_renderer_progress(const glint_renderer *renderer);
 
 /// Work that a frame took: free of noise, unlike time.
 typedef struct glint_work {
-    uint64_t light_samples; ///< pairs of a point and a light looked at
+    uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, looked at
     uint64_t powers; ///< highlights raised to their exponent
 } glint_work;
 

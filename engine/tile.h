@@ -107,7 +107,8 @@ uint64_t glint_tile_now_ns(void);
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_work.c: when work is counted, adds what the last call of a stage took.
-void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame); ///< every hit looks at one light
+/// Every hit looks at one light, or at `count` samples of it.
+void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.

@@ -203,7 +203,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[plan->desc.precision].light(&args);
-    glint_tile_count_light(tile, frame);
+    glint_tile_count_light(tile, frame, count);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
 }

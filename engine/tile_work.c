@@ -1,10 +1,10 @@
 /// Counting the work of a tile's stages, for those who ask what a frame is made of.
 #include "engine/tile.h"
 
-void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count)
 {
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
-        tile->counts.work.light_samples += (uint64_t)__builtin_popcount(tile->at.hits[g]);
+        tile->counts.work.light_samples += (uint64_t)__builtin_popcount(tile->at.hits[g]) * count;
 }
 
 /// As `shade` decides it: the light reaches the point, whose material has a highlight there.

@@ -271,6 +271,21 @@ check(knobs_of(floats) == "samples precision", "no codes in a .pfm: %s", knobs_o
 local odd = study("odd", still("odd.lua", matt, [[samples = 9, precision = "float",]]) .. " --knobs samples,precision")
 check(find(odd, "samples", 9).default and find(odd, "samples", 16) and find(odd, "precision", "float").default,
   "the script's own values are in their places")
+
+-- Lights with a surface, in their units and in radiance, of which a knob must leave everything as it was; and a cone.
+local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { vertices = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } },
+  radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },
+  glint.spot_light { position = { -3, 6, 4 }, direction = { 3, -6, -4 }, inner = 10, outer = 40, intensity = 0.3 },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } } ]]))
+check(knobs_of(soft) == "samples shadows precision bits encode", "soft shadows: %s", knobs_of(soft))
+local soft_own, soft_off = find(soft, "shadows", "soft"), find(soft, "shadows", "off")
+check(soft_own and soft_own.default, "shadows of lights with a surface are called soft")
+check(soft_off.wrong_shadow > 20 and soft_off.rmse > soft_own.rmse, "without them: %d wrong", soft_off.wrong_shadow)
+check(soft_own.counters.light_samples > 8 * 100 and soft_own.counters.light_samples % 9 == 0,
+  "each sample of a light is looked at: %d", soft_own.counters.light_samples)
+check(find(soft, "encode", "small").rmse == soft_own.rmse, "another encoder after other lights: the same picture")
+check(find(soft, "samples", 64).rmse < soft_own.rmse / 4, "soft shadows converge")
+
 local mixed = study("mixed", still("mixed.lua", [[glint.directional_light { direction = { 0, -1, -1 } },
   glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 1 } },
   glint.sphere { center = { 2, 1, 0 }, radius = 1, material = glint.material { specular = 1, model = "blinn_phong" } }]])
