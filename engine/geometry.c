@@ -150,6 +150,8 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
         prim->filter_bound = HUGE_VALF;
+        if (prim->coincident != prim->id)
+            continue; // the first of equal ones wins every tie and casts every shadow
         if (glint_prim_bounded(prim)) {
             place_in_frame(&geometry->table, prim, &index->boxes[index->box_count]);
             index->bounded[index->box_count++] = i;
@@ -244,6 +246,8 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     }
     free(geometry->prims);
     geometry->table.prims = geometry->prims = a.to;
+    geometry->table.prim_count = bounded + geometry->table.unbounded_count;
+    geometry->table.duplicates = false;
     geometry->table.nodes = geometry->index->bvh.nodes;
     geometry->arranged = true;
     return GLINT_OK;
