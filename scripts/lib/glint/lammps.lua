@@ -14,15 +14,10 @@ local POSITIONS = {
   { "x", "y", "z" }, { "xs", "ys", "zs", scaled = true }, { "xu", "yu", "zu" }, { "xsu", "ysu", "zsu", scaled = true },
 }
 
--- The words of a text, in a new list or one to be filled again, and how many they are.
-local function words(text, list)
-  local count = 0
-  list = list or {}
-  for word in text:gmatch "%S+" do
-    count = count + 1
-    list[count] = word
-  end
-  return list, count
+local function words(text)
+  local list = {}
+  for word in text:gmatch "%S+" do list[#list + 1] = word end
+  return list
 end
 
 local function bounds(source, what, count)
@@ -74,20 +69,31 @@ local function wrapped(box, u, v, w)
     periodic[3] and w - math.floor(w) or w
 end
 
--- Which columns hold what.
+-- Which columns hold what. One pattern takes the at most five that matter out of a line: columns.x and the others say
+-- which of its captures is x ...
 local function find_columns(source, header)
-  local names, place = words(header), {}
+  local names, place, used = words(header), {}, {}
   for i, name in ipairs(names) do place[name] = i end
-  local columns = { words = {}, count = #names, element = place.element, type = place.type, radius = place.radius,
-    diameter = place.diameter }
+  local columns, position = { count = #names, captures = {} }, nil
   for _, set in ipairs(POSITIONS) do
-    if place[set[1]] and place[set[2]] and place[set[3]] then
-      columns.x, columns.y, columns.z, columns.scaled = place[set[1]], place[set[2]], place[set[3]], set.scaled
-      break
+    if not position and place[set[1]] and place[set[2]] and place[set[3]] then position = set end
+  end
+  if not position then source:fail("columns x y z, xs ys zs, xu yu zu or xsu ysu zsu", header) end
+  if not place.element and not place.type then source:fail("a column element or type", header) end
+  columns.scaled = position.scaled
+  used[place[position[1]]], used[place[position[2]]], used[place[position[3]]] = "x", "y", "z"
+  used[place.element or place.type] = place.element and "element" or "type"
+  local size = place.radius or place.diameter
+  if size then used[size] = place.radius and "radius" or "diameter" end
+  local parts, rank = {}, 0
+  for i = 1, #names do
+    parts[i] = used[i] and "(%S+)" or "%S+"
+    if used[i] then
+      rank = rank + 1
+      columns[used[i]] = rank
     end
   end
-  if not columns.x then source:fail("columns x y z, xs ys zs, xu yu zu or xsu ysu zsu", header) end
-  if not columns.element and not columns.type then source:fail("a column element or type", header) end
+  columns.pattern = "^%s*" .. table.concat(parts, "%s+") .. "%s*$"
   return columns
 end
 
@@ -102,8 +108,9 @@ end
 local function read_atom(source, frame, columns, options)
   local line = source:next()
   if not line then source:fail(("atom %d of %d"):format(frame.done, frame.count), nil) end
-  local list, count = words(line, columns.words)
-  if count ~= columns.count then
+  local list = columns.captures
+  list[1], list[2], list[3], list[4], list[5] = line:match(columns.pattern)
+  if not list[1] then
     source:fail(("atom %d of %d, with %d columns"):format(frame.done, frame.count, columns.count), line)
   end
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
