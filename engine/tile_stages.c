@@ -78,6 +78,7 @@ static glint_cast_args cast_args(glint_tile *tile, const glint_tile_frame *frame
     glint_cast_args args = { .group_count = tile->group_count,
                              .active = tile->active,
                              .geometry = &frame->geometry,
+                             .stop = frame->cancelled,
                              .camera = &tile->camera,
                              .parallel = frame->plan->camera.orthographic,
                              .t = tile->at.t,
@@ -220,6 +221,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
                                 .directional = light->directional,
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
+                                .stop = frame->cancelled,
                                 .camera = rays_of(tile),
                                 .slack = tile->slack,
                                 .rays = &tile->counts.shadow };

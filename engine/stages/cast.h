@@ -652,7 +652,7 @@ static void R(cast_bundle)(const glint_cast_args *args)
         return;
     while ((count = R(open_planes)(&tile, &planes, candidates, GLINT_FIRST_CANDIDATES)) > 0)
         R(cast_candidates)(&tile, candidates, count);
-    while (height > 0) {
+    while (height > 0 && !is_stopped(args->stop)) {
         const walk_entry top = stack[--height];
         const float far = R(far_of_tile)(&tile);
         if (far < top.depth)

@@ -462,7 +462,7 @@ static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_lamp *lam
         open = R(walk_shaft)(tile, lamp, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
-    for (unsigned left = open; left && !done; left &= (left - 1) & open)
+    for (unsigned left = open; left && !done && !is_stopped(tile->args->stop); left &= (left - 1) & open)
         open = R(walk_lane)(tile, lamp, group, __builtin_ctz(left), open);
     return open;
 }

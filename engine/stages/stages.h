@@ -15,6 +15,7 @@
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -118,6 +119,7 @@ typedef struct glint_cast_args {
     uint32_t group_count;
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
     const glint_geometry_table *geometry;
+    const atomic_bool *stop; ///< true: the results do not matter any more; NULL: they do
     const glint_camera_args *camera; ///< cast_bundle only: the rays
     bool parallel; ///< cast_rays only: the directions of a group are all the same
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
@@ -286,6 +288,7 @@ typedef struct glint_occlude_args {
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
     const glint_geometry_table *geometry;
+    const atomic_bool *stop; ///< as in glint_cast_args
     const glint_camera_args *camera; ///< the rays that found the points, of a perspective camera; NULL: in direction
     const void *direction[3];
     const void *slack; ///< of surface; read where the table has triangles
