@@ -186,6 +186,7 @@ result $? "wrong use"
 
 # ---- The scripts of the project give no cause ----
 
+run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff # the file that nff.lua reads
 for script in "$root"/scripts/*.lua; do
     run "$script" --size 64x36 --samples 1 --warnings=error
     result $? "$(basename "$script")"
