@@ -16,6 +16,11 @@ static const glintL_field FIELDS[] = {
     { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse) },
     { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular) },
     { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess) },
+    { .name = "mirror", .kind = GLINTL_COLOR, .offset = AT(mirror), .set_offset = AT(has_mirror) },
+    { .name = "transmission", .kind = GLINTL_COLOR, .offset = AT(transmission) },
+    { .name = "ior", .kind = GLINTL_NUMBER, .offset = AT(ior) },
+    { .name = "fresnel", .kind = GLINTL_BOOLEAN, .offset = AT(fresnel) },
+    { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };
@@ -44,7 +49,9 @@ static void follow(void *desc)
     desc_type *d = desc;
     if (!d->has_ambient)
         memcpy(d->ambient, d->diffuse, sizeof d->ambient);
-    d->has_ambient = true;
+    for (int c = 0; c < 3 && !d->has_mirror; c++)
+        d->mirror[c] = d->fresnel;
+    d->has_ambient = d->has_mirror = true;
 }
 
 static const char WARNED; // its address is the registry's key: true once the script was warned

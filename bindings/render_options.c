@@ -8,6 +8,7 @@
 #include "bindings/run.h"
 
 #define SEED_MAX 9007199254740992.0 // 2^53
+#define DEPTH_MAX 2147483648.0 // 2^31
 #define SAMPLES_MAX 65536.0
 
 typedef enum sort {
@@ -16,8 +17,7 @@ typedef enum sort {
     CHOICE, // an enum
     BITS,
     OUTPUT,
-    PASSES,
-    DEPTH // checked; nothing reads it yet
+    PASSES
 } sort;
 
 typedef struct detail {
@@ -59,7 +59,7 @@ static const detail details[GLINTL_RENDER_FIELDS] = {
     { WHOLE, AT(desc.height), 1, GLINT_SIDE_MAX, NULL },
     { WHOLE, AT(desc.samples), 1, SAMPLES_MAX, NULL },
     { WHOLE, AT(desc.seed), 0, SEED_MAX, NULL },
-    { DEPTH, 0, 0, 0, NULL },
+    { WHOLE, AT(desc.max_depth), 0, DEPTH_MAX, NULL },
     { BITS, AT(desc.tone.bits), 0, 0, NULL },
     { CHOICE, AT(desc.precision), 0, 0, precisions },
     { CHOICE, AT(desc.tone.transfer), 0, 0, transfers },
@@ -94,10 +94,7 @@ const char *const *glintL_render_choices(int field)
     return details[field].sort == CHOICE ? details[field].names : NULL;
 }
 
-static bool is_number(const detail *what)
-{
-    return what->sort == WHOLE || what->sort == REAL || what->sort == BITS || what->sort == DEPTH;
-}
+static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == REAL || what->sort == BITS; }
 
 // What is allowed, for messages.
 static void describe(const detail *what, char out[256])
@@ -109,9 +106,6 @@ static void describe(const detail *what, char out[256])
         break;
     case REAL:
         snprintf(out, 256, "number %.17g .. %.17g", what->min, what->max);
-        break;
-    case DEPTH:
-        snprintf(out, 256, "number >= 0");
         break;
     case BITS:
         snprintf(out, 256, "8 or 16");
@@ -148,8 +142,6 @@ static bool set_number(glintL_render *render, const detail *what, double value)
             return false;
         memcpy(field, &value, sizeof value);
         return true;
-    case DEPTH:
-        return value >= 0;
     case BITS:
         memcpy(field, &bits, sizeof bits);
         return value == bits;
@@ -358,9 +350,6 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
             lua_pushstring(L, at);
         else
             lua_pushnil(L);
-        break;
-    case DEPTH:
-        lua_pushnil(L);
         break;
     }
 }

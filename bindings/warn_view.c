@@ -119,7 +119,7 @@ static bool has(lua_State *L, const char *type, const void *object, const void *
 static bool shows_through(lua_State *L, const glint_material *material)
 {
     const glint_material_desc *desc = material ? glint_material_get(material) : NULL;
-    return desc && (has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
+    return desc && (desc->fresnel || has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
                     has(L, GLINTL_MATERIAL, material, desc, 0, "mirror"));
 }
 

@@ -57,6 +57,13 @@ typedef struct glint_material_desc {
     double diffuse[3]; ///< default 0.8
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
+    bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
+    double mirror[3]; ///< share of the light from where a mirrored ray leads; >= 0, default 0
+    double transmission[3]; ///< share of the light from where a refracted ray leads; >= 0, default 0. Shadows of the
+        ///< object have its colour, once for each surface that the light crosses
+    double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or that of the object around
+    bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
+    double absorption[3]; ///< per world unit of way inside, >= 0; default 0: of light, exp(-absorption way) is left
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
@@ -222,7 +229,7 @@ typedef struct glint_mesh_desc {
     size_t normal_count;
     const uint32_t
         *normal_corners; ///< a number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none
-        ///< there. NULL: normals belong to vertices, one each
+    ///< there. NULL: normals belong to vertices, one each
     bool has_shading; ///< false: phong where there are normals, flat where there are none
     glint_shading shading; ///< phong without normals: those of the faces around a vertex are averaged by area
     glint_material *material; ///< retained; NULL: one with default fields
@@ -294,11 +301,13 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
 typedef enum glint_pass {
-    GLINT_PASS_BEAUTY, ///< ((background + ambient) + diffuse) + specular, in float32 and in this order
+    GLINT_PASS_BEAUTY, ///< ((((background + ambient) + diffuse) + specular) + mirror) + transmission, in float32
     GLINT_PASS_BACKGROUND,
     GLINT_PASS_AMBIENT,
     GLINT_PASS_DIFFUSE,
     GLINT_PASS_SPECULAR,
+    GLINT_PASS_MIRROR,
+    GLINT_PASS_TRANSMISSION,
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
     GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
@@ -341,6 +350,8 @@ typedef struct glint_render_desc {
     double samples; ///< a pixel; whole number, 1 .. 65536; default 1
     glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
+    double max_depth; ///< longest chain of mirrors and refractions; whole number, 0 .. 2^31; default 5. At most 31
+        ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
     glint_tone_desc tone;
@@ -359,7 +370,7 @@ typedef struct glint_effect {
 } glint_effect;
 
 typedef struct glint_stage_info {
-    const char *name; ///< "camera", "cast", "surface", "light", "occlude", "shade", "resolve", "tone"
+    const char *name; ///< "camera", "cast", "surface", "light", "occlude", "shade", "bounce", "resolve", "tone"
     char key[33]; ///< hex XXH3-128 of exactly what the stage reads
     const char *why; ///< one line for people
 } glint_stage_info;
@@ -377,7 +388,8 @@ const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
 /// The lists belong to the plan.
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
-/// Primary rays exactly; shadow rays at most (every sample hits and faces every light that casts shadows).
+/// Primary rays exactly; shadow rays at most (every sample hits and faces every light that casts shadows), without those
+/// that mirrored and refracted rays and transparent objects call for; mirror and refraction: 0 or the first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 
 // ---- Render -------------------------------------------------------------------------------------------------------

@@ -6,7 +6,8 @@
 
 glint_material_desc glint_material_desc_default(void)
 {
-    return (glint_material_desc) { .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32 };
+    return (
+        glint_material_desc) { .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32, .ior = 1.5 };
 }
 
 static glint_status check(const glint_material_desc *desc, glint_error *error)
@@ -22,6 +23,15 @@ static glint_status check(const glint_material_desc *desc, glint_error *error)
         status = glint_check_color("specular", desc->specular, error);
     if (!status)
         status = glint_check_range("shininess", desc->shininess, 0, 1.7976931348623157e308, "number >= 0", error);
+    if (!status && desc->has_mirror)
+        status = glint_check_color("mirror", desc->mirror, error);
+    if (!status)
+        status = glint_check_color("transmission", desc->transmission, error);
+    if (!status)
+        status =
+            glint_check_range("ior", desc->ior, 4.9406564584124654e-324, 1.7976931348623157e308, "number > 0", error);
+    if (!status)
+        status = glint_check_color("absorption", desc->absorption, error);
     return status;
 }
 

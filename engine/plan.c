@@ -5,8 +5,8 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "light",
-                                                           "occlude", "shade", "resolve", "tone" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",   "surface", "light", "occlude",
+                                                           "shade",  "bounce", "resolve", "tone" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -22,9 +22,12 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 
 glint_render_desc glint_render_desc_default(void)
 {
-    return (glint_render_desc) {
-        .width = 1280, .height = 720, .samples = 1, .passes = 1u << GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default()
-    };
+    return (glint_render_desc) { .width = 1280,
+                                 .height = 720,
+                                 .samples = 1,
+                                 .max_depth = 5,
+                                 .passes = 1u << GLINT_PASS_BEAUTY,
+                                 .tone = glint_tone_desc_default() };
 }
 
 static glint_status check_render_desc(const glint_render_desc *desc, glint_error *error)
@@ -38,6 +41,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
                             desc->height);
     if (!status)
         status = glint_check_whole("samples", desc->samples, 1, 65536, error);
+    if (!status)
+        status = glint_check_whole("max_depth", desc->max_depth, 0, 0x1p31, error);
     if (!status)
         status = glint_check_whole("seed", desc->seed, 0, 0x1p53, error);
     if (!status && desc->precision > GLINT_FLOAT)
@@ -53,7 +58,10 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 static void choose_stages(glint_plan *plan)
 {
     const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
-    plan->accumulate = plan->desc.samples > 1 || plan->light_count > GLINT_LIGHT_CHUNK;
+    plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
+    plan->tints = lit && plan->transmits && plan->shadow_count > 0;
+    plan->accumulate = plan->desc.samples > 1 || plan->runs[GLINT_STAGE_BOUNCE] || plan->tints ||
+                       plan->light_count > GLINT_LIGHT_CHUNK;
     plan->runs[GLINT_STAGE_CAMERA] = plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
@@ -69,6 +77,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
+    if (!status)
+        status = glint_plan_bounce(plan, error);
     if (status)
         return status;
     choose_stages(plan);
@@ -105,6 +115,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->lights);
     free(plan->lamps);
     free(plan->materials);
+    free(plan->bouncing);
     free(plan->material_keys);
     free(plan->lines);
     free(plan->effects);
@@ -133,6 +144,10 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
         rays.shadow = samples * plan->shadow_count;
+    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
+        rays.mirror = samples;
+    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)
+        rays.refraction = samples;
     return rays;
 }
 
@@ -140,7 +155,7 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 {
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
-    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_SHADE], options, sizeof options);
+    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_BOUNCE], options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     key = glint_key_add_string(key, GLINT_VERSION);
     key = glint_key_add_string(key, glint_encoder_name(desc->encode));

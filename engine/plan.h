@@ -5,6 +5,7 @@
 ///   geometry.c        what rays meet, shared by the plans of one scene
 ///   plan_camera.c     the view
 ///   plan_shading.c    materials and lights
+///   plan_bounce.c     mirrors and transparent materials
 ///   plan_explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
@@ -19,6 +20,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_LIGHT,
     GLINT_STAGE_OCCLUDE,
     GLINT_STAGE_SHADE,
+    GLINT_STAGE_BOUNCE,
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
     GLINT_STAGE_COUNT
@@ -49,6 +51,15 @@ typedef struct glint_plan_light {
     glint_key place_key, look_key; ///< of that and whether it casts shadows; of the place and the colours
 } glint_plan_light;
 
+/// What a material sends on.
+typedef struct glint_bounce_material {
+    double mirror[3], transmission[3], absorption[3], ior;
+    bool fresnel, mirrors, transmits; ///< the latter: some channel
+} glint_bounce_material;
+
+#define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile_bounce.c
+#define GLINT_BOUNCE_LOSS 0x1p-20 ///< of linear light: what weak rays that are not followed may hold together, a sample
+
 typedef struct glint_text_line {
     char effect[48];
     char caller[2 * GLINT_NAME_SIZE];
@@ -66,6 +77,11 @@ struct glint_plan {
     glint_lamp *lamps; ///< of all area lights
     uint32_t light_count, shadow_count;
     double ambient[3], background[3];
+
+    glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
+    bool mirrors, transmits; ///< some material
+    bool tints; ///< some light casts shadows, and something transmits
+    double brightest; ///< bound of what any ray can bring; may be infinite
 
     bool runs[GLINT_STAGE_COUNT];
     glint_key keys[GLINT_STAGE_COUNT];
@@ -89,6 +105,9 @@ void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *des
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
+
+/// Fills what mirrors and transparent materials need, after shading.
+glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);

@@ -105,7 +105,18 @@ static void lights(explainer *e, const glint_scene *scene, const char *effect, l
     end(e);
 }
 
-static void highlights(explainer *e, const glint_scene *scene, const char *effect, glint_model model)
+typedef bool material_test(const glint_material_desc *desc);
+
+static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
+
+static bool is_mirror(const glint_material_desc *d) { return d->has_mirror ? any(d->mirror) : d->fresnel; }
+static bool is_transparent(const glint_material_desc *d) { return any(d->transmission); }
+static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
+
+static bool is_phong(const glint_material_desc *d) { return d->model == GLINT_MODEL_PHONG && any(d->specular); }
+static bool is_blinn(const glint_material_desc *d) { return d->model == GLINT_MODEL_BLINN_PHONG && any(d->specular); }
+
+static void materials(explainer *e, const glint_scene *scene, const char *effect, material_test *test)
 {
     glint_list seen = { 0 };
     char owner[2 * GLINT_NAME_SIZE], caller[4 * GLINT_NAME_SIZE];
@@ -114,9 +125,7 @@ static void highlights(explainer *e, const glint_scene *scene, const char *effec
         const glint_shape *shape = glint_scene_shape(scene, i);
         for (size_t m = 0; m < shape->material_count && !e->status; m++) {
             glint_material *material = shape->materials[m];
-            const double *ks = material->desc.specular;
-            if (material->desc.model != model || !(ks[0] > 0 || ks[1] > 0 || ks[2] > 0) ||
-                glint_list_find(&seen, material) < seen.count)
+            if (!test(&material->desc) || glint_list_find(&seen, material) < seen.count)
                 continue;
             e->status = glint_list_add(&seen, material, e->error);
             glint_describe_shape(&shape->desc, i + 1, owner, sizeof owner);
@@ -159,8 +168,6 @@ static void one(explainer *e, bool called, const char *effect, const char *forma
     add_line(e, effect, caller);
 }
 
-static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
-
 static void list_effects(explainer *e, const glint_scene *scene)
 {
     const glint_plan *plan = e->plan;
@@ -184,9 +191,16 @@ static void list_effects(explainer *e, const glint_scene *scene)
         shapes(e, scene, "smooth normals", is_smooth);
     }
     if (plan->highlights) {
-        highlights(e, scene, "Phong highlight", GLINT_MODEL_PHONG);
-        highlights(e, scene, "Blinn-Phong highlight", GLINT_MODEL_BLINN_PHONG);
+        materials(e, scene, "Phong highlight", is_phong);
+        materials(e, scene, "Blinn-Phong highlight", is_blinn);
     }
+    if (plan->runs[GLINT_STAGE_BOUNCE]) {
+        materials(e, scene, "mirror reflection", is_mirror);
+        materials(e, scene, "refraction", is_transparent);
+        materials(e, scene, "absorption inside", is_absorbing);
+    }
+    if (plan->tints)
+        materials(e, scene, "tinted shadow", is_transparent);
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };
@@ -206,6 +220,7 @@ static void list_stages(glint_plan *plan)
         "direction, distance and highlight angle of each light",
         "which points each shadow-casting light reaches",
         "ambient, diffuse and specular terms",
+        "mirrored and refracted rays, and what they find",
         "mean of samples and lights",
         "light to 8 or 16-bit codes",
     };

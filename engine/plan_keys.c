@@ -16,6 +16,8 @@ typedef enum input {
     INPUT_LIGHT_COLORS,
     INPUT_MATERIALS, ///< reflectances, exponents
     INPUT_BACKGROUND,
+    INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
+    INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_PASSES,
     INPUT_TONE
 } input;
@@ -27,8 +29,9 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAST] = READS(PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
     [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
-    [GLINT_STAGE_OCCLUDE] = READS(SHADOWS),
+    [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
+    [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
 };
@@ -87,6 +90,26 @@ static glint_key material_key(const glint_shade_material *m, glint_key key)
     return key;
 }
 
+static glint_key tint_key(const glint_bounce_material *m, glint_key key)
+{
+    ADD(key, m->transmission);
+    ADD(key, m->absorption);
+    return key;
+}
+
+static glint_key bounces_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->desc.max_depth);
+    for (uint32_t i = 0; i < plan->material_count; i++) {
+        const glint_bounce_material *m = &plan->bouncing[i];
+        const double numbers[] = { m->ior, m->fresnel };
+        key = tint_key(m, key);
+        ADD(key, m->mirror);
+        ADD(key, numbers);
+    }
+    return key;
+}
+
 static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key key)
 {
     const glint_tone_desc *tone = &plan->desc.tone;
@@ -122,6 +145,10 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     }
     for (uint32_t i = 0; i < plan->material_count && which & READS(MATERIALS); i++)
         key = material_key(&plan->materials[i], key);
+    for (uint32_t i = 0; i < plan->material_count && which & READS(TINTS) && plan->tints; i++)
+        key = tint_key(&plan->bouncing[i], key);
+    if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
+        key = bounces_key(plan, key);
     if (which & READS(BACKGROUND))
         ADD(key, plan->background);
     return output_key(plan, which, key);
@@ -144,7 +171,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < plan->material_count; i++)
         plan->material_keys[i] = material_key(&plan->materials[i], none);
-    plan->all_materials_key = add_inputs(plan, READS(MATERIALS), none);
+    plan->all_materials_key = add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
     plan->output_key = add_inputs(plan, READS(PASSES) | READS(TONE), none);

@@ -27,7 +27,7 @@ struct glint_renderer {
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     glint_image
         *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
-        ///< them
+    ///< them
     glint_key last_key;
     glint_frame_stats last_stats;
 };
@@ -76,12 +76,31 @@ static void drop_spares(glint_renderer *renderer)
     }
 }
 
+static void free_tile(glint_tile *tile)
+{
+    if (!tile)
+        return;
+    glint_bounce_destroy(tile->bounce);
+    glint_tint_destroy(tile->tint);
+    free(tile);
+}
+
+/// Memory that only frames with mirrors or transparent objects ask for.
+static bool extend_tile(glint_tile *tile, const glint_plan *plan)
+{
+    if (plan->runs[GLINT_STAGE_BOUNCE] && !tile->bounce)
+        tile->bounce = glint_bounce_create();
+    if (plan->tints && !tile->tint)
+        tile->tint = glint_tint_create();
+    return (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
+}
+
 void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
         return;
     for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
-        free(renderer->tiles[i]);
+        free_tile(renderer->tiles[i]);
     free(renderer->tiles);
     drop_spares(renderer);
     glint_reuse_clear(&renderer->reuse);
@@ -146,12 +165,16 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.shadow += part->shadow;
         sum.work.light_samples += part->work.light_samples;
         sum.work.powers += part->work.powers;
+        sum.mirror += part->mirror;
+        sum.refraction += part->refraction;
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
     }
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
-    stats->rays = (glint_ray_counts) { .primary = sum.primary, .shadow = sum.shadow };
+    stats->rays = (glint_ray_counts) {
+        .primary = sum.primary, .shadow = sum.shadow, .mirror = sum.mirror, .refraction = sum.refraction
+    };
     stats->work = sum.work;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
@@ -191,8 +214,13 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     if (renderer->reuse.tile_count && !image->film &&
         !(image->film = calloc((size_t)f.across * down, sizeof *image->film)))
         return glint_fail_nomem(error);
-    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
         renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
+        if (!extend_tile(renderer->tiles[i], plan))
+            return glint_fail_nomem(error);
+    }
+    if (plan->transmits)
+        glint_find_eye_media(plan, &f.shared.geometry, &f.shared.eye_media);
     atomic_store(&renderer->tiles_done, 0);
     atomic_store(&renderer->tile_count, (size_t)f.across * down);
     const double start = now_ms();

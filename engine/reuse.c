@@ -73,6 +73,19 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
+/// Whether the tile's pixels may show what it does not hit itself: by mirrors, or through what is transparent.
+static bool shows_more(const glint_kept_tile *tile, const glint_plan *plan)
+{
+    if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
+        return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;
+    for (uint32_t i = 0; i < tile->shown_count; i++) {
+        const glint_bounce_material *m = &plan->bouncing[tile->shown[i]];
+        if (m->mirrors || m->transmits)
+            return true;
+    }
+    return false;
+}
+
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan)
 {
     glint_key parts[GLINT_SHOWN_MAX + GLINT_KEPT_LIGHTS + 4];
@@ -85,6 +98,10 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
         parts[count++] = plan->background_key;
     if (tile->shown_count == 0)
         return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
+    if (shows_more(tile, plan)) {
+        const glint_key all[] = { plan->all_materials_key, plan->all_lights_key, plan->background_key };
+        return glint_key_add(glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts), all, sizeof all);
+    }
     if (tile->shown_count > GLINT_SHOWN_MAX)
         parts[count++] = plan->all_materials_key;
     for (uint32_t i = 0; i < tile->shown_count && tile->shown_count <= GLINT_SHOWN_MAX; i++)

@@ -239,6 +239,25 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w
     }
 }
 
+/// What a light gives through transparent objects.
+static void find_tint(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index, uint32_t slot)
+{
+    if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, slot))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_tint(tile, frame, index, slot);
+}
+
+/// What materials send on.
+static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (!glint_tile_sends_on(tile, frame))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_bounce(tile, frame);
+    glint_tile_book(tile, frame, GLINT_STAGE_BOUNCE, false);
+}
+
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
@@ -255,8 +274,12 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_name_materials(tile, frame);
         }
         glint_tile_shade(tile, frame, from, count);
+        for (uint32_t i = 0; i < count && frame->plan->tints; i++)
+            find_tint(tile, frame, &w, from + i, i);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
+    if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
+        find_bounces(tile, frame, &w);
 }
 
 static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
@@ -305,7 +328,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (tile->kept)
         frame->image->film[tile->index] = (glint_key) { 0 };
     if (plan->accumulate)
-        memset(tile->sum, 0, sizeof tile->sum);
+        memset(tile->sum, 0,
+               (plan->runs[GLINT_STAGE_BOUNCE] ? GLINT_TERM_COUNT : GLINT_TERM_LOCAL) * sizeof *tile->sum);
     for (uint32_t k = 0; k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);
         if (glint_tile_cancelled(frame))

@@ -4,13 +4,14 @@
 
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
+#include "engine/media.h"
 #include "engine/plan.h"
 #include "engine/reuse.h"
 
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
-    uint64_t primary, shadow, clipped, nonfinite;
+    uint64_t primary, shadow, mirror, refraction, clipped, nonfinite;
     glint_work work;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
@@ -27,6 +28,7 @@ typedef struct glint_tile_frame {
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages, count_work;
+    glint_media eye_media; ///< what the eye is in
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -72,6 +74,8 @@ typedef struct glint_tile {
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
+    struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
+    struct glint_tint *tint;
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
 } glint_tile;
@@ -110,6 +114,49 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
 /// Every hit looks at one light, or at `count` samples of it.
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+
+/// tile_bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
+struct glint_bounce *glint_bounce_create(void);
+void glint_bounce_destroy(struct glint_bounce *bounce);
+void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether any material in sight sends rays on. They have been named.
+bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
+/// What the eye of a perspective camera is inside of.
+void glint_find_eye_media(const glint_plan *plan, const glint_geometry_table *geometry, glint_media *media);
+
+/// tile_tint.c: light through transparent objects.
+struct glint_tint *glint_tint_create(void);
+void glint_tint_destroy(struct glint_tint *tint);
+/// Whether the light in `slot` is kept from any point.
+bool glint_tile_is_shadowed(const glint_tile *tile, uint32_t slot);
+/// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely. The
+/// points are found.
+void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
+
+/// The camera, where the rays are not in arrays.
+static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile)
+{
+    return tile->camera.orthographic ? NULL : &tile->camera;
+}
+
+/// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
+static inline const glint_lamp *glint_tile_lamp_of(const glint_tile *tile, const glint_plan_light *light)
+{
+    return light->lamps ? &light->lamps[tile->sample % light->turn_count] : NULL;
+}
+
+/// Arrays of real.
+static inline double glint_real_at(const void *array, glint_precision precision, uint32_t i)
+{
+    return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
+static inline void glint_real_put(void *array, glint_precision precision, uint32_t i, double x)
+{
+    if (precision == GLINT_FLOAT)
+        ((float *)array)[i] = (float)x;
+    else
+        ((double *)array)[i] = x;
+}
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);

@@ -26,19 +26,14 @@ static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, gl
         store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
 }
 
-static double real_at(const void *array, glint_precision precision, uint32_t i)
-{
-    return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
-}
-
 static double direction_at(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
 {
     if (tile->camera.orthographic)
-        return real_at(tile->direction[c], precision, i);
+        return glint_real_at(tile->direction[c], precision, i);
     const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
     const uint32_t lane = i % GLINT_GROUP;
-    const double d = real_at(tile->across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
-                     real_at(tile->down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
+    const double d = glint_real_at(tile->across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
+                     glint_real_at(tile->down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
     return precision == GLINT_FLOAT ? (float)d : d;
 }
 
@@ -59,12 +54,12 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
             hit ? (float)(glint_geometry_object(plan->geometry, frame->geometry.prims[tile->at.prim[i]].id) + 1) : 0;
         double d[3] = { 0 };
         for (int c = 0; c < 3; c++) {
-            normal[c][i] = hit ? (float)real_at(tile->normal[c], precision, i) : 0;
+            normal[c][i] = hit ? (float)glint_real_at(tile->normal[c], precision, i) : 0;
             if (hit)
                 d[c] = direction_at(tile, precision, c, i);
         }
         if (hit)
-            depth[i] = (float)(real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
+            depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
     }
     store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
     store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
@@ -73,6 +68,9 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
 
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
 {
+    if (!frame->plan->runs[GLINT_STAGE_BOUNCE] &&
+        frame->plan->desc.passes & (1u << GLINT_PASS_MIRROR | 1u << GLINT_PASS_TRANSMISSION))
+        memset(tile->film[GLINT_TERM_MIRROR], 0, 2 * sizeof tile->film[0]);
     store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);

@@ -123,12 +123,6 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_si
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-/// The camera, where the rays are not in arrays.
-static const glint_camera_args *rays_of(const glint_tile *tile)
-{
-    return tile->camera.orthographic ? NULL : &tile->camera;
-}
-
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
@@ -139,7 +133,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
                                 .scale = frame->geometry.scale,
                                 .corner_normals = frame->geometry.corner_normals,
                                 .slack = frame->geometry.triangles ? tile->slack : NULL,
-                                .camera = rays_of(tile),
+                                .camera = glint_tile_rays_of(tile),
                                 .t = tile->at.t,
                                 .material = tile->material,
                                 .back = tile->back,
@@ -166,12 +160,6 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-/// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
-static const glint_lamp *lamp_of(const glint_tile *tile, const glint_plan_light *light)
-{
-    return light->lamps ? &light->lamps[tile->sample % light->turn_count] : NULL;
-}
-
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count)
 {
@@ -179,7 +167,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_light_args args = { .group_count = tile->group_count,
                               .hits = tile->at.hits,
-                              .camera = rays_of(tile),
+                              .camera = glint_tile_rays_of(tile),
                               .material = tile->material,
                               .materials = plan->materials,
                               .dark = tile->dark,
@@ -192,7 +180,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     vec_copy(args.position, light->position);
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
-        args.lamp[i] = lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.cosine[i] = tile->at.light[slot[i]].cosine;
         args.attenuation[i] = tile->at.light[slot[i]].attenuation;
@@ -222,12 +210,12 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
                                 .stop = frame->cancelled,
-                                .camera = rays_of(tile),
+                                .camera = glint_tile_rays_of(tile),
                                 .slack = tile->slack,
                                 .rays = &tile->counts.shadow };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
-        args.lamp[i] = lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.open[i] = tile->at.light[slot[i]].open;
     }
@@ -282,7 +270,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
     glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < GLINT_TERM_COUNT; k++) {
-            args.sum[k][c] = tile->sum[k][c];
+            args.sum[k][c] = k < GLINT_TERM_LOCAL || plan->runs[GLINT_STAGE_BOUNCE] ? tile->sum[k][c] : NULL;
             args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
         }
         args.beauty[c] = tile->beauty[c];

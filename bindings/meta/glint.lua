@@ -52,6 +52,11 @@ function vector:unpack() end
 ---@field diffuse? glint.color  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
 ---@field specular? glint.color  strength >= 0 of the highlight. Default 0
 ---@field shininess? number  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
+---@field mirror? glint.color  share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: follows again
+---@field transmission? glint.color  share >= 0 of the light that a refracted ray brings, at each surface. Default 0
+---@field ior? number  refractive index inside, > 0; outside is 1 or that of the object around. Default 1.5
+---@field fresnel? boolean  true: `mirror` times what a dielectric reflects at that angle, `transmission` times the rest. Default false
+---@field absorption? glint.color  >= 0 per world unit: exp(-absorption * way) of the light is left inside. Default 0
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@class glint.material: glint.material_fields
@@ -371,11 +376,13 @@ function glint.scene(fields) end
 -- ---- Frames ----
 
 ---@alias glint.pass
----| "beauty"  # ((background + ambient) + diffuse) + specular, exactly
+---| "beauty"  # ((((background + ambient) + diffuse) + specular) + mirror) + transmission, exactly
 ---| "background"
 ---| "ambient"
 ---| "diffuse"
 ---| "specular"
+---| "mirror"
+---| "transmission"
 ---| "depth"  # distance from the eye, one number; inf where nothing is hit
 ---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
@@ -386,7 +393,7 @@ function glint.scene(fields) end
 ---@field height? integer  pixels, 1 .. 65535. Default 720
 ---@field samples? integer  a pixel, 1 .. 65536. Default 1
 ---@field seed? integer  0 .. 2^53: another seed, another sample pattern as good. Default 0
----@field max_depth? integer  longest chain of mirrors and refractions, >= 0
+---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 where mirror + transmission is above 1. Default 5
 ---@field precision? "double"|"float"  what decides hits and shadows. Default "double"
 ---@field bits? 8|16  a channel of a .png. Default 8
 ---@field transfer? "srgb"|"linear"  how light becomes codes. Default "srgb"

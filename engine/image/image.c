@@ -14,7 +14,8 @@ static const struct {
 } pass_table[GLINT_PASS_COUNT] = {
     [GLINT_PASS_BEAUTY] = { "beauty", 3 },     [GLINT_PASS_BACKGROUND] = { "background", 3 },
     [GLINT_PASS_AMBIENT] = { "ambient", 3 },   [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
-    [GLINT_PASS_SPECULAR] = { "specular", 3 }, [GLINT_PASS_DEPTH] = { "depth", 1 },
+    [GLINT_PASS_SPECULAR] = { "specular", 3 }, [GLINT_PASS_MIRROR] = { "mirror", 3 },
+    [GLINT_PASS_TRANSMISSION] = { "transmission", 3 }, [GLINT_PASS_DEPTH] = { "depth", 1 },
     [GLINT_PASS_NORMAL] = { "normal", 3 },     [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
 };
 

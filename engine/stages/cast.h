@@ -666,13 +666,29 @@ static void R(cast_bundle)(const glint_cast_args *args)
 
 // ---- Rays of their own ----
 
+/// Decides the lanes of `own`, which start on this very primitive: only the inside of a sphere is met again.
+static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t at, const vr f[3], const vr d[3],
+                             const glint_prim *prim, rm hit, vr *t)
+{
+    const rm mask = rm_from_bits(own);
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return rm_andnot(hit, mask);
+    const unsigned inward = args->inward[at / GLINT_GROUP] >> at % GLINT_GROUP & own;
+    const vr zero = r_set(0), b = -DOT(f, d), across = (b + b) / (DOT(d, d) * r_set(prim->scale));
+    const rm again = rm_and(rm_from_bits(inward), rm_and(r_lt(zero, b), r_lt(zero, across)));
+    *t = r_select(mask, across, *t);
+    return rm_or(rm_andnot(hit, mask), again);
+}
+
 /// Tests one primitive against all rays of a group.
 static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, uint32_t id)
 {
     const glint_prim *prim = &args->geometry->prims[id];
     const size_t at = (size_t)g * GLINT_GROUP;
     const unsigned near = R(near_rays)(rays, prim);
+    const unsigned leave = args->leaving ? lanes_equal(args->leaving + at, prim->coincident) : 0;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned own = leave >> i & ((1u << VR) - 1);
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
         vr o[3], d[3], f[3], p[3][3], t;
@@ -686,6 +702,8 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
             R(offset)(o, prim, f);
             hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
         }
+        if (own)
+            hit = R(meet_own)(args, own, at + (size_t)i, f, d, prim, hit, &t);
         if (rm_bits(hit))
             R(keep_nearest)(args, at + i, id, hit, t);
     }

@@ -20,6 +20,7 @@
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
 #include "engine/stages/soft.h"
+#include "engine/stages/bounce.h"
 
 #undef GLINT_REAL
 #define GLINT_REAL 32
@@ -32,6 +33,7 @@
 #include "engine/stages/light.h"
 #include "engine/stages/occlude.h"
 #include "engine/stages/soft.h"
+#include "engine/stages/bounce.h"
 
 #include "engine/stages/shade.h"
 #include "engine/stages/resolve.h"
@@ -39,8 +41,10 @@
 
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
-    .geometry = { { camera_f64, in_sight_f64, cast_bundle_f64, cast_rays_f64, surface_f64, light_f64, occlude_f64 },
-                  { camera_f32, in_sight_f32, cast_bundle_f32, cast_rays_f32, surface_f32, light_f32, occlude_f32 } },
+    .geometry = { { camera_f64, in_sight_f64, cast_bundle_f64, cast_rays_f64, surface_f64, light_f64, occlude_f64,
+                    bounce_f64 },
+                  { camera_f32, in_sight_f32, cast_bundle_f32, cast_rays_f32, surface_f32, light_f32, occlude_f32,
+                    bounce_f32 } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -221,17 +221,20 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
 }
 
 /// Rounds the terms into the film and adds them up into the beauty.
-static void write_film(const terms *sum, float *const film[GLINT_TERM_COUNT][3], float *const beauty[3], uint32_t i)
+static void write_film(const terms *sum, int count, float *const film[GLINT_TERM_COUNT][3], float *const beauty[3],
+                       uint32_t i)
 {
     for (int c = 0; c < 3; c++) {
         float rounded[GLINT_TERM_COUNT];
-        for (int term = 0; term < GLINT_TERM_COUNT; term++) {
+        for (int term = 0; term < count; term++) {
             rounded[term] = (float)sum->value[term][c];
             if (film[term][c])
                 film[term][c][i] = rounded[term];
         }
         beauty[c][i] = ((rounded[GLINT_TERM_BACKGROUND] + rounded[GLINT_TERM_AMBIENT]) + rounded[GLINT_TERM_DIFFUSE]) +
                        rounded[GLINT_TERM_SPECULAR];
+        for (int term = GLINT_TERM_LOCAL; term < count; term++)
+            beauty[c][i] = beauty[c][i] + rounded[term];
     }
 }
 
@@ -269,7 +272,7 @@ static void shade_sample(const glint_shade_args *args, uint32_t i)
     if (args->sum[GLINT_TERM_BACKGROUND][0])
         store_sums(&sum, args->sum, i);
     else
-        write_film(&sum, args->film, args->beauty, i);
+        write_film(&sum, GLINT_TERM_LOCAL, args->film, args->beauty, i);
 }
 
 static void shade(const glint_shade_args *args)
@@ -282,12 +285,13 @@ static void shade(const glint_shade_args *args)
 
 static void resolve(const glint_resolve_args *args)
 {
+    int count = args->sum[GLINT_TERM_MIRROR][0] ? GLINT_TERM_COUNT : GLINT_TERM_LOCAL;
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
         terms mean = load_sums(args->sum, i);
-        for (int term = 0; term < GLINT_TERM_COUNT; term++)
+        for (int term = 0; term < count; term++)
             for (int c = 0; c < 3; c++)
                 mean.value[term][c] /= args->samples;
-        write_film(&mean, args->film, args->beauty, i);
+        write_film(&mean, count, args->film, args->beauty, i);
     }
 }
 
@@ -332,9 +336,9 @@ static void tone(const glint_tone_args *args)
 const glint_stages glint_stages_ref = {
     .name = "ref",
     .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, light_double,
-                    occlude_double },
+                    occlude_double, bounce_double },
                   { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, light_float,
-                    occlude_float } },
+                    occlude_float, bounce_float } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

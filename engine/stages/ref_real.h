@@ -152,6 +152,19 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
+/// Whether ray i starts on the primitive; then *t is where it meets it again, or 0.
+static bool NAME(leaves)(const glint_cast_args *args, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction,
+                         uint32_t i, REAL *t)
+{
+    if (!args->leaving || args->leaving[i] != prim->coincident)
+        return false;
+    bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    REAL b = -NAME(dot)(NAME(from_center)(origin, prim), direction);
+    *t = prim->kind == GLINT_PRIM_SPHERE && inward && b > 0 ? (b + b) / (NAME(length2)(direction) * (REAL)prim->scale)
+                                                            : 0;
+    return true;
+}
+
 /// `eye`: where all rays start; NULL: each has its own origin.
 static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, uint32_t i)
 {
@@ -161,7 +174,9 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
-            REAL t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
+            REAL t;
+            if (eye || !NAME(leaves)(args, &args->geometry->prims[index], origin, direction, i, &t))
+                t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
             bool first = t == best && best_prim != GLINT_MISS &&
                          args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
@@ -504,4 +519,38 @@ static void NAME(occlude)(const glint_occlude_args *args)
         for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
             NAME(occlude_sample)(args, s, i);
     }
+}
+
+// ---- bounce ------------------------------------------------------------------------------------------------------
+
+/// Share of unpolarised light that a dielectric mirrors; cosines of the angles on both sides.
+static REAL NAME(fresnel)(REAL ratio, REAL here, REAL beyond)
+{
+    REAL across = (ratio * here - beyond) / (ratio * here + beyond);
+    REAL along = (here - ratio * beyond) / (here + ratio * beyond);
+    return (REAL)0.5 * (across * across + along * along);
+}
+
+/// Returns whether the ray is totally reflected.
+static bool NAME(bounce_sample)(const glint_bounce_args *args, uint32_t i)
+{
+    NAME(vec3) d = NAME(direction_of)(args->camera, args->direction, i), n = NAME(load)(args->normal, i);
+    NAME(vec3) u = NAME(over)(d, NAME(square_root)(NAME(length2)(d)));
+    REAL ratio = ((const REAL *)args->ratio)[i], c = NAME(min)(NAME(max)(-NAME(dot)(n, u), 0), 1);
+    REAL k = 1 - (ratio * ratio) * (1 - c * c);
+    REAL beyond = ratio == 1 ? c : NAME(square_root)(NAME(max)(k, 0));
+    bool total = ratio != 1 && !(k > 0);
+    NAME(store)(args->reflected, i, NAME(add)(u, NAME(times)(n, 2 * c)));
+    NAME(store)(args->refracted, i, NAME(add)(NAME(times)(u, ratio), NAME(times)(n, ratio * c - beyond)));
+    ((REAL *)args->reflectance)[i] = ratio == 1 ? 0 : total ? 1 : NAME(fresnel)(ratio, c, beyond);
+    return total;
+}
+
+static void NAME(bounce)(const glint_bounce_args *args)
+{
+    for (uint32_t g = 0; g < args->group_count; g++)
+        args->total[g] = 0;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        if (args->wanted[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 && NAME(bounce_sample)(args, i))
+            args->total[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }

@@ -77,7 +77,7 @@ static inline void light_share(const light_factors *factors, const glint_shade_m
 
 /// A group's terms in float, before they are added up.
 typedef struct group_terms {
-    _Alignas(64) float term[GLINT_TERM_COUNT][3][GLINT_GROUP];
+    _Alignas(64) float term[GLINT_TERM_LOCAL][3][GLINT_GROUP];
 } group_terms;
 
 /// Writes `x` where the mask is set.
@@ -153,8 +153,8 @@ static inline void finish_terms(const group_terms *terms, float *const film[][3]
 {
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf t[GLINT_TERM_COUNT];
-            for (int k = 0; k < GLINT_TERM_COUNT; k++) {
+            vf t[GLINT_TERM_LOCAL];
+            for (int k = 0; k < GLINT_TERM_LOCAL; k++) {
                 t[k] = f_load(terms->term[k][c] + i);
                 if (film[k][c])
                     f_store(film[k][c] + at + i, t[k]);
@@ -172,7 +172,7 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
         for (int c = 0; c < 3; c++) {
             f_store(terms->term[GLINT_TERM_BACKGROUND][c] + i,
                     f_select(mask, f_set((float)args->background[c]), f_set(0)));
-            for (int k = GLINT_TERM_AMBIENT; k < GLINT_TERM_COUNT; k++)
+            for (int k = GLINT_TERM_AMBIENT; k < GLINT_TERM_LOCAL; k++)
                 f_store(terms->term[k][c] + i, f_set(0));
         }
     }
@@ -207,7 +207,7 @@ static inline void shade_background(const glint_shade_args *args, size_t at)
 
 static inline bool wants_terms(const glint_shade_args *args)
 {
-    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+    for (int k = 0; k < GLINT_TERM_LOCAL; k++)
         if (args->film[k][0])
             return true;
     return false;

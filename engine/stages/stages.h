@@ -123,6 +123,9 @@ typedef struct glint_cast_args {
     const glint_camera_args *camera; ///< cast_bundle only: the rays
     bool parallel; ///< cast_rays only: the directions of a group are all the same
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
+    const uint32_t *leaving; ///< cast_rays only: the `coincident` of the primitive that each ray starts on, or
+        ///< GLINT_MISS; NULL: none of them does
+    const uint16_t *inward; ///< with `leaving`: a bit a lane: its way begins inside that primitive
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
@@ -155,6 +158,8 @@ typedef struct glint_cast_args {
 //                 Neighbours see their common corners at the same X, Y and, since rounding is monotonic, no e has the
 //                 wrong sign for them: no ray goes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1)
 //                 2013; here without the division, in the scaled plane).
+// A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward and b > 0, at
+//                 t = (b + b) / (a * scale), t > 0; nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
@@ -323,6 +328,26 @@ typedef struct glint_occlude_args {
 //                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach)
 //   So a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
 
+// ---- bounce: where rays go on from a surface ----
+
+typedef struct glint_bounce_args {
+    uint32_t group_count;
+    const uint16_t *wanted; ///< a bit a lane
+    const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: their directions are in direction
+    const void *direction[3], *normal[3]; ///< real; the normal as surface gives it
+    const void *ratio; ///< real, > 0: refractive index on the ray's side of the surface over that beyond it
+    void *reflected[3], *refracted[3]; ///< out, real, unit but for rounding
+    void *reflectance; ///< out, real: of a dielectric and unpolarised light, 0 .. 1
+    uint16_t *total; ///< out: of the wanted lanes, those of total internal reflection, whose `refracted` means nothing
+} glint_bounce_args;
+// Written where wanted. Groups without a wanted lane get total = 0 and nothing else; other lanes hold anything.
+// u = direction / sqrt(length2(direction)) (each component divided), c = min(max(-dot(normal, u), 0), 1), r = ratio
+// reflected = u + (2 c) normal
+// k = 1 - (r r) (1 - c c); s = r == 1 ? c : sqrt(max(k, 0));  total = r != 1 and not k > 0
+// refracted = r u + (r c - s) normal                                                            (Snell)
+// x = r c, y = r s, p = (x - s) / (x + s), q = (c - y) / (c + y)                                (Fresnel)
+// reflectance = r == 1 ? 0 : total ? 1 : 0.5 (p p + q q)
+
 // ---- shade: the terms of each sample ----
 
 typedef enum glint_term {
@@ -330,8 +355,11 @@ typedef enum glint_term {
     GLINT_TERM_AMBIENT,
     GLINT_TERM_DIFFUSE,
     GLINT_TERM_SPECULAR,
+    GLINT_TERM_MIRROR, ///< what mirrors show
+    GLINT_TERM_TRANSMISSION, ///< what shows through
     GLINT_TERM_COUNT
 } glint_term;
+#define GLINT_TERM_LOCAL GLINT_TERM_MIRROR ///< how many shade makes
 
 typedef struct glint_shade_light {
     bool joined; ///< a further sample of the light before it in this call, with the same colours
@@ -373,11 +401,11 @@ typedef struct glint_shade_args {
 typedef struct glint_resolve_args {
     uint32_t group_count;
     double samples;
-    double *sum[GLINT_TERM_COUNT][3];
+    double *sum[GLINT_TERM_COUNT][3]; ///< of the terms that shade does not make: NULL where the frame has none
     float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
     float *beauty[3]; ///< out
 } glint_resolve_args;
-// term = (float)(sum / samples); beauty as in shade
+// term = (float)(sum / samples); beauty as in shade, then (beauty + mirror) + transmission of those there are
 
 // ---- tone: 8-bit codes, written into the image ----
 
@@ -432,6 +460,7 @@ typedef struct glint_stages {
         void (*surface)(const glint_surface_args *args);
         void (*light)(const glint_light_args *args);
         void (*occlude)(const glint_occlude_args *args);
+        void (*bounce)(const glint_bounce_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
