@@ -17,10 +17,11 @@ if ! command -v povray >/dev/null 2>&1; then
 fi
 
 bad=0
-# compare MODEL LIGHT PROJECTION
+# compare MODEL LIGHT PROJECTION [SURFACES]
 compare() {
-    local name=$1_$2_$3
-    ${LUA:-lua5.4} tests/povray/pov.lua "$1" "$2" "$3" $width $height >"$out/$name.pov" &&
+    local surfaces=${4:-plain}
+    local name=$1_$2_$3_$surfaces
+    ${LUA:-lua5.4} tests/povray/pov.lua "$1" "$2" "$3" $width $height "$surfaces" >"$out/$name.pov" &&
         povray "+I$out/$name.pov" "+O$out/$name.pov.png" +W$width +H$height +FN16 File_Gamma=1.0 -A -D \
             >"$out/$name.log" 2>&1 || {
         tail -n 20 "$out/$name.log"
@@ -28,7 +29,7 @@ compare() {
         bad=1
         return
     }
-    "$glint" tests/povray/scene.lua --set "model=$1" --set "light=$2" --set "projection=$3" --size ${width}x$height \
+    "$glint" tests/povray/scene.lua --set "model=$1" --set "light=$2" --set "projection=$3" --set "surfaces=$surfaces" --size ${width}x$height \
         --quiet --force -o "$out/$name.png" &&
         "$build/tests/compare16" "$out/$name.png" "$out/$name.pov.png" 0.0001 || {
         echo "not ok - $name"
@@ -46,6 +47,9 @@ for model in phong blinn_phong; do
 done
 for light in spot fade area; do
     compare phong $light perspective
+done
+for surfaces in mirror glass absorbing fresnel; do
+    compare phong point perspective $surfaces
 done
 compare phong point orthographic
 compare blinn_phong directional orthographic

@@ -1,4 +1,4 @@
--- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT
+-- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT SURFACES
 --
 -- How our formulas read in POV-Ray's language (16-bit linear output: +FN16 File_Gamma=1.0, and no +A):
 --   assumed_gamma 1.0, pigment { rgb C }, ambient_light rgb 1
@@ -11,8 +11,14 @@
 --   spot         light_source { position rgb c  spotlight radius INNER falloff OUTER tightness 0 point_at target }
 --   fall-off     fade_distance d0 fade_power 2 is 2 / (1 + (d/d0)^2): attenuation = { 1/2, 0, 1/(2 d0^2) }
 --   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
+--   mirror       finish { reflection m }: m times what the mirrored ray brings is added
+--   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times what the refracted ray brings; where it
+--                is totally reflected, t times what the mirrored ray brings. Shadows: t at each surface, and no bending.
+--   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way)
+--   fresnel      reflection { 0, 1 fresnel on } conserve_energy
+--   depth        max_trace_level, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
-local model, light, projection, width, height = table.unpack(arg)
+local model, light, projection, width, height, surfaces = table.unpack(arg)
 local w = dofile "tests/povray/workshop.lua"
 
 local function sub(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
@@ -30,7 +36,7 @@ local up = cross(right, forward)
 local extent = projection == "perspective" and 2 * math.tan(math.rad(w.fov) / 2) or w.height
 
 line "#version 3.7;"
-line "global_settings { assumed_gamma 1.0 ambient_light rgb 1 }"
+line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", w.max_depth)
 line("background { rgb %s }", vector(w.background))
 line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
   vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
@@ -56,7 +62,17 @@ else
 end
 local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0"):format(w.specular, w.shininess)
   or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
-for _, sphere in ipairs(w.spheres) do
-  line("sphere { %s, %.17g pigment { rgb %s } finish { ambient %.17g diffuse %.17g %s } }", vector(sphere[1]), sphere[2],
-    vector(sphere[3]), w.ambient, w.diffuse, highlight)
+for i, sphere in ipairs(w.spheres) do
+  local s = w.surfaces[surfaces][i] or {}
+  local ambient, diffuse, pigment, interior = w.ambient, w.diffuse, "rgb " .. vector(sphere[3]), ""
+  local finish = highlight .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
+  if s.fresnel then finish = finish .. " reflection { rgb 0, rgb 1 fresnel on } conserve_energy" end
+  if s.transmission then
+    ambient, diffuse, pigment = 0, 0, ("rgb 0 transmit %.17g"):format(s.transmission)
+    local a = s.absorption
+    interior = ("interior { ior %.17g %s }"):format(s.ior, a and
+      ("fade_power 1001 fade_distance 1 fade_color rgb %.17g"):format(1 - a) or "")
+  end
+  line("sphere { %s, %.17g pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }", vector(sphere[1]), sphere[2],
+    pigment, ambient, diffuse, finish, interior)
 end

@@ -3,6 +3,7 @@ local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
+  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "fresnel" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -36,17 +37,24 @@ else
   camera.height = w.height
 end
 
+-- What lets light through has no colour of its own.
+local function material(surface, fields)
+  if surface.transmission then fields.ambient, fields.diffuse = 0, 0 end
+  for name, value in pairs(surface) do fields[name] = value end
+  return glint.material(fields)
+end
+
 local scene = glint.scene { camera = glint.camera(camera), ambient = 1, background = w.background }
 for _, light in ipairs(lights[P.light]()) do scene:add(light) end
-for _, sphere in ipairs(w.spheres) do
+for i, sphere in ipairs(w.spheres) do
   local center, radius, c = sphere[1], sphere[2], sphere[3]
   scene:add(glint.sphere {
     center = center, radius = radius,
-    material = glint.material {
+    material = material(w.surfaces[P.surfaces][i] or {}, {
       model = P.model, shininess = w.shininess, specular = w.specular,
       ambient = { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] },
       diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },
-    },
+    }),
   })
 end
-scene:render { width = 1280, height = 720, bits = 16, transfer = "linear" }
+scene:render { width = 1280, height = 720, bits = 16, transfer = "linear", max_depth = w.max_depth }

@@ -11,6 +11,14 @@ return {
   fade = 15, -- distance at which the light is as strong as without fall-off
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
   ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
+  max_depth = 20,
+  surfaces = { -- what becomes of some of the spheres, by number
+    plain = {},
+    mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
+    glass = { [5] = { transmission = 0.8, ior = 1.5 }, [3] = { transmission = 0.6, ior = 1.2, mirror = 0.1 } },
+    absorbing = { [5] = { transmission = 0.9, ior = 1.5, absorption = 0.2 }, [2] = { mirror = 0.4 } },
+    fresnel = { [5] = { transmission = 1, ior = 1.5, fresnel = true }, [3] = { transmission = 1, ior = 1.2, fresnel = true } },
+  },
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
     { { -1.0, 4.0, -4.5 }, 4.0, { 0.70, 0.12, 0.10 } },
