@@ -72,8 +72,10 @@ typedef struct field {
 
 static const field material_fields[] = {
 #define M(...) FIELD(glint_material_desc, __VA_ARGS__)
-    M(model, CHOICE, 0, 3),   M(has_ambient, FLAG, 0, 1),   M(ambient, COLOR, 0, 1), M(diffuse, COLOR, 0, 1),
-    M(specular, COLOR, 0, 1), M(shininess, NUMBER, 0, 300), M(name, FIXED, 0, 0),
+    M(model, CHOICE, 0, 3),       M(has_ambient, FLAG, 0, 1),   M(ambient, COLOR, 0, 1),   M(diffuse, COLOR, 0, 1),
+    M(specular, COLOR, 0, 1),     M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1), M(mirror, COLOR, 0, 1),
+    M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),       M(fresnel, FLAG, 0, 1),    M(absorption, COLOR, 0, 1),
+    M(name, FIXED, 0, 0),
 #undef M
 };
 
@@ -99,9 +101,9 @@ static const field camera_fields[] = {
 
 static const field shape_fields[] = {
 #define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
-    S(kind, FIXED, 0, 0),      S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
-    S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
-    S(name, FIXED, 0, 0),
+    S(kind, FIXED, 0, 0),     S(material, FIXED, 0, 0),  S(two_sided, FLAG, 0, 1),
+    S(center, VECTOR, -3, 3), S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),
+    S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),  S(name, FIXED, 0, 0),
 #undef S
 };
 
@@ -113,10 +115,19 @@ static const field scene_fields[] = {
 
 static const field render_fields[] = {
 #define R(...) FIELD(glint_render_desc, __VA_ARGS__)
-    R(width, WHOLE, 60, 75),        R(height, WHOLE, 40, 55),    R(samples, WHOLE, 1, 4),
-    R(precision, CHOICE, 0, 2),     R(seed, WHOLE, 0, 2),        R(passes, BITS, 0, GLINT_PASS_COUNT),
-    R(codes, FLAG, 0, 1),           R(tone.curve, CHOICE, 0, 3), R(tone.transfer, CHOICE, 0, 2),
-    R(tone.rounding, CHOICE, 0, 2), R(tone.bits, DEPTH, 0, 0), R(tone.exposure, NUMBER, -2, 3),
+    R(width, WHOLE, 60, 75),
+    R(height, WHOLE, 40, 55),
+    R(samples, WHOLE, 1, 4),
+    R(max_depth, WHOLE, 0, 4),
+    R(precision, CHOICE, 0, 2),
+    R(seed, WHOLE, 0, 2),
+    R(passes, BITS, 0, GLINT_PASS_COUNT),
+    R(codes, FLAG, 0, 1),
+    R(tone.curve, CHOICE, 0, 3),
+    R(tone.transfer, CHOICE, 0, 2),
+    R(tone.rounding, CHOICE, 0, 2),
+    R(tone.bits, DEPTH, 0, 0),
+    R(tone.exposure, NUMBER, -2, 3),
 #undef R
 };
 

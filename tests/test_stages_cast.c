@@ -113,6 +113,43 @@ static void test_cast(void **state)
     run_cases(4 * CASES, 2000, cast_case);
 }
 
+/// Rays that start on the primitives, some of them into the inside.
+static void leaving_case(int precision, bool odd)
+{
+    (void)odd;
+    ray_case c;
+    start_rays(&c, RAYS_FREE, precision);
+    const uint32_t n = c.cast.group_count * GLINT_GROUP;
+    uint32_t *leaving = input(KIND_U32, n);
+    for (uint32_t i = 0; i < n; i++) {
+        const glint_prim *prim = &c.scene->prims[below(c.scene->table.prim_count)];
+        double direction[3], point[3];
+        leaving[i] = one_in(8) ? GLINT_MISS : prim->coincident;
+        if (prim->kind == GLINT_PRIM_TRIANGLE || one_in(8))
+            continue;
+        random_unit(direction);
+        along3(prim->center, prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0, direction, point);
+        put3(c.origin, precision, i, point);
+        if (one_in(3)) { // along the surface, nearly
+            random_across(direction, point);
+            along3(point, either_sign(power_of_ten(-17, 0)), direction, direction);
+        } else {
+            random_unit(direction);
+        }
+        put3(c.direction, precision, i, direction);
+    }
+    c.cast.leaving = leaving;
+    c.cast.inward = masks(c.cast.group_count);
+    cast_all(&c);
+    end_rays(&c);
+}
+
+static void test_leaving(void **state)
+{
+    (void)state;
+    run_cases(2 * CASES, 7000, leaving_case);
+}
+
 /// The scene around one tile, seen by a tile nearby: what is in sight of it, if anything, is at its border.
 static void neighbour_case(int precision, bool odd)
 {
@@ -362,7 +399,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
-        cmocka_unit_test(test_surface),
+        cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

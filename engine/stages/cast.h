@@ -674,8 +674,10 @@ static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t a
     if (prim->kind != GLINT_PRIM_SPHERE)
         return rm_andnot(hit, mask);
     const unsigned inward = args->inward[at / GLINT_GROUP] >> at % GLINT_GROUP & own;
-    const vr zero = r_set(0), b = -DOT(f, d), across = (b + b) / (DOT(d, d) * r_set(prim->scale));
-    const rm again = rm_and(rm_from_bits(inward), rm_and(r_lt(zero, b), r_lt(zero, across)));
+    const vr zero = r_set(0), a = DOT(d, d), b = -DOT(f, d), across = (b + b) / (a * r_set(prim->scale));
+    const rm meets = r_le(zero, R(discriminant)(f, d, a, b, R(exact_c)(f, prim), r_set(prim->r2)));
+    const rm ahead = rm_and(r_lt(zero, b), r_lt(zero, across));
+    const rm again = rm_and(rm_from_bits(inward), rm_and(meets, ahead));
     *t = r_select(mask, across, *t);
     return rm_or(rm_andnot(hit, mask), again);
 }

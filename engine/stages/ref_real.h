@@ -158,10 +158,14 @@ static bool NAME(leaves)(const glint_cast_args *args, const glint_prim *prim, NA
 {
     if (!args->leaving || args->leaving[i] != prim->coincident)
         return false;
-    bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-    REAL b = -NAME(dot)(NAME(from_center)(origin, prim), direction);
-    *t = prim->kind == GLINT_PRIM_SPHERE && inward && b > 0 ? (b + b) / (NAME(length2)(direction) * (REAL)prim->scale)
-                                                            : 0;
+    *t = 0;
+    if (prim->kind != GLINT_PRIM_SPHERE || !(args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
+        return true;
+    NAME(vec3) f = NAME(from_center)(origin, prim);
+    REAL a = NAME(length2)(direction), b = -NAME(dot)(f, direction);
+    REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
+    if (b > 0 && NAME(discriminant)(f, direction, a, b, c, (REAL)prim->r2) >= 0)
+        *t = (b + b) / (a * (REAL)prim->scale);
     return true;
 }
 

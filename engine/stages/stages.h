@@ -158,8 +158,8 @@ typedef struct glint_cast_args {
 //                 Neighbours see their common corners at the same X, Y and, since rounding is monotonic, no e has the
 //                 wrong sign for them: no ray goes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1)
 //                 2013; here without the division, in the scaled plane).
-// A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward and b > 0, at
-//                 t = (b + b) / (a * scale), t > 0; nothing else is.
+// A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward, b > 0 and
+//                 disc >= 0, at t = (b + b) / (a * scale), t > 0; nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 

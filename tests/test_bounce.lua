@@ -1,0 +1,237 @@
+-- Mirrors and glass against closed forms: one ray and what it must meet, energy, depth, absorption, tinted shadows; and
+-- one picture by every way to render it.
+package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local glint = require "glint"
+
+local passed, failed = 0, 0
+local function check(ok, format, ...)
+  if ok then
+    passed = passed + 1
+  else
+    failed = failed + 1
+    print("not ok - " .. format:format(...))
+  end
+end
+local function near(got, want, tolerance, name)
+  check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
+end
+
+local LOSS = 2 ^ -20 -- of light, what weak rays may hold that are not followed
+local ROUNDING = 2 ^ -23 -- of a float32 near 1
+
+local function material(fields)
+  fields.diffuse = fields.diffuse or 0
+  fields.ambient = fields.ambient or 0
+  return glint.material(fields)
+end
+local function glass(ior, more)
+  local fields = { transmission = 1, ior = ior }
+  for name, value in pairs(more or {}) do fields[name] = value end
+  return material(fields)
+end
+local function ball(radius, of, center) return glint.sphere { center = center or { 0, 0, 0 }, radius = radius, material = of } end
+local function floor(of, y, up) return glint.plane { point = { 0, y or 0, 0 }, normal = { 0, up or 1, 0 }, material = of } end
+
+-- One ray, which is the middle of a picture's only pixel.
+local function look(eye, direction, objects, more)
+  local scene = glint.scene {
+    camera = glint.camera { eye = eye, direction = direction, fov = 10 },
+    ambient = 1, background = more and more.background or 0,
+  }
+  for _, object in ipairs(objects) do scene:add(object) end
+  local fields = { width = 1, height = 1, output = "none", passes = "beauty,mirror,transmission" }
+  for name, value in pairs(more or {}) do if name ~= "background" then fields[name] = value end end
+  local image = scene:render(fields)
+  return (image:pixel(0, 0)), image, scene
+end
+
+-- ---- Where rays go: a lamp of 1e-6 stands where the ray must come to -----------------------------------------------------
+
+-- Polar angles count from +z towards +x in the plane y = 0. The ray leaves the ball of radius 2 at `leaves` and goes along
+-- `goes`; objects are what it goes through.
+local function comes_out(name, eye, direction, objects, leaves, goes)
+  local function at(angle, length) return length * math.sin(angle), length * math.cos(angle) end
+  local x, z = at(leaves, 2)
+  local dx, dz = at(goes, 5)
+  objects[#objects + 1] = ball(1e-6, material { ambient = 1 }, { x + dx, 0, z + dz })
+  near(look(eye, direction, objects), 1, LOSS, name)
+end
+
+local asin, pi = math.asin, math.pi
+for _, n in ipairs { 1.5, 1, 2.4, 1.0001 } do
+  for _, b in ipairs { 0, 0.1, 1, 1.9, 1.999 } do
+    local i, r = asin(b / 2), asin(b / (2 * n))
+    comes_out(("ball of %g at %g"):format(n, b), { b, 0, 9 }, { 0, 0, -1 }, { ball(2, glass(n)) }, i + pi - 2 * r, 2 * i + pi - 2 * r)
+  end
+end
+for _, n in ipairs { { 1.5, 1.2 }, { 1.2, 1.5 }, { 1.5, 1.5 }, { 1.33, 1 } } do
+  for _, b in ipairs { 0.05, 0.5, 0.9 } do -- a ball of radius 1 in one of 2
+    local i1, r1, i2, r2 = asin(b / 2), asin(b / (2 * n[1])), asin(b / n[1]), asin(b / n[2])
+    local leaves = i1 + 2 * (i2 - r1) + pi - 2 * r2
+    local outer, inner = ball(2, glass(n[1])), ball(1, glass(n[2]))
+    comes_out(("ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 9 }, { 0, 0, -1 }, { outer, inner }, leaves, leaves + i1)
+    local s = asin(b) -- and with the eye in both
+    leaves = pi - s + asin(n[2] * b / n[1]) - asin(n[2] * b / n[1] / 2)
+    if n[2] * b / n[1] < 1 then
+      comes_out(("eye in ball of %g in %g at %g"):format(n[2], n[1], b), { b, 0, 0 }, { 0, 0, -1 }, { inner, outer }, leaves,
+        leaves + asin(n[2] * b / 2))
+    end
+  end
+end
+do -- total reflection by a bubble: at b = 1.2 the bubble of radius 1 in glass of 1.5 is beyond the critical angle
+  local b, n = 1.2, 1.5
+  local i1, r1, i2 = asin(b / 2), asin(b / (2 * n)), asin(b / n)
+  local leaves = i1 + 2 * (i2 - r1)
+  comes_out("total reflection", { b, 0, 9 }, { 0, 0, -1 }, { ball(2, glass(n)), ball(1, glass(1)) }, leaves, leaves + i1)
+end
+
+-- ---- How much ------------------------------------------------------------------------------------------------------------
+
+do -- a mirror shows what it must, times its colour; with fresnel a dielectric's share
+  local down = { 0, -1, -1 }
+  near(look({ 0, 5, 0 }, down, { floor(material { mirror = 0.9 }) }, { background = 0.5 }), 0.45, ROUNDING, "mirror")
+  near(look({ 0, 5, 0 }, { 0, -1, 0 }, { floor(material { fresnel = true }) }, { background = 1 }), 0.04, ROUNDING, "coat")
+  near(look({ 0, 5, 0 }, { 0, -1, 0 }, { floor(material { fresnel = true, mirror = 0 }) }, { background = 1 }), 0, 0, "no coat")
+  near(look({ 0, 5, 0 }, { 0, -1, 0 }, { floor(glass(1.5, { fresnel = true })) }, { background = 1 }), 1, ROUNDING, "both")
+  local grazing = look({ 0, 5, 0 }, { math.sqrt(0.75), -0.5, 0 }, { floor(material { fresnel = true }) }, { background = 1 })
+  near(grazing, 0.0891867128, 1e-8, "coat at 60 degrees")
+end
+
+do -- facing mirrors of 0.9 that shine by themselves: a (1 + 0.9 + ... + 0.9^k) at depth k
+  local a = 0.05
+  local wall = material { mirror = 0.9, ambient = a }
+  local objects = { floor(wall, 0, 1), floor(wall, 1, -1) }
+  for _, depth in ipairs { 0, 1, 2, 5, 20, 60, 1000, 1000000 } do
+    local got, image = look({ 0, 0.5, 0 }, { 0.3, -1, 0 }, objects, { max_depth = depth })
+    near(got, a * (1 - 0.9 ^ (depth + 1)) / 0.1, LOSS + ROUNDING, "facing mirrors, depth " .. depth)
+    check(image:pixel(0, 0, "mirror") <= got - a + 2 * ROUNDING, "the rest is the mirror's")
+  end
+end
+
+do -- energy: nothing is lost or won in a white world, by mirrors, by glass, by balls in balls
+  local furnace = {
+    mirror = { ball(1, material { mirror = 1 }) },
+    mirrors = { ball(1, material { mirror = 1 }), ball(1, material { mirror = 1 }, { 1.2, 1.9, 0 }), floor(material { mirror = 1 }, -1) },
+    glass = { ball(1, glass(1.5, { fresnel = true })) },
+    window = { ball(1, glass(1.5)) },
+    ["glass in glass"] = { ball(1, glass(1.5, { fresnel = true })), ball(0.7, glass(1.1, { fresnel = true })), ball(0.4, material { mirror = 1 }) },
+  }
+  for name, objects in pairs(furnace) do
+    local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 40 }, background = 1 }
+    for _, object in ipairs(objects) do scene:add(object) end
+    local nested = name == "glass in glass" -- rays double at every surface: what is left at the end of the chains is more
+    local image = scene:render { width = 24, height = 24, output = "none", max_depth = nested and 14 or 300 }
+    local least, most = math.huge, -math.huge
+    for y = 0, 23 do
+      for x = 0, 23 do
+        local r, g, b = image:pixel(x, y)
+        least, most = math.min(least, r, g, b), math.max(most, r, g, b)
+      end
+    end
+    check(least >= (nested and 0.99 or 1 - LOSS - ROUNDING) and most <= 1 + 2 * ROUNDING, "furnace of %s: %.9g .. %.9g", name, least, most)
+  end
+end
+
+do -- absorption by the way inside, and the same in the shadow: twice the transmission, a diameter of glass
+  local dense = glass(1, { transmission = 0.9, absorption = { 0.5, 0, 2 } })
+  local through = 0.81 * math.exp(-0.5 * 2 * 1.5)
+  near(look({ 0, 0, 9 }, { 0, 0, -1 }, { ball(1.5, dense) }, { background = 1 }), through, ROUNDING, "absorption")
+  near(look({ 0, 5, 0 }, { 0, -1, -1 }, { floor(glass(1, { transmission = 0.9, absorption = 0.1 })) }, { background = 1, passes = "beauty,mirror" }), 0, 0, "a medium without an end")
+  local shadowed = look({ 0, 0.5, 5 }, { 0, -0.5, -5 }, {
+    floor(material { diffuse = 0.8 }), ball(1.5, glass(1.5, { transmission = 0.9, absorption = { 0.5, 0, 2 } }), { 0, 5, 0 }),
+    glint.point_light { position = { 0, 10, 0 } },
+  })
+  near(shadowed, 0.8 * through, ROUNDING, "tinted shadow")
+  local dark = look({ 0, 0.5, 5 }, { 0, -0.5, -5 }, {
+    floor(material { diffuse = 0.8 }), ball(1.5, glass(1.5), { 0, 5, 0 }), ball(0.5, material {}, { 0, 5, 0 }),
+    glint.point_light { position = { 0, 10, 0 } },
+  })
+  near(dark, 0, 0, "what is opaque in the glass")
+  local directional = look({ 0, 0.5, 5 }, { 0, -0.5, -5 }, {
+    floor(material { diffuse = 0.8 }), ball(1, glass(1.5, { transmission = 0.5 }), { 0, 5, 0 }),
+    ball(1, glass(1.5, { transmission = 0.5 }), { 0, 8, 0 }), glint.directional_light { direction = { 0, -1, 0 } },
+  })
+  near(directional, 0.8 * 0.0625, ROUNDING, "two balls, four surfaces")
+end
+
+-- ---- Depth, passes, bad input --------------------------------------------------------------------------------------------
+
+do
+  local objects = { ball(1, glass(1.5, { fresnel = true, ambient = 0.1 })), floor(material { mirror = 0.5, ambient = 0.2 }, -1) }
+  local black, image = look({ 0, 0, 4 }, { 0, 0, -1 }, objects, { background = 1, max_depth = 0 })
+  near(black, 0.1, ROUNDING, "depth 0")
+  check(image:pixel(0, 0, "mirror") == 0 and image:pixel(0, 0, "transmission") == 0, "and its passes")
+  local one = look({ 0, 0, 4 }, { 0, 0, -1 }, objects, { background = 1, max_depth = 1 })
+  near(one, 0.1 + 0.04 + 0.96 * 0.1, ROUNDING, "depth 1")
+  local terms = { "background", "ambient", "diffuse", "specular", "mirror", "transmission" }
+  local sums, _, _, scene = 0, look({ 0, 0, 4 }, { 0, 0, -1 }, objects, { background = 1 })
+  image = scene:render { width = 16, height = 16, samples = 3, output = "none", passes = "beauty," .. table.concat(terms, ",") }
+  for y = 0, 15 do
+    for x = 0, 15 do
+      local sum = 0
+      for _, term in ipairs(terms) do sum = string.unpack("f", string.pack("f", sum + image:pixel(x, y, term))) end
+      sums = sums + (sum == image:pixel(x, y) and 1 or 0)
+    end
+  end
+  check(sums == 256, "passes sum to the picture")
+end
+
+local function raises(message, f, ...)
+  local ok, got = pcall(f, ...)
+  check(not ok and tostring(got):find(message, 1, true), "%s expected, got %s", message, tostring(got))
+end
+for _, ior in ipairs { 0, -1 } do raises("ior: number > 0 expected, got " .. ior, glint.material, { ior = ior }) end
+raises("material.ior: finite number expected, got nan", glint.material, { ior = 0 / 0 })
+raises("material.mirror", glint.material, { mirror = -1 })
+raises("material.transmission", glint.material, { transmission = { 1, 2, -3 } })
+raises("material.absorption", glint.material, { absorption = -0.1 })
+raises("material.fresnel: boolean expected", glint.material, { fresnel = 1 })
+for _, depth in ipairs { -1, 0.5, 0 / 0, 1e18 } do
+  raises("max_depth", look, { 0, 0, 4 }, { 0, 0, -1 }, { ball(1, glass(1.5)) }, { max_depth = depth })
+end
+local gain = { ball(1, glass(1.5, { mirror = 1 })) }
+raises("max_depth: at most 31 expected where a material's mirror + transmission is above 1 (here 2), got 32", look, { 0, 0, 4 },
+  { 0, 0, -1 }, gain, { max_depth = 32 })
+check(look({ 0, 0, 4 }, { 0, 0.01, -1 }, gain, { max_depth = 12, background = 1 }) > 1, "up to 31 it may be")
+local m = glint.material { fresnel = true }
+check(m.mirror.x == 1, "fresnel: a mirror's colour is 1")
+m.mirror = 0.5
+check(m.mirror.x == 0.5, "until it is set")
+m.mirror, m.fresnel = nil, false
+check(m.mirror.x == 0, "and it follows again")
+
+-- ---- One picture by every way --------------------------------------------------------------------------------------------
+
+local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
+local function picture(environment, options)
+  local path = os.tmpname()
+  local line = ("%s %s scripts/mirror_and_glass.lua --size 90x60 --quiet --force %s -o %s.pfm 2>%s"):format(environment, command,
+    options, path, path)
+  local ok = os.execute(line)
+  local file = ok and io.open(path .. ".pfm", "rb")
+  local bytes = file and file:read "a"
+  if file then file:close() end
+  local said = io.open(path):read "a"
+  os.remove(path)
+  os.remove(path .. ".pfm")
+  return bytes, said
+end
+for _, precision in ipairs { "double", "float" } do
+  local options = "--precision " .. precision
+  local want = picture("", options)
+  check(want, "a picture in %s", precision)
+  for _, isa in ipairs { "ref", "sse2", "avx2", "avx512" } do
+    local got, said = picture("GLINT_ISA=" .. isa, options)
+    if not got and said:find "lacks" then
+      print("skipped: " .. isa)
+    else
+      check(got == want, "%s in %s", isa, precision)
+    end
+  end
+  for _, way in ipairs { "-t 1", "-t 7", "--no-reuse", "--shard 1/1", "--repeat 2" } do
+    check(picture("", options .. " " .. way) == want, "%s in %s", way, precision)
+  end
+end
+
+print(("%d passed, %d failed"):format(passed, failed))
+os.exit(failed == 0)
