@@ -41,6 +41,8 @@ picture workshop_linear_16bit scripts/workshop.lua --bits 16 --transfer linear
 picture moving_light_0031 scripts/moving_light.lua -f 31
 picture shininess_sweep_0005 scripts/shininess_sweep.lua -f 5
 picture phong_and_blinn_0004 scripts/phong_and_blinn.lua -f 4
+picture mirror_and_glass scripts/mirror_and_glass.lua
+picture mirror_and_glass_float scripts/mirror_and_glass.lua --precision float
 picture soft_shadows_0011 scripts/soft_shadows.lua -f 11
 picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
 picture spotlights scripts/spotlights.lua

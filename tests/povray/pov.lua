@@ -16,7 +16,7 @@
 --                is totally reflected, t times what the mirrored ray brings. Shadows: t at each surface, and no bending.
 --   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way)
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
---   depth        max_trace_level, with adc_bailout 0: else weak rays are dropped
+--   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
 local model, light, projection, width, height, surfaces = table.unpack(arg)
 local w = dofile "tests/povray/workshop.lua"
@@ -36,7 +36,7 @@ local up = cross(right, forward)
 local extent = projection == "perspective" and 2 * math.tan(math.rad(w.fov) / 2) or w.height
 
 line "#version 3.7;"
-line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", w.max_depth)
+line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", w.max_depth + 1)
 line("background { rgb %s }", vector(w.background))
 line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
   vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
@@ -64,6 +64,7 @@ local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0
   or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
 for i, sphere in ipairs(w.spheres) do
   local s = w.surfaces[surfaces][i] or {}
+  local center = { sphere[1][1], sphere[1][2] + (s.lift or 0), sphere[1][3] }
   local ambient, diffuse, pigment, interior = w.ambient, w.diffuse, "rgb " .. vector(sphere[3]), ""
   local finish = highlight .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
   if s.fresnel then finish = finish .. " reflection { rgb 0, rgb 1 fresnel on } conserve_energy" end
@@ -73,6 +74,6 @@ for i, sphere in ipairs(w.spheres) do
     interior = ("interior { ior %.17g %s }"):format(s.ior, a and
       ("fade_power 1001 fade_distance 1 fade_color rgb %.17g"):format(1 - a) or "")
   end
-  line("sphere { %s, %.17g pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }", vector(sphere[1]), sphere[2],
+  line("sphere { %s, %.17g pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }", vector(center), sphere[2],
     pigment, ambient, diffuse, finish, interior)
 end

@@ -40,7 +40,9 @@ end
 -- What lets light through has no colour of its own.
 local function material(surface, fields)
   if surface.transmission then fields.ambient, fields.diffuse = 0, 0 end
-  for name, value in pairs(surface) do fields[name] = value end
+  for name, value in pairs(surface) do
+    if name ~= "lift" then fields[name] = value end
+  end
   return glint.material(fields)
 end
 
@@ -48,9 +50,10 @@ local scene = glint.scene { camera = glint.camera(camera), ambient = 1, backgrou
 for _, light in ipairs(lights[P.light]()) do scene:add(light) end
 for i, sphere in ipairs(w.spheres) do
   local center, radius, c = sphere[1], sphere[2], sphere[3]
+  local surface = w.surfaces[P.surfaces][i] or {}
   scene:add(glint.sphere {
-    center = center, radius = radius,
-    material = material(w.surfaces[P.surfaces][i] or {}, {
+    center = { center[1], center[2] + (surface.lift or 0), center[3] }, radius = radius,
+    material = material(surface, {
       model = P.model, shininess = w.shininess, specular = w.specular,
       ambient = { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] },
       diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },

@@ -12,12 +12,13 @@ return {
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
   ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
   max_depth = 20,
-  surfaces = { -- what becomes of some of the spheres, by number
+  surfaces = { -- what becomes of some of the spheres, by number; `lift`: POV-Ray sees no hit nearer than 1e-3, and glass that
+    -- stands on the ground shows that, enlarged
     plain = {},
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
-    glass = { [5] = { transmission = 0.8, ior = 1.5 }, [3] = { transmission = 0.6, ior = 1.2, mirror = 0.1 } },
-    absorbing = { [5] = { transmission = 0.9, ior = 1.5, absorption = 0.2 }, [2] = { mirror = 0.4 } },
-    fresnel = { [5] = { transmission = 1, ior = 1.5, fresnel = true }, [3] = { transmission = 1, ior = 1.2, fresnel = true } },
+    glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
+    absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2 }, [2] = { mirror = 0.4 } },
+    fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
