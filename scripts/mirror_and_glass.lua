@@ -7,9 +7,9 @@
 --   glint scripts/mirror_and_glass.lua --passes mirror,transmission        # the two terms alone
 --   glint explain scripts/mirror_and_glass.lua                # which objects call for them
 --
--- Look at: the world upside down in the clear ball, since it is a lens; its rim, which mirrors everything (Fresnel); the
--- shadows of the glass, in its own colour, where real glass would also gather light (no caustics); the green ball, darker
--- where the way through it is longer; the paint, which mirrors at grazing angles as glass does.
+-- Look at: the world upside down in the clear ball, since it is a lens; its rim, which mirrors everything (Fresnel);
+-- the shadows of the glass, in its own colour, where real glass would also gather light (no caustics); the green ball,
+-- darker where the way through it is longer; the paint, which mirrors at grazing angles as glass does.
 local glint = require "glint"
 local P = glint.params {
   ior = { 1.5, min = 1, max = 3, doc = "refractive index of the glass: water 1.33, glass 1.5, diamond 2.42" },
@@ -41,13 +41,14 @@ local scene = glint.scene {
   glint.sphere { center = { 2.5, 0.9, 1.1 }, radius = 0.9, material = green },
   glint.sphere { center = { 3.2, 1.3, -2.4 }, radius = 1.3, material = paint },
 }
+local function hue(angle) return 0.5 + 0.45 * glint.cos(angle) end
 for i = 0, 11 do -- something to see in them
   local angle = 2 * math.pi * i / 12
   scene:add(glint.sphere {
     center = { 5.2 * glint.cos(angle), 0.35, 5.2 * glint.sin(angle) - 1 },
     radius = 0.35,
     material = glint.material {
-      diffuse = { 0.5 + 0.45 * glint.cos(angle), 0.5 + 0.45 * glint.cos(angle - 2.1), 0.5 + 0.45 * glint.cos(angle + 2.1) },
+      diffuse = { hue(angle), hue(angle - 2.1), hue(angle + 2.1) },
       specular = 0.4,
     },
   })
