@@ -42,6 +42,8 @@ static int unknown_field(lua_State *L, const glintL_class *class, const glintL_v
     const char *near = glintL_nearest(name, variant->fields);
     for (const luaL_Reg *f = variant->getters; f && f->name; f++)
         near = glintL_nearer(name, near, f->name);
+    for (const luaL_Reg *f = variant->methods; f && f->name; f++)
+        near = glintL_nearer(name, near, f->name);
     for (const luaL_Reg *f = class->methods; f && f->name; f++)
         near = glintL_nearer(name, near, f->name);
     return glintL_no_such_field(L, variant->name, name, glintL_nearer(name, near, "close"));
@@ -98,6 +100,11 @@ static int read_member(lua_State *L)
     const glintL_variant *variant = class->variant(object);
     const char *name = field_name(L, variant);
     const glintL_field *field = glintL_find_field(variant->fields, name);
+    function = find_function(variant->methods, name);
+    if (function) {
+        lua_pushcfunction(L, function->func);
+        return 1;
+    }
     int part = component(variant, name);
     if (field) {
         push_value(L, class, field, object);
@@ -135,7 +142,7 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
         return field;
     if (find_function(variant->getters, name))
         glintL_error(L, "%s.%s: this field is only read", variant->name, name);
-    if (strcmp(name, "close") == 0 || find_function(class->methods, name))
+    if (strcmp(name, "close") == 0 || find_function(class->methods, name) || find_function(variant->methods, name))
         glintL_error(L, "%s.%s: a method is not assigned to", variant->name, name);
     unknown_field(L, class, variant, name);
     return NULL;
@@ -280,6 +287,7 @@ void glintL_list_object(lua_State *L, const glintL_variant *variant, const glint
     glintL_push_table(L, &LISTED);
     lua_getfield(L, -1, variant->name);
     list_functions(L, variant->place ? parts : NULL, "field");
+    list_functions(L, variant->methods, "method");
     list_functions(L, close, "method");
     lua_pop(L, 2);
 }

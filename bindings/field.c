@@ -173,6 +173,14 @@ static void read_points(lua_State *L, int index, const char *path, void *out)
     memcpy((char *)out + sizeof points, &count, sizeof count);
 }
 
+static void read_transform(lua_State *L, int index, const char *path, glint_transform *out)
+{
+    const glint_transform *t = glintL_to_transform(L, index);
+    if (!t && !lua_isnil(L, index))
+        glintL_refuse(L, index, path, "transform");
+    *out = t ? *t : glint_transform_identity();
+}
+
 // Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
 // whose pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
@@ -218,6 +226,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         break;
     case GLINTL_POINTS:
         read_points(L, index, full, out);
+        break;
+    case GLINTL_TRANSFORM:
+        read_transform(L, index, full, out);
         break;
     case GLINTL_OTHER:
         break;
@@ -289,6 +300,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         break;
     case GLINTL_POINTS:
         push_points(L, in);
+        break;
+    case GLINTL_TRANSFORM:
+        glintL_push_transform(L, in);
         break;
     case GLINTL_OTHER:
         lua_pushnil(L);

@@ -24,6 +24,7 @@ typedef enum glintL_kind {
     GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
     GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
     GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
+    GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
 
@@ -78,6 +79,12 @@ void glintL_push_vector(lua_State *L, const double v[3]);
 /// NULL when the value at index is not one.
 const double *glintL_to_vector(lua_State *L, int index);
 
+// ---- transform.c: the immutable value of an affine map ----
+
+void glintL_push_transform(lua_State *L, const glint_transform *t);
+/// NULL when the value at index is not one.
+const glint_transform *glintL_to_transform(lua_State *L, int index);
+
 // ---- object.c: boxes ----
 
 #define GLINTL_MATERIAL "glint.material"
@@ -119,6 +126,7 @@ typedef struct glintL_variant {
     const glintL_field *fields; ///< ends with a NULL name
     const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
     const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
+    const luaL_Reg *methods; ///< besides those of the class; NULL: none
 } glintL_variant;
 
 /// How the objects of one type are read and written. `desc` is a copy of the description, of at most
@@ -166,6 +174,7 @@ void glintL_open_vector(lua_State *L);
 void glintL_open_material(lua_State *L);
 void glintL_open_light(lua_State *L);
 void glintL_open_camera(lua_State *L);
+void glintL_open_transform(lua_State *L);
 void glintL_open_shape(lua_State *L);
 void glintL_open_scene(lua_State *L);
 void glintL_open_image(lua_State *L);
@@ -179,6 +188,11 @@ int glintL_new_spheres(lua_State *L);
 /// The constructors glint.mesh and glint.sphere_mesh, of mesh.c.
 int glintL_new_mesh(lua_State *L);
 int glintL_new_sphere_mesh(lua_State *L);
+/// group.c: methods, the getter `count`, and the children in the list at `list`.
+int glintL_group_add(lua_State *L);
+int glintL_group_remove(lua_State *L);
+int glintL_group_count(lua_State *L);
+void glintL_group_fill(lua_State *L, int list, int index);
 
 /// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
 /// Works on anything with __newindex; raises as the assignment would.

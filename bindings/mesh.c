@@ -19,6 +19,7 @@ static const char *const FORMATS[] = { "f32", "f64", NULL };
     {.name = "shading", .kind = GLINTL_ENUM, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
      .names = SHADINGS}, \
     {.name = "material", .kind = GLINTL_OTHER}, \
+    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(desc.transform)}, \
     {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(desc.two_sided)}, \
     {.name = "name", .kind = GLINTL_STRING, .offset = AT(desc.name)}
 // clang-format on

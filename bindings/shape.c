@@ -1,4 +1,4 @@
-// glint.sphere, glint.plane; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
+// glint.sphere, plane, box, disk, cylinder, cone and group; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/glintL.h"
@@ -13,6 +13,7 @@ static const char *const MATERIAL[] = { GLINTL_MATERIAL };
 // clang-format off
 #define EVERY_SHAPE \
     {.name = "material", .kind = GLINTL_OBJECT, .offset = AT(material), .names = MATERIAL}, \
+    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform)}, \
     {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(two_sided)}, \
     {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
 // clang-format on
@@ -30,6 +31,41 @@ static const glintL_field PLANE_FIELDS[] = {
     EVERY_SHAPE,
     { .name = NULL },
 };
+
+static const glintL_field BOX_FIELDS[] = {
+    { .name = "min", .kind = GLINTL_VECTOR, .offset = AT(min), .required = true },
+    { .name = "max", .kind = GLINTL_VECTOR, .offset = AT(max), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field DISK_FIELDS[] = {
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+// Of cylinders and cones.
+static const glintL_field ROUND_FIELDS[] = {
+    { .name = "base", .kind = GLINTL_VECTOR, .offset = AT(base), .required = true },
+    { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field GROUP_FIELDS[] = {
+    { .name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
+};
+
+static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_group_count }, { NULL, NULL } };
+static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
+                                          { "remove", glintL_group_remove },
+                                          { NULL, NULL } };
 
 static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
 
@@ -84,6 +120,14 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
     [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS },
     [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MESH_GETTERS },
+    [GLINT_SHAPE_BOX] = { .name = "box", .fields = BOX_FIELDS },
+    [GLINT_SHAPE_DISK] = { .name = "disk", .fields = DISK_FIELDS, .place = "center" },
+    [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
+    [GLINT_SHAPE_CONE] = { .name = "cone", .fields = ROUND_FIELDS },
+    [GLINT_SHAPE_GROUP] = { .name = "group",
+                            .fields = GROUP_FIELDS,
+                            .getters = GROUP_GETTERS,
+                            .methods = GROUP_METHODS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
@@ -128,7 +172,7 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
     glint_error error;
     lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
-    glintL_read_table(L, 1, v->name, v->fields, &desc, false);
+    glintL_read_table(L, 1, v->name, v->fields, &desc, kind == GLINT_SHAPE_GROUP);
     glintL_check_status(L, v->name, &error, glint_shape_create(&desc, &shape, &error));
     box->object = shape;
     glintL_remember(L, shape);
@@ -138,8 +182,21 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
         glintL_keep(L, 2, "material", -1);
         lua_pop(L, 1);
     }
+    if (kind == GLINT_SHAPE_GROUP)
+        glintL_group_fill(L, 1, 2);
+    lua_settop(L, 2);
     return 1;
 }
+
+static int new_box(lua_State *L) { return new_shape(L, GLINT_SHAPE_BOX); }
+
+static int new_disk(lua_State *L) { return new_shape(L, GLINT_SHAPE_DISK); }
+
+static int new_cylinder(lua_State *L) { return new_shape(L, GLINT_SHAPE_CYLINDER); }
+
+static int new_cone(lua_State *L) { return new_shape(L, GLINT_SHAPE_CONE); }
+
+static int new_group(lua_State *L) { return new_shape(L, GLINT_SHAPE_GROUP); }
 
 static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
 
@@ -151,6 +208,11 @@ void glintL_open_shape(lua_State *L)
         { "sphere", new_sphere },
         { "plane", new_plane },
         { "spheres", glintL_new_spheres },
+        { "box", new_box },
+        { "disk", new_disk },
+        { "cylinder", new_cylinder },
+        { "cone", new_cone },
+        { "group", new_group },
         { "mesh", glintL_new_mesh },
         { "sphere_mesh", glintL_new_sphere_mesh },
         { NULL, NULL },

@@ -10,6 +10,7 @@ typedef enum format { FORMAT_NONE, FORMAT_F32, FORMAT_F64 } format;
 typedef struct arguments {
     glint_spheres_desc desc;
     format format;
+    glint_transform transform;
 } arguments;
 
 static const char *const FORMATS[] = { "none", "f32", "f64", NULL };
@@ -20,6 +21,7 @@ static const glintL_field FIELDS[] = {
     { .name = "material", .kind = GLINTL_OTHER },
     { .name = "materials", .kind = GLINTL_OTHER },
     { .name = "index", .kind = GLINTL_OTHER },
+    { .name = "transform", .kind = GLINTL_TRANSFORM, .offset = offsetof(arguments, transform) },
     { .name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = offsetof(arguments, desc.two_sided) },
     { .name = "name", .kind = GLINTL_STRING, .offset = offsetof(arguments, desc.name) },
     { .name = NULL },
@@ -209,7 +211,7 @@ static void read_materials(lua_State *L, const arguments *a, glint_material **po
 
 int glintL_new_spheres(lua_State *L)
 {
-    arguments a = { .desc = { .two_sided = true } };
+    arguments a = { .desc = { .two_sided = true }, .transform = glint_transform_identity() };
     glint_shape *shape = NULL;
     glint_error error;
     lua_settop(L, 1);
@@ -223,6 +225,9 @@ int glintL_new_spheres(lua_State *L)
     a.desc.materials = pointers;
     glintL_check_status(L, "spheres", &error, glint_spheres_create(&a.desc, &shape, &error));
     box->object = shape;
+    glint_shape_desc placed = *glint_shape_get(shape);
+    placed.transform = a.transform;
+    glintL_check_status(L, "spheres", &error, glint_shape_set(shape, &placed, &error));
     if (!lua_isnil(L, MATERIAL))
         glintL_keep(L, BOX, "material", MATERIAL);
     else if (!lua_isnil(L, MATERIALS))

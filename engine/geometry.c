@@ -34,10 +34,10 @@ static glint_status find_coincident(glint_geometry *geometry, glint_error *error
         geometry->prims[i].coincident = i;
         if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
             continue; // has a rule for all triangles of its plane
-        const size_t bytes = (size_t)glint_prim_place(&geometry->prims[i], place) * sizeof *place;
+        const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
         size_t at = glint_key_add((glint_key) { 0 }, place, bytes).low & (size - 1);
         for (; slots[at]; at = (at + 1) & (size - 1)) {
-            glint_prim_place(&geometry->prims[slots[at] - 1], other);
+            glint_prim_place(geometry, &geometry->prims[slots[at] - 1], other);
             if (memcmp(place, other, bytes) == 0) // the kind comes first: other counts differ there
                 break;
         }
@@ -61,7 +61,7 @@ static void make_keys(glint_geometry *geometry)
         size_t numbers = 0;
         for (; n < CHUNK && i + n < geometry->table.prim_count; n++) {
             const glint_prim *prim = &geometry->prims[i + n];
-            numbers += (size_t)glint_prim_place(prim, place + numbers);
+            numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
             look[n][0] = prim->two_sided | (prim->kind == GLINT_PRIM_TRIANGLE && prim->item != GLINT_MISS ? 2u : 0);
             look[n][1] = prim->material;
             smooth += look[n][0] >> 1;
@@ -103,7 +103,7 @@ static void choose_frame(glint_geometry *geometry)
             table->extent = fmax(table->extent, vec_max_abs(prim->center));
             continue;
         }
-        glint_prim_bounds(prim, lower, upper);
+        glint_prim_bounds(table->solids, prim, lower, upper);
         table->extent = fmax(table->extent, fmax(vec_max_abs(lower), vec_max_abs(upper)));
         vec_sub(lower, lower, table->reference);
         vec_sub(upper, upper, table->reference);
@@ -119,13 +119,15 @@ static void choose_frame(glint_geometry *geometry)
 static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
 {
     double lower[3], upper[3], center[3], half[3];
-    glint_prim_bounds(prim, lower, upper);
+    glint_prim_bounds(table->solids, prim, lower, upper);
     for (int c = 0; c < 3; c++) {
         half[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0.5 * upper[c] - 0.5 * lower[c];
         center[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->center[c] : 0.5 * upper[c] + 0.5 * lower[c];
         center[c] = (center[c] - table->reference[c]) * table->scale;
         half[c] *= table->scale;
-        const double slack = 0x1p-50 * (fabs(center[c]) + half[c]);
+        // of a solid, what its inverse and it differ by
+        const double slack =
+            0x1p-50 * (fabs(center[c]) + half[c]) + (prim->kind == GLINT_PRIM_SOLID ? 0x1p-30 * half[c] : 0);
         prim->filter_center[c] = (float)center[c];
         box->lower[c] = float_down(fmax(center[c] - half[c] - slack, -BOX_MAX));
         box->upper[c] = float_up(fmin(center[c] + half[c] + slack, BOX_MAX));
@@ -284,6 +286,7 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->prim_part);
     free(geometry->parts);
     free(geometry->normals);
+    free(geometry->solids);
     free(geometry->unbounded);
     free(geometry);
 }
@@ -322,7 +325,7 @@ static glint_key revision_of(const glint_scene *scene)
         uint64_t revision[CHUNK];
         size_t n = 0;
         for (; n < CHUNK && i + n < scene->shapes.count; n++)
-            revision[n] = glint_scene_shape(scene, i + n)->revision;
+            revision[n] = glint_shape_revision(glint_scene_shape(scene, i + n));
         key = glint_key_add(key, revision, n * sizeof *revision);
     }
     return key;

@@ -22,7 +22,7 @@ typedef struct glint_index {
     glint_bvh bvh;
 } glint_index;
 
-/// A shape's run of primitives.
+/// A shape's run of primitives; as many as there are groups that show it.
 typedef struct glint_part {
     glint_shape *shape; ///< the scene's
     uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
@@ -37,6 +37,7 @@ struct glint_geometry {
     glint_part *parts; ///< in order of definition
     uint32_t part_count;
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
+    glint_solid *solids;
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
@@ -59,10 +60,10 @@ uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 /// geometry_prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
 /// All that a primitive's place is made of. Returns how many numbers.
-enum { GLINT_PLACE_MAX = 10 };
-int glint_prim_place(const glint_prim *prim, double out[GLINT_PLACE_MAX]);
+enum { GLINT_PLACE_MAX = 14 };
+int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX]);
 /// A box around a primitive that has an end.
-void glint_prim_bounds(const glint_prim *prim, double lower[3], double upper[3]);
+void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3]);
 
 static inline bool glint_prim_bounded(const glint_prim *prim) { return prim->kind != GLINT_PRIM_PLANE; }
 

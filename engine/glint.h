@@ -169,8 +169,27 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_SPHERE,
     GLINT_SHAPE_PLANE,
     GLINT_SHAPE_SPHERES, ///< made by glint_spheres_create
-    GLINT_SHAPE_MESH ///< made by the functions of meshes
+    GLINT_SHAPE_MESH, ///< made by the functions of meshes
+    GLINT_SHAPE_BOX,
+    GLINT_SHAPE_DISK,
+    GLINT_SHAPE_CYLINDER, ///< closed at both ends
+    GLINT_SHAPE_CONE, ///< closed at its base
+    GLINT_SHAPE_GROUP ///< of shapes; see glint_group_add
 } glint_shape_kind;
+
+/// An affine map: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
+typedef struct glint_transform {
+    double m[3][4];
+} glint_transform;
+
+glint_transform glint_transform_identity(void);
+/// First `inner`, then `outer`.
+glint_transform glint_transform_product(const glint_transform *outer, const glint_transform *inner);
+glint_transform glint_transform_translate(const double by[3]);
+glint_transform glint_transform_scale(const double by[3]);
+/// Counter-clockwise as seen with the axis pointing at the eye. The axis is not zero and need not be unit; quarter turns
+/// are exact.
+glint_transform glint_transform_rotate(const double axis[3], double degrees);
 
 /// Where a mesh's normals come from.
 typedef enum glint_shading {
@@ -180,11 +199,14 @@ typedef enum glint_shading {
 } glint_shading;
 
 typedef struct glint_shape_desc {
-    glint_shape_kind kind; ///< of glint_shape_create: GLINT_SHAPE_SPHERE or GLINT_SHAPE_PLANE
-    glint_material *material; ///< retained by the shape; NULL: a material with default fields
+    glint_shape_kind kind; ///< of glint_shape_create: not spheres and mesh
+    glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none
+    glint_transform transform; ///< of the shape as described here; default identity; must be possible to undo
     bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
-    double center[3], radius; ///< sphere: finite, radius > 0
-    double point[3], normal[3]; ///< plane: finite, normal not zero, need not be unit
+    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius): finite, radius > 0
+    double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
+    double min[3], max[3]; ///< box: finite, min < max; default -1, 1
+    double base[3], top[3]; ///< cylinder, cone: the middles of its ends; the cone's top is its apex; not the same place
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
@@ -192,14 +214,23 @@ typedef struct glint_shape_desc {
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
-/// The description; of a GLINT_SHAPE_SPHERES shape only kind, two_sided, name and material (its first) mean anything, of
-/// a mesh these and `shading`.
+/// The description; of a GLINT_SHAPE_SPHERES shape only kind, transform, two_sided, name and material (its first) mean
+/// anything, of a mesh these and `shading`, of a group kind, transform and name.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 glint_shape *glint_shape_retain(glint_shape *shape);
 void glint_shape_release(glint_shape *shape);
 
 /// The materials of a shape, one for most; returns how many. The list belongs to the shape.
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list);
+
+#define GLINT_GROUP_DEPTH 64 ///< groups one within the other
+
+/// The group retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
+/// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice.
+glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
+glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
+size_t glint_group_count(const glint_shape *group);
+glint_shape *glint_group_child(const glint_shape *group, size_t index); ///< borrowed
 
 /// Many spheres in one shape, from one array.
 typedef struct glint_spheres_desc {
@@ -233,13 +264,14 @@ typedef struct glint_mesh_desc {
     bool has_shading; ///< false: phong where there are normals, flat where there are none
     glint_shading shading; ///< phong without normals: those of the faces around a vertex are averaged by area
     glint_material *material; ///< retained; NULL: one with default fields
+    glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
 } glint_mesh_desc;
 
 #define GLINT_NO_NORMAL 0xffffffffu
 
-/// No faces, two-sided.
+/// No faces, two-sided, where it is described.
 glint_mesh_desc glint_mesh_desc_default(void);
 /// A message names the face and the vertex at fault, counted from 1: "faces[3]: vertex 1 .. 8 expected, got 9",
 /// "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle of no area within a larger

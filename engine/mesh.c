@@ -6,7 +6,7 @@
 
 #define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals
 
-glint_mesh_desc glint_mesh_desc_default(void) { return (glint_mesh_desc) { .two_sided = true }; }
+glint_mesh_desc glint_mesh_desc_default(void) { return (glint_mesh_desc) { .transform = glint_transform_identity(), .two_sided = true }; }
 
 void glint_mesh_free(glint_mesh *mesh)
 {
@@ -231,7 +231,8 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
     if (desc->normals && !desc->normal_corners && desc->normal_count != desc->vertex_count)
         return glint_fail(error, GLINT_ERR_INVALID, "normals: one a vertex (%zu) expected, got %zu", desc->vertex_count,
                           desc->normal_count);
-    return desc->has_shading ? glint_check_shading(desc->shading, error) : GLINT_OK;
+    glint_status status = glint_check_transform("transform", &desc->transform, error);
+    return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
 }
 
 static glint_status check_vertices(const glint_mesh_desc *desc, glint_error *error)
@@ -375,6 +376,7 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
         return status;
     glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_MESH);
     base.two_sided = desc->two_sided;
+    base.transform = desc->transform;
     base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FLAT;
     memcpy(base.name, desc->name, sizeof base.name);
     glint_shape *shape = glint_shape_alloc(&base, 1);

@@ -36,6 +36,12 @@ struct glint_shape {
     glint_shape_desc desc;
     size_t count; ///< spheres, or triangles; 1 for other kinds
     glint_mesh *mesh; ///< GLINT_SHAPE_MESH
+    glint_list children; ///< GLINT_SHAPE_GROUP
+    size_t level; ///< how many groups it has been within
+    uint64_t stamp; ///< of the last search that came by
+    size_t probed; ///< the level that search supposed
+    uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
+    uint64_t children_hash; ///< of their revisions then
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
     uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
     glint_material **materials;
@@ -56,6 +62,20 @@ static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i)
 
 /// A shape of `count` primitives with room for `material_count` materials, none there yet; NULL: no memory.
 glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
+/// Gives a shape a new revision.
+void glint_shape_changed(glint_shape *shape);
+/// Its revision; of a group, another one after every change of anything within.
+uint64_t glint_shape_revision(glint_shape *shape);
+
+bool glint_transform_is_identity(const glint_transform *t);
+/// Whether it keeps angles, but for rounding, and by what it multiplies lengths.
+bool glint_transform_similar(const glint_transform *t, double *factor);
+void glint_transform_point(const glint_transform *t, const double p[3], double out[3]);
+void glint_transform_linear(const glint_transform *t, double out[3][3]);
+/// Rows of the matrix that takes normals along, and its determinant.
+double glint_linear_cofactors(double m[3][3], double out[3][3]);
+glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
+
 /// Takes a reference to `material`, or makes one with default fields.
 glint_material *glint_material_or_default(glint_material *material, glint_error *error);
 void glint_mesh_free(glint_mesh *mesh);

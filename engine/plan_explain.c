@@ -116,13 +116,13 @@ static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d
 static bool is_phong(const glint_material_desc *d) { return d->model == GLINT_MODEL_PHONG && any(d->specular); }
 static bool is_blinn(const glint_material_desc *d) { return d->model == GLINT_MODEL_BLINN_PHONG && any(d->specular); }
 
-static void materials(explainer *e, const glint_scene *scene, const char *effect, material_test *test)
+static void materials(explainer *e, const char *effect, material_test *test)
 {
     glint_list seen = { 0 };
     char owner[2 * GLINT_NAME_SIZE], caller[4 * GLINT_NAME_SIZE];
     begin(e, effect);
-    for (size_t i = 0; i < scene->shapes.count && !e->status; i++) {
-        const glint_shape *shape = glint_scene_shape(scene, i);
+    for (uint32_t i = 0; i < e->plan->geometry->part_count && !e->status; i++) {
+        const glint_shape *shape = e->plan->geometry->parts[i].shape;
         for (size_t m = 0; m < shape->material_count && !e->status; m++) {
             glint_material *material = shape->materials[m];
             if (!test(&material->desc) || glint_list_find(&seen, material) < seen.count)
@@ -140,14 +140,18 @@ static void materials(explainer *e, const glint_scene *scene, const char *effect
 typedef bool shape_test(const glint_shape *shape);
 
 static bool is_mesh(const glint_shape *shape) { return shape->mesh; }
+static bool is_solid(const glint_shape *shape)
+{
+    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_CONE;
+}
 static bool is_smooth(const glint_shape *shape) { return shape->mesh && shape->desc.shading == GLINT_SHADING_PHONG; }
 
-static void shapes(explainer *e, const glint_scene *scene, const char *effect, shape_test *test)
+static void shapes(explainer *e, const char *effect, shape_test *test)
 {
     char caller[2 * GLINT_NAME_SIZE];
     begin(e, effect);
-    for (size_t i = 0; i < scene->shapes.count; i++) {
-        const glint_shape *shape = glint_scene_shape(scene, i);
+    for (uint32_t i = 0; i < e->plan->geometry->part_count; i++) {
+        const glint_shape *shape = e->plan->geometry->parts[i].shape;
         if (!test(shape))
             continue;
         glint_describe_shape(&shape->desc, i + 1, caller, sizeof caller);
@@ -187,20 +191,21 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "light by radiance", radiates);
         lights(e, scene, "hard shadow", casts_hard_shadows);
         lights(e, scene, "soft shadow", casts_soft_shadows);
-        shapes(e, scene, "triangles", is_mesh);
-        shapes(e, scene, "smooth normals", is_smooth);
+        shapes(e, "triangles", is_mesh);
+        shapes(e, "smooth normals", is_smooth);
+        shapes(e, "solid by an affine map", is_solid);
     }
     if (plan->highlights) {
-        materials(e, scene, "Phong highlight", is_phong);
-        materials(e, scene, "Blinn-Phong highlight", is_blinn);
+        materials(e, "Phong highlight", is_phong);
+        materials(e, "Blinn-Phong highlight", is_blinn);
     }
     if (plan->runs[GLINT_STAGE_BOUNCE]) {
-        materials(e, scene, "mirror reflection", is_mirror);
-        materials(e, scene, "refraction", is_transparent);
-        materials(e, scene, "absorption inside", is_absorbing);
+        materials(e, "mirror reflection", is_mirror);
+        materials(e, "refraction", is_transparent);
+        materials(e, "absorption inside", is_absorbing);
     }
     if (plan->tints)
-        materials(e, scene, "tinted shadow", is_transparent);
+        materials(e, "tinted shadow", is_transparent);
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };

@@ -27,6 +27,7 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
                                    .prim = g->prim,
                                    .prims = geometry->prims,
                                    .scale = geometry->scale,
+                                   .solids = geometry->solids,
                                    .t = g->t,
                                    .material = g->material,
                                    .back = &g->back,

@@ -1,3 +1,4 @@
+#include "engine/base/hash.h"
 #include "engine/base/status.h"
 #include "engine/objects.h"
 
@@ -11,28 +12,97 @@
 
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
 {
-    return (glint_shape_desc) { .kind = kind, .two_sided = true, .radius = 1, .normal = { 0, 1, 0 } };
+    return (glint_shape_desc) { .kind = kind,
+                                .transform = glint_transform_identity(),
+                                .two_sided = true,
+                                .radius = 1,
+                                .normal = { 0, 1, 0 },
+                                .min = { -1, -1, -1 },
+                                .max = { 1, 1, 1 },
+                                .top = { 0, 1, 0 } };
+}
+
+static glint_status check_radius(const glint_shape_desc *desc, glint_error *error)
+{
+    if (desc->radius > 0 && isfinite(desc->radius))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
+}
+
+static glint_status check_box(const glint_shape_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("min", desc->min, error);
+    if (!status)
+        status = glint_check_vector("max", desc->max, error);
+    for (int c = 0; c < 3 && !status; c++)
+        if (!(desc->min[c] < desc->max[c]))
+            status = glint_fail(error, GLINT_ERR_INVALID, "max: %c above that of min (%.15g) expected, got %.15g",
+                                "xyz"[c], desc->min[c], desc->max[c]);
+    return status;
+}
+
+static glint_status check_ends(const glint_shape_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("base", desc->base, error);
+    if (!status)
+        status = glint_check_vector("top", desc->top, error);
+    if (!status)
+        status = check_radius(desc, error);
+    if (!status && memcmp(desc->base, desc->top, sizeof desc->base) == 0)
+        status = glint_fail(error, GLINT_ERR_INVALID, "top: another place than base expected, got {%.15g, %.15g, %.15g}",
+                            desc->top[0], desc->top[1], desc->top[2]);
+    return status;
+}
+
+static glint_status check_fields(const glint_shape_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    switch (desc->kind) {
+    case GLINT_SHAPE_SPHERE:
+        status = glint_check_vector("center", desc->center, error);
+        return status ? status : check_radius(desc, error);
+    case GLINT_SHAPE_DISK:
+        status = glint_check_vector("center", desc->center, error);
+        if (!status)
+            status = check_radius(desc, error);
+        return status ? status : glint_check_direction("normal", desc->normal, error);
+    case GLINT_SHAPE_PLANE:
+        status = glint_check_vector("point", desc->point, error);
+        return status ? status : glint_check_direction("normal", desc->normal, error);
+    case GLINT_SHAPE_BOX: return check_box(desc, error);
+    case GLINT_SHAPE_CYLINDER:
+    case GLINT_SHAPE_CONE: return check_ends(desc, error);
+    case GLINT_SHAPE_MESH: return glint_check_shading(desc->shading, error);
+    default: return GLINT_OK;
+    }
 }
 
 static glint_status check(const glint_shape_desc *desc, glint_error *error)
 {
-    if (desc->kind == GLINT_SHAPE_SPHERE) {
-        glint_status status = glint_check_vector("center", desc->center, error);
-        if (!status && !(desc->radius > 0 && isfinite(desc->radius)))
-            status = glint_fail(error, GLINT_ERR_INVALID, "radius: number > 0 expected, got %.15g", desc->radius);
-        return status;
-    }
-    if (desc->kind == GLINT_SHAPE_PLANE) {
-        glint_status status = glint_check_vector("point", desc->point, error);
-        return status ? status : glint_check_direction("normal", desc->normal, error);
-    }
-    return desc->kind == GLINT_SHAPE_MESH ? glint_check_shading(desc->shading, error) : GLINT_OK;
+    glint_status status = glint_check_transform("transform", &desc->transform, error);
+    return status ? status : check_fields(desc, error);
 }
 
-static uint64_t next_revision(void)
+static atomic_uint_least64_t last_revision;
+
+static uint64_t next_revision(void) { return atomic_fetch_add(&last_revision, 1) + 1; }
+
+void glint_shape_changed(glint_shape *shape) { shape->revision = next_revision(); }
+
+uint64_t glint_shape_revision(glint_shape *shape)
 {
-    static atomic_uint_least64_t last;
-    return atomic_fetch_add(&last, 1) + 1;
+    if (shape->desc.kind != GLINT_SHAPE_GROUP || shape->checked == atomic_load(&last_revision))
+        return shape->revision;
+    glint_key key = { 0 };
+    for (size_t i = 0; i < shape->children.count; i++) {
+        const uint64_t revision = glint_shape_revision(shape->children.items[i]);
+        key = glint_key_add(key, &revision, sizeof revision);
+    }
+    if (key.low != shape->children_hash)
+        glint_shape_changed(shape);
+    shape->children_hash = key.low;
+    shape->checked = atomic_load(&last_revision);
+    return shape->revision;
 }
 
 glint_material *glint_material_or_default(glint_material *material, glint_error *error)
@@ -52,7 +122,7 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
     shape->references = 1;
     shape->revision = next_revision();
     shape->desc = *desc;
-    shape->count = 1;
+    shape->count = desc->kind != GLINT_SHAPE_GROUP;
     shape->materials = calloc(material_count, sizeof *shape->materials);
     if (!shape->materials) {
         free(shape);
@@ -63,8 +133,8 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
 
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error)
 {
-    if (desc->kind > GLINT_SHAPE_PLANE)
-        return glint_fail(error, GLINT_ERR_INVALID, "kind: sphere or plane expected");
+    if (desc->kind > GLINT_SHAPE_GROUP || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: one that a description alone makes expected");
     glint_status status = check(desc, error);
     if (status)
         return status;
@@ -120,6 +190,9 @@ void glint_shape_release(glint_shape *shape)
     for (size_t i = 0; i < shape->material_count; i++)
         glint_material_release(shape->materials[i]);
     free(shape->materials);
+    for (size_t i = 0; i < shape->children.count; i++)
+        glint_shape_release(shape->children.items[i]);
+    glint_list_free(&shape->children);
     glint_mesh_free(shape->mesh);
     free(shape->spheres);
     free(shape->index);
@@ -213,7 +286,8 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
 
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
 {
-    static const char *const kinds[] = { "sphere", "plane", "spheres", "mesh" };
+    static const char *const kinds[] = { "sphere", "plane", "spheres", "mesh", "box",
+                                         "disk", "cylinder", "cone", "group" };
     if (desc->name[0])
         snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
     else

@@ -131,6 +131,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
                                 .prim = tile->at.prim,
                                 .prims = frame->geometry.prims,
                                 .scale = frame->geometry.scale,
+                                .solids = frame->geometry.solids,
                                 .corner_normals = frame->geometry.corner_normals,
                                 .slack = frame->geometry.triangles ? tile->slack : NULL,
                                 .camera = glint_tile_rays_of(tile),

@@ -295,13 +295,12 @@ static void R(scale_tile)(R(tile_cast) * tile)
     tile->scaled = true;
 }
 
-static inline void R(make_filter)(const glint_camera_args *camera, R(candidate) * candidate)
+/// f, radius: of the sphere, or of one around the solid, in any unit.
+static inline void R(make_filter)(const glint_camera_args *camera, const double f[3], double radius,
+                                  R(candidate) * candidate)
 {
-    const glint_prim *prim = candidate->prim;
-    double f[3], x[3][3];
+    double x[3][3];
     const double *axis[3] = { camera->forward, camera->right, camera->up };
-    for (int k = 0; k < 3; k++)
-        f[k] = candidate->f[k];
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             x[j][k] = f[(k + 1) % 3] * axis[j][(k + 2) % 3] - f[(k + 2) % 3] * axis[j][(k + 1) % 3];
@@ -310,7 +309,7 @@ static inline void R(make_filter)(const glint_camera_args *camera, R(candidate) 
         candidate->along_s[k] = (float)x[1][k];
         candidate->along_t[k] = (float)x[2][k];
     }
-    const double limit = prim->radius * prim->scale * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(DOT(f, f));
+    const double limit = radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(DOT(f, f));
     candidate->limit = (float)(limit * limit * (1 + 1e-6));
 }
 
@@ -348,6 +347,19 @@ static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * ca
     candidate->limit = edge_on ? HUGE_VALF : (float)limit + FLT_MIN;
 }
 
+/// By the sphere around it. Where float decides, nothing is kept from it.
+static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate) * candidate)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const glint_prim *prim = candidate->prim;
+    double from[3];
+    for (int k = 0; k < 3; k++)
+        from[k] = (args->camera->eye[k] - geometry->reference[k]) * geometry->scale - prim->filter_center[k];
+    R(make_filter)(args->camera, from, prim->filter_bound, candidate);
+    if (GLINT_REAL == 32)
+        candidate->limit = HUGE_VALF;
+}
+
 static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
@@ -366,15 +378,24 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
         R(make_triangle_filter)(tile, candidate);
         return;
     }
-    R(offset)(origin, prim, f);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        R(unit_offset)(&args->geometry->solids[prim->item], prim, origin, f);
+    else
+        R(offset)(origin, prim, f);
     for (int k = 0; k < 3; k++) {
         r_store(lanes, f[k]);
         candidate->f[k] = lanes[0];
     }
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        R(make_solid_filter)(args, candidate);
+        return;
+    }
     r_store(lanes, R(offset_constant)(f, prim));
     candidate->c = lanes[0];
-    if (prim->kind == GLINT_PRIM_SPHERE)
-        R(make_filter)(args->camera, candidate);
+    if (prim->kind == GLINT_PRIM_SPHERE) {
+        const double from[3] = { candidate->f[0], candidate->f[1], candidate->f[2] };
+        R(make_filter)(args->camera, from, prim->radius * prim->scale, candidate);
+    }
 }
 
 /// Lanes of group (x, y) that pass near the candidate.
@@ -404,6 +425,8 @@ static inline rm R(meet_candidate)(const glint_cast_args *args, const R(candidat
                                    const vr d[3], vr *t)
 {
     vr corner[3][3];
+    if (candidate->prim->kind == GLINT_PRIM_SOLID)
+        return R(meet_solid)(&args->geometry->solids[candidate->prim->item], f, d, t);
     if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)
         return R(meet)(f, r_set(candidate->c), d, candidate->prim, t);
     for (int j = 0; j < 9; j++)
@@ -700,6 +723,10 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
             hit = R(meet_triangle)(p, d, r_set(args->geometry->scale), &t);
+        } else if (prim->kind == GLINT_PRIM_SOLID) {
+            const glint_solid *solid = &args->geometry->solids[prim->item];
+            R(unit_offset)(solid, prim, o, f);
+            hit = R(meet_solid)(solid, f, d, &t);
         } else {
             R(offset)(o, prim, f);
             hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);

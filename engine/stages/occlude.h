@@ -51,6 +51,8 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
         f[k] = position[k] - prim->center[k];
     if (prim->kind == GLINT_PRIM_TRIANGLE)
         return 0; // asked for each lane
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return args->directional || !within_solid(&args->geometry->solids[prim->item], f) ? 1 : -1;
     if (prim->kind == GLINT_PRIM_PLANE) {
         height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {
@@ -220,6 +222,26 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
+/// The lanes of `wanted` that a solid blocks; of these, `own` are its own points. outside: where the light is.
+static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_prim *prim,
+                                    const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
+                                    unsigned outside)
+{
+    const glint_solid *solid = &args->geometry->solids[prim->item];
+    unsigned blocked = solid->form == GLINT_FORM_DISK ? 0 : own & args->back[at / GLINT_GROUP] & outside;
+    wanted &= ~own;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        vr p[3], d[3];
+        if (!lanes)
+            continue;
+        R(load3)(args->point, at + i, p);
+        R(directions_to)(args, position, at, i, d);
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional)) & lanes) << i;
+    }
+    return blocked;
+}
+
 /// The lanes of `wanted` that the primitive blocks.
 static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder,
                                                                     R(shadow_group) * group, unsigned wanted)
@@ -234,6 +256,12 @@ static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shad
             R(make_shadow_rays)(tile, group);
         wanted &= own | R(near_rays)(&group->rays, prim);
         return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
+    }
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        wanted &= own | R(near_rays)(&group->rays, prim);
+        return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
     }
     if (own && sphere)
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;

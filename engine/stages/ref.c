@@ -130,11 +130,29 @@ static int light_side_of_sphere(bool directional, const double position[3], cons
     return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
 }
 
+static bool is_within(const glint_solid *solid, const glint_prim *prim, const double position[3])
+{
+    double away[3];
+    for (int c = 0; c < 3; c++)
+        away[c] = position[c] - prim->center[c];
+    double x = dot_of(solid->inverse[0], away), y = dot_of(solid->inverse[1], away), z = dot_of(solid->inverse[2], away);
+    bool between = z > -1 && z < 1;
+    if (solid->form == GLINT_FORM_BALL)
+        return (x * x + y * y) + z * z < 1;
+    if (solid->form == GLINT_FORM_BOX)
+        return x > -1 && x < 1 && y > -1 && y < 1 && between;
+    if (solid->form == GLINT_FORM_CYLINDER)
+        return x * x + y * y < 1 && between;
+    return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && z > 0 && z < 1;
+}
+
 /// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
-static int light_side(bool directional, const double position[3], const glint_prim *prim)
+static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE)
         return 0; // is asked for each lane
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return directional || !is_within(&solids[prim->item], prim, position) ? 1 : -1;
     return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(directional, position, prim)
                                            : light_side_of_plane(directional, position, prim);
 }

@@ -106,6 +106,7 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
 }
 
 #include "engine/stages/ref_triangle.h"
+#include "engine/stages/ref_solid.h"
 
 // ---- cast --------------------------------------------------------------------------------------------------------
 
@@ -144,6 +145,8 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE)
         return NAME(triangle_t)(prim, geometry->scale, origin, direction);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return NAME(solid_t)(&geometry->solids[prim->item], prim, origin, direction);
     if (prim->kind == GLINT_PRIM_PLANE) {
         NAME(vec3) away = NAME(sub)(origin, NAME(rounded)(prim->center));
         return NAME(plane_t)(NAME(dot)(NAME(rounded)(prim->normal), away), direction, prim);
@@ -255,6 +258,8 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
     } else if (prim->kind == GLINT_PRIM_TRIANGLE) {
         n = NAME(flat_normal)(prim, args->scale);
         point = NAME(triangle_point)(args, prim, origin, direction, weight, &slack);
+    } else if (prim->kind == GLINT_PRIM_SOLID) {
+        point = NAME(solid_point)(&args->solids[prim->item], prim, origin, direction, &n);
     } else {
         n = NAME(rounded)(prim->normal);
         point = NAME(add)(origin, NAME(times)(direction, t));
@@ -483,7 +488,7 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
                               uint32_t i)
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    int side = light_side(args->directional, position, prim);
+    int side = light_side(args->directional, position, prim, args->geometry->solids);
     bool own = prim->coincident == args->geometry->prims[args->prim[i]].coincident;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -492,8 +497,12 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
             return back ? plane.light > 0 : plane.light < 0;
         return NAME(triangle_blocks)(args, prim, plane, NAME(rounded)(position), i);
     }
+    bool flat = prim->kind == GLINT_PRIM_PLANE ||
+                (prim->kind == GLINT_PRIM_SOLID && args->geometry->solids[prim->item].form == GLINT_FORM_DISK);
     if (own)
-        return sphere && back && side > 0;
+        return !flat && back && side > 0;
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return NAME(solid_blocks)(args, prim, NAME(rounded)(position), NAME(load)(args->point, i));
     NAME(vec3) point = NAME(load)(args->point, i);
     return sphere ? NAME(sphere_blocks)(args, prim, side, NAME(rounded)(position), point)
                   : NAME(plane_blocks)(prim, side, point);

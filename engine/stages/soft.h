@@ -92,7 +92,7 @@ static R(soft_group) R(sort_group)(const R(shadow_tile) * tile, R(shadow_group) 
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = R(own_lanes)(args, group, prim, id, lit);
         const bool passes_own =
-            prim->kind == GLINT_PRIM_PLANE || (prim->kind == GLINT_PRIM_SPHERE && !(own & args->back[g]));
+            prim->kind == GLINT_PRIM_PLANE || (prim->kind != GLINT_PRIM_TRIANGLE && !(own & args->back[g]));
         if (own == lit && passes_own)
             continue; // it is what all of them leave
         const int class = own ? SOFT_NEAR : R(classify)(tile, prim, lower, upper);
@@ -138,6 +138,13 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, R(shadow
         for (uint32_t s = 0; s < args->sample_count; s++)
             samples->open[s] &= ~R(blocked_by_triangle)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s],
                                                         group->at, own & samples->open[s], samples->open[s]);
+        return;
+    }
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        for (uint32_t s = 0; s < args->sample_count; s++)
+            samples->open[s] &=
+                ~R(blocked_by_solid)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s], group->at,
+                                     own & samples->open[s], samples->open[s], samples->sides[k][s].outside);
         return;
     }
     for (int i = 0; i < GLINT_GROUP; i += VR) {

@@ -31,7 +31,7 @@
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
 
-typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE, GLINT_PRIM_TRIANGLE } glint_prim_kind;
+typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE, GLINT_PRIM_TRIANGLE, GLINT_PRIM_SOLID } glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
 typedef struct glint_prim {
@@ -44,7 +44,7 @@ typedef struct glint_prim {
     float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
     union {
         struct {
-            double center[3]; ///< sphere: centre; plane: a point of it
+            double center[3]; ///< sphere, solid: centre; plane: a point of it
             double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
             double normal[3]; ///< plane: unit
             double radius; ///< sphere, world units
@@ -52,7 +52,7 @@ typedef struct glint_prim {
         };
         struct {
             double corner[3][3]; ///< triangle
-            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it is shaded flat
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it is shaded flat; solid: index in solids
         };
     };
 } glint_prim;
@@ -72,6 +72,22 @@ typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
 
+/// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
+/// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0.
+typedef enum glint_form {
+    GLINT_FORM_BALL,
+    GLINT_FORM_BOX,
+    GLINT_FORM_CYLINDER,
+    GLINT_FORM_CONE,
+    GLINT_FORM_DISK
+} glint_form;
+
+/// The image of a unit shape under center + forward k.
+typedef struct glint_solid {
+    double inverse[3][3], forward[3][3]; ///< rows
+    uint32_t form;
+} glint_solid;
+
 /// What rays meet: the surfaces, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
@@ -84,6 +100,7 @@ typedef struct glint_geometry_table {
     double extent; ///< bound of every coordinate and radius, world units
     bool triangles; ///< there are some
     const glint_corner_normals *corner_normals;
+    const glint_solid *solids;
 } glint_geometry_table;
 
 typedef enum glint_highlight { GLINT_HIGHLIGHT_NONE, GLINT_HIGHLIGHT_PHONG, GLINT_HIGHLIGHT_BLINN } glint_highlight;
@@ -158,6 +175,24 @@ typedef struct glint_cast_args {
 //                 Neighbours see their common corners at the same X, Y and, since rounding is monotonic, no e has the
 //                 wrong sign for them: no ray goes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1)
 //                 2013; here without the division, in the scaled plane).
+// solid, real:    f = inverse (origin - center), e = inverse direction (each row's dot product); span(f, e) = in, out
+//                 t = in > 0 ? in : out; a hit where span hits and t > 0
+// span:           ball, cylinder: a = e.x^2 + e.y^2, b = f.x e.x + f.y e.y, c = f.x^2 + f.y^2, x = cross(f, e), w = x.z^2; ball:
+//                 a, b, c are length2(e), dot(f, e), length2(f), w = length2(x); then b = -b, c = c - 1
+//                 disc = b*b < a ? b*b - a*c : a - w; s = sqrt(max(disc, 0)); q = b >= 0 ? b + s : b - s
+//                 far = q / a, other = c / q; in, out = b >= 0 ? (other, far) : (far, other); hits where disc >= 0
+//                 where a = 0: in = -inf, out = inf, hits where c <= 0
+//                 cone: a = (e.x^2 + e.y^2) - e.z^2, c = (f.x^2 + f.y^2) - f.z^2, b = f.z e.z - (f.x e.x + f.y e.y)
+//                 disc = (x.x^2 + x.y^2) - x.z^2 with x = cross(f, e); s, q, far, other as above; low, high = min, max of them
+//                 a > 0: in, out = low, high; hits where disc >= 0
+//                 else hits; end = a = 0 ? c / (2 b) : e.z > 0 ? high : low; in, out = e.z > 0 ? (end, inf) : (-inf, end)
+//                 box: in = -inf, out = inf, hits
+//                 then, cylinder and cone: slab of z, from -1 or (cone) 0; box: slabs of x, y, z, from -1
+//                 slab from low, of axis i: where e_i = 0: hits only where not (f_i < low or f_i > 1), else
+//                 enter = ((e_i > 0 ? low : 1) - f_i) / e_i, leave = ((e_i > 0 ? 1 : low) - f_i) / e_i
+//                 where in < enter: in = enter, by this face; where leave < out: out = leave, by this face
+//                 disk: in = out = -f.z / e.z; x = f.x + in e.x, y likewise; hits where x x + y y <= 1
+//                 and in <= out
 // A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward, b > 0 and
 //                 disc >= 0, at t = (b + b) / (a * scale), t > 0; nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
@@ -171,6 +206,7 @@ typedef struct glint_surface_args {
     const uint32_t *prim;
     const glint_prim *prims;
     double scale; ///< of the table
+    const glint_solid *solids;
     const glint_corner_normals *corner_normals; ///< NULL: every triangle is shaded flat
     const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: they are in origin and direction
     const void *origin[3], *direction[3]; ///< real, one a ray
@@ -200,6 +236,11 @@ typedef struct glint_surface_args {
 //         n, double, then rounded: m = cross(f scale, g scale), n = m / sqrt(length2(m)) (each component divided)
 //         where it has corner normals: s = (w_0 normal_0 + w_1 normal_1) + w_2 normal_2, l = length2(s), s = s / sqrt(l); where
 //         not l > 0: s = n. The geometric n decides what is `back`; s = dot(s, back ? -n : n) < 0 ? -s : s is the normal.
+// solid:  f, e, in, out, t as in cast; k = f + t e
+//         through the curved side: ball: k = g = k / sqrt((k.x^2 + k.y^2) + k.z^2); else r = sqrt(k.x^2 + k.y^2), g = (k.x / r,
+//         k.y / r, cone ? -1 : 0), 0 for x and y where not r > 0; k.x, k.y = g.x h, g.y h with h = cone ? k.z : 1
+//         through a face: g = its outward normal (disk: +z), k's component there = the face's
+//         n = transpose(inverse) g (each column's dot product), over sqrt(length2(n)); point = center + forward k
 // then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
 
 /// Sixteen roundings. Four move a point off its triangle, eight are in the height of a point over a plane (three in m, one in
@@ -326,7 +367,11 @@ typedef struct glint_occlude_args {
 //                 reach = move ((((((|X_0| + |Y_0|) + |X_1|) + |Y_1|) + |X_2|) + |Y_2|) + 2 move): what e may be off by
 //                 away = dot(m, direction of the viewer's ray)
 //                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach)
-//   So a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
+// solid:  d as of spheres, in and out of the ray from `point` along d: blocked = hits and (0 < in and in scale < 1 or
+//         0 < out and out scale < 1); directional: < inf, without scale
+//         light_side, double: k = inverse (position - center): -1 where k is inside of all bounds of the form, else 1; directional: 1
+//   The own: a disk never blocks; others, being convex: blocked where `back` and light_side > 0.
+//   Of triangles: a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
 
 // ---- bounce: where rays go on from a surface ----
 

@@ -1,0 +1,209 @@
+// solid: what cast, surface and occlude ask of affine images of the unit ball, cube, cylinder, cone and disk. The ray is
+// taken to where the shape is the unit one; its t stays. Contract: stages.h.
+
+/// Where a ray goes into a solid and where it leaves.
+typedef struct R(span) {
+    vr t[2];
+    rm hit;
+    rm flat[2]; ///< by way of a face of the slab, not of the curved side
+    vr face[2][3]; ///< the outward normal of that face
+} R(span);
+
+static inline void R(to_unit)(const glint_solid *solid, const vr v[3], vr out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = (r_set(solid->inverse[k][0]) * v[0] + r_set(solid->inverse[k][1]) * v[1]) +
+                 r_set(solid->inverse[k][2]) * v[2];
+}
+
+/// From the solid's centre to a point, where the shape is the unit one.
+static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *prim, const vr point[3], vr out[3])
+{
+    const vr away[3] = { point[0] - r_set(prim->center[0]), point[1] - r_set(prim->center[1]),
+                         point[2] - r_set(prim->center[2]) };
+    R(to_unit)(solid, away, out);
+}
+
+/// Cuts the span by lower <= f_axis + t e_axis <= 1.
+static inline void R(cut_by_slab)(R(span) * span, const vr f[3], const vr e[3], int axis, double lower)
+{
+    const vr zero = r_set(0), low = r_set(lower), high = r_set(1), x = f[axis], d = e[axis];
+    const rm rising = r_lt(zero, d), parallel = rm_andnot(r_le(d, zero), r_lt(d, zero));
+    const vr enter = r_select(rising, low - x, high - x) / d, leave = r_select(rising, high - x, low - x) / d;
+    const rm later = rm_andnot(r_lt(span->t[0], enter), parallel);
+    const rm sooner = rm_andnot(r_lt(leave, span->t[1]), parallel);
+    span->t[0] = r_select(later, enter, span->t[0]);
+    span->t[1] = r_select(sooner, leave, span->t[1]);
+    span->flat[0] = rm_or(span->flat[0], later);
+    span->flat[1] = rm_or(span->flat[1], sooner);
+    for (int k = 0; k < 3; k++) {
+        const vr out = k == axis ? r_select(rising, r_set(1), r_set(-1)) : zero;
+        span->face[0][k] = r_select(later, -out, span->face[0][k]);
+        span->face[1][k] = r_select(sooner, out, span->face[1][k]);
+    }
+    span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(x, low), r_lt(high, x))));
+}
+
+/// a t^2 - 2 b t + c <= 0 for a ball (three axes) or cylinder (two).
+static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball)
+{
+    const vr zero = r_set(0), one = r_set(1);
+    vr a = e[0] * e[0] + e[1] * e[1], b = f[0] * e[0] + f[1] * e[1], c = f[0] * f[0] + f[1] * f[1];
+    const vr z = f[0] * e[1] - f[1] * e[0];
+    vr cross = z * z;
+    if (ball) {
+        const vr x = f[1] * e[2] - f[2] * e[1], y = f[2] * e[0] - f[0] * e[2];
+        a = a + e[2] * e[2];
+        b = b + f[2] * e[2];
+        c = c + f[2] * f[2];
+        cross = (x * x + y * y) + z * z;
+    }
+    b = -b;
+    c = c - one;
+    const rm near = r_lt(b * b, a);
+    const vr disc = r_select(near, b * b - a * c, a - cross);
+    const vr s = r_sqrt(r_max(disc, zero));
+    const rm ahead = r_le(zero, b), along = rm_andnot(r_le(a, zero), r_lt(a, zero));
+    const vr q = r_select(ahead, b + s, b - s);
+    const vr far = q / a, other = c / q;
+    // along the axis of a cylinder: all of it or nothing
+    span->t[0] = r_select(along, r_set(-HUGE_VAL), r_select(ahead, other, far));
+    span->t[1] = r_select(along, r_set(HUGE_VAL), r_select(ahead, far, other));
+    span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
+}
+
+/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
+static inline void R(cut_cone)(R(span) * span, const vr f[3], const vr e[3])
+{
+    const vr zero = r_set(0);
+    const vr a = (e[0] * e[0] + e[1] * e[1]) - e[2] * e[2], c = (f[0] * f[0] + f[1] * f[1]) - f[2] * f[2];
+    const vr b = f[2] * e[2] - (f[0] * e[0] + f[1] * e[1]);
+    const vr x = f[1] * e[2] - f[2] * e[1], y = f[2] * e[0] - f[0] * e[2], z = f[0] * e[1] - f[1] * e[0];
+    const vr disc = (x * x + y * y) - z * z;
+    const vr s = r_sqrt(r_max(disc, zero));
+    const rm ahead = r_le(zero, b), steep = r_lt(a, zero), level = rm_andnot(r_le(a, zero), steep);
+    const vr q = r_select(ahead, b + s, b - s);
+    const vr far = q / a, other = c / q;
+    const vr low = r_min(far, other), high = r_max(far, other), single = c / (r_set(2) * b);
+    const rm up = r_lt(zero, e[2]);
+    // steeper than the side: one end is within the other half of the double cone
+    const vr end = r_select(level, single, r_select(up, high, low));
+    const rm open = rm_or(steep, level);
+    span->t[0] = r_select(open, r_select(up, end, r_set(-HUGE_VAL)), low);
+    span->t[1] = r_select(open, r_select(up, r_set(HUGE_VAL), end), high);
+    span->hit = rm_or(open, r_le(zero, disc));
+}
+
+static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const vr e[3])
+{
+    const vr zero = r_set(0);
+    const rm none = rm_from_bits(0), all = rm_from_bits((1u << VR) - 1);
+    R(span) span = { .t = { r_set(-HUGE_VAL), r_set(HUGE_VAL) },
+                     .hit = all,
+                     .flat = { none, none },
+                     .face = { { zero, zero, zero }, { zero, zero, zero } } };
+    switch (solid->form) {
+    case GLINT_FORM_BALL:
+        R(cut_round)(&span, f, e, true);
+        break;
+    case GLINT_FORM_CYLINDER:
+        R(cut_round)(&span, f, e, false);
+        R(cut_by_slab)(&span, f, e, 2, -1);
+        break;
+    case GLINT_FORM_CONE:
+        R(cut_cone)(&span, f, e);
+        R(cut_by_slab)(&span, f, e, 2, 0);
+        break;
+    case GLINT_FORM_BOX:
+        for (int axis = 0; axis < 3; axis++)
+            R(cut_by_slab)(&span, f, e, axis, -1);
+        break;
+    default: // a disk: one place
+        span.t[0] = span.t[1] = -f[2] / e[2];
+        span.flat[0] = span.flat[1] = all;
+        span.face[0][2] = span.face[1][2] = r_set(1);
+        const vr x = f[0] + span.t[0] * e[0], y = f[1] + span.t[0] * e[1];
+        span.hit = r_le(x * x + y * y, r_set(1));
+        break;
+    }
+    span.hit = rm_and(span.hit, r_le(span.t[0], span.t[1]));
+    return span;
+}
+
+static inline rm R(meet_solid)(const glint_solid *solid, const vr f[3], const vr d[3], vr *t)
+{
+    vr e[3];
+    R(to_unit)(solid, d, e);
+    const R(span) span = R(span_of)(solid, f, e);
+    *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
+    return rm_and(span.hit, r_lt(r_set(0), *t));
+}
+
+/// Brings a point next to the curved side onto it; g: the outward normal there.
+static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
+{
+    const vr round = k[0] * k[0] + k[1] * k[1];
+    if (form == GLINT_FORM_BALL) {
+        const vr length = r_sqrt(round + k[2] * k[2]);
+        for (int c = 0; c < 3; c++)
+            g[c] = k[c] = k[c] / length;
+        return;
+    }
+    const vr length = r_sqrt(round);
+    const vr radius = form == GLINT_FORM_CONE ? k[2] : r_set(1);
+    const rm off_axis = r_lt(r_set(0), length);
+    for (int c = 0; c < 2; c++) {
+        g[c] = r_select(off_axis, k[c] / length, r_set(0));
+        k[c] = g[c] * radius;
+    }
+    g[2] = form == GLINT_FORM_CONE ? r_set(-1) : r_set(0);
+}
+
+/// Where a ray meets the solid, and the unit normal there.
+static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const vr from[3], const vr d[3],
+                                    vr n[3], vr p[3])
+{
+    vr f[3], e[3], k[3], side[3], g[3], on_side[3];
+    R(unit_offset)(solid, prim, from, f);
+    R(to_unit)(solid, d, e);
+    const R(span) span = R(span_of)(solid, f, e);
+    const rm entering = r_lt(r_set(0), span.t[0]);
+    const vr t = r_select(entering, span.t[0], span.t[1]);
+    const rm flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
+    for (int c = 0; c < 3; c++)
+        on_side[c] = k[c] = f[c] + t * e[c];
+    R(onto_side)(solid->form, on_side, side);
+    for (int c = 0; c < 3; c++) {
+        const vr face = r_select(entering, span.face[0][c], span.face[1][c]);
+        const rm this_axis = rm_or(r_lt(face, r_set(0)), r_lt(r_set(0), face));
+        g[c] = r_select(flat, face, side[c]);
+        k[c] = r_select(flat, r_select(this_axis, face, k[c]), on_side[c]);
+    }
+    if (solid->form == GLINT_FORM_DISK)
+        k[2] = r_set(0);
+    else if (solid->form == GLINT_FORM_CONE) // which has its apex at 0
+        k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
+    for (int c = 0; c < 3; c++) {
+        n[c] = (r_set(solid->inverse[0][c]) * g[0] + r_set(solid->inverse[1][c]) * g[1]) +
+               r_set(solid->inverse[2][c]) * g[2];
+        p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
+                                         r_set(solid->forward[c][2]) * k[2]);
+    }
+    const vr length = r_sqrt(DOT(n, n));
+    for (int c = 0; c < 3; c++)
+        n[c] = n[c] / length;
+}
+
+/// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere.
+static inline rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
+                                 double scale, bool directional)
+{
+    vr f[3], e[3];
+    R(unit_offset)(solid, prim, point, f);
+    R(to_unit)(solid, d, e);
+    const R(span) span = R(span_of)(solid, f, e);
+    const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
+    const rm first = rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end));
+    const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
+    return rm_and(span.hit, rm_or(first, second));
+}
