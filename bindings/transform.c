@@ -8,7 +8,8 @@
 
 void glintL_push_transform(lua_State *L, const glint_transform *t)
 {
-    memcpy(lua_newuserdatauv(L, sizeof *t, 0), t, sizeof *t);
+    glint_transform *out = lua_newuserdatauv(L, sizeof *out, 0);
+    *out = *t;
     luaL_setmetatable(L, TRANSFORM);
 }
 
@@ -139,7 +140,7 @@ static int rotate(lua_State *L)
 
 static int matrix(lua_State *L)
 {
-    glint_transform t;
+    glint_transform t = glint_transform_identity();
     expect_count(L, 1, "matrix: a table");
     if (!lua_istable(L, 1))
         glintL_refuse(L, 1, "matrix", "table of 12 or 16 numbers, row by row");
@@ -162,7 +163,7 @@ static int matrix(lua_State *L)
 void glintL_open_transform(lua_State *L)
 {
     static const luaL_Reg meta[] = {
-        { "__mul", multiply },         { "__eq", equal },       { "__tostring", to_string }, { "__index", read_field },
+        { "__mul", multiply },         { "__eq", equal }, { "__tostring", to_string }, { "__index", read_field },
         { "__newindex", write_field }, { NULL, NULL },
     };
     static const luaL_Reg constructors[] = {

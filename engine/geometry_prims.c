@@ -114,11 +114,16 @@ static void round_map(double m[3][4], const double origin[3], const double along
 static glint_form form_of(glint_shape_kind kind)
 {
     switch (kind) {
-    case GLINT_SHAPE_BOX: return GLINT_FORM_BOX;
-    case GLINT_SHAPE_DISK: return GLINT_FORM_DISK;
-    case GLINT_SHAPE_CYLINDER: return GLINT_FORM_CYLINDER;
-    case GLINT_SHAPE_CONE: return GLINT_FORM_CONE;
-    default: return GLINT_FORM_BALL;
+    case GLINT_SHAPE_BOX:
+        return GLINT_FORM_BOX;
+    case GLINT_SHAPE_DISK:
+        return GLINT_FORM_DISK;
+    case GLINT_SHAPE_CYLINDER:
+        return GLINT_FORM_CYLINDER;
+    case GLINT_SHAPE_CONE:
+        return GLINT_FORM_CONE;
+    default:
+        return GLINT_FORM_BALL;
     }
 }
 
@@ -266,15 +271,23 @@ static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t par
     glint_prim *prim = &geometry->prims[at];
     double point[3], normal[3];
     switch (desc->kind) {
-    case GLINT_SHAPE_MESH: add_triangle(f, prim, shape, i, place); break;
-    case GLINT_SHAPE_SPHERES: add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], place); break;
-    case GLINT_SHAPE_SPHERE: add_ball(f, prim, desc->center, desc->radius, place); break;
+    case GLINT_SHAPE_MESH:
+        add_triangle(f, prim, shape, i, place);
+        break;
+    case GLINT_SHAPE_SPHERES:
+        add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], place);
+        break;
+    case GLINT_SHAPE_SPHERE:
+        add_ball(f, prim, desc->center, desc->radius, place);
+        break;
     case GLINT_SHAPE_PLANE:
         place_point(place, desc->point, point);
         place_normal(place, desc->normal, normal);
         plane_init(prim, point, normal);
         break;
-    default: add_solid(f, prim, desc, place); break;
+    default:
+        add_solid(f, prim, desc, place);
+        break;
     }
     prim->id = at;
     prim->two_sided = desc->two_sided;
@@ -365,7 +378,8 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     for (size_t i = 0; i < scene->shapes.count && !status; i++)
         status = count_shape(&f, glint_scene_shape(scene, i), false);
     if (!status && f.prims >= INT32_MAX)
-        status = glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims);
+        status =
+            glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims);
     if (!status && !allocate(&f))
         status = glint_fail_nomem(error);
     for (size_t i = 0; i < scene->shapes.count && !status; i++)

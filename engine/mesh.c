@@ -6,7 +6,10 @@
 
 #define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals
 
-glint_mesh_desc glint_mesh_desc_default(void) { return (glint_mesh_desc) { .transform = glint_transform_identity(), .two_sided = true }; }
+glint_mesh_desc glint_mesh_desc_default(void)
+{
+    return (glint_mesh_desc) { .transform = glint_transform_identity(), .two_sided = true };
+}
 
 void glint_mesh_free(glint_mesh *mesh)
 {

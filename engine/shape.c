@@ -37,7 +37,7 @@ static glint_status check_box(const glint_shape_desc *desc, glint_error *error)
     for (int c = 0; c < 3 && !status; c++)
         if (!(desc->min[c] < desc->max[c]))
             status = glint_fail(error, GLINT_ERR_INVALID, "max: %c above that of min (%.15g) expected, got %.15g",
-                                "xyz"[c], desc->min[c], desc->max[c]);
+                                "xyz"[c], desc -> min[c], desc -> max[c]);
     return status;
 }
 
@@ -49,8 +49,9 @@ static glint_status check_ends(const glint_shape_desc *desc, glint_error *error)
     if (!status)
         status = check_radius(desc, error);
     if (!status && memcmp(desc->base, desc->top, sizeof desc->base) == 0)
-        status = glint_fail(error, GLINT_ERR_INVALID, "top: another place than base expected, got {%.15g, %.15g, %.15g}",
-                            desc->top[0], desc->top[1], desc->top[2]);
+        status =
+            glint_fail(error, GLINT_ERR_INVALID, "top: another place than base expected, got {%.15g, %.15g, %.15g}",
+                       desc->top[0], desc->top[1], desc->top[2]);
     return status;
 }
 
@@ -69,11 +70,15 @@ static glint_status check_fields(const glint_shape_desc *desc, glint_error *erro
     case GLINT_SHAPE_PLANE:
         status = glint_check_vector("point", desc->point, error);
         return status ? status : glint_check_direction("normal", desc->normal, error);
-    case GLINT_SHAPE_BOX: return check_box(desc, error);
+    case GLINT_SHAPE_BOX:
+        return check_box(desc, error);
     case GLINT_SHAPE_CYLINDER:
-    case GLINT_SHAPE_CONE: return check_ends(desc, error);
-    case GLINT_SHAPE_MESH: return glint_check_shading(desc->shading, error);
-    default: return GLINT_OK;
+    case GLINT_SHAPE_CONE:
+        return check_ends(desc, error);
+    case GLINT_SHAPE_MESH:
+        return glint_check_shading(desc->shading, error);
+    default:
+        return GLINT_OK;
     }
 }
 
@@ -286,8 +291,8 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
 
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
 {
-    static const char *const kinds[] = { "sphere", "plane", "spheres", "mesh", "box",
-                                         "disk", "cylinder", "cone", "group" };
+    static const char *const kinds[] = { "sphere", "plane",    "spheres", "mesh", "box",
+                                         "disk",   "cylinder", "cone",    "group" };
     if (desc->name[0])
         snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
     else

@@ -17,7 +17,7 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "camera", "directional_light", "disk_light", "material", "mesh", "plane", "point_light", "polygon_light", "scene",
+  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "plane", "point_light", "polygon_light", "scene",
   "sphere", "sphere_light", "spheres", "spot_light", "vector",
 }
 
@@ -36,6 +36,11 @@ local function objects()
     plane = glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
     spheres = glint.spheres { data = { 0, 0, 0, 1, 2, 0, 0, 1 }, material = material },
     mesh = glint.mesh { vertices = { 0, 0, 0, 1, 0, 0, 0, 1, 0 }, faces = { { 1, 2, 3 } }, material = material },
+    box = glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 } },
+    disk = glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },
+    cylinder = glint.cylinder { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
+    cone = glint.cone { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
+    group = glint.group { ball, transform = glint.translate(1, 0, 0) },
     scene = glint.scene { ball, lamp },
     vector = ball.center,
   }

@@ -55,6 +55,7 @@ typedef enum kind {
     CHOICE, ///< an enumeration or int below `high`
     BITS, ///< a mask of `high` bits
     DEPTH, ///< 8 or 16
+    TRANSFORM,
     FIXED ///< not a field to set here: a name, a kind, what is set another way
 } kind;
 
@@ -101,9 +102,11 @@ static const field camera_fields[] = {
 
 static const field shape_fields[] = {
 #define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
-    S(kind, FIXED, 0, 0),     S(material, FIXED, 0, 0),  S(two_sided, FLAG, 0, 1),
-    S(center, VECTOR, -3, 3), S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),
-    S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),  S(name, FIXED, 0, 0),
+    S(kind, FIXED, 0, 0),      S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
+    S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
+    S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1), S(max, VECTOR, -0.5, 2), S(base, VECTOR, -2, 2),
+    S(top, VECTOR, -2, 2),
+    S(name, FIXED, 0, 0),
 #undef S
 };
 
@@ -133,6 +136,15 @@ static const field render_fields[] = {
 
 #define COUNT(fields) (sizeof(fields) / sizeof *(fields))
 
+/// The identity, a similarity, or one that makes ellipsoids.
+static void set_transform(glint_transform *out)
+{
+    const double axis[3] = { uniform(-1, 1), uniform(-1, 1), 1 }, by[3] = { uniform(0.5, 1.5), -1, uniform(0.5, 1.5) };
+    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), scale = glint_transform_scale(by);
+    const uint32_t which = draw(3);
+    *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
+}
+
 static void set_field(const field *f, void *desc)
 {
     void *at = (char *)desc + f->offset;
@@ -158,6 +170,9 @@ static void set_field(const field *f, void *desc)
         break;
     case FLAG:
         *(bool *)at = draw(2);
+        break;
+    case TRANSFORM:
+        set_transform(at);
         break;
     default:
         whole = f->kind == CHOICE  ? (int32_t)draw((uint32_t)f->high)
@@ -244,7 +259,10 @@ static void edit_light(world *w)
 static void edit_shape(world *w)
 {
     uint32_t i = draw(SHAPES);
-    glint_shape_desc d = *glint_shape_get(w->shapes[i]);
+    glint_shape *shape = w->shapes[i];
+    if (glint_group_count(shape) && draw(2)) // what is in a group changes too
+        shape = glint_group_child(shape, draw((uint32_t)glint_group_count(shape)));
+    glint_shape_desc d = *glint_shape_get(shape);
     if (draw(6) == 0) {
         if (w->in_scene[i])
             glint_scene_remove_shape(w->scene, w->shapes[i], NULL);
@@ -257,7 +275,7 @@ static void edit_shape(world *w)
         d.material = w->materials[draw(SHAPES)];
     else
         set_field(pick(shape_fields, COUNT(shape_fields)), &d);
-    glint_shape_set(w->shapes[i], &d, NULL);
+    glint_shape_set(shape, &d, NULL);
 }
 
 static void edit_frame(world *w)
@@ -287,6 +305,30 @@ static glint_shape *new_mesh(const glint_shape_desc *like)
     return shape;
 }
 
+/// A cone and a cylinder, and, smaller, both again.
+static glint_shape *new_group(const glint_shape_desc *like)
+{
+    glint_shape *outer, *inner, *part;
+    const double by[3] = { -1, 0.5, 0.5 };
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_GROUP);
+    assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
+    d.transform = glint_transform_scale(by);
+    assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
+    for (int k = GLINT_SHAPE_BOX; k <= GLINT_SHAPE_CONE; k++) {
+        d = glint_shape_desc_default((glint_shape_kind)k);
+        d.material = like->material;
+        d.radius = 0.5;
+        d.base[0] = d.center[2] = k;
+        assert_int_equal(glint_shape_create(&d, &part, NULL), GLINT_OK);
+        assert_int_equal(glint_group_add(outer, part, NULL), GLINT_OK);
+        assert_int_equal(glint_group_add(inner, part, NULL), GLINT_OK);
+        glint_shape_release(part);
+    }
+    assert_int_equal(glint_group_add(outer, inner, NULL), GLINT_OK);
+    glint_shape_release(inner);
+    return outer;
+}
+
 static void make_world(world *w)
 {
     memset(w, 0, sizeof *w);
@@ -306,7 +348,7 @@ static void make_world(world *w)
         d.point[1] = -2;
         for (int k = 0; k < 3; k++)
             d.center[k] = uniform(-2, 2);
-        w->shapes[i] = i == 1 ? new_mesh(&d) : NULL;
+        w->shapes[i] = i == 1 ? new_mesh(&d) : i == 2 ? new_group(&d) : NULL;
         if (!w->shapes[i])
             assert_int_equal(glint_shape_create(&d, &w->shapes[i], NULL), GLINT_OK);
         assert_int_equal(glint_scene_add_shape(w->scene, w->shapes[i], NULL), GLINT_OK);

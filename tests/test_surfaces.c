@@ -1,4 +1,4 @@
-/// Meshes: the same pictures on every instruction set, no ray between neighbours, no light by an edge and no shadow on a
+/// Meshes, solids, transforms and groups: the same pictures on every instruction set, no ray between neighbours, no light by an edge and no shadow on a
 /// flat mesh by itself, distances and normals against 113-bit arithmetic, .obj files and what is wrong with them.
 #include "engine/glint.h"
 
@@ -147,6 +147,8 @@ static void make_box(soup *s, uint32_t n, double half, double roundness, double 
 
 #define PARALLEL 1234 ///< as at[2]
 
+static bool soft_light; ///< of the next scene
+
 static glint_scene *new_scene(const double eye[3], const double at[3], double fov, const double light[3], bool shadows)
 {
     glint_scene *scene;
@@ -162,7 +164,9 @@ static glint_scene *new_scene(const double eye[3], const double at[3], double fo
         c.direction[2] = -1;
         c.height = 129 / 16.0;
     }
-    glint_light_desc l = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light_desc l = glint_light_desc_default(soft_light ? GLINT_LIGHT_SPHERE : GLINT_LIGHT_POINT);
+    l.radius = 0.5;
+    l.samples = 5;
     memcpy(l.position, light, sizeof l.position);
     l.shadows = shadows;
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
@@ -220,6 +224,66 @@ static int differing(const glint_image *a, const glint_image *b)
 
 // ---- The same everywhere ----
 
+/// Any map that can be undone: turned, stretched, mirrored, moved.
+static glint_transform random_map(double move)
+{
+    double a[3][3], b[3][3];
+    glint_transform out = { { { 0 } } };
+    random_turn(a);
+    random_turn(b);
+    const bool even = draw(3) == 0;
+    const double s[3] = { uniform(0.3, 2), even ? 0 : uniform(0.2, 3), even ? 0 : -uniform(0.5, 2) };
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                out.m[i][j] += a[i][k] * (even ? s[0] : s[k]) * b[k][j];
+        out.m[i][3] = uniform(-move, move);
+    }
+    return out;
+}
+
+static glint_shape *random_solid(int kind)
+{
+    glint_shape *shape;
+    glint_shape_desc d = glint_shape_desc_default((glint_shape_kind)kind);
+    random_vector(d.center, 2);
+    random_vector(d.normal, 1);
+    random_vector(d.base, 2);
+    random_vector(d.top, 2);
+    for (int c = 0; c < 3; c++) {
+        d.min[c] = uniform(-1.5, 0);
+        d.max[c] = uniform(0.2, 1.5);
+    }
+    d.radius = uniform(0.2, 1.5);
+    d.two_sided = draw(2);
+    if (draw(4))
+        d.transform = random_map(2);
+    assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
+    return shape;
+}
+
+/// Solids and spheres, some of them twice, under maps.
+static glint_shape *random_group(uint32_t count)
+{
+    static const int kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
+                                 GLINT_SHAPE_CONE };
+    glint_shape *outer, *inner;
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_GROUP);
+    assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
+    d.transform = random_map(3);
+    assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
+    for (uint32_t i = 0; i < count; i++) {
+        glint_shape *shape = random_solid(kinds[draw(5)]);
+        assert_int_equal(glint_group_add(outer, shape, NULL), GLINT_OK);
+        if (draw(2))
+            assert_int_equal(glint_group_add(inner, shape, NULL), GLINT_OK);
+        glint_shape_release(shape);
+    }
+    assert_int_equal(glint_group_add(outer, inner, NULL), GLINT_OK);
+    glint_shape_release(inner);
+    return outer;
+}
+
 static glint_scene *random_scene(uint64_t seed)
 {
     static soup s;
@@ -227,6 +291,7 @@ static glint_scene *random_scene(uint64_t seed)
     state = seed;
     random_vector(eye, 9);
     random_vector(light, 9);
+    soft_light = draw(3) == 0;
     const double at[3] = { 0, 0, draw(4) ? 0 : PARALLEL };
     glint_scene *scene = new_scene(eye, at, uniform(0.3, 1.5), light, true);
     make_soup(&s, 1 + draw(60));
@@ -234,11 +299,8 @@ static glint_scene *random_scene(uint64_t seed)
     random_turn(m);
     make_box(&s, 1 + draw(6), uniform(0.5, 3), draw(2), m);
     add(scene, mesh_of(&s, draw(2) ? GLINT_SHADING_FLAT : GLINT_SHADING_PHONG, draw(2)));
-    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
-    glint_shape *ball;
-    random_vector(d.center, 3);
-    assert_int_equal(glint_shape_create(&d, &ball, NULL), GLINT_OK);
-    add(scene, ball);
+    add(scene, random_group(draw(8)));
+    soft_light = false;
     return scene;
 }
 
@@ -466,6 +528,193 @@ static void triangles_against_oracle(void **unused)
     assert_true(hits > 5000);
 }
 
+/// How far outside of its shape a place is, in the shape's own lengths, and which bound says so. m: the unit shape's map.
+static double outside(glint_shape_kind kind, quad m[3][4], const quad p[3], int *bound)
+{
+    quad q[3], k[3], cofactor[3][3], det;
+    for (int i = 0; i < 3; i++) {
+        q[i] = p[i] - m[i][3];
+        for (int j = 0; j < 3; j++)
+            cofactor[i][j] = m[(i + 1) % 3][(j + 1) % 3] * m[(i + 2) % 3][(j + 2) % 3] -
+                             m[(i + 1) % 3][(j + 2) % 3] * m[(i + 2) % 3][(j + 1) % 3];
+    }
+    det = m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2];
+    for (int j = 0; j < 3; j++)
+        k[j] = (cofactor[0][j] * q[0] + cofactor[1][j] * q[1] + cofactor[2][j] * q[2]) / det;
+    const double x = (double)k[0], y = (double)k[1], z = (double)k[2], round = sqrt(x * x + y * y);
+    double by[3] = { round - 1, z - 1, -1 - z };
+    if (kind == GLINT_SHAPE_SPHERE)
+        by[0] = by[1] = by[2] = sqrt(x * x + y * y + z * z) - 1;
+    if (kind == GLINT_SHAPE_CONE)
+        by[0] = round - z, by[2] = -z;
+    if (kind == GLINT_SHAPE_BOX)
+        by[0] = fabs(x) - 1, by[1] = fabs(y) - 1, by[2] = fabs(z) - 1;
+    *bound = by[0] >= by[1] && by[0] >= by[2] ? 0 : by[1] >= by[2] ? 1 : 2;
+    return by[*bound];
+}
+
+/// The map that the description says.
+static void unit_map(const glint_shape_desc *d, quad m[3][4])
+{
+    quad unit[3][4] = { { 0 } };
+    double z[3], x[3], y[3], length;
+    for (int c = 0; c < 3; c++) {
+        z[c] = d->kind == GLINT_SHAPE_CONE ? d->base[c] - d->top[c] : 0.5 * (d->top[c] - d->base[c]);
+        unit[c][3] = d->kind == GLINT_SHAPE_CONE       ? (quad)d->top[c]
+                     : d->kind == GLINT_SHAPE_CYLINDER ? ((quad)d->top[c] + d->base[c]) / 2
+                     : d->kind == GLINT_SHAPE_BOX      ? ((quad)d->max[c] + d->min[c]) / 2
+                                                       : (quad)d->center[c];
+        unit[c][c] = d->kind == GLINT_SHAPE_BOX ? ((quad)d->max[c] - d->min[c]) / 2 : (quad)d->radius;
+    }
+    if (d->kind == GLINT_SHAPE_CONE || d->kind == GLINT_SHAPE_CYLINDER) {
+        const double other[3] = { fabs(z[0]) < fabs(z[1]), fabs(z[0]) >= fabs(z[1]), 0 };
+        for (int c = 0; c < 3; c++)
+            x[c] = z[(c + 1) % 3] * other[(c + 2) % 3] - z[(c + 2) % 3] * other[(c + 1) % 3];
+        length = sqrt(dot(x, x));
+        for (int c = 0; c < 3; c++)
+            x[c] /= length;
+        for (int c = 0; c < 3; c++)
+            y[c] = (z[(c + 1) % 3] * x[(c + 2) % 3] - z[(c + 2) % 3] * x[(c + 1) % 3]) / sqrt(dot(z, z));
+        for (int c = 0; c < 3; c++) {
+            unit[c][0] = d->radius * x[c];
+            unit[c][1] = d->radius * y[c];
+            unit[c][2] = z[c];
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 4; j++) {
+            m[i][j] = j == 3 ? (quad)d->transform.m[i][3] : 0;
+            for (int k = 0; k < 3; k++)
+                m[i][j] += (quad)d->transform.m[i][k] * unit[k][j];
+        }
+}
+
+/// Solids under random maps: the hit is on the surface, nothing is before it, and the normal is the surface's slope.
+static void solids_against_oracle(void **unused)
+{
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
+                                              GLINT_SHAPE_CONE };
+    int hits = 0;
+    (void)unused;
+    for (int n = 0; n < 4000; n++) {
+        state = (uint64_t)n;
+        glint_shape *shape = random_solid(kinds[n % 4]);
+        const glint_shape_desc d = *glint_shape_get(shape);
+        double o[3], dir[3], aim[3];
+        quad m[3][4], p[3];
+        glint_hit got;
+        bool hit = false;
+        int bound, other;
+        unit_map(&d, m);
+        random_vector(o, 6);
+        random_vector(aim, 1);
+        for (int c = 0; c < 3; c++)
+            dir[c] = (double)m[c][3] + aim[c] - o[c];
+        glint_scene *scene = new_scene((double[3]) { 0, 0, 9 }, (double[3]) { 0 }, 1, o, true);
+        add(scene, shape);
+        assert_int_equal(glint_scene_cast(scene, o, dir, &hit, &got, NULL), GLINT_OK);
+        const double end = hit ? got.t : 3;
+        for (int c = 0; c < 3; c++)
+            p[c] = o[c];
+        const bool inside = outside(d.kind, m, p, &bound) < 0;
+        for (int i = 1; i < 100; i++) {
+            for (int c = 0; c < 3; c++)
+                p[c] = o[c] + (quad)end * i / 100 * dir[c];
+            const double far = outside(d.kind, m, p, &other);
+            if (fabs(far) > 1e-9 && (far < 0) != inside)
+                fail_msg("case %d: something at %d %% of the way to the hit", n, i);
+        }
+        if (hit) {
+            hits++;
+            for (int c = 0; c < 3; c++)
+                p[c] = o[c] + (quad)got.t * dir[c];
+            if (fabs(outside(d.kind, m, p, &bound)) > 1e-12)
+                fail_msg("case %d: %g off the surface", n, outside(d.kind, m, p, &bound));
+            // a step along the normal leads out, and the steps across it lead nowhere
+            for (int axis = 0; axis < 3; axis++) {
+                double slope[3];
+                for (int c = 0; c < 3; c++) {
+                    quad there[3] = { p[0], p[1], p[2] };
+                    there[c] += 1e-6;
+                    slope[c] = outside(d.kind, m, there, &other);
+                    bound = other == bound ? bound : -1;
+                }
+                const double length = sqrt(dot(slope, slope));
+                for (int c = 0; c < 3 && bound >= 0; c++)
+                    if (fabs(slope[c] / length - got.normal[c]) > 1e-4)
+                        fail_msg("case %d: normal %g, wanted %g", n, got.normal[c], slope[c] / length);
+            }
+        }
+        glint_scene_release(scene);
+    }
+    assert_true(hits > 1000);
+}
+
+// ---- Groups ----
+
+static void groups_hold_together(void **unused)
+{
+    glint_shape *a, *b, *chain = NULL, *ball, *flat;
+    glint_error error;
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_GROUP);
+    (void)unused;
+    assert_int_equal(glint_shape_create(&d, &a, NULL), GLINT_OK);
+    assert_int_equal(glint_shape_create(&d, &b, NULL), GLINT_OK);
+    assert_int_equal(glint_group_add(a, b, &error), GLINT_OK);
+    assert_int_equal(glint_group_add(b, a, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "group: a group cannot be within itself");
+    assert_int_equal(glint_group_add(a, a, &error), GLINT_ERR_INVALID);
+    assert_int_equal(glint_group_add(a, b, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "group: already in the group");
+    // two ways up at every level: as many paths as no scene can show, and still an answer at once
+    assert_int_equal(glint_shape_create(&d, &chain, NULL), GLINT_OK);
+    for (int i = 0; i < 70; i++) {
+        glint_shape *outer, *left, *right;
+        assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
+        assert_int_equal(glint_shape_create(&d, &left, NULL), GLINT_OK);
+        assert_int_equal(glint_shape_create(&d, &right, NULL), GLINT_OK);
+        const bool fits = glint_group_add(left, chain, NULL) == GLINT_OK &&
+                          glint_group_add(right, chain, NULL) == GLINT_OK &&
+                          glint_group_add(outer, left, NULL) == GLINT_OK &&
+                          glint_group_add(outer, right, NULL) == GLINT_OK;
+        assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // the first of them is that deep
+        glint_shape_release(left);
+        glint_shape_release(right);
+        glint_shape_release(chain);
+        chain = outer;
+        if (!fits)
+            break;
+    }
+    glint_shape_release(chain);
+    // a child edited later shows, under both of its parents
+    d.kind = GLINT_SHAPE_SPHERE;
+    assert_int_equal(glint_shape_create(&d, &ball, NULL), GLINT_OK);
+    assert_int_equal(glint_group_add(b, ball, NULL), GLINT_OK);
+    glint_scene *scene = new_scene((double[3]) { 0, 0, 9 }, (double[3]) { 0 }, 1, (double[3]) { 0, 9, 9 }, true);
+    add(scene, a);
+    assert_int_equal(glint_scene_add_shape(scene, b, NULL), GLINT_OK);
+    d = *glint_shape_get(b);
+    d.transform = glint_transform_translate((double[3]) { 5, 0, 0 });
+    assert_int_equal(glint_shape_set(b, &d, NULL), GLINT_OK);
+    for (int step = 0; step < 2; step++) {
+        glint_hit hit;
+        bool any;
+        assert_int_equal(glint_scene_cast(scene, (double[3]) { 5, 0, 9 }, (double[3]) { 0, 0, -1 }, &any, &hit, NULL), GLINT_OK);
+        assert_true(any && hit.shape == ball && hit.t == (step ? 7 : 8));
+        d = *glint_shape_get(ball);
+        d.radius = 2;
+        assert_int_equal(glint_shape_set(ball, &d, NULL), GLINT_OK);
+    }
+    // nothing is flattened
+    d.transform = glint_transform_scale((double[3]) { 1, 0, 1 });
+    assert_int_equal(glint_shape_set(ball, &d, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "transform: a map that can be undone expected, got one that flattens space");
+    assert_int_equal(glint_shape_create(&d, &flat, NULL), GLINT_ERR_INVALID);
+    glint_shape_release(ball);
+    glint_shape_release(b);
+    glint_scene_release(scene);
+}
+
 // ---- Files ----
 
 static glint_status load_text(const char *text, glint_shape **out, glint_error *error)
@@ -551,7 +800,8 @@ int main(void)
         cmocka_unit_test(same_on_every_instruction_set), cmocka_unit_test(no_cracks),
         cmocka_unit_test(no_light_by_an_edge),           cmocka_unit_test(no_acne),
         cmocka_unit_test(triangles_against_oracle),      cmocka_unit_test(good_files),
-        cmocka_unit_test(bad_files),
+        cmocka_unit_test(bad_files),                     cmocka_unit_test(solids_against_oracle),
+        cmocka_unit_test(groups_hold_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

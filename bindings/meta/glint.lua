@@ -231,10 +231,40 @@ function glint.camera(fields) end
 
 ---@class glint.shape_fields
 ---@field material? glint.material  Default: a material of its own with default fields
+---@field transform? glint.transform  of the shape as described; nil: where it is described
 ---@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
----@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.group
+
+--- An affine map: a value that does not change. `a * b` is first b, then a; equal when all numbers are.
+---@class glint.transform
+---@operator mul(glint.transform): glint.transform
+
+--- translate(x, y, z) or translate {x, y, z}.
+---@param x number|glint.vec3
+---@param y? number
+---@param z? number
+---@return glint.transform
+function glint.translate(x, y, z) end
+
+--- Counter-clockwise as seen with the axis pointing at the eye; quarter turns are exact.
+---@param axis "x"|"y"|"z"|glint.vec3  not zero, need not be unit
+---@param degrees number
+---@return glint.transform
+function glint.rotate(axis, degrees) end
+
+--- scale(s) or scale(x, y, z) or scale {x, y, z}; none of them 0.
+---@param x number|glint.vec3
+---@param y? number
+---@param z? number
+---@return glint.transform
+function glint.scale(x, y, z) end
+
+--- 12 numbers row by row (x' = m1 x + m2 y + m3 z + m4, ...), or 16 of which the last four are 0, 0, 0, 1.
+---@param numbers number[]
+---@return glint.transform
+function glint.matrix(numbers) end
 ---@alias glint.light glint.point_light|glint.directional_light|glint.spot_light|glint.area_light
 ---@alias glint.area_light glint.disk_light|glint.polygon_light|glint.sphere_light
 
@@ -322,6 +352,98 @@ function glint.mesh(fields) end
 ---@param fields glint.sphere_mesh_fields
 ---@return glint.mesh
 function glint.sphere_mesh(fields) end
+
+---@class glint.box_fields: glint.shape_fields
+---@field min glint.vec3  the corner of the smallest coordinates
+---@field max glint.vec3  that of the largest: above those of `min`, each
+
+---@class glint.box: glint.box_fields
+local box = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function box:close() end
+
+---@param fields glint.box_fields
+---@return glint.box
+function glint.box(fields) end
+
+---@class glint.disk_fields: glint.shape_fields
+---@field center glint.vec3  world units
+---@field normal glint.vec3  not zero, need not be unit
+---@field radius number  world units, > 0
+
+---@class glint.disk: glint.disk_fields
+---@field x number  of center
+---@field y number  of center
+---@field z number  of center
+local disk = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function disk:close() end
+
+---@param fields glint.disk_fields
+---@return glint.disk
+function glint.disk(fields) end
+
+--- Closed at both ends.
+---@class glint.cylinder_fields: glint.shape_fields
+---@field base glint.vec3  the middle of one end
+---@field top glint.vec3  the middle of the other; not the same place
+---@field radius number  world units, > 0
+
+---@class glint.cylinder: glint.cylinder_fields
+local cylinder = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function cylinder:close() end
+
+---@param fields glint.cylinder_fields
+---@return glint.cylinder
+function glint.cylinder(fields) end
+
+--- Closed at its base.
+---@class glint.cone_fields: glint.shape_fields
+---@field base glint.vec3  the middle of the base
+---@field top glint.vec3  the apex; not the same place
+---@field radius number  of the base, world units, > 0
+
+---@class glint.cone: glint.cone_fields
+local cone = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function cone:close() end
+
+---@param fields glint.cone_fields
+---@return glint.cone
+function glint.cone(fields) end
+
+---@class glint.group_fields
+---@field transform? glint.transform  of all that is in it; nil: none
+---@field name? string  at most 63 bytes. Default ""
+---@field [integer] glint.shape  what is in it
+
+--- Shapes under one transform. A shape or group may be in several groups and scenes: it shows in each, and what is changed
+--- in it changes in all of them. At most 64 groups one within the other, none within itself.
+---@class glint.group
+---@field transform glint.transform
+---@field name string  at most 63 bytes
+---@field count integer  how many shapes and groups are in it; only read
+local group = {}
+
+--- Adds a shape or group; returns it.
+---@param shape glint.shape
+---@return glint.shape
+function group:add(shape) end
+
+---@param shape glint.shape
+function group:remove(shape) end
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function group:close() end
+
+---@param fields glint.group_fields
+---@return glint.group
+function glint.group(fields) end
 
 -- ---- Scene ----
 

@@ -694,9 +694,19 @@ static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t a
                              const glint_prim *prim, rm hit, vr *t)
 {
     const rm mask = rm_from_bits(own);
+    const unsigned inward = args->inward[at / GLINT_GROUP] >> at % GLINT_GROUP & own;
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        const glint_solid *solid = &args->geometry->solids[prim->item];
+        vr e[3];
+        R(to_unit)(solid, d, e);
+        const R(span) span = R(span_of)(solid, f, e);
+        const rm leaves = rm_and(span.hit, r_lt(r_set(0), span.t[1]));
+        *t = r_select(mask, span.t[1], *t);
+        return rm_or(rm_andnot(hit, mask),
+                     rm_and(rm_from_bits(solid->form == GLINT_FORM_DISK ? 0 : inward), leaves));
+    }
     if (prim->kind != GLINT_PRIM_SPHERE)
         return rm_andnot(hit, mask);
-    const unsigned inward = args->inward[at / GLINT_GROUP] >> at % GLINT_GROUP & own;
     const vr zero = r_set(0), a = DOT(d, d), b = -DOT(f, d), across = (b + b) / (a * r_set(prim->scale));
     const rm meets = r_le(zero, R(discriminant)(f, d, a, b, R(exact_c)(f, prim), r_set(prim->r2)));
     const rm ahead = rm_and(r_lt(zero, b), r_lt(zero, across));

@@ -135,7 +135,8 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
     double away[3];
     for (int c = 0; c < 3; c++)
         away[c] = position[c] - prim->center[c];
-    double x = dot_of(solid->inverse[0], away), y = dot_of(solid->inverse[1], away), z = dot_of(solid->inverse[2], away);
+    double x = dot_of(solid->inverse[0], away), y = dot_of(solid->inverse[1], away),
+           z = dot_of(solid->inverse[2], away);
     bool between = z > -1 && z < 1;
     if (solid->form == GLINT_FORM_BALL)
         return (x * x + y * y) + z * z < 1;

@@ -162,7 +162,13 @@ static bool NAME(leaves)(const glint_cast_args *args, const glint_prim *prim, NA
     if (!args->leaving || args->leaving[i] != prim->coincident)
         return false;
     *t = 0;
-    if (prim->kind != GLINT_PRIM_SPHERE || !(args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
+    bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    if (prim->kind == GLINT_PRIM_SOLID && inward) {
+        const glint_solid *solid = &args->geometry->solids[prim->item];
+        NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
+        *t = p.hit && p.out.t > 0 && solid->form != GLINT_FORM_DISK ? p.out.t : 0;
+    }
+    if (prim->kind != GLINT_PRIM_SPHERE || !inward)
         return true;
     NAME(vec3) f = NAME(from_center)(origin, prim);
     REAL a = NAME(length2)(direction), b = -NAME(dot)(f, direction);
@@ -259,7 +265,7 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
         n = NAME(flat_normal)(prim, args->scale);
         point = NAME(triangle_point)(args, prim, origin, direction, weight, &slack);
     } else if (prim->kind == GLINT_PRIM_SOLID) {
-        point = NAME(solid_point)(&args->solids[prim->item], prim, origin, direction, &n);
+        point = NAME(solid_point)(&args->solids[prim->item], prim, origin, direction, t, &n);
     } else {
         n = NAME(rounded)(prim->normal);
         point = NAME(add)(origin, NAME(times)(direction, t));

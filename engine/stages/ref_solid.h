@@ -96,8 +96,8 @@ static NAME(passage) NAME(pass_solid)(const glint_solid *solid, NAME(vec3) f, NA
     return p;
 }
 
-static NAME(passage) NAME(pass_prim)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin,
-                                     NAME(vec3) direction)
+static NAME(passage)
+    NAME(pass_prim)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
     NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
     return NAME(pass_solid)(solid, f, NAME(into_unit)(solid, direction));
@@ -138,12 +138,12 @@ static NAME(vec3) NAME(onto_face)(uint32_t form, NAME(vec3) k, const REAL face[3
 }
 
 static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin,
-                                    NAME(vec3) direction, NAME(vec3) * normal)
+                                    NAME(vec3) direction, REAL t, NAME(vec3) * normal)
 {
     NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
     NAME(vec3) e = NAME(into_unit)(solid, direction);
     NAME(passage) p = NAME(pass_solid)(solid, f, e);
-    NAME(crossing) at = p.in.t > 0 ? p.in : p.out;
+    NAME(crossing) at = p.in.t == t ? p.in : p.out;
     NAME(vec3) k = NAME(add)(f, NAME(times)(e, at.t)), g = NAME(vec)(at.face[0], at.face[1], at.face[2]);
     if (at.flat)
         k = NAME(onto_face)(solid->form, k, at.face);
@@ -166,6 +166,6 @@ static bool NAME(solid_blocks)(const glint_occlude_args *args, const glint_prim 
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(passage) p = NAME(pass_prim)(&args->geometry->solids[prim->item], prim, point, d);
     REAL unit = args->directional ? 1 : (REAL)args->scale, end = args->directional ? (REAL)INFINITY : 1;
-    bool in = p.in.t > 0 && p.in.t * unit < end, out = p.out.t > 0 && p.out.t * unit < end;
+    bool in = p.in.t > 0 && p.in.t * unit<end, out = p.out.t> 0 && p.out.t * unit < end;
     return p.hit && (in || out);
 }

@@ -37,8 +37,9 @@ static inline void R(cut_by_slab)(R(span) * span, const vr f[3], const vr e[3], 
     span->flat[0] = rm_or(span->flat[0], later);
     span->flat[1] = rm_or(span->flat[1], sooner);
     for (int k = 0; k < 3; k++) {
-        const vr out = k == axis ? r_select(rising, r_set(1), r_set(-1)) : zero;
-        span->face[0][k] = r_select(later, -out, span->face[0][k]);
+        const vr one = r_set(k == axis), out = r_select(rising, one, zero - one),
+                 in = r_select(rising, zero - one, one);
+        span->face[0][k] = r_select(later, in, span->face[0][k]);
         span->face[1][k] = r_select(sooner, out, span->face[1][k]);
     }
     span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(x, low), r_lt(high, x))));
@@ -98,10 +99,11 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
 {
     const vr zero = r_set(0);
     const rm none = rm_from_bits(0), all = rm_from_bits((1u << VR) - 1);
-    R(span) span = { .t = { r_set(-HUGE_VAL), r_set(HUGE_VAL) },
-                     .hit = all,
-                     .flat = { none, none },
-                     .face = { { zero, zero, zero }, { zero, zero, zero } } };
+    R(span)
+    span = { .t = { r_set(-HUGE_VAL), r_set(HUGE_VAL) },
+             .hit = all,
+             .flat = { none, none },
+             .face = { { zero, zero, zero }, { zero, zero, zero } } };
     switch (solid->form) {
     case GLINT_FORM_BALL:
         R(cut_round)(&span, f, e, true);
@@ -161,14 +163,13 @@ static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
 
 /// Where a ray meets the solid, and the unit normal there.
 static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const vr from[3], const vr d[3],
-                                    vr n[3], vr p[3])
+                                    vr t, vr n[3], vr p[3])
 {
     vr f[3], e[3], k[3], side[3], g[3], on_side[3];
     R(unit_offset)(solid, prim, from, f);
     R(to_unit)(solid, d, e);
     const R(span) span = R(span_of)(solid, f, e);
-    const rm entering = r_lt(r_set(0), span.t[0]);
-    const vr t = r_select(entering, span.t[0], span.t[1]);
+    const rm entering = r_eq(t, span.t[0]);
     const rm flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
     for (int c = 0; c < 3; c++)
         on_side[c] = k[c] = f[c] + t * e[c];

@@ -31,7 +31,12 @@
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
 
-typedef enum glint_prim_kind { GLINT_PRIM_SPHERE, GLINT_PRIM_PLANE, GLINT_PRIM_TRIANGLE, GLINT_PRIM_SOLID } glint_prim_kind;
+typedef enum glint_prim_kind {
+    GLINT_PRIM_SPHERE,
+    GLINT_PRIM_PLANE,
+    GLINT_PRIM_TRIANGLE,
+    GLINT_PRIM_SOLID
+} glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
 typedef struct glint_prim {
@@ -194,7 +199,8 @@ typedef struct glint_cast_args {
 //                 disk: in = out = -f.z / e.z; x = f.x + in e.x, y likewise; hits where x x + y y <= 1
 //                 and in <= out
 // A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward, b > 0 and
-//                 disc >= 0, at t = (b + b) / (a * scale), t > 0; nothing else is.
+//                 disc >= 0, at t = (b + b) / (a * scale), t > 0; a solid other than a disk where the lane is inward and its
+//                 span hits, at t = out, t > 0; nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
@@ -236,7 +242,7 @@ typedef struct glint_surface_args {
 //         n, double, then rounded: m = cross(f scale, g scale), n = m / sqrt(length2(m)) (each component divided)
 //         where it has corner normals: s = (w_0 normal_0 + w_1 normal_1) + w_2 normal_2, l = length2(s), s = s / sqrt(l); where
 //         not l > 0: s = n. The geometric n decides what is `back`; s = dot(s, back ? -n : n) < 0 ? -s : s is the normal.
-// solid:  f, e, in, out, t as in cast; k = f + t e
+// solid:  f, e, in, out as in cast; through what `in` is by where t = in, else `out`; k = f + t e
 //         through the curved side: ball: k = g = k / sqrt((k.x^2 + k.y^2) + k.z^2); else r = sqrt(k.x^2 + k.y^2), g = (k.x / r,
 //         k.y / r, cone ? -1 : 0), 0 for x and y where not r > 0; k.x, k.y = g.x h, g.y h with h = cone ? k.z : 1
 //         through a face: g = its outward normal (disk: +z), k's component there = the face's

@@ -111,7 +111,7 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             R(triangle_point)(prim, args->scale, from, d, w, p, &slack);
         else if (prim->kind == GLINT_PRIM_SOLID)
-            R(solid_surface)(&args->solids[prim->item], prim, from, d, n, p);
+            R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
     const rm back = r_lt(r_set(0), DOT(n, d));
     vr turned[3] = { r_select(back, -n[0], n[0]), r_select(back, -n[1], n[1]), r_select(back, -n[2], n[2]) };

@@ -301,11 +301,16 @@ static inline bool within_solid(const glint_solid *solid, const double offset[3]
         k[c] = DOT(solid->inverse[c], offset);
     const double round = k[0] * k[0] + k[1] * k[1];
     switch (solid->form) {
-    case GLINT_FORM_BALL: return round + k[2] * k[2] < 1;
-    case GLINT_FORM_BOX: return fabs(k[0]) < 1 && fabs(k[1]) < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CYLINDER: return round < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CONE: return round < k[2] * k[2] && k[2] > 0 && k[2] < 1;
-    default: return false;
+    case GLINT_FORM_BALL:
+        return round + k[2] * k[2] < 1;
+    case GLINT_FORM_BOX:
+        return fabs(k[0]) < 1 && fabs(k[1]) < 1 && fabs(k[2]) < 1;
+    case GLINT_FORM_CYLINDER:
+        return round < 1 && fabs(k[2]) < 1;
+    case GLINT_FORM_CONE:
+        return round < k[2] * k[2] && k[2] > 0 && k[2] < 1;
+    default:
+        return false;
     }
 }
 
