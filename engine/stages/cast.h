@@ -702,8 +702,7 @@ static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t a
         const R(span) span = R(span_of)(solid, f, e);
         const rm leaves = rm_and(span.hit, r_lt(r_set(0), span.t[1]));
         *t = r_select(mask, span.t[1], *t);
-        return rm_or(rm_andnot(hit, mask),
-                     rm_and(rm_from_bits(solid->form == GLINT_FORM_DISK ? 0 : inward), leaves));
+        return rm_or(rm_andnot(hit, mask), rm_and(rm_from_bits(solid->form == GLINT_FORM_DISK ? 0 : inward), leaves));
     }
     if (prim->kind != GLINT_PRIM_SPHERE)
         return rm_andnot(hit, mask);
