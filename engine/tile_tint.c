@@ -102,6 +102,7 @@ static void cast(struct glint_tint *tint, const glint_tile *tile, const glint_ti
                                     .prim = tint->prim,
                                     .prims = frame->geometry.prims,
                                     .scale = frame->geometry.scale,
+                                    .solids = frame->geometry.solids,
                                     .corner_normals = frame->geometry.corner_normals,
                                     .t = tint->t,
                                     .material = tint->material,
