@@ -123,6 +123,11 @@ static void read_enum(lua_State *L, int index, const char *path, const char *con
     }
     luaL_addchar(&list, '"');
     luaL_pushresult(&list);
+    const char *near = NULL;
+    for (const char *const *name = names; *name && lua_type(L, index) == LUA_TSTRING; name++)
+        near = glintL_nearer(lua_tostring(L, index), near, *name);
+    if (near)
+        glintL_error(L, "%s: %s expected, got %s; did you mean \"%s\"?", path, lua_tostring(L, -1), got, near);
     glintL_error(L, "%s: %s expected, got %s", path, lua_tostring(L, -1), got);
 }
 

@@ -8,19 +8,25 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
-static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", NULL };
+static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", "cook_torrance", NULL };
+static const char *const DISTRIBUTIONS[] = { "ggx", "beckmann", NULL };
 
 static const glintL_field FIELDS[] = {
     { .name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS },
     { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient) },
     { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse) },
-    { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular) },
+    { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular), .set_offset = AT(has_specular) },
     { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess) },
     { .name = "mirror", .kind = GLINTL_COLOR, .offset = AT(mirror), .set_offset = AT(has_mirror) },
     { .name = "transmission", .kind = GLINTL_COLOR, .offset = AT(transmission) },
     { .name = "ior", .kind = GLINTL_NUMBER, .offset = AT(ior) },
     { .name = "fresnel", .kind = GLINTL_BOOLEAN, .offset = AT(fresnel) },
     { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption) },
+    { .name = "normalized", .kind = GLINTL_BOOLEAN, .offset = AT(normalized) },
+    { .name = "matched", .kind = GLINTL_BOOLEAN, .offset = AT(matched) },
+    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness) },
+    { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
+    { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };
@@ -37,22 +43,18 @@ static void get(const void *object, void *desc) { memcpy(desc, glint_material_ge
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
-    return glint_material_set(object, desc, error);
+    desc_type d;
+    memcpy(&d, desc, sizeof d);
+    if (!d.has_specular) // it was set to nil
+        memset(d.specular, 0, sizeof d.specular);
+    return glint_material_set(object, &d, error);
 }
 
 static void *retain(void *object) { return glint_material_retain(object); }
 
 static void release(void *object) { glint_material_release(object); }
 
-static void follow(void *desc)
-{
-    desc_type *d = desc;
-    if (!d->has_ambient)
-        memcpy(d->ambient, d->diffuse, sizeof d->ambient);
-    for (int c = 0; c < 3 && !d->has_mirror; c++)
-        d->mirror[c] = d->fresnel;
-    d->has_ambient = d->has_mirror = true;
-}
+static void follow(void *desc) { glint_material_desc_resolve(desc); }
 
 static const char WARNED; // its address is the registry's key: true once the script was warned
 
@@ -139,7 +141,8 @@ static int new_material(lua_State *L)
     glintL_remember(L, material);
     accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
     glintL_note_material(L, 2,
-                         desc.model != GLINT_MODEL_LAMBERT && is_given(L, "shininess") && !is_given(L, "specular"));
+                         (desc.model == GLINT_MODEL_PHONG || desc.model == GLINT_MODEL_BLINN_PHONG) &&
+                             is_given(L, "shininess") && !is_given(L, "specular"));
     return 1;
 }
 

@@ -47,14 +47,21 @@ typedef struct glint_material glint_material;
 typedef enum glint_model {
     GLINT_MODEL_PHONG, ///< S = max(0, r.v)^shininess, r = 2(n.l)n - l
     GLINT_MODEL_BLINN_PHONG, ///< S = max(0, n.h)^shininess, h = (l + v)/|l + v|
-    GLINT_MODEL_LAMBERT ///< no specular term
+    GLINT_MODEL_LAMBERT, ///< no specular term
+    GLINT_MODEL_COOK_TORRANCE ///< S = pi D F G / (4 n.v): microfacets; F is Schlick's, from f0 or ior
 } glint_model;
+
+/// How the slopes of microfacets are spread; alpha = roughness^2 is the width, G is Smith's, height-correlated (E. Heitz,
+/// "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014; Beckmann's by the fit of
+/// B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
+typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
 typedef struct glint_material_desc {
     glint_model model;
     bool has_ambient; ///< false: `ambient` follows `diffuse`
     double ambient[3]; ///< reflectances: finite, >= 0; above 1 a surface gives more light than it gets
     double diffuse[3]; ///< default 0.8
+    bool has_specular; ///< cook_torrance alone reads it; false: its specular is 1
     double specular[3]; ///< default 0
     double shininess; ///< exponent, finite, >= 0; default 32. 0 gives S = 1 wherever r.v > 0
     bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
@@ -64,10 +71,22 @@ typedef struct glint_material_desc {
     double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or that of the object around
     bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
     double absorption[3]; ///< per world unit of way inside, >= 0; default 0: of light, exp(-absorption way) is left
+    /// phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994); blinn_phong:
+    /// S = (s + 2)(s + 4)/(8 (2^(-s/2) + s)) (n.h)^s (n.l) (F. Giesen, "Phong and Blinn-Phong normalization factors",
+    /// 2009): reciprocal, and no more light leaves than comes. Other models do not read it
+    bool normalized;
+    bool matched; ///< blinn_phong: the exponent is 4 s, whose highlight is nearest Phong's. Other models do not read it
+    // cook_torrance:
+    double roughness; ///< 0 .. 1, default 0.3; below 1e-9 as 1e-9: a highlight narrower than any pixel
+    glint_distribution distribution; ///< default GGX
+    bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
+    double f0[3]; ///< what is reflected head-on, 0 .. 1; coloured for metals
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
 glint_material_desc glint_material_desc_default(void);
+/// Writes `ambient`, `specular`, `f0` and `mirror` where they follow other fields, and marks them as set.
+void glint_material_desc_resolve(glint_material_desc *desc);
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error);
 glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error);
 const glint_material_desc *glint_material_get(const glint_material *material);
@@ -402,7 +421,7 @@ typedef struct glint_effect {
 } glint_effect;
 
 typedef struct glint_stage_info {
-    const char *name; ///< "camera", "cast", "surface", "light", "occlude", "shade", "bounce", "resolve", "tone"
+    const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "shade", ...
     char key[33]; ///< hex XXH3-128 of exactly what the stage reads
     const char *why; ///< one line for people
 } glint_stage_info;

@@ -85,6 +85,8 @@ glint_status glint_check_shading(glint_shading shading, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);
+/// Whether it has a specular term that is not black.
+bool glint_material_is_shiny(const glint_material_desc *desc);
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size);
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size);
 

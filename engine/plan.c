@@ -5,8 +5,8 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",   "surface", "light", "occlude",
-                                                           "shade",  "bounce", "resolve", "tone" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "view",    "light", "facet",
+                                                           "occlude", "shade", "bounce",  "resolve", "tone" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -65,6 +65,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_CAMERA] = plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
+    plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;

@@ -17,7 +17,9 @@ typedef enum glint_stage_id {
     GLINT_STAGE_CAMERA,
     GLINT_STAGE_CAST,
     GLINT_STAGE_SURFACE,
+    GLINT_STAGE_VIEW,
     GLINT_STAGE_LIGHT,
+    GLINT_STAGE_FACET,
     GLINT_STAGE_OCCLUDE,
     GLINT_STAGE_SHADE,
     GLINT_STAGE_BOUNCE,
@@ -72,7 +74,8 @@ struct glint_plan {
     glint_geometry *geometry;
     glint_shade_material *materials; ///< in the geometry's order
     uint32_t material_count;
-    bool highlights; ///< some material and some light make one
+    bool highlights; ///< some material and some light make one: of the next two kinds
+    bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
     glint_plan_light *lights;
     glint_lamp *lamps; ///< of all area lights
     uint32_t light_count, shadow_count;

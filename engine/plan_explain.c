@@ -113,8 +113,26 @@ static bool is_mirror(const glint_material_desc *d) { return d->has_mirror ? any
 static bool is_transparent(const glint_material_desc *d) { return any(d->transmission); }
 static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
 
-static bool is_phong(const glint_material_desc *d) { return d->model == GLINT_MODEL_PHONG && any(d->specular); }
-static bool is_blinn(const glint_material_desc *d) { return d->model == GLINT_MODEL_BLINN_PHONG && any(d->specular); }
+static bool shines_as(const glint_material_desc *d, glint_model model)
+{
+    return d->model == model && glint_material_is_shiny(d);
+}
+static bool is_phong(const glint_material_desc *d) { return shines_as(d, GLINT_MODEL_PHONG) && !d->normalized; }
+static bool is_even_phong(const glint_material_desc *d) { return shines_as(d, GLINT_MODEL_PHONG) && d->normalized; }
+static bool is_blinn(const glint_material_desc *d) { return shines_as(d, GLINT_MODEL_BLINN_PHONG) && !d->normalized; }
+static bool is_even_blinn(const glint_material_desc *d)
+{
+    return shines_as(d, GLINT_MODEL_BLINN_PHONG) && d->normalized;
+}
+static bool is_matched(const glint_material_desc *d) { return shines_as(d, GLINT_MODEL_BLINN_PHONG) && d->matched; }
+static bool is_ggx(const glint_material_desc *d)
+{
+    return shines_as(d, GLINT_MODEL_COOK_TORRANCE) && d->distribution == GLINT_DISTRIBUTION_GGX;
+}
+static bool is_beckmann(const glint_material_desc *d)
+{
+    return shines_as(d, GLINT_MODEL_COOK_TORRANCE) && d->distribution == GLINT_DISTRIBUTION_BECKMANN;
+}
 
 static void materials(explainer *e, const char *effect, material_test *test)
 {
@@ -197,7 +215,12 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->highlights) {
         materials(e, "Phong highlight", is_phong);
+        materials(e, "normalised Phong highlight", is_even_phong);
         materials(e, "Blinn-Phong highlight", is_blinn);
+        materials(e, "normalised Blinn-Phong highlight", is_even_blinn);
+        materials(e, "exponent matched to Phong's", is_matched);
+        materials(e, "GGX microfacets", is_ggx);
+        materials(e, "Beckmann microfacets", is_beckmann);
     }
     if (plan->runs[GLINT_STAGE_BOUNCE]) {
         materials(e, "mirror reflection", is_mirror);
@@ -222,7 +245,9 @@ static void list_stages(glint_plan *plan)
         "rays of each sample",
         "nearest object and distance of each ray",
         "point, normal and material of each hit",
+        "cosine of the angle each point is seen at, for microfacets",
         "direction, distance and highlight angle of each light",
+        "half vector and Fresnel factor of each light, for microfacets",
         "which points each shadow-casting light reaches",
         "ambient, diffuse and specular terms",
         "mirrored and refracted rays, and what they find",

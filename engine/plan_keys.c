@@ -28,7 +28,9 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAMERA] = READS(VIEW),
     [GLINT_STAGE_CAST] = READS(PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
+    [GLINT_STAGE_VIEW] = 0,
     [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
+    [GLINT_STAGE_FACET] = 0,
     [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
@@ -74,7 +76,8 @@ static glint_key light_color_key(const glint_plan_light *l, glint_key key)
 
 static glint_key highlights_key(const glint_plan *plan, glint_key key)
 {
-    ADD(key, plan->highlights);
+    ADD(key, plan->powers);
+    ADD(key, plan->facets);
     for (uint32_t i = 0; i < plan->material_count; i++)
         ADD(key, plan->materials[i].highlight);
     return key;
@@ -82,10 +85,11 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
 
 static glint_key material_key(const glint_shade_material *m, glint_key key)
 {
-    const double exponent[] = { m->shininess, m->highlight };
+    const double exponent[] = { m->shininess, m->highlight, m->lobe, m->alpha };
     ADD(key, m->diffuse);
     ADD(key, m->specular);
     ADD(key, m->ambient);
+    ADD(key, m->grazing);
     ADD(key, exponent);
     return key;
 }

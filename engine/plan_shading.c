@@ -19,18 +19,46 @@ static void bounded(double out[3], const double color[3], double factor)
         out[c] = color[c] == 0 ? 0 : fmin(color[c] * factor, STRENGTH_MAX);
 }
 
+/// Phong and Blinn-Phong.
+static void power_init(glint_shade_material *out, const glint_material_desc *desc)
+{
+    const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
+    const double s = fmin(blinn && desc->matched ? 4 * desc->shininess : desc->shininess, FLT_MAX);
+    double norm = 1;
+    if (desc->normalized)
+        norm = blinn ? (s + 2) * (s + 4) / (8 * (glint_pow(2, -s / 2) + s)) : (s + 2) / 2;
+    out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
+    out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
+    out->shininess = (float)s;
+    bounded(out->specular, desc->specular, norm);
+}
+
+static void facets_init(glint_shade_material *out, const glint_material_desc *desc)
+{
+    out->highlight = GLINT_HIGHLIGHT_FACETS;
+    out->lobe = desc->distribution == GLINT_DISTRIBUTION_BECKMANN ? GLINT_LOBE_BECKMANN : GLINT_LOBE_GGX;
+    out->alpha = (float)fmax(desc->roughness * desc->roughness, 1e-18);
+    for (int c = 0; c < 3; c++) {
+        const double ks = fmin(desc->specular[c], STRENGTH_MAX);
+        out->specular[c] = ks * desc->f0[c];
+        out->grazing[c] = ks * (1 - desc->f0[c]);
+    }
+}
+
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3])
 {
-    *out = (glint_shade_material) { .shininess = (float)fmin(desc->shininess, FLT_MAX) };
-    bounded(out->diffuse, desc->diffuse, 1);
-    bounded(out->specular, desc->specular, 1);
-    const double *ka = desc->has_ambient ? desc->ambient : desc->diffuse;
+    glint_material_desc d = *desc;
+    glint_material_desc_resolve(&d);
+    *out = (glint_shade_material) { 0 };
+    bounded(out->diffuse, d.diffuse, 1);
     for (int c = 0; c < 3; c++)
-        out->ambient[c] = ka[c] == 0 ? 0 : fmin(ka[c] * ambient[c], STRENGTH_MAX);
-    if (desc->model == GLINT_MODEL_LAMBERT)
-        vec_scale(out->specular, out->specular, 0);
-    else if (!is_black(out->specular))
-        out->highlight = desc->model == GLINT_MODEL_PHONG ? GLINT_HIGHLIGHT_PHONG : GLINT_HIGHLIGHT_BLINN;
+        out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
+    if (!glint_material_is_shiny(&d))
+        return;
+    if (d.model == GLINT_MODEL_COOK_TORRANCE)
+        facets_init(out, &d);
+    else
+        power_init(out, &d);
 }
 
 /// Whether the light is taken for many points of its surface.
@@ -120,7 +148,8 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
     bounded(plan->background, scene->desc.background, 1);
 }
 
-static glint_status make_materials(glint_plan *plan, bool *highlights, glint_error *error)
+/// Which kinds of highlight there are among the materials.
+static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
     plan->materials = glint_alloc(list->count, sizeof *plan->materials);
@@ -129,7 +158,9 @@ static glint_status make_materials(glint_plan *plan, bool *highlights, glint_err
     for (size_t i = 0; i < list->count; i++) {
         glint_shade_material *material = &plan->materials[plan->material_count++];
         glint_shade_material_init(material, &((const glint_material *)list->items[i])->desc, plan->ambient);
-        *highlights = *highlights || material->highlight;
+        *powers =
+            *powers || material->highlight == GLINT_HIGHLIGHT_PHONG || material->highlight == GLINT_HIGHLIGHT_BLINN;
+        *facets = *facets || material->highlight == GLINT_HIGHLIGHT_FACETS;
     }
     return GLINT_OK;
 }
@@ -176,10 +207,10 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
 
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
-    bool shiny = false, glossy_light = false;
+    bool powers = false, facets = false, glossy_light = false;
     size_t lamps = 0;
     total_ambient(plan, scene);
-    glint_status status = make_materials(plan, &shiny, error);
+    glint_status status = make_materials(plan, &powers, &facets, error);
     if (!status)
         status = make_room(plan, scene, error);
     if (status)
@@ -193,6 +224,8 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
         glossy_light = glossy_light || !is_black(light.specular);
         lamps += add_light(plan, &light, desc, plan->lamps + lamps);
     }
-    plan->highlights = shiny && glossy_light;
+    plan->powers = powers && glossy_light;
+    plan->facets = facets && glossy_light;
+    plan->highlights = plan->powers || plan->facets;
     return GLINT_OK;
 }

@@ -13,6 +13,7 @@ typedef struct lane_group {
     _Alignas(64) double t[GLINT_GROUP];
     _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP];
     _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
+    _Alignas(64) float facing[GLINT_GROUP], sine2[GLINT_GROUP], schlick[GLINT_GROUP];
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
     uint16_t active, hits, lit, back, dark;
 } lane_group;
@@ -92,6 +93,29 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     return status;
 }
 
+/// What microfacets need beside `light`, which has run.
+static void evaluate_facets(const glint_stages *stages, const glint_light_args *light, lane_group *g)
+{
+    glint_view_args view = { .group_count = 1, .hits = &g->hits, .facing = g->facing };
+    glint_facet_args facet = { .group_count = 1,
+                               .material = light->material,
+                               .materials = light->materials,
+                               .directional = true,
+                               .scale = 1,
+                               .sample_count = 1,
+                               .lit = { &g->lit },
+                               .sine2 = { g->sine2 },
+                               .schlick = { g->schlick } };
+    vec_copy(facet.position, light->position);
+    for (int c = 0; c < 3; c++) {
+        facet.point[c] = g->point[c];
+        facet.normal[c] = view.normal[c] = g->normal[c];
+        facet.direction[c] = view.direction[c] = g->direction[c];
+    }
+    stages->geometry[GLINT_DOUBLE].view(&view);
+    stages->geometry[GLINT_DOUBLE].facet(&facet);
+}
+
 static void evaluate_lane(const glint_stages *stages, const glint_material_desc *desc, const double to_light[3],
                           lane_group *g)
 {
@@ -106,12 +130,14 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
                                .directional = true,
                                .scale = 1,
                                .sample_count = 1,
-                               .highlights = material.highlight,
+                               .highlights = material.highlight && material.highlight != GLINT_HIGHLIGHT_FACETS,
                                .lit = { &g->lit },
                                .cosine = { g->cosine },
                                .log2_specular = { g->log2_specular } };
     vec_copy(light.position, to_light);
-    glint_shade_light strength = { .lit = &g->lit, .cosine = g->cosine, .log2_specular = g->log2_specular };
+    glint_shade_light strength = {
+        .lit = &g->lit, .cosine = g->cosine, .log2_specular = g->log2_specular, .sine2 = g->sine2, .schlick = g->schlick
+    };
     vec_copy(strength.diffuse, white);
     vec_copy(strength.specular, white);
     glint_shade_args shade = { .group_count = 1,
@@ -119,6 +145,7 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
                                .hits = &g->hits,
                                .material = g->material,
                                .materials = &material,
+                               .facing = g->facing,
                                .highlights = material.highlight,
                                .first = true,
                                .lights = &strength,
@@ -131,6 +158,8 @@ static void evaluate_lane(const glint_stages *stages, const glint_material_desc 
             shade.sum[k][c] = g->sum[k][c];
     }
     stages->geometry[GLINT_DOUBLE].light(&light);
+    if (material.highlight == GLINT_HIGHLIGHT_FACETS)
+        evaluate_facets(stages, &light, g);
     stages->shade(&shade);
 }
 

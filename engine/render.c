@@ -82,6 +82,7 @@ static void free_tile(glint_tile *tile)
         return;
     glint_bounce_destroy(tile->bounce);
     glint_tint_destroy(tile->tint);
+    free(tile->facets);
     free(tile);
 }
 
@@ -92,7 +93,10 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
         tile->bounce = glint_bounce_create();
     if (plan->tints && !tile->tint)
         tile->tint = glint_tint_create();
-    return (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
+    if (plan->facets && !tile->facets)
+        tile->facets = glint_alloc(1, sizeof *tile->facets);
+    return (tile->facets || !plan->facets) && (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) &&
+           (tile->tint || !plan->tints);
 }
 
 void glint_renderer_destroy(glint_renderer *renderer)

@@ -16,9 +16,11 @@ void glint_reuse_clear(glint_reuse *reuse)
     for (size_t i = 0; i < reuse->tile_count; i++) {
         glint_kept_tile *tile = &reuse->tiles[i];
         free(tile->t);
+        free(tile->facing);
         for (uint32_t k = 0; k < reuse->light_count; k++) {
             free(tile->lights[k].cosine);
             free(tile->lights[k].open);
+            free(tile->lights[k].sine2);
         }
         free(tile->lights);
     }
@@ -66,6 +68,8 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
     reuse->keep_cast = glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
+    reuse->keep_view = glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
+    reuse->view = plan->keys[GLINT_STAGE_VIEW];
     for (uint32_t i = 0; i < lights; i++) {
         const glint_plan_light *light = &plan->lights[i];
         reuse->keep_light[i] = glint_key_equal(reuse->light[i], light->key);
@@ -180,4 +184,24 @@ bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light)
     if (!light->open)
         light->open = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES / 8);
     return light->open != NULL;
+}
+
+bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile)
+{
+    if (!tile->facing)
+        tile->facing = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES * sizeof *tile->facing);
+    return tile->facing != NULL;
+}
+
+bool glint_reuse_hold_facet(glint_reuse *reuse, glint_kept_light *light)
+{
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
+    if (!light->sine2) {
+        float *block = hold(reuse, 2 * samples * sizeof *block);
+        if (!block)
+            return false;
+        light->sine2 = block;
+        light->schlick = block + samples;
+    }
+    return true;
 }

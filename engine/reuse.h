@@ -21,6 +21,8 @@ typedef struct glint_kept_light {
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
     uint16_t *open; ///< its own block: lit lanes that the light reaches
+    glint_key facet; ///< of what is in the next
+    float *sine2, *schlick; ///< a block of their own, sine2 first
     glint_key place; ///< the light's place and shadows when `reaches` was found; all zero: never
     bool reaches; ///< some lane
 } glint_kept_light;
@@ -32,6 +34,8 @@ typedef struct glint_kept_tile {
     void *t; ///< doubles or floats; in one block with prim and hits
     uint32_t *prim;
     uint16_t *hits;
+    glint_key view;
+    float *facing; ///< its own block
     glint_kept_light *lights;
     // what the tile's pixels show, as far as known
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
@@ -50,9 +54,9 @@ typedef struct glint_reuse {
     glint_kept_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
-    glint_key cast, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    glint_key cast, view, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
     // which results this frame has in common with the last, and therefore keeps
-    bool keep_cast, keep_light[GLINT_KEPT_LIGHTS];
+    bool keep_cast, keep_view, keep_light[GLINT_KEPT_LIGHTS];
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -72,5 +76,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
+bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile);
+bool glint_reuse_hold_facet(glint_reuse *reuse, glint_kept_light *light);
 
 #endif

@@ -83,6 +83,8 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
         if (reuse->keep_light[i] && plan->lights[i].shadows && kept->lights[i].open)
             kept->lights[i].occlude = plan->lights[i].key;
     }
+    if (plan->runs[GLINT_STAGE_FACET])
+        glint_tile_sign_facets(tile, frame);
 }
 
 // ---- What the tile shows ----
@@ -200,6 +202,34 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     return any;
 }
 
+/// What else a light's rows do to microfacets.
+static void find_facets(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+                        uint32_t count)
+{
+    uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
+    for (uint32_t i = slot; i < slot + count; i++) {
+        if (glint_tile_facet_memory(tile, frame, w->sample, first + i, i))
+            glint_tile_book(tile, frame, GLINT_STAGE_FACET, true);
+        else
+            unknown[left++] = i;
+    }
+    if (!left)
+        return;
+    need_points(tile, frame, w);
+    glint_tile_facet(tile, frame, first, unknown, left);
+}
+
+/// The angles that microfacets are seen at.
+static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (glint_tile_view_memory(tile, frame, w->sample)) {
+        glint_tile_book(tile, frame, GLINT_STAGE_VIEW, true);
+        return;
+    }
+    need_points(tile, frame, w);
+    glint_tile_view(tile, frame);
+}
+
 /// What one light does to this sample: `count` rows of the plan from `first + slot` on.
 static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
@@ -224,6 +254,8 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
         glint_tile_shine(tile, frame, first, shine, shining);
     if (occluding)
         glint_tile_occlude(tile, frame, first, occlude, occluding);
+    if (frame->plan->runs[GLINT_STAGE_FACET])
+        find_facets(tile, frame, w, first, slot, count);
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->kept && first + i < frame->reuse->light_count)
             note_light(tile, first + i, i, light->shadows, w->sample);
@@ -266,6 +298,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     const bool any = find_hits(tile, frame, &w);
     const uint32_t lights = any ? frame->plan->light_count : 0;
     uint32_t from = 0;
+    if (any && frame->plan->runs[GLINT_STAGE_VIEW])
+        find_view(tile, frame, &w);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         find_lights(tile, frame, &w, from, count);
@@ -280,6 +314,11 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     } while (from < lights && !glint_tile_cancelled(frame));
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
+}
+
+static bool is_per_light(glint_stage_id id)
+{
+    return id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_FACET || id == GLINT_STAGE_OCCLUDE;
 }
 
 static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
@@ -302,7 +341,7 @@ static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
     tile->counts.nonfinite += tile->kept->nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id])
-            tile->counts.reuses[id] += id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_OCCLUDE ? plan->light_count : 1;
+            tile->counts.reuses[id] += is_per_light((glint_stage_id)id) ? plan->light_count : 1;
     return true;
 }
 

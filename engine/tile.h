@@ -39,6 +39,12 @@ typedef struct glint_tile_light {
     uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
 } glint_tile_light;
 
+/// The same of the stages view and facet.
+typedef struct glint_tile_facets {
+    _Alignas(64) float facing[GLINT_TILE_SAMPLES];
+    _Alignas(64) float sine2[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES], schlick[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
+} glint_tile_facets;
+
 /// Where the results of the current sample are: in the tile's own memory or in what is kept between frames.
 typedef struct glint_tile_sample {
     void *t;
@@ -46,8 +52,10 @@ typedef struct glint_tile_sample {
     uint16_t *hits;
     struct {
         float *cosine, *attenuation, *log2_specular;
+        float *sine2, *schlick; ///< only in frames with microfacets, as `facing`
         uint16_t *lit, *open;
     } light[GLINT_LIGHT_CHUNK];
+    float *facing;
 } glint_tile_sample;
 
 /// A worker's memory for one tile. Arrays of real are as long as doubles need.
@@ -78,6 +86,7 @@ typedef struct glint_tile {
     struct glint_tint *tint;
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
+    glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
 } glint_tile;
 
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
@@ -157,6 +166,19 @@ static inline void glint_real_put(void *array, glint_precision precision, uint32
     else
         ((double *)array)[i] = x;
 }
+
+/// tile_facets.c: for frames with microfacets. The first two point `at` to where results are or go, in sample k of each
+/// pixel, and return whether they are there already.
+bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
+                             uint32_t slot);
+void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count);
+/// Lets a tile write view's and facet's results into the own memory of another, which has shaded its sample.
+void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
+/// Writes down what the kept arrays hold now.
+void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);

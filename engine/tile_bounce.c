@@ -338,6 +338,8 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         count++;
     } while (slot + count < end && lights[slot + count].joined);
     glint_tile_shine(tile, frame, first, slots, count);
+    if (frame->plan->runs[GLINT_STAGE_FACET])
+        glint_tile_facet(tile, frame, first, slots, count);
     if (lights[slot].shadows)
         glint_tile_occlude(tile, frame, first, slots, count);
     return count;
@@ -352,6 +354,8 @@ static void light_batch(glint_tile *tile, const glint_tile_frame *frame, bool an
     for (int k = 0; k < GLINT_TERM_LOCAL; k++)
         for (int c = 0; c < 3; c++)
             memset(tile->sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->sum[k][c]);
+    if (any && plan->runs[GLINT_STAGE_VIEW])
+        glint_tile_view(tile, frame);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count;)
@@ -395,7 +399,7 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
         spawn(bounce, tile, frame, level);
 }
 
-static void begin(struct glint_bounce *bounce, const glint_tile *to)
+static void begin(struct glint_bounce *bounce, const glint_tile *to, const glint_tile_frame *frame)
 {
     glint_tile *tile = &bounce->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
@@ -412,6 +416,8 @@ static void begin(struct glint_bounce *bounce, const glint_tile *to)
         tile->at.light[i].lit = own->lit;
         tile->at.light[i].open = own->open;
     }
+    if (frame->plan->facets)
+        glint_tile_lend_facets(tile, to);
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
@@ -420,7 +426,7 @@ static void begin(struct glint_bounce *bounce, const glint_tile *to)
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->bounce;
-    begin(bounce, tile);
+    begin(bounce, tile, frame);
     spawn(bounce, tile, frame, 0);
     for (uint32_t level = 1;;) {
         while (level > 0 && bounce->counts[level] == 0)

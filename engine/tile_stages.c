@@ -177,7 +177,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .spot = light->is_spot ? &light->spot : NULL,
                               .sample_count = count,
                               .attenuated = light->attenuated,
-                              .highlights = plan->highlights };
+                              .highlights = plan->powers };
     vec_copy(args.position, light->position);
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
@@ -239,7 +239,9 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                                           .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
                                           .cosine = tile->at.light[i].cosine,
                                           .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
-                                          .log2_specular = tile->at.light[i].log2_specular };
+                                          .log2_specular = tile->at.light[i].log2_specular,
+                                          .sine2 = tile->at.light[i].sine2,
+                                          .schlick = tile->at.light[i].schlick };
         vec_copy(lights[i].diffuse, light->diffuse);
         vec_copy(lights[i].specular, light->specular);
     }
@@ -248,6 +250,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .hits = tile->at.hits,
                               .material = tile->material,
                               .materials = plan->materials,
+                              .facing = tile->at.facing,
                               .highlights = plan->highlights,
                               .first = from == 0,
                               .lights = lights,

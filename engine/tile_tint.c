@@ -183,6 +183,7 @@ static void shade(struct glint_tint *tint, glint_tile *tile, const glint_tile_fr
                               .hits = tile->at.hits,
                               .material = tile->material,
                               .materials = frame->plan->materials,
+                              .facing = tile->at.facing,
                               .highlights = frame->plan->highlights,
                               .lights = lights,
                               .light_count = 3 };
@@ -190,7 +191,9 @@ static void shade(struct glint_tint *tint, glint_tile *tile, const glint_tile_fr
         lights[c] = (glint_shade_light) { .lit = tint->arrived,
                                           .cosine = tile->at.light[slot].cosine,
                                           .attenuation = tint->attenuation[c],
-                                          .log2_specular = tile->at.light[slot].log2_specular };
+                                          .log2_specular = tile->at.light[slot].log2_specular,
+                                          .sine2 = tile->at.light[slot].sine2,
+                                          .schlick = tile->at.light[slot].schlick };
         lights[c].diffuse[c] = light->diffuse[c];
         lights[c].specular[c] = light->specular[c];
         for (int k = 0; k < GLINT_TERM_LOCAL; k++)

@@ -73,10 +73,13 @@ typedef struct field {
 
 static const field material_fields[] = {
 #define M(...) FIELD(glint_material_desc, __VA_ARGS__)
-    M(model, CHOICE, 0, 3),       M(has_ambient, FLAG, 0, 1),   M(ambient, COLOR, 0, 1),   M(diffuse, COLOR, 0, 1),
-    M(specular, COLOR, 0, 1),     M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1), M(mirror, COLOR, 0, 1),
-    M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),       M(fresnel, FLAG, 0, 1),    M(absorption, COLOR, 0, 1),
-    M(name, FIXED, 0, 0),
+    M(model, CHOICE, 0, 4),       M(has_specular, FLAG, 0, 1), M(normalized, FLAG, 0, 1),
+    M(matched, FLAG, 0, 1),       M(roughness, NUMBER, 0, 1),  M(distribution, CHOICE, 0, 2),
+    M(has_f0, FLAG, 0, 1),        M(f0, COLOR, 0, 1),          M(has_ambient, FLAG, 0, 1),
+    M(ambient, COLOR, 0, 1),      M(diffuse, COLOR, 0, 1),     M(specular, COLOR, 0, 1),
+    M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1),   M(mirror, COLOR, 0, 1),
+    M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),      M(fresnel, FLAG, 0, 1),
+    M(absorption, COLOR, 0, 1),   M(name, FIXED, 0, 0),
 #undef M
 };
 

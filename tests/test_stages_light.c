@@ -1,4 +1,4 @@
-/// light on every instruction set against the scalar reference, and how accurate its logarithm is.
+/// light, view and facet on every instruction set against the scalar reference, and how accurate its logarithm is.
 #include "tests/stage_case.h"
 
 #define ALIGNED _Alignas(64)
@@ -113,28 +113,37 @@ static void make_lamps(glint_light_args *args, glint_lamp *lamps, double radius)
     }
 }
 
-static void light_case(int precision, bool odd)
+/// A light's arguments but for what it writes; returns how many lanes there are.
+static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camera, glint_spot *spot, int precision,
+                                bool odd)
 {
     static glint_lamp lamps[GLINT_LIGHT_CHUNK];
-    glint_spot spot;
-    glint_light_args args = { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
-    glint_camera_args camera;
+    *args =
+        (glint_light_args) { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
     const double size = power_of_ten(-4, 6);
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
-        materials[i].highlight = below(3);
+        materials[i].highlight = below(4);
     if (one_in(2)) {
-        make_camera(&camera, precision, odd);
-        args.camera = &camera;
-        args.group_count = camera.group_count;
+        make_camera(camera, precision, odd);
+        args->camera = camera;
+        args->group_count = camera->group_count;
     }
-    const uint32_t n = args.group_count * GLINT_GROUP;
-    place_light(&args, size * power_of_ten(-3, 3));
+    place_light(args, size * power_of_ten(-3, 3));
     if (one_in(3))
-        make_spot(&args, &spot);
+        make_spot(args, spot);
     else if (one_in(2))
-        make_lamps(&args, lamps, size * power_of_ten(-4, 2));
-    args.hits = masks(args.group_count);
-    make_points(&args, precision, odd, size);
+        make_lamps(args, lamps, size * power_of_ten(-4, 2));
+    args->hits = masks(args->group_count);
+    make_points(args, precision, odd, size);
+    return args->group_count * GLINT_GROUP;
+}
+
+static void light_case(int precision, bool odd)
+{
+    glint_light_args args;
+    glint_camera_args camera;
+    glint_spot spot;
+    const uint32_t n = make_light_case(&args, &camera, &spot, precision, odd);
     FOR_EACH_TESTED
     {
         for (uint32_t s = 0; s < args.sample_count; s++) {
@@ -148,10 +157,57 @@ static void light_case(int precision, bool odd)
     }
 }
 
+/// view and facet at such points, for whatever lanes are lit.
+static void facet_case(int precision, bool odd)
+{
+    glint_light_args args, *light = &args;
+    glint_camera_args camera;
+    glint_spot spot;
+    const uint32_t n = make_light_case(light, &camera, &spot, precision, odd);
+    glint_view_args view = { .group_count = light->group_count, .hits = light->hits, .camera = light->camera };
+    glint_facet_args facet = { .group_count = light->group_count,
+                               .camera = light->camera,
+                               .material = light->material,
+                               .materials = materials,
+                               .directional = light->directional,
+                               .scale = light->scale,
+                               .sample_count = light->sample_count };
+    for (int c = 0; c < 3; c++) {
+        facet.position[c] = light->position[c];
+        facet.point[c] = light->point[c];
+        facet.normal[c] = view.normal[c] = light->normal[c];
+        facet.direction[c] = view.direction[c] = light->direction[c];
+    }
+    for (uint32_t s = 0; s < light->sample_count; s++) {
+        uint16_t *lit = masks(light->group_count);
+        for (uint32_t g = 0; g < light->group_count; g++)
+            lit[g] &= light->hits[g];
+        facet.lamp[s] = light->lamp[s];
+        facet.lit[s] = lit;
+    }
+    FOR_EACH_TESTED
+    {
+        view.facing = output("facing", KIND_FLOAT, n);
+        geometry(precision)->view(&view);
+        for (uint32_t s = 0; s < light->sample_count; s++) {
+            facet.sine2[s] = output("sine2", KIND_FLOAT, n);
+            facet.schlick[s] = output("schlick", KIND_FLOAT, n);
+        }
+        geometry(precision)->facet(&facet);
+        compare_outputs("view and facet");
+    }
+}
+
 static void test_light(void **state)
 {
     (void)state;
     run_cases(3 * CASES, 8000, light_case);
+}
+
+static void test_facet(void **state)
+{
+    (void)state;
+    run_cases(3 * CASES, 9000, facet_case);
 }
 
 // ---- elementary functions ----------------------------------------------------------------------------------------
@@ -235,6 +291,7 @@ int main(void)
     find_tested();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_light),
+        cmocka_unit_test(test_facet),
         cmocka_unit_test(test_log2_accuracy),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,6 +18,7 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
 {
     uint32_t n = groups * GLINT_GROUP;
     uint16_t *lit = input(KIND_U16, groups);
+    float *sine2 = input(KIND_FLOAT, n), *schlick = input(KIND_FLOAT, n);
     float *cosine = input(KIND_FLOAT, n), *attenuation = input(KIND_FLOAT, n), *log2_specular = input(KIND_FLOAT, n);
     random_color(light->diffuse);
     random_color(light->specular);
@@ -28,6 +29,8 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
             bool bright = facing >> i % GLINT_GROUP & 1;
             cosine[i] = (float)(!bright ? 0 : one_in(8) ? 1 : between(0, 1));
             attenuation[i] = bright ? one_in(20) ? FLT_MAX : (float)power_of_ten(-6, 1) : 0;
+            sine2[i] = !bright || one_in(9) ? GLINT_NO_SPECULAR : one_in(9) ? below(2) : (float)power_of_ten(-40, 0);
+            schlick[i] = bright ? (float)power_of_ten(-12, 0) : 0;
             log2_specular[i] = !bright || one_in(5) ? GLINT_NO_SPECULAR : one_in(9) ? 0 : (float)-power_of_ten(-9, 2);
         }
     }
@@ -35,6 +38,8 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
     light->cosine = cosine;
     light->attenuation = one_in(2) ? attenuation : NULL;
     light->log2_specular = log2_specular;
+    light->sine2 = sine2;
+    light->schlick = schlick;
 }
 
 static void make_materials(glint_shade_material *material, uint32_t count)
@@ -44,7 +49,10 @@ static void make_materials(glint_shade_material *material, uint32_t count)
         random_color(material[i].specular);
         random_color(material[i].ambient);
         material[i].shininess = (float)(one_in(8) ? 0 : power_of_ten(-2, 4));
-        material[i].highlight = below(3);
+        random_color(material[i].grazing);
+        material[i].highlight = below(4);
+        material[i].alpha = (float)(one_in(6) ? 1 : one_in(6) ? 1e-18 : power_of_ten(-6, 0));
+        material[i].lobe = material[i].highlight == GLINT_HIGHLIGHT_FACETS ? GLINT_LOBE_GGX + below(2) : below(2);
     }
 }
 
@@ -74,12 +82,14 @@ static void shade_case(int precision, bool odd)
     uint16_t *active = masks(groups), *hits = masks(groups);
     uint32_t *material = input(KIND_U32, n);
     double *before = one_in(2) ? input(KIND_DOUBLE, n) : NULL;
+    float *facing = input(KIND_FLOAT, n);
     uint32_t passes = one_in(3) ? 0 : below(16);
     for (uint32_t g = 0; g < groups; g++)
         hits[g] &= active[g];
     for (uint32_t i = 0; i < n; i++) {
         if (hits[i / GLINT_GROUP])
             material[i] = lane_of(hits, i) ? below(COUNT_OF(material_table)) : 0;
+        facing[i] = (float)(one_in(9) ? below(2) : between(0, 1));
         if (before)
             before[i] = one_in(3) ? 0 : power_of_ten(-5, 3);
     }
@@ -89,6 +99,7 @@ static void shade_case(int precision, bool odd)
                               .hits = hits,
                               .material = material,
                               .materials = material_table,
+                              .facing = facing,
                               .highlights = one_in(2),
                               .first = !before || one_in(2),
                               .lights = lights,

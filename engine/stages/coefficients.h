@@ -5,6 +5,8 @@
 
 #define GLINT_SQRT2 0x1.6a09e667f3bcdp+0
 #define GLINT_SQRT1_2 0x1.6a09e667f3bcdp-1
+#define GLINT_LOG2_E 1.442695f
+#define GLINT_EXP2_LEAST (-126.0f) ///< below it a distribution is 0, however high its peak
 #define GLINT_EXP2_LOWEST (-40.0f) ///< below it a highlight is 0: it could not change a 16-bit code
 
 // log2(1 + f) / f for f in [sqrt(1/2) - 1, sqrt(2) - 1]

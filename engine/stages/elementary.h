@@ -39,10 +39,10 @@ static inline vf f_log2(vf x, vf less_1)
     return f_log2_of_parts(f_select(near_1, f_set(0), e), f_select(near_1, less_1, m - f_set(1)));
 }
 
-/// 2^y for y <= 0; 0 below GLINT_EXP2_LOWEST.
-static inline vf f_exp2(vf y)
+/// 2^y for y <= 0; 0 below `lowest`, at least -126.
+static inline vf f_exp2_above(vf y, float lowest)
 {
-    fm vanishes = f_lt(y, f_set(GLINT_EXP2_LOWEST));
+    fm vanishes = f_lt(y, f_set(lowest));
     vf n = (y + f_set(12582912.0f)) - f_set(12582912.0f);
     vf f = y - n;
     vf p = f_set(GLINT_EXP2_D6);
@@ -55,6 +55,8 @@ static inline vf f_exp2(vf y)
     vf power = f_from_bits(i_shl(f_bits(n + f_set(0x1p23f + 127)), 23));
     return f_select(vanishes, f_set(0), p * power);
 }
+
+static inline vf f_exp2(vf y) { return f_exp2_above(y, GLINT_EXP2_LOWEST); }
 
 /// a + b and its rounding error (Knuth, TAOCP 4.2.2).
 static inline vd d_two_sum(vd a, vd b, vd *error)

@@ -10,13 +10,13 @@ typedef struct R(lamp_lanes) {
     _Alignas(64) real normal[3][GLINT_GROUP];
 } R(lamp_lanes);
 
-static inline void R(load_lamps)(const glint_light_args *args, R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK])
+static inline void R(load_lamps)(const glint_lamp *const lamp[], uint32_t count, R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK])
 {
-    for (uint32_t s = 0; s < args->sample_count; s++)
+    for (uint32_t s = 0; s < count; s++)
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i++) {
-                lanes[s].position[k][i] = (real)args->lamp[s]->position[k][i];
-                lanes[s].normal[k][i] = (real)args->lamp[s]->normal[k][i];
+                lanes[s].position[k][i] = (real)lamp[s]->position[k][i];
+                lanes[s].normal[k][i] = (real)lamp[s]->normal[k][i];
             }
 }
 

@@ -180,7 +180,7 @@ static void R(light_lamp)(const glint_light_args *args)
 {
     R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK];
     R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
-    R(load_lamps)(args, lanes);
+    R(load_lamps)(args->lamp, args->sample_count, lanes);
     R(light_groups)(args, LIGHT_LAMP, args->sample_count, lanes, groups);
 }
 

@@ -38,7 +38,7 @@ static float log2_of(float x, float less_1)
     return m >= (float)GLINT_SQRT2 ? log2_of_parts(0.5f * m - 1, e + 1) : log2_of_parts(m - 1, e);
 }
 
-/// 2^y for y in [-40, 0].
+/// 2^y for y in [-126, 0].
 static float exp2_of(float y)
 {
     static const float d[7] = { GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
@@ -172,12 +172,14 @@ static double square_root_double(double x) { return sqrt(x); }
 #define REAL float
 #define NAME(x) x##_float
 #include "engine/stages/ref_real.h"
+#include "engine/stages/ref_facet.h"
 #undef REAL
 #undef NAME
 
 #define REAL double
 #define NAME(x) x##_double
 #include "engine/stages/ref_real.h"
+#include "engine/stages/ref_facet.h"
 #undef REAL
 #undef NAME
 
@@ -187,10 +189,50 @@ typedef struct terms {
     double value[GLINT_TERM_COUNT][3];
 } terms; ///< of one sample
 
-/// The factors of a light and of those joined to it: w (n.l) and w S.
+/// Smith's masking for Beckmann's distribution, Lambda times x.
+static float beckmann_mask(float alpha, float x)
+{
+    float s = alpha * sqrtf(max_float(1 - x * x, 0));
+    float q = x / s;
+    return q < 1.6f ? (s * ((0.396f * q - 1.259f) * q + 1)) / (2.181f * q + 3.535f) : 0;
+}
+
+static float ggx(float alpha, float sine2, float l, float v)
+{
+    float aa = alpha * alpha, b = 1 - aa;
+    float u = alpha / (sine2 + aa * (1 - sine2));
+    float d = l * sqrtf(aa + b * (v * v)) + v * sqrtf(aa + b * (l * l));
+    return (u * u) * ((0.5f * l) / max_float(d, FLT_MIN));
+}
+
+static float beckmann(float alpha, float sine2, float l, float v)
+{
+    float aa = alpha * alpha, c = max_float(1 - sine2, 0x1p-40f);
+    float y = -((sine2 / c) * (GLINT_LOG2_E / aa));
+    float e = y < GLINT_EXP2_LEAST ? 0 : exp2_of(y);
+    float d = (l * v + v * beckmann_mask(alpha, l)) + l * beckmann_mask(alpha, v);
+    return (((e / c) / c) * (1 / aa)) * ((0.25f * l) / max_float(d, FLT_MIN));
+}
+
+/// The factors of a light and of those joined to it: w (n.l), w S, and of microfacets w S (1 - v.h)^5.
 typedef struct factors {
-    float diffuse, specular;
+    float diffuse, specular, grazing;
 } factors;
+
+/// w S of microfacets. Returns whether there is a half vector.
+static bool add_facets(const glint_shade_args *args, const glint_shade_light *light, float w, uint32_t i, factors *sum)
+{
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    float sine2 = light->sine2[i], l = light->cosine[i], v = args->facing[i];
+    if (!(sine2 > GLINT_NO_SPECULAR))
+        return false;
+    float s =
+        material->lobe == GLINT_LOBE_GGX ? ggx(material->alpha, sine2, l, v) : beckmann(material->alpha, sine2, l, v);
+    float f = min_float(w * min_float(s, GLINT_ATTENUATION_MAX), GLINT_ATTENUATION_MAX);
+    sum->specular += f;
+    sum->grazing += f * light->schlick[i];
+    return true;
+}
 
 /// Returns whether there is a highlight.
 static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
@@ -198,19 +240,19 @@ static bool add_factors(const glint_shade_args *args, const glint_shade_light *l
     const glint_shade_material *material = &args->materials[args->material[i]];
     float w = light->attenuation ? light->attenuation[i] : 1;
     sum->diffuse += w * light->cosine[i];
-    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE ||
-        !(light->log2_specular[i] > GLINT_NO_SPECULAR))
+    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE)
         return false;
-    sum->specular += w * highlight_strength(material->shininess, light->log2_specular[i]);
+    if (material->highlight == GLINT_HIGHLIGHT_FACETS)
+        return add_facets(args, light, w, i, sum);
+    if (!(light->log2_specular[i] > GLINT_NO_SPECULAR))
+        return false;
+    float s = highlight_strength(material->shininess, light->log2_specular[i]);
+    sum->specular += w * (material->lobe == GLINT_LOBE_POWER_COSINE ? s * light->cosine[i] : s);
     return true;
 }
 
 /// A light's share of a term is float; the term is a sum in double.
-static void add_share(double *term, float factor, double color)
-{
-    float share = factor * (color < FLT_MAX ? (float)color : FLT_MAX);
-    *term += (double)share;
-}
+static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
 
 static bool reaches(const glint_shade_light *light, uint32_t i)
 {
@@ -221,7 +263,7 @@ static bool reaches(const glint_shade_light *light, uint32_t i)
 static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i, terms *sum)
 {
     const glint_shade_light *light = &args->lights[k];
-    factors total = { 0, 0 };
+    factors total = { 0, 0, 0 };
     bool any = false, shiny = false;
     do {
         if (reaches(&args->lights[k], i)) {
@@ -232,9 +274,13 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
     } while (k < args->light_count && args->lights[k].joined);
     const glint_shade_material *material = &args->materials[args->material[i]];
     for (int c = 0; c < 3 && any; c++) {
-        add_share(&sum->value[GLINT_TERM_DIFFUSE][c], total.diffuse, material->diffuse[c] * light->diffuse[c]);
+        float share = share_of(total.diffuse, material->diffuse[c] * light->diffuse[c]);
+        sum->value[GLINT_TERM_DIFFUSE][c] += (double)share;
+        share = share_of(total.specular, material->specular[c] * light->specular[c]);
+        if (material->highlight == GLINT_HIGHLIGHT_FACETS)
+            share += share_of(total.grazing, material->grazing[c] * light->specular[c]);
         if (shiny)
-            add_share(&sum->value[GLINT_TERM_SPECULAR][c], total.specular, material->specular[c] * light->specular[c]);
+            sum->value[GLINT_TERM_SPECULAR][c] += (double)share;
     }
     return k;
 }
@@ -354,10 +400,10 @@ static void tone(const glint_tone_args *args)
 
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, light_double,
-                    occlude_double, bounce_double },
-                  { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, light_float,
-                    occlude_float, bounce_float } },
+    .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, view_double,
+                    light_double, facet_double, occlude_double, bounce_double },
+                  { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, view_float,
+                    light_float, facet_float, occlude_float, bounce_float } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -432,7 +432,7 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_
     if (args->highlights) {
         uint32_t kind = args->materials[args->material[i]].highlight;
         args->log2_specular[s][i] =
-            kind == GLINT_HIGHLIGHT_NONE
+            kind == GLINT_HIGHLIGHT_NONE || kind == GLINT_HIGHLIGHT_FACETS
                 ? GLINT_NO_SPECULAR
                 : NAME(highlight)(kind, l2, nl, l, normal, NAME(direction_of)(args->camera, args->direction, i));
     }

@@ -1,10 +1,11 @@
 // shade: the terms of each sample. A group is worked off material by material, so that colours and exponents are the
 // same in every lane. Lights are added in their order, in double. Contract: stages.h.
 
-/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material's exponent. Lanes that a
-/// light does not reach have 0.
+/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material. Lanes that a light does
+/// not reach have 0.
 typedef struct light_factors {
     _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
+    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
     uint32_t count;
 } light_factors;
@@ -35,10 +36,77 @@ static inline void put_factors(const glint_shade_light *light, const glint_shade
     }
 }
 
+/// Smith's masking by Beckmann's distribution as Heitz gives Walter's fit: x times Lambda at the cosine x.
+static inline vf beckmann_mask(vf alpha, vf x)
+{
+    const vf one = f_set(1), s = alpha * f_sqrt(f_max(one - x * x, f_set(0))), q = x / s;
+    const vf fit = (s * ((f_set(0.396f) * q - f_set(1.259f)) * q + one)) / (f_set(2.181f) * q + f_set(3.535f));
+    return f_select(f_lt(q, f_set(1.6f)), fit, f_set(0));
+}
+
+/// pi D G / (4 n.v) of the GGX distribution; l, v: the cosines.
+static inline vf ggx_lobe(const glint_shade_material *material, vf sine2, vf l, vf v)
+{
+    const vf one = f_set(1), alpha = f_set(material->alpha), aa = alpha * alpha, b = one - aa;
+    const vf u = alpha / (sine2 + aa * (one - sine2));
+    const vf d = l * f_sqrt(aa + b * (v * v)) + v * f_sqrt(aa + b * (l * l));
+    return (u * u) * ((f_set(0.5f) * l) / f_max(d, f_set(FLT_MIN)));
+}
+
+/// The same of Beckmann's.
+static inline vf beckmann_lobe(const glint_shade_material *material, vf sine2, vf l, vf v)
+{
+    const vf alpha = f_set(material->alpha), aa = alpha * alpha;
+    const vf c = f_max(f_set(1) - sine2, f_set(0x1p-40f));
+    const vf e = f_exp2_above(-((sine2 / c) * (f_set(GLINT_LOG2_E) / aa)), GLINT_EXP2_LEAST);
+    const vf d = (l * v + v * beckmann_mask(alpha, l)) + l * beckmann_mask(alpha, v);
+    return (((e / c) / c) * (f_set(1) / aa)) * ((f_set(0.25f) * l) / f_max(d, f_set(FLT_MIN)));
+}
+
+/// Stores what a light gives, or adds it to what is there.
+static inline void put_share(float *to, bool add, vf share)
+{
+    if (add)
+        share = f_load(to) + share;
+    f_store(to, share);
+}
+
+/// w S of a lobe other than a bare power, and of microfacets w S (1 - v.h)^5; otherwise as put_factors.
+static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, const glint_shade_light *light,
+                                               const glint_shade_material *material, size_t at, bool add,
+                                               float highlight[GLINT_GROUP], float grazing[GLINT_GROUP])
+{
+    const unsigned lit = light->lit[at / GLINT_GROUP];
+    const bool facets = material->highlight == GLINT_HIGHLIGHT_FACETS;
+    const vf most = f_set(GLINT_ATTENUATION_MAX), zero = f_set(0);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf w = f_set(1), share;
+        if (light->attenuation)
+            w = f_load(light->attenuation + at + i);
+        const vf cosine = f_load(light->cosine + at + i);
+        const vf angle = f_load((facets ? light->sine2 : light->log2_specular) + at + i);
+        const fm mask = fm_and(fm_from_bits(lit >> i & ((1u << VF) - 1)), f_lt(f_set(GLINT_NO_SPECULAR), angle));
+        if (!facets) {
+            share = w * (f_exp2(f_set(material->shininess) * angle) * cosine);
+            put_share(highlight + i, add, f_select(mask, share, zero));
+            continue;
+        }
+        const vf v = f_load(args->facing + at + i);
+        if (material->lobe == GLINT_LOBE_GGX)
+            share = ggx_lobe(material, angle, cosine, v);
+        else
+            share = beckmann_lobe(material, angle, cosine, v);
+        share = f_min(w * f_min(share, most), most);
+        put_share(highlight + i, add, f_select(mask, share, zero));
+        put_share(grazing + i, add, f_select(mask, share * f_load(light->schlick + at + i), zero));
+    }
+}
+
 static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 uint32_t g, light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
+    const bool power = specular && material->lobe == GLINT_LOBE_POWER;
     bool begun = false; // a light that the next ones may be joined to
     factors->count = 0;
     for (uint32_t k = 0; k < args->light_count; k++) {
@@ -48,9 +116,11 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
             continue;
         const uint32_t slot = begun ? factors->count - 1 : factors->count++;
         if (begun)
-            put_factors(light, material, specular, at, true, factors->diffuse[slot], factors->specular[slot]);
+            put_factors(light, material, power, at, true, factors->diffuse[slot], factors->specular[slot]);
         else
-            put_factors(light, material, specular, at, false, factors->diffuse[slot], factors->specular[slot]);
+            put_factors(light, material, power, at, false, factors->diffuse[slot], factors->specular[slot]);
+        if (specular && !power)
+            put_lobe(args, light, material, at, begun, factors->specular[slot], factors->grazing[slot]);
         factors->light[slot] = light;
         begun = true;
     }
@@ -73,6 +143,11 @@ static inline void light_share(const light_factors *factors, const glint_shade_m
     const float *factor = term ? factors->specular[k] : factors->diffuse[k];
     for (int i = 0; i < GLINT_GROUP; i += VF)
         f_store(share + i, f_load(factor + i) * f_set(color));
+    if (!term || material->highlight != GLINT_HIGHLIGHT_FACETS)
+        return;
+    const float rise = share_color(material->grazing[c], light->specular[c]);
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        f_store(share + i, f_load(share + i) + f_load(factors->grazing[k] + i) * f_set(rise));
 }
 
 /// A group's terms in float, before they are added up.
@@ -239,7 +314,7 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
             const bool specular = args->highlights && material->highlight;
             const unsigned lanes = lanes_equal(args->material + at, index) & left;
             find_factors(args, material, specular, g, &factors);
-            if (simple && lanes == 0xffff && factors.count <= 1) {
+            if (simple && lanes == 0xffff && factors.count <= 1 && material->highlight != GLINT_HIGHLIGHT_FACETS) {
                 shade_whole(args, material, specular, &factors, at);
                 done = true;
                 break;

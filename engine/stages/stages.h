@@ -108,13 +108,30 @@ typedef struct glint_geometry_table {
     const glint_solid *solids;
 } glint_geometry_table;
 
-typedef enum glint_highlight { GLINT_HIGHLIGHT_NONE, GLINT_HIGHLIGHT_PHONG, GLINT_HIGHLIGHT_BLINN } glint_highlight;
+/// What the stages before shade find out for a material's specular term.
+typedef enum glint_highlight {
+    GLINT_HIGHLIGHT_NONE,
+    GLINT_HIGHLIGHT_PHONG,
+    GLINT_HIGHLIGHT_BLINN,
+    GLINT_HIGHLIGHT_FACETS ///< of microfacets: the stages `view` and `facet`
+} glint_highlight;
+
+/// What shade makes of that.
+typedef enum glint_lobe {
+    GLINT_LOBE_POWER,
+    GLINT_LOBE_POWER_COSINE, ///< times n.l
+    GLINT_LOBE_GGX,
+    GLINT_LOBE_BECKMANN
+} glint_lobe;
 
 typedef struct glint_shade_material {
     double diffuse[3], specular[3];
     double ambient[3]; ///< ka * Ia
     float shininess;
     uint32_t highlight; ///< glint_highlight: what its specular term is of
+    uint32_t lobe; ///< glint_lobe
+    float alpha; ///< width of the distribution of microfacets, 1e-18 .. 1
+    double grazing[3]; ///< of microfacets: `specular` is ks f0, this is ks (1 - f0)
 } glint_shade_material;
 
 // ---- camera: rays of one sample of each pixel ----
@@ -254,6 +271,18 @@ typedef struct glint_surface_args {
 #define GLINT_POINT_SLACK_DOUBLE 0x1p-49
 #define GLINT_POINT_SLACK_FLOAT 0x1p-20
 
+// ---- view: the angle at which each point is seen, for materials of microfacets ----
+
+typedef struct glint_view_args {
+    uint32_t group_count;
+    const uint16_t *hits;
+    const glint_camera_args *camera; ///< as in glint_light_args
+    const void *normal[3], *direction[3];
+    float *facing; ///< out: n.v in 0 .. 1
+} glint_view_args;
+// Groups without a hit are not written. q = (float)length2(direction), m = (float)-dot(normal, direction);
+// facing = min(max(m / sqrt(q), 0), 1) in float
+
 // ---- light: what one light does at each point, before shadows and colours ----
 
 /// The cone of a spot light.
@@ -325,6 +354,31 @@ typedef struct glint_light_args {
 //              x = min(num / den, 1);  there is one where num > 0 and den > 0
 //   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
 // In --precision float all of this is float, l2 a included.
+
+// ---- facet: how a light's half vector lies, for materials of microfacets ----
+
+typedef struct glint_facet_args {
+    uint32_t group_count;
+    const glint_camera_args *camera; ///< this and the following as in glint_light_args
+    const void *point[3], *normal[3], *direction[3];
+    const uint32_t *material;
+    const glint_shade_material *materials;
+    bool directional;
+    double position[3];
+    double scale;
+    uint32_t sample_count;
+    const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
+    const uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< what the light stage wrote
+    // out, for each sample:
+    float *sine2[GLINT_LIGHT_CHUNK]; ///< squared sine between n and h; GLINT_NO_SPECULAR where unlit or without h
+    float *schlick[GLINT_LIGHT_CHUNK]; ///< (1 - v.h)^5; 0 where unlit or without h
+} glint_facet_args;
+// Only groups with a lit lane on a material of GLINT_HIGHLIGHT_FACETS are written, in every lane.
+// l as in light; p = sqrt(length2(l)), r = sqrt(length2(direction)), w = p r
+// h = l r - direction p (component by component), k = cross(normal, h)
+// there is one where lit and 0 < length2(h):  sine2 = (float)min(length2(k) / length2(h), 1)
+//   z = (float)max(min((w - dot(l, direction)) / (2 w), 1), 0), which is (v.h)^2;  m = 1 - sqrt(z) in float
+//   schlick = ((m m) (m m)) m
 
 // ---- occlude: which points a light reaches ----
 
@@ -416,6 +470,7 @@ typedef struct glint_shade_light {
     bool joined; ///< a further sample of the light before it in this call, with the same colours
     const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `open` where it casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation: NULL = 1 everywhere
+    const float *sine2, *schlick; ///< read for materials of GLINT_HIGHLIGHT_FACETS
     double diffuse[3], specular[3]; ///< colour times intensity
 } glint_shade_light;
 
@@ -425,6 +480,7 @@ typedef struct glint_shade_args {
     const uint32_t *material;
     const glint_shade_material *materials;
     double background[3];
+    const float *facing; ///< read for materials of GLINT_HIGHLIGHT_FACETS
     bool highlights; ///< false: the specular term is not computed
     bool first; ///< also the terms that no light makes: background and ambient
     const glint_shade_light *lights;
@@ -443,7 +499,19 @@ typedef struct glint_shade_args {
 //     where the material has a highlight, highlights is true and log2_specular > GLINT_NO_SPECULAR:
 //     y = shininess log2_specular, S = y < -40 ? 0 : exp2(y)
 //     specular[c] += (w S) (ks[c] specular[c])
-//     joined lights: w cosine and w S are added up first, in order, in float from 0, over those with the lit bit set
+//     GLINT_LOBE_POWER_COSINE: S = S cosine
+//     where the material is of GLINT_HIGHLIGHT_FACETS, highlights is true and sine2 > GLINT_NO_SPECULAR:
+//     a = alpha, aa = a a, l = cosine, v = facing
+//     GGX        t = sine2 + aa (1 - sine2), u = a / t, b = 1 - aa, d = l sqrt(aa + b (v v)) + v sqrt(aa + b (l l))
+//                S = (u u) ((0.5 l) / max(d, FLT_MIN))
+//     Beckmann   c = max(1 - sine2, 2^-40), y = -((sine2 / c) (1.442695 / aa)), e = y < -126 ? 0 : exp2(y)
+//                d = (l v + v mask(l)) + l mask(v)
+//                S = (((e / c) / c) (1 / aa)) ((0.25 l) / max(d, FLT_MIN))
+//                mask(x): s = a sqrt(max(1 - x x, 0)), q = x / s, q < 1.6: (s ((0.396 q - 1.259) q + 1)) / (2.181 q + 3.535),
+//                otherwise 0
+//     S = min(S, GLINT_ATTENUATION_MAX), f = min(w S, GLINT_ATTENUATION_MAX)
+//     specular[c] += f (ks[c] specular[c]) + (f schlick) (grazing[c] specular[c])
+//     joined lights: w cosine and w S (f and f schlick) are added up first, in order, in float from 0, over those with the lit bit set
 // Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 
@@ -496,7 +564,7 @@ typedef struct glint_tone_args {
 //   else y = m 2^e with m in [1, 2); m >= GLINT_SQRT2: m = 0.5 m, e = e + 1; f = m - 1 (exact)
 //   (both constants rounded to float)
 //   p = C9; p = p f + C8 ... p = p f + C0; log2 = (float)e + f p
-// exp2(y), float, -40 <= y <= 0: n = (y + 12582912) - 12582912, f = y - n,
+// exp2(y), float, -126 <= y <= 0: n = (y + 12582912) - 12582912, f = y - n,
 //   p = D6; p = p f + D5 ... p = p f + D0; exp2 = p 2^n
 // The coefficients stand in coefficients.h.
 
@@ -509,7 +577,9 @@ typedef struct glint_stages {
         void (*cast_bundle)(const glint_cast_args *args);
         void (*cast_rays)(const glint_cast_args *args);
         void (*surface)(const glint_surface_args *args);
+        void (*view)(const glint_view_args *args);
         void (*light)(const glint_light_args *args);
+        void (*facet)(const glint_facet_args *args);
         void (*occlude)(const glint_occlude_args *args);
         void (*bounce)(const glint_bounce_args *args);
     } geometry[2]; ///< by glint_precision: double, float
