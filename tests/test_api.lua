@@ -158,9 +158,9 @@ function tests.material()
   raises("material.shininess: finite number expected, got nan", function() m.shininess = 0 / 0 end)
   raises("material.shininess: finite number expected, got inf", function() m.shininess = math.huge end)
   raises("material.shininess: number expected, got nil", function() m.shininess = nil end)
-  raises('material.model: "phong", "blinn_phong" or "lambert" expected, got string "fong"',
+  raises('material.model: "phong", "blinn_phong", "lambert" or "cook_torrance" expected, got string "fong"',
     function() m.model = "fong" end)
-  raises('material.model: "phong", "blinn_phong" or "lambert" expected, got 1', function() m.model = 1 end)
+  raises('material.model: "phong", "blinn_phong", "lambert" or "cook_torrance" expected, got 1', function() m.model = 1 end)
   raises("material.name: string expected, got 5", function() m.name = 5 end)
   raises("material.name: at most 63 bytes expected, got 64", function() m.name = ("x"):rep(64) end)
   raises("material.name: string without a zero byte expected", function() m.name = "a\0b" end)

@@ -1,0 +1,67 @@
+-- The shape of a highlight: how cos^i narrows for i = 1, 2, 4, 8, 16, 32, drawn from material:evaluate.
+--
+-- Above, Phong's (r.v)^i; below, Blinn-Phong's (n.h)^i. Each curve is a lobe: the further from the bright point at the
+-- bottom, the more of the light that falls in along the thin line goes that way. Blinn-Phong's lobes are wide for the same
+-- exponent, since the angle between n and h is half of that between r and v; `--set matched=true` gives them four times
+-- the exponent, and the two rows look alike while all lies in one plane.
+--     glint scripts/lobes.lua                      6 + 6 lobes, light 40 degrees from the normal
+--     glint scripts/lobes.lua --set angle=75       at a low light Phong's lobes are cut off at the surface
+local glint = require "glint"
+
+local P = glint.params {
+  angle = { 40, min = 0, max = 85, doc = "between light and normal, degrees" },
+  matched = { false, doc = "Blinn-Phong with four times the exponent" },
+}
+
+local EXPONENTS <const> = { 1, 2, 4, 8, 16, 32 }
+local COLORS <const> = { "#4cc9f0", "#4895ef", "#7b6cf6", "#b5179e", "#f72585", "#ff9f1c" }
+local SIZE <const>, DOT <const>, STEPS <const> = 1.7, 0.02, 720
+
+local a = math.rad(P.angle)
+local to_light = { -glint.sin(a), glint.cos(a), 0 }
+
+local function bright(color) return glint.material { model = "lambert", diffuse = 0, ambient = color } end
+
+local ink = bright("#5c6370")
+
+-- Spheres along the line from one point to another.
+local function line(data, x0, y0, x1, y1, radius)
+  local n = math.max(1, math.ceil(math.sqrt((x1 - x0) ^ 2 + (y1 - y0) ^ 2) / radius))
+  for i = 0, n do
+    local t = i / n
+    table.move({ x0 + t * (x1 - x0), y0 + t * (y1 - y0), 0, radius }, 1, 4, #data + 1, data)
+  end
+end
+
+-- The lobe of a material: a ray to each side, as long as what is reflected there.
+local function lobe(material, x, y, data)
+  local last_x, last_y = x, y
+  for i = 0, STEPS do
+    local b = math.pi * (i / STEPS - 0.5)
+    local to_eye = { glint.sin(b), math.max(glint.cos(b), 1e-9), 0 }
+    local s = material:evaluate({ normal = { 0, 1, 0 }, to_light = to_light, to_eye = to_eye }).specular.x * SIZE
+    local next_x, next_y = x + s * to_eye[1], y + s * to_eye[2]
+    line(data, last_x, last_y, next_x, next_y, DOT)
+    last_x, last_y = next_x, next_y
+  end
+end
+
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 0, 9 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4.9 },
+  ambient = 1, background = "#14161b",
+}
+
+for row, model in ipairs { "phong", "blinn_phong" } do
+  local y = row == 1 and 0.4 or -2
+  for i, exponent in ipairs(EXPONENTS) do
+    local x, data, axes = 2.05 * (i - 3.5), {}, {}
+    local material = glint.material { model = model, specular = 1, shininess = exponent, matched = P.matched }
+    lobe(material, x, y, data)
+    scene:add(glint.spheres { data = data, material = bright(COLORS[i]), name = model .. " " .. exponent })
+    line(axes, x - 0.85, y, x + 0.85, y, 0.012)
+    line(axes, x, y, x + 0.9 * to_light[1], y + 0.9 * to_light[2], 0.008)
+    scene:add(glint.spheres { data = axes, material = ink })
+  end
+end
+
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 500, samples = 9, frame = function() end }
