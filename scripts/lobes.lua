@@ -1,7 +1,7 @@
 -- The shape of a highlight: how cos^i narrows for i = 1, 2, 4, 8, 16, 32, drawn from material:evaluate.
 --
--- Above, Phong's (r.v)^i; below, Blinn-Phong's (n.h)^i. Each curve is a lobe: the further from the bright point at the
--- bottom, the more of the light that falls in along the thin line goes that way. Blinn-Phong's lobes are wide for the same
+-- Above, Phong's (r.v)^i; below, Blinn-Phong's (n.h)^i. Each curve is a lobe: the further from the point at the bottom,
+-- the more of the light that falls in along the thin line goes that way. Blinn-Phong's lobes are wide for the same
 -- exponent, since the angle between n and h is half of that between r and v; `--set matched=true` gives them four times
 -- the exponent, and the two rows look alike while all lies in one plane.
 --     glint scripts/lobes.lua                      6 + 6 lobes, light 40 degrees from the normal
@@ -15,7 +15,7 @@ local P = glint.params {
 
 local EXPONENTS <const> = { 1, 2, 4, 8, 16, 32 }
 local COLORS <const> = { "#4cc9f0", "#4895ef", "#7b6cf6", "#b5179e", "#f72585", "#ff9f1c" }
-local SIZE <const>, DOT <const>, STEPS <const> = 1.7, 0.02, 720
+local SIZE <const>, DOT <const>, STEPS <const> = 1.2, 0.02, 720
 
 local a = math.rad(P.angle)
 local to_light = { -glint.sin(a), glint.cos(a), 0 }
@@ -47,14 +47,14 @@ local function lobe(material, x, y, data)
 end
 
 local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 0, 9 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4.9 },
+  camera = glint.camera { eye = { 0, 0, 9 }, direction = { 0, 0, -1 }, projection = "orthographic", height = 4.2 },
   ambient = 1, background = "#14161b",
 }
 
 for row, model in ipairs { "phong", "blinn_phong" } do
-  local y = row == 1 and 0.4 or -2
+  local y = row == 1 and 0.35 or -1.55
   for i, exponent in ipairs(EXPONENTS) do
-    local x, data, axes = 2.05 * (i - 3.5), {}, {}
+    local x, data, axes = 1.75 * (i - 3.5) - 0.2, {}, {}
     local material = glint.material { model = model, specular = 1, shininess = exponent, matched = P.matched }
     lobe(material, x, y, data)
     scene:add(glint.spheres { data = data, material = bright(COLORS[i]), name = model .. " " .. exponent })
