@@ -27,6 +27,7 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
                                    .hits = &g->hits,
                                    .prim = g->prim,
                                    .prims = geometry->prims,
+                                   .mixed = geometry->triangles || geometry->solids,
                                    .scale = geometry->scale,
                                    .solids = geometry->solids,
                                    .t = g->t,

@@ -130,6 +130,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
                                 .hits = tile->at.hits,
                                 .prim = tile->at.prim,
                                 .prims = frame->geometry.prims,
+                                .mixed = frame->geometry.triangles || frame->geometry.solids,
                                 .scale = frame->geometry.scale,
                                 .solids = frame->geometry.solids,
                                 .corner_normals = frame->geometry.corner_normals,

@@ -101,6 +101,7 @@ static void cast(struct glint_tint *tint, const glint_tile *tile, const glint_ti
                                     .hits = tint->hits,
                                     .prim = tint->prim,
                                     .prims = frame->geometry.prims,
+                                    .mixed = frame->geometry.triangles || frame->geometry.solids,
                                     .scale = frame->geometry.scale,
                                     .solids = frame->geometry.solids,
                                     .corner_normals = frame->geometry.corner_normals,

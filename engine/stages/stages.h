@@ -228,6 +228,7 @@ typedef struct glint_surface_args {
     const uint16_t *hits;
     const uint32_t *prim;
     const glint_prim *prims;
+    bool mixed; ///< there are triangles or solids among prims; false: what they need is not read
     double scale; ///< of the table
     const glint_solid *solids;
     const glint_corner_normals *corner_normals; ///< NULL: every triangle is shaded flat

@@ -84,33 +84,32 @@ static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim
 static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
                                                                        const R(seen_prim) * seen,
                                                                        R(group_directions) directions, size_t at, int i,
-                                                                       unsigned lanes)
+                                                                       unsigned lanes, bool mixed)
 {
     const glint_prim *prim = seen->prim;
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
-    const bool smooth = prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
+    const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr d[3], n[3], p[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) }, slack = r_set(0);
     R(load_direction)(directions, args->direction, at, i, d);
-    if (!args->camera)
-        R(load3)(args->origin, at + i, from);
     const vr t = r_load((const real *)args->t + at + i);
     if (prim->kind == GLINT_PRIM_SPHERE) {
         for (int k = 0; k < 3; k++)
             f[k] = r_set(seen->f[k]);
-        if (!args->camera)
+        if (!args->camera) {
+            R(load3)(args->origin, at + i, from);
             R(offset)(from, prim, f);
+        }
         R(sphere_surface)(f, d, t, prim, seen->inverse_radius, seen->near, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
-            if (args->camera)
-                from[k] = r_set(args->camera->eye[k]);
+            from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
             n[k] = r_set(seen->normal[k]);
             p[k] = from[k] + t * d[k];
         }
-        if (prim->kind == GLINT_PRIM_TRIANGLE)
+        if (mixed && prim->kind == GLINT_PRIM_TRIANGLE)
             R(triangle_point)(prim, args->scale, from, d, w, p, &slack);
-        else if (prim->kind == GLINT_PRIM_SOLID)
+        else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
     const rm back = r_lt(r_set(0), DOT(n, d));
@@ -123,7 +122,7 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
         R(put)(args->point[k], at + i, whole, mask, p[k]);
         R(put)(args->normal[k], at + i, whole, mask, turned[k]);
     }
-    if (args->slack)
+    if (mixed && args->slack)
         R(put)(args->slack, at + i, whole, mask, slack);
     return rm_bits(back) & lanes;
 }
@@ -141,7 +140,7 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
     lanes_put(args->material + at, 0xffff, 0);
 }
 
-static void R(surface)(const glint_surface_args *args)
+static __attribute__((always_inline)) inline void R(surface_groups)(const glint_surface_args *args, bool mixed)
 {
     R(seen_prim) seen = { .id = GLINT_MISS };
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
@@ -159,7 +158,8 @@ static void R(surface)(const glint_surface_args *args)
                 R(see_prim)(args, id, &seen);
             for (int i = 0; i < GLINT_GROUP; i += VR)
                 if (lanes >> i & ((1u << VR) - 1))
-                    behind |= R(surface_lanes)(args, &seen, directions, at, i, lanes >> i & ((1u << VR) - 1)) << i;
+                    behind |= R(surface_lanes)(args, &seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed)
+                              << i;
             lanes_put(args->material + at, lanes, seen.prim->material);
             back |= behind;
             if (!seen.prim->two_sided)
@@ -169,4 +169,13 @@ static void R(surface)(const glint_surface_args *args)
         args->back[g] = (uint16_t)back;
         args->dark[g] = (uint16_t)dark;
     }
+}
+
+/// Each way is compiled for its constant.
+static void R(surface)(const glint_surface_args *args)
+{
+    if (args->mixed)
+        R(surface_groups)(args, true);
+    else
+        R(surface_groups)(args, false);
 }

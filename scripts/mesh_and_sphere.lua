@@ -1,0 +1,24 @@
+-- What triangles make of a sphere: the exact one on the left, then meshes of 8, 16 and 64 segments, above with
+-- normals of the sphere at the vertices ("phong"), below with one normal a face ("flat"). Smooth normals hide the
+-- facets inside; nothing hides the outline.
+local glint = require "glint"
+
+local clay = glint.material { diffuse = { 0.75, 0.45, 0.3 }, specular = 0.5, shininess = 60 }
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 0, 30 }, at = { 0, 0, 0 }, projection = "orthographic", height = 6 },
+  ambient = 0.15, background = "#202530",
+  glint.point_light { position = { -12, 16, 30 }, shadows = false },
+}
+
+for row, shading in ipairs { "phong", "flat" } do
+  local y = row == 1 and 1.45 or -1.45
+  scene:add(glint.sphere { center = { -4.2, y, 0 }, radius = 1.25, material = clay })
+  for i, segments in ipairs { 8, 16, 64 } do
+    scene:add(glint.sphere_mesh {
+      center = { 2.8 * i - 4.2, y, 0 }, radius = 1.25, segments = segments, shading = shading, material = clay,
+      name = shading .. " " .. segments,
+    })
+  end
+end
+
+return glint.animation { scene = scene, frames = 1, width = 1280, height = 640, samples = 16, frame = function() end }
