@@ -168,7 +168,8 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         glint_plan_light *light = &plan->lights[i];
         light->key = light_place_key(light, light_base);
         light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
-        light->look_key = light_color_key(light, light->place_key);
+        const uint32_t place = i % GLINT_LIGHT_CHUNK; // samples of a lamp are added up a call of shade at a time
+        light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
     if (!plan->material_keys)

@@ -105,11 +105,10 @@ static const field camera_fields[] = {
 
 static const field shape_fields[] = {
 #define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
-    S(kind, FIXED, 0, 0),      S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
-    S(radius, NUMBER, 0.2, 2), S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
-    S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1), S(max, VECTOR, -0.5, 2), S(base, VECTOR, -2, 2),
-    S(top, VECTOR, -2, 2),
-    S(name, FIXED, 0, 0),
+    S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
+    S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
+    S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
+    S(top, VECTOR, -2, 2),         S(name, FIXED, 0, 0),
 #undef S
 };
 
@@ -512,10 +511,70 @@ static void reused_equals_fresh_with_little_memory(void **unused)
         edits(memory, 8, limit_s(2) / 14);
 }
 
+/// The samples of an area light are added up a call of shade at a time: a lamp before it that shines into a closed ball,
+/// and so reaches nothing that is seen, still moves where the calls begin.
+static void a_lamp_that_reaches_nothing(void **unused)
+{
+    (void)unused;
+    world w;
+    glint_renderer *reusing, *fresh;
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
+    desc.no_reuse = true;
+    assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+    state = 5;
+    make_world(&w);
+    for (int i = 0; i < LIGHTS; i++)
+        if (w.shining[i])
+            glint_scene_remove_light(w.scene, w.lights[i], NULL);
+    glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_light_desc inner = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light_desc outer = glint_light_desc_default(GLINT_LIGHT_SPHERE);
+    ball.center[0] = inner.position[0] = 3;
+    outer.position[1] = 6;
+    outer.radius = 2;
+    outer.samples = 20;
+    glint_shape *shape;
+    glint_light *hidden, *lamp;
+    assert_int_equal(glint_shape_create(&ball, &shape, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&inner, &hidden, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&outer, &lamp, NULL), GLINT_OK);
+    glint_scene_add_shape(w.scene, shape, NULL);
+    for (int frame = 0; frame < 12; frame++) {
+        const bool both = frame / 3 % 2;
+        glint_plan *plan;
+        glint_image *a, *b;
+        glint_material_desc paint = *glint_material_get(w.materials[1]);
+        paint.diffuse[0] = frame / 12.0; // some tiles change, the others do not
+        glint_material_set(w.materials[1], &paint, NULL);
+        if (both)
+            glint_scene_add_light(w.scene, hidden, NULL);
+        glint_scene_add_light(w.scene, lamp, NULL);
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(reusing, plan, &a, NULL, NULL), GLINT_OK);
+        assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
+        if (!same_pixels(a, b, w.render.passes))
+            fail_msg("frame %d: the reused frame differs from the fresh one", frame);
+        glint_image_release(a);
+        glint_image_release(b);
+        glint_plan_destroy(plan);
+        glint_scene_remove_light(w.scene, lamp, NULL);
+        if (both)
+            glint_scene_remove_light(w.scene, hidden, NULL);
+    }
+    glint_shape_release(shape);
+    glint_light_release(hidden);
+    glint_light_release(lamp);
+    free_world(&w);
+    glint_renderer_destroy(reusing);
+    glint_renderer_destroy(fresh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_name_every_field),
+        cmocka_unit_test(a_lamp_that_reaches_nothing),
         cmocka_unit_test(reused_equals_fresh),
         cmocka_unit_test(reused_equals_fresh_without_memory),
         cmocka_unit_test(reused_equals_fresh_with_little_memory),
