@@ -1,0 +1,288 @@
+// blocked: whether a surface is between a point and a light. Always decided from the point towards the light, without a
+// root or a division: the segment meets a sphere when one end is inside and the other outside, or when both are outside,
+// the foot of the perpendicular lies between them and the discriminant is not negative. Contract: stages.h, occlude.
+
+#define GLINT_OCCLUDERS 12 ///< what a tile's list holds
+#define GLINT_SHAFTS_TRIED 3 ///< groups in a row that may give up their shaft before no more is tried in the tile
+#define GLINT_SHAFT_NODES 16 ///< what a group's shaft may see of the index before each lane walks by itself
+
+/// On which side of a primitive the light is, a bit a lane: outside or in front, inside or behind; neither on it.
+typedef struct R(light_sides) {
+    uint16_t outside, inside;
+} R(light_sides);
+
+/// A primitive between the tile and the light.
+typedef struct R(occluder) {
+    uint32_t id;
+    R(light_sides) sides;
+} R(occluder);
+
+/// What the groups of one call share.
+typedef struct R(shadow_tile) {
+    const glint_occlude_args *args;
+    light_place light; ///< of an area light, all of it
+    _Alignas(64) real position[3][GLINT_GROUP]; ///< of the light, or of its sample at hand, for each lane
+    float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
+    R(occluder) occluders[GLINT_OCCLUDERS];
+    int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
+    _Alignas(64) float local[GLINT_TILE_GROUPS][3][GLINT_GROUP]; ///< the points of lit groups, in the index's frame
+    float lower[3], upper[3]; ///< their box
+} R(shadow_tile);
+
+/// A group's shadow rays; made as soon as one needs them.
+typedef struct R(shadow_group) {
+    size_t at;
+    bool made;
+    uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
+    int shafts_failed; ///< of the last groups in a row
+    _Alignas(64) real to_light[3][GLINT_GROUP]; ///< in the light's units
+    R(ray_group) rays;
+    uint32_t surface[GLINT_GROUP]; ///< the coincident of the primitive each ray leaves
+} R(shadow_group);
+
+/// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
+static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim, const double position[3])
+{
+    double f[3], height;
+    for (int k = 0; k < 3; k++)
+        f[k] = position[k] - prim->center[k];
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return 0; // asked for each lane
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return args->directional || !within_solid(&args->geometry->solids[prim->item], f) ? 1 : -1;
+    if (prim->kind == GLINT_PRIM_PLANE) {
+        height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
+    } else {
+        for (int k = 0; k < 3; k++)
+            f[k] *= prim->scale;
+        const double length2 = DOT(f, f); // a few roundings off
+        if (args->directional || !(length2 < prim->r2 * (1 + 1e-12)))
+            return 1;
+        if (length2 < prim->r2 * (1 - 1e-12))
+            return -1;
+        const vd v[3] = { d_set(f[0]), d_set(f[1]), d_set(f[2]) };
+        _Alignas(64) double c[VD];
+        d_store(c, exact_c_f64(v, prim));
+        height = c[0];
+    }
+    return (height > 0) - (height < 0);
+}
+
+/// `lamp`: the sample, NULL when the light is none of area.
+static inline R(light_sides) R(sides_of)(const glint_occlude_args *args, const glint_lamp *lamp, const glint_prim *prim)
+{
+    R(light_sides) sides = { 0, 0 };
+    for (int lane = 0; lane < (lamp ? GLINT_GROUP : 1); lane++) {
+        double position[3];
+        for (int k = 0; k < 3; k++)
+            position[k] = lamp ? lamp->position[k][lane] : args->position[k];
+        const int side = R(light_side)(args, prim, position);
+        const uint16_t lanes = (uint16_t)(lamp ? 1u << lane : 0xffffu);
+        sides.outside |= side > 0 ? lanes : 0;
+        sides.inside |= side < 0 ? lanes : 0;
+    }
+    return sides;
+}
+
+/// Points the tile at its light, or at one sample of it.
+static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_geometry_table *geometry = args->geometry;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            if (lamp)
+                for (int j = i; j < i + VR; j++)
+                    tile->position[k][j] = (real)lamp->position[k][j];
+            else
+                r_store(tile->position[k] + i, r_set(args->position[k]));
+        }
+    if (tile->count <= GLINT_OCCLUDERS)
+        return; // only lone segments ask where the light is in the index's frame
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GLINT_GROUP; i++) {
+            const double x = lamp ? lamp->position[k][i] : args->position[k];
+            tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
+        }
+}
+
+/// lit: the lanes to test.
+static inline void R(begin_group)(const R(shadow_tile) * tile, uint32_t g, unsigned lit, R(shadow_group) * group)
+{
+    const glint_occlude_args *args = tile->args;
+    group->at = (size_t)g * GLINT_GROUP;
+    group->made = false;
+    if (args->geometry->duplicates)
+        for (; lit; lit &= lit - 1) {
+            const int lane = __builtin_ctz(lit);
+            group->surface[lane] = args->geometry->prims[args->prim[group->at + (size_t)lane]].coincident;
+        }
+}
+
+/// From points to the light, in its units.
+static inline void R(directions_to)(const glint_occlude_args *args, const real position[3][GLINT_GROUP], size_t at,
+                                    int i, vr d[3])
+{
+    for (int k = 0; k < 3; k++) {
+        d[k] = r_load(position[k] + i);
+        if (!args->directional)
+            d[k] = (d[k] - r_load((const real *)args->point[k] + at + i)) * r_set(args->scale);
+    }
+}
+
+static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_group) * group)
+{
+    const glint_occlude_args *args = tile->args;
+    const size_t at = group->at;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        R(directions_to)(args, tile->position, at, i, d);
+        for (int k = 0; k < 3; k++) {
+            r_store(group->to_light[k] + i, d[k]);
+            r_store_f(group->rays.direction[k] + i, d[k]);
+        }
+    }
+    R(set_origins)(args->point, at, tile->local[at / GLINT_GROUP], &group->rays);
+    group->made = true;
+}
+
+/// Lanes of `lit` that leave the primitive's surface.
+static inline unsigned R(own_lanes)(const glint_occlude_args *args, const R(shadow_group) * group,
+                                    const glint_prim *prim, uint32_t id, unsigned lit)
+{
+    if (!args->geometry->duplicates)
+        return lanes_equal(args->prim + group->at, id) & lit;
+    unsigned own = 0;
+    for (unsigned left = lit; left; left &= left - 1)
+        if (group->surface[__builtin_ctz(left)] == prim->coincident)
+            own |= left & -left;
+    return own;
+}
+
+static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
+
+/// One vector of segments: from f off the sphere's centre, where its c is, along d.
+static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, unsigned outside,
+                                  unsigned inside, const vr f[3], vr c, const vr d[3])
+{
+    const unsigned all = (1u << VR) - 1;
+    const vr zero = r_set(0), scale = r_set(prim->scale);
+    const rm from_outside = r_lt(zero, c), from_inside = r_lt(c, zero);
+    if (inside == all)
+        return from_outside;
+    vr a = DOT(d, d), b = -DOT(f, d);
+    rm blocked = rm_and(r_lt(zero, b), r_le(zero, R(discriminant)(f, d, a, b, c, r_set(prim->r2))));
+    if (!args->directional)
+        blocked = rm_and(blocked, r_lt(b * r_set(args->scale), a * scale));
+    if (outside == all)
+        return rm_or(from_inside, blocked);
+    blocked = R(either)(rm_from_bits(outside), rm_or(from_inside, blocked), rm_andnot(blocked, from_inside));
+    return R(either)(rm_from_bits(inside), from_outside, blocked);
+}
+
+/// h: the points' heights over the plane.
+static inline rm R(plane_blocks)(unsigned outside, unsigned inside, vr h)
+{
+    return rm_or(rm_and(rm_from_bits(outside), r_lt(h, r_set(0))), rm_and(rm_from_bits(inside), r_lt(r_set(0), h)));
+}
+
+/// The lanes of `wanted` that a triangle blocks from lights at `position`; of these, `own` are its own points.
+static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const glint_prim *prim,
+                                       const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted)
+{
+    const double scale = args->geometry->scale;
+    const unsigned back = args->back[at / GLINT_GROUP];
+    const uint32_t g = (uint32_t)(at / GLINT_GROUP), across = args->camera ? args->camera->groups_across : 1;
+    const R(group_directions) viewing = R(directions_of)(args->camera, g % across, g / across);
+    const vr zero = r_set(0);
+    unsigned blocked = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1), own_lanes = own >> i & lanes;
+        if (!lanes)
+            continue;
+        const vr light[3] = { r_load(position[0] + i), r_load(position[1] + i), r_load(position[2] + i) };
+        const R(triangle_plane) plane = R(plane_of)(prim, scale, light, args->directional);
+        unsigned hit = 0;
+        if (own_lanes)
+            hit = own_lanes &
+                  ((rm_bits(r_lt(zero, plane.light)) & back >> i) | (rm_bits(r_lt(plane.light, zero)) & ~(back >> i)));
+        if (lanes & ~own_lanes) {
+            vr p[3], d[3], ray[3];
+            R(load3)(args->point, at + i, p);
+            R(load_direction)(viewing, args->direction, at, i, ray);
+            R(directions_to)(args, position, at, i, d);
+            const vr slack = r_load((const real *)args->slack + at + i);
+            hit |= rm_bits(R(triangle_blocks)(prim, scale, p, d, slack, &plane, ray)) & lanes & ~own_lanes;
+        }
+        blocked |= hit << i;
+    }
+    return blocked;
+}
+
+/// The lanes of `wanted` that a solid blocks; of these, `own` are its own points. outside: where the light is.
+static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_prim *prim,
+                                    const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
+                                    unsigned outside)
+{
+    const glint_solid *solid = &args->geometry->solids[prim->item];
+    unsigned blocked = solid->form == GLINT_FORM_DISK ? 0 : own & args->back[at / GLINT_GROUP] & outside;
+    wanted &= ~own;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        vr p[3], d[3];
+        if (!lanes)
+            continue;
+        R(load3)(args->point, at + i, p);
+        R(directions_to)(args, position, at, i, d);
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional)) & lanes) << i;
+    }
+    return blocked;
+}
+
+/// The lanes of `wanted` that the primitive blocks.
+static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder,
+                                                                    R(shadow_group) * group, unsigned wanted)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_prim *prim = &args->geometry->prims[occluder.id];
+    const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
+    const unsigned own = R(own_lanes)(args, group, prim, occluder.id, wanted), all = (1u << VR) - 1;
+    unsigned blocked = 0;
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        wanted &= own | R(near_rays)(&group->rays, prim);
+        return R(blocked_by_triangle)(args, prim, tile->position, group->at, own, wanted);
+    }
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        wanted &= own | R(near_rays)(&group->rays, prim);
+        return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
+    }
+    if (own && sphere)
+        blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;
+    wanted &= ~own;
+    if (!wanted)
+        return blocked;
+    if (!group->made)
+        R(make_shadow_rays)(tile, group);
+    if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is asked
+        wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & all;
+        if (!lanes)
+            continue;
+        const unsigned outside = occluder.sides.outside >> i & all, inside = occluder.sides.inside >> i & all;
+        vr p[3], f[3], d[3];
+        R(load3)(args->point, group->at + i, p);
+        R(offset)(p, prim, f);
+        for (int k = 0; k < 3; k++)
+            d[k] = r_load(group->to_light[k] + i);
+        const vr c = R(offset_constant)(f, prim);
+        const rm hit =
+            sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
+        blocked |= (rm_bits(hit) & lanes) << i;
+    }
+    return blocked;
+}

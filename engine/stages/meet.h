@@ -1,0 +1,221 @@
+// meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
+
+/// |f|^2 - (radius scale)^2 without cancellation.
+static inline vr R(exact_c)(const vr f[3], const glint_prim *prim)
+{
+#if GLINT_REAL == 64
+    vd e0, e1, e2;
+    vd p0 = d_two_prod(f[0], f[0], &e0), p1 = d_two_prod(f[1], f[1], &e1), p2 = d_two_prod(f[2], f[2], &e2);
+    vd xe, ye, ze;
+    vd x = d_two_sum(p0, p1, &xe), y = d_two_sum(x, p2, &ye), z = d_two_sum(y, d_set(-prim->r2), &ze);
+    return z + (((xe + ye) + ze) + (((e0 + e1) + e2) - d_set(prim->r2_low)));
+#else
+    return DOT(f, f) - r_set(prim->r2);
+#endif
+}
+
+/// The better of two discriminants: from within the sphere's width b^2 - a c, from afar a r^2 - |f x d|^2 (Haines,
+/// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
+static inline vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
+{
+    vr bb = b * b, ar2 = a * r2, inner = bb - a * c;
+    const rm near = r_lt(bb, ar2);
+    if (rm_bits(near) == (1u << VR) - 1) // a ground seen from above it: the cross product is not needed
+        return inner;
+    vr x = f[1] * d[2] - f[2] * d[1], y = f[2] * d[0] - f[0] * d[2], z = f[0] * d[1] - f[1] * d[0];
+    return r_select(near, inner, ar2 - ((x * x + y * y) + z * z));
+}
+
+static inline rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
+{
+    const vr zero = r_set(0), r2 = r_set(prim->r2), scale = r_set(prim->scale);
+    vr b = -DOT(f, d);
+    vr disc = R(discriminant)(f, d, a, b, c, r2);
+    vr s = r_sqrt(r_max(disc, zero));
+    rm ahead = r_le(zero, b);
+    vr q = r_select(ahead, b + s, b - s);
+    rm far_root = rm_and(r_le(c, zero), ahead);
+    *t = r_select(far_root, q, c) / (r_select(far_root, a, q) * scale);
+    return rm_and(r_le(zero, disc), r_lt(zero, *t));
+}
+
+static inline rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
+{
+    const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
+    vr nd = DOT(n, d);
+    *t = -h / nd;
+    return rm_and(r_le(r_set(GLINT_PARALLEL) * a, nd * nd), r_lt(r_set(0), *t));
+}
+
+// ---- The filter of rays that have their own origins ----
+
+/// Which lanes of a group come near the sphere, `f` from its centre to the ray's origin: the distance of the ray is
+/// |f x d| / |d|. Written so that NaN and infinity keep the lane.
+static inline unsigned R(near_lanes)(const vf f[3], const vf d[3], vf limit2)
+{
+    vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
+    return ~fm_bits(f_lt(limit2 * DOT(d, d), DOT(x, x))) & ((1u << VF) - 1);
+}
+
+/// Points of a group in the index's frame.
+static inline void R(index_frame)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
+                                  float (*local)[GLINT_GROUP])
+{
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        for (int k = 0; k < 3; k++)
+            r_store_f(local[k] + i, (r_load((const real *)point[k] + at + i) - r_set(geometry->reference[k])) *
+                                        r_set(geometry->scale));
+}
+
+/// A group of rays as filter and walk see them.
+typedef struct R(ray_group) {
+    const float (*local)[GLINT_GROUP]; ///< origins, in the index's frame
+    _Alignas(64) float direction[3][GLINT_GROUP];
+    _Alignas(64) float bound[GLINT_GROUP]; ///< what the rounding of `local` may add to a distance
+    const float *origin[3]; ///< --precision float: the origins themselves
+} R(ray_group);
+
+/// Fills all but `direction`. `local`: of these origins, by index_frame.
+static inline void R(set_origins)(const void *const point[3], size_t at, const float (*local)[GLINT_GROUP],
+                                  R(ray_group) * rays)
+{
+    rays->local = local;
+    for (int i = 0; i < GLINT_GROUP; i += VF) // by the sum of the components, which is larger than the length
+        f_store(rays->bound + i,
+                f_set(GLINT_FILTER_SLACK) * ((f_abs(f_load(rays->local[0] + i)) + f_abs(f_load(rays->local[1] + i))) +
+                                             f_abs(f_load(rays->local[2] + i))));
+    for (int k = 0; k < 3; k++)
+        rays->origin[k] = (const float *)point[k] + (GLINT_REAL == 32 ? at : 0);
+}
+
+/// From the sphere's centre to the rays' origins, and how near a ray may pass without being kept.
+static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_prim *prim, vf f[3])
+{
+#if GLINT_REAL == 64
+    for (int k = 0; k < 3; k++)
+        f[k] = f_load(rays->local[k] + i) - f_set(prim->filter_center[k]);
+    return f_set(prim->filter_bound) + f_load(rays->bound + i);
+#else // where float decides, the filter must see what it sees: the same f, with all its error
+    for (int k = 0; k < 3; k++)
+        f[k] = f_load(rays->origin[k] + i);
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return f_set(HUGE_VALF);
+    for (int k = 0; k < 3; k++)
+        f[k] = (f[k] - f_set((float)prim->center[k])) * f_set((float)prim->scale);
+    return f_set((float)(prim->radius * prim->scale * (1 + 2e-6))) +
+           f_set(GLINT_FILTER_SLACK) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
+#endif
+}
+
+/// Lanes of the group that pass near the primitive.
+static unsigned R(near_rays)(const R(ray_group) * rays, const glint_prim *prim)
+{
+    unsigned near = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf f[3], d[3];
+        for (int k = 0; k < 3; k++)
+            d[k] = f_load(rays->direction[k] + i);
+        const vf limit = R(filter_offset)(rays, i, prim, f);
+        near |= R(near_lanes)(f, d, limit * limit) << i;
+    }
+    return near;
+}
+
+// ---- The decision ----
+
+/// Of equal hits the one defined first stays; t = inf, where float overflows, is a miss's own and no hit. Returns the lanes of `tied` in which that is `id`.
+static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t *best, unsigned tied)
+{
+    unsigned wins = 0;
+    for (; tied; tied &= tied - 1) {
+        const uint32_t old = best[__builtin_ctz(tied)];
+        if (old != GLINT_MISS && prims[id].id < prims[old].id)
+            wins |= tied & -tied;
+    }
+    return wins;
+}
+
+/// Keeps the nearest of what was and `t` in the lanes of `hit`.
+static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
+{
+    real *best_t = (real *)args->t + at;
+    uint32_t *best_id = args->prim + at;
+    const vr old_t = r_load(best_t);
+    const rm tie = rm_and(rm_and(hit, r_eq(t, old_t)), r_lt(t, r_set(HUGE_VAL))); // at infinity there is no hit to tie
+    hit = rm_and(hit, r_lt(t, old_t));
+    if (rm_bits(tie))
+        hit = rm_or(hit, rm_from_bits(R(wins_tie)(args->geometry->prims, id, best_id, rm_bits(tie))));
+    r_store(best_t, r_select(hit, t, old_t));
+    r_put_index(best_id, hit, id);
+}
+
+/// From the ray's origin to the primitive: f of a sphere, scaled; of a plane, not.
+static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3])
+{
+    for (int k = 0; k < 3; k++) {
+        f[k] = origin[k] - r_set(prim->center[k]);
+        if (prim->kind == GLINT_PRIM_SPHERE)
+            f[k] = f[k] * r_set(prim->scale);
+    }
+}
+
+/// What all rays from one origin know of a primitive: f, and c of a sphere or the height over a plane.
+static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
+{
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return R(exact_c)(f, prim);
+    const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
+    return DOT(n, f);
+}
+
+static inline rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
+{
+    const vr a = DOT(d, d);
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return R(meet_sphere)(f, d, a, c, prim, t);
+    return R(meet_plane)(d, a, c, prim, t);
+}
+
+/// Starts a group: nothing hit; and nothing that could be nearer where no pixel is.
+static inline void R(start_group)(const glint_cast_args *args, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const rm active = rm_from_bits(args->active[g] >> i & ((1u << VR) - 1));
+        r_store((real *)args->t + at + i, r_select(active, r_set(HUGE_VAL), r_set(-HUGE_VAL)));
+    }
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        i_store(args->prim + at + i, i_set(GLINT_MISS));
+}
+
+/// Writes the group's hit mask, and makes lanes outside the image misses like all others.
+static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    args->hits[g] = (uint16_t)~lanes_equal(args->prim + at, GLINT_MISS);
+    for (int i = 0; args->active[g] != 0xffff && i < GLINT_GROUP; i += VR) {
+        const rm active = rm_from_bits(args->active[g] >> i & ((1u << VR) - 1));
+        real *t = (real *)args->t + at + i;
+        r_store(t, r_select(active, r_load(t), r_set(HUGE_VAL)));
+    }
+}
+
+/// The farthest hit of a group in the index's units, rounded up; infinite while a ray has none.
+static inline float R(farthest)(const glint_cast_args *args, size_t at)
+{
+    _Alignas(64) float t[GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        r_store_f(t + i, r_load((const real *)args->t + at + i) * r_set(args->geometry->scale));
+    return group_highest(t) * (1 + 0x1p-22f);
+}
+
+/// What float arithmetic adds to the rounding of the walk, in the index's units.
+static inline float R(walk_slack)(const glint_geometry_table *geometry)
+{
+#if GLINT_REAL == 64
+    (void)geometry;
+    return 0;
+#else
+    return (float)(GLINT_FILTER_SLACK * geometry->extent * geometry->scale);
+#endif
+}
