@@ -237,7 +237,8 @@ static void look_at(lua_State *L, void *context)
     const glint_shape_desc *desc = shape ? glint_shape_get(shape) : NULL;
     if (!desc || desc->kind != GLINT_SHAPE_SPHERE)
         return;
-    if (has(L, GLINTL_SHAPE, shape, desc, lua_gettop(L), "transform")) // it is elsewhere
+    const glint_transform here = glint_transform_identity();
+    if (memcmp(&desc->transform, &here, sizeof here) != 0) // it is elsewhere
         return;
     if (l->view && !shows_through(L, desc->material))
         look_for_inner_light(l, desc);
