@@ -22,7 +22,7 @@ command -v luarocks >/dev/null || {
     exit 77
 }
 version=$(sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.h)
-rockspec=glint-$version-1.rockspec
+rockspec=bindings/glint-$version-1.rockspec
 check "the rockspec has the engine's version" grep -qx "version = \"$version-1\"" "$rockspec"
 unset LUA_PATH LUA_CPATH MAKEFLAGS MFLAGS
 check "luarocks make" rocks make "$rockspec"

@@ -1,4 +1,4 @@
--- `luarocks --lua-version 5.4 make` in a checkout builds and installs the module and the command.
+-- `luarocks --lua-version 5.4 make bindings/glint-0.1.0-1.rockspec` in a checkout builds and installs the module and the command.
 -- The libraries come from the system: see tests/deps.sh for their Debian names.
 rockspec_format = "3.0"
 package = "glint"
