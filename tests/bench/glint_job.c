@@ -42,7 +42,9 @@ void side_run_encode(const bench_options *options)
 {
     glint_error error;
     side_scene scene = side_scene_create(options);
-    glint_renderer *renderer = side_renderer_create(options);
+    bench_options fresh = *options; // without reuse a picture has no stamps, and every band is deflated each time
+    fresh.no_reuse = true;
+    glint_renderer *renderer = side_renderer_create(&fresh);
     glint_plan *plan = side_plan_create(&scene, options);
     encode_state e;
     side_must(glint_render(renderer, plan, &e.image, NULL, &error), &error);
