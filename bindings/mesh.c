@@ -1,7 +1,7 @@
 // The constructors glint.mesh and glint.sphere_mesh.
 #include <string.h>
 
-#include "bindings/glintL.h"
+#include "bindings/run.h"
 
 typedef struct arguments {
     glint_mesh_desc desc;
@@ -348,6 +348,9 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     if (strlen(path) != lua_rawlen(L, OTHER))
         glintL_error(L, "mesh.file: string without a zero byte expected");
     read_material(L, "mesh.material", a);
+    const glintL_reporter *reporter = &glintL_get_run(L)->reporter;
+    if (reporter->reads)
+        reporter->reads(reporter->context, path);
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 

@@ -172,6 +172,8 @@ typedef struct glintL_reporter {
     void (*image)(void *context, const glintL_run *run, const glintL_work *work);
     /// The script is about to run in `L`, whose libraries are open. May raise. NULL: nothing to do.
     void (*prepare)(void *context, lua_State *L);
+    /// The engine is about to read a file that the script names: a mesh. NULL: nobody asks.
+    void (*reads)(void *context, const char *path);
 } glintL_reporter;
 
 struct glintL_run {

@@ -169,6 +169,12 @@ static void warn(void *context, const char *message)
     cli_warning_event(w->output, message);
 }
 
+static void note_mesh(void *context, const char *path)
+{
+    watcher *w = context;
+    watch_files_add(w->files, path, false);
+}
+
 static int note_file(lua_State *L)
 {
     watcher *w = lua_touserdata(L, lua_upvalueindex(1));
@@ -370,8 +376,9 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
     run->asked.force = true;
     run->asked.render_text[glintL_render_find("output")] = "none";
     run->keeps_images = true;
-    run->reporter =
-        (glintL_reporter) { .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare };
+    run->reporter = (glintL_reporter) {
+        .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh
+    };
     w->asks.wanted = w->options->frame;
     return true;
 }

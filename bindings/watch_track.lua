@@ -10,7 +10,17 @@ local function noted(read)
   end
 end
 
-io.lines, io.input, loadfile, dofile = noted(io.lines), noted(io.input), noted(loadfile), noted(dofile)
+-- The same for what raises by itself: the error belongs to the line of the script.
+local function placed(read)
+  read = noted(read)
+  return function(...)
+    local results = table.pack(pcall(read, ...))
+    if not results[1] then error(results[2], 2) end
+    return table.unpack(results, 2, results.n)
+  end
+end
+
+io.lines, io.input, loadfile, dofile = placed(io.lines), placed(io.input), noted(loadfile), noted(dofile)
 
 local open = io.open
 function io.open(path, ...)

@@ -3,6 +3,7 @@
 # server, asked through /dev/tcp. Prints TAP lines. The page in a browser: tests/watch_page.sh, `make check-watch`.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+lib=$PWD/scripts/lib
 work=$(mktemp -d)
 watchers=()
 trap 'for p in "${watchers[@]}"; do kill "$p" 2>/dev/null; done; wait; rm -rf "$work"' EXIT
@@ -77,6 +78,34 @@ for file in parts/ball.lua color.txt scene.lua; do
     cp "$file" copy && cat copy >"$file" # written in place
     check "$file counts" await '"event":"picture"' $((before + 1))
 done
+
+# What the engine reads itself, what readers of data read, and a file that is named but not there yet.
+mkdir -p data
+printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >data/part.obj
+printf '1\n\nC 0 0 0\n' >data/atom.xyz
+before=$(seen picture)
+save 0.5 "local mesh = glint.mesh { file = 'data/part.obj' }
+local atoms = 0
+package.path = '$lib/?.lua;' .. package.path
+for _ in require('glint.xyz').frames 'data/atom.xyz' do atoms = atoms + 1 end
+for line in io.lines 'data/lines.txt' do atoms = atoms + #line end
+P = setmetatable({ shade = atoms / 9 }, { __index = P })"
+check "a file of lines that is missing is told" await '"message":"scene.lua:[0-9]*: .*data/lines.txt' 1
+echo x >data/lines.txt
+check "and read when it appears" await '"event":"picture"' $((before + 1))
+for file in data/part.obj data/atom.xyz data/lines.txt; do
+    before=$(seen picture)
+    changes=$(seen "change.*$file")
+    sed 's/^v 0 1/v 0 2/;s/^C 0/C 1/' "$file" >copy && cat copy >"$file"
+    check "$file counts" await "\"event\":\"change\".*$file" $((changes + 1))
+    check "and renders again" await '"event":"picture"' $((before + 1))
+done
+errors=$(seen error)
+before=$(seen picture)
+printf 'v -1 0 0\nv 1 0 0\nf 1 2 3\n' >data/part.obj
+check "a mesh that is wrong is told" await '"event":"error".*data/part.obj: line 3' 1
+printf 'v -1 0 0\nv 1 0 0\nv 0 3 0\nf 1 2 3\n' >data/part.obj
+check "and one that is right again shows" await '"event":"picture"' $((before + 1))
 
 # An error is told, and the next good save shows.
 before=$(seen picture)
