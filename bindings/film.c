@@ -108,6 +108,8 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
         return refuse(message, path,
                       "it has no room for passes; write frames, and make a film of each pass with glint "
                       "assemble");
+    if (render->desc.alpha && kind != GLINTL_FILM_APNG)
+        return refuse(message, path, "it has no room for alpha; an animated PNG does (.apng, or .png with --apng)");
     if (kind == GLINTL_FILM_GIF && fps > 50)
         return refuse(message, path, "a GIF has at most 50 frames a second; --fps 50 or less expected");
     glintL_film *film = find(run, path);
@@ -178,6 +180,24 @@ static bool match_first(const glintL_film *film, size_t i, const glint_picture *
     return false;
 }
 
+// Only an APNG has room for what a picture does not cover.
+static bool check_channels(const glintL_film *film, const glint_picture *first, char *message)
+{
+    const int channels = glint_picture_channels(first);
+    if (film->kind == GLINTL_FILM_APNG) {
+        if ((channels == 3 || channels == 4) && glint_picture_bits(first) <= 16)
+            return true;
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: a .png of RGB or RGBA expected for an APNG", film->files[0]);
+        return false;
+    }
+    if (channels == 1 || channels == 3)
+        return true;
+    snprintf(message, GLINTL_MESSAGE_SIZE,
+             "%.200s: it has alpha, for which %.200s has no room; an animated PNG does (.apng, or .png with --apng)",
+             film->files[0], film->path);
+    return false;
+}
+
 bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE])
 {
     glint_picture *first = NULL;
@@ -197,12 +217,7 @@ bool glintL_film_check_files(const glintL_film *film, bool strict, char message[
         }
         glint_picture_destroy(picture);
     }
-    if (good && film->kind == GLINTL_FILM_APNG &&
-        (glint_picture_channels(first) != 3 || glint_picture_bits(first) > 16)) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: a .png of RGB without alpha expected for an APNG",
-                 film->files[0]);
-        good = false;
-    }
+    good = good && check_channels(film, first, message);
     glint_picture_destroy(first);
     return good;
 }
@@ -232,6 +247,7 @@ static glint_status make_apng(const glintL_run *run, const glintL_film *film, gl
     glint_apng_desc desc = { glint_picture_width(first),
                              glint_picture_height(first),
                              glint_picture_bits(first),
+                             glint_picture_channels(first) == 4,
                              glint_picture_transfer(first),
                              (uint32_t)film->count,
                              film->fps,

@@ -75,6 +75,14 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
     return glintL_render_set_text(&scratch, field, text, message);
 }
 
+// The same without a text.
+static bool read_switch(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)text, (void)message;
+    options->asked.render_text[glintL_render_find(option->name)] = "true";
+    return true;
+}
+
 // Which endings are right depends on the command, which is known when all is read.
 static bool read_output(cli_options *options, const cli_option *option, char *text, char *message)
 {
@@ -293,6 +301,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "rounding", 0, true, SHOWN, read_render },
     { "tone", 0, true, SHOWN, read_render },
     { "exposure", 0, true, SHOWN, read_render },
+    { "alpha", 0, false, SHOWN, read_switch },
     { "passes", 0, true, SCRIPTED, read_render },
     { "encode", 0, true, SHOWN, read_render },
     { "seed", 0, true, SHOWN, read_render },

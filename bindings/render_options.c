@@ -16,6 +16,7 @@ typedef enum sort {
     REAL, // likewise, not only whole
     CHOICE, // an enum
     BITS,
+    FLAG, // a bool
     OUTPUT,
     PASSES
 } sort;
@@ -37,21 +38,14 @@ static const char *const encodes[] = { "fast", "small", NULL };
 const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
 
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    { .name = "width", .kind = GLINTL_NUMBER },
-    { .name = "height", .kind = GLINTL_NUMBER },
-    { .name = "samples", .kind = GLINTL_NUMBER },
-    { .name = "seed", .kind = GLINTL_NUMBER },
-    { .name = "max_depth", .kind = GLINTL_NUMBER },
-    { .name = "bits", .kind = GLINTL_NUMBER },
-    { .name = "precision", .kind = GLINTL_ENUM },
-    { .name = "transfer", .kind = GLINTL_ENUM },
-    { .name = "rounding", .kind = GLINTL_ENUM },
-    { .name = "tone", .kind = GLINTL_ENUM },
-    { .name = "encode", .kind = GLINTL_ENUM },
-    { .name = "output", .kind = GLINTL_STRING },
-    { .name = "passes", .kind = GLINTL_STRING },
-    { .name = "exposure", .kind = GLINTL_NUMBER },
-    { .name = NULL },
+    { .name = "width", .kind = GLINTL_NUMBER },     { .name = "height", .kind = GLINTL_NUMBER },
+    { .name = "samples", .kind = GLINTL_NUMBER },   { .name = "seed", .kind = GLINTL_NUMBER },
+    { .name = "max_depth", .kind = GLINTL_NUMBER }, { .name = "bits", .kind = GLINTL_NUMBER },
+    { .name = "precision", .kind = GLINTL_ENUM },   { .name = "transfer", .kind = GLINTL_ENUM },
+    { .name = "rounding", .kind = GLINTL_ENUM },    { .name = "tone", .kind = GLINTL_ENUM },
+    { .name = "encode", .kind = GLINTL_ENUM },      { .name = "output", .kind = GLINTL_STRING },
+    { .name = "passes", .kind = GLINTL_STRING },    { .name = "exposure", .kind = GLINTL_NUMBER },
+    { .name = "alpha", .kind = GLINTL_BOOLEAN },    { .name = NULL },
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {
@@ -69,6 +63,7 @@ static const detail details[GLINTL_RENDER_FIELDS] = {
     { OUTPUT, AT(output), 0, 0, NULL },
     { PASSES, AT(file_passes), 0, 0, NULL },
     { REAL, AT(desc.tone.exposure), -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL },
+    { FLAG, AT(desc.alpha), 0, 0, NULL },
 };
 
 glintL_render glintL_render_default(void)
@@ -109,6 +104,9 @@ static void describe(const detail *what, char out[256])
         break;
     case BITS:
         snprintf(out, 256, "8 or 16");
+        break;
+    case FLAG:
+        snprintf(out, 256, "true or false");
         break;
     case CHOICE:
         for (const char *const *name = what->names; *name; name++)
@@ -161,6 +159,13 @@ static bool set_choice(glintL_render *render, const detail *what, const char *te
     return false;
 }
 
+static bool set_flag(glintL_render *render, const detail *what, const char *text)
+{
+    const bool value = strcmp(text, "true") == 0;
+    memcpy((char *)render + what->offset, &value, sizeof value);
+    return value || strcmp(text, "false") == 0;
+}
+
 static bool add_pass(uint32_t *passes, const char *name, size_t length)
 {
     char copy[32];
@@ -209,6 +214,8 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
     }
     if (what->sort == CHOICE)
         good = set_choice(render, what, text);
+    else if (what->sort == FLAG)
+        good = set_flag(render, what, text);
     else if (what->sort == PASSES)
         good = read_passes(text, &render->file_passes);
     if (!good) {
@@ -271,6 +278,12 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
             refuse(L, index, path, field);
         return;
     }
+    if (what->sort == FLAG) {
+        if (!lua_isboolean(L, index))
+            refuse(L, index, path, field);
+        set_flag(render, what, lua_toboolean(L, index) ? "true" : "false");
+        return;
+    }
     if (what->sort == PASSES && lua_istable(L, index)) {
         read_pass_list(L, index, path, field, render);
         return;
@@ -311,6 +324,9 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
     case BITS:
         snprintf(out, 64, "%d", render->desc.tone.bits);
         return true;
+    case FLAG:
+        snprintf(out, 64, "%s", *(const bool *)at ? "true" : "false");
+        return true;
     case CHOICE:
         memcpy(&value, at, sizeof value);
         snprintf(out, 64, "%s", what->names[value]);
@@ -337,6 +353,9 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
         break;
     case BITS:
         lua_pushinteger(L, render->desc.tone.bits);
+        break;
+    case FLAG:
+        lua_pushboolean(L, *(const bool *)at);
         break;
     case CHOICE:
         memcpy(&value, at, sizeof value);

@@ -362,6 +362,7 @@ typedef enum glint_pass {
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
     GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
+    GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
     GLINT_PASS_COUNT
 } glint_pass;
 
@@ -405,6 +406,10 @@ typedef struct glint_render_desc {
         ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
+    /// Where nothing is hit nothing is shown: the background is black there and codes have alpha, so that a PNG of beauty
+    /// is RGBA. Passes hold light times coverage; codes are of the light alone, beauty / alpha. What rays find behind
+    /// mirrors and glass is the scene's background as ever. Where beauty is kept, GLINT_PASS_ALPHA is too
+    bool alpha;
     glint_tone_desc tone;
 } glint_render_desc;
 
@@ -653,7 +658,7 @@ void glint_picture_destroy(glint_picture *picture);
 int glint_picture_width(const glint_picture *picture);
 int glint_picture_height(const glint_picture *picture);
 int glint_picture_bits(const glint_picture *picture); ///< 8, 16; 32: a .pfm
-int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4
+int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4; 2 and 4: the last is alpha
 glint_transfer glint_picture_transfer(const glint_picture *picture);
 /// The value of a PNG's tEXt, as UTF-8; the picture's; NULL: there is none.
 const char *glint_picture_text(const glint_picture *picture, const char *keyword);
@@ -686,6 +691,7 @@ typedef struct glint_apng glint_apng;
 typedef struct glint_apng_desc {
     int width, height; ///< 1 .. GLINT_SIDE_MAX
     int bits; ///< 8 or 16
+    bool alpha; ///< frames are RGBA
     glint_transfer transfer;
     uint32_t frame_count; ///< 1 .. 2^30
     double fps; ///< 1/65535 .. 65535; a frame stays for the nearest ratio of two 16-bit numbers to 1/fps
@@ -695,7 +701,7 @@ typedef struct glint_apng_desc {
 
 /// Opens a draft for `path` and writes its head.
 glint_status glint_apng_create(const char *path, const glint_apng_desc *desc, glint_apng **out, glint_error *error);
-/// Adds a frame, of which only what has changed is stored: RGB without alpha, of the size, bits and transfer described.
+/// Adds a frame, of which only what has changed is stored: RGB or RGBA, of the size, bits and transfer described.
 glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glint_error *error);
 /// Gives the file its name, once frame_count frames were added.
 glint_status glint_apng_finish(glint_apng *apng, glint_error *error);

@@ -99,6 +99,8 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     if (!plan)
         return glint_fail_nomem(error);
     plan->desc = *desc;
+    if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
+        plan->desc.passes |= 1u << GLINT_PASS_ALPHA;
     status = fill(plan, scene, error);
     if (status) {
         glint_plan_destroy(plan);

@@ -229,6 +229,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->tints)
         materials(e, "tinted shadow", is_transparent);
+    one(e, plan->desc.alpha, "transparent background", "alpha = true");
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };

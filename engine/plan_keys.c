@@ -155,6 +155,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         key = bounces_key(plan, key);
     if (which & READS(BACKGROUND))
         ADD(key, plan->background);
+    if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
+        ADD(key, plan->desc.alpha);
     return output_key(plan, which, key);
 }
 

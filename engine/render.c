@@ -281,8 +281,8 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
     return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
-           (image->codes != NULL) == desc->codes &&
-           (!desc->codes || memcmp(&image->code_tone, &desc->tone, sizeof desc->tone) == 0);
+           image->alpha == desc->alpha && (image->codes != NULL) == desc->codes &&
+           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
 }
 
 /// A picture to render into: one given before that nobody else holds any more, or a new one.
@@ -303,8 +303,7 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
     }
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
         free_slot = renderer->spare[i] ? free_slot : i;
-    glint_status status = glint_image_create((int)desc->width, (int)desc->height, desc->passes,
-                                             desc->codes ? &desc->tone : NULL, out, error);
+    glint_status status = glint_image_create_for(desc, out, error);
     if (!status && free_slot >= 0 && glint_reuse_reserve(&renderer->reuse, glint_image_bytes(*out)))
         renderer->spare[free_slot] = glint_image_retain(*out);
     return status;

@@ -8,6 +8,7 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
     const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
     tile->x0 = column * GLINT_TILE_WIDTH;
     tile->y0 = row * GLINT_TILE_HEIGHT;
+    tile->transparent = plan->desc.alpha;
     tile->width = width - tile->x0 < GLINT_TILE_WIDTH ? width - tile->x0 : GLINT_TILE_WIDTH;
     tile->height = height - tile->y0 < GLINT_TILE_HEIGHT ? height - tile->y0 : GLINT_TILE_HEIGHT;
     tile->groups_across = (tile->width + 3) / 4;
@@ -194,6 +195,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         else
             note_nothing(tile, w->sample);
     }
+    if (glint_tile_wants_coverage(plan))
+        glint_tile_count_hits(tile, w->sample);
     if (w->sample == 0 && glint_tile_wants_geometry(plan)) {
         if (any)
             need_points(tile, frame, w);

@@ -73,6 +73,8 @@ typedef struct glint_tile {
     _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
+    uint32_t covered[GLINT_TILE_SAMPLES]; ///< samples so far that hit something, where the plan asks for coverage
+    bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
     uint32_t sample; ///< which it is
@@ -183,6 +185,9 @@ void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
+bool glint_tile_wants_coverage(const glint_plan *plan);
+/// Counts the hits of sample k, from 0.
+void glint_tile_count_hits(glint_tile *tile, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Takes the tile's pixels from the last picture.

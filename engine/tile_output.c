@@ -66,14 +66,69 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
     store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
 
+// ---- Coverage -----------------------------------------------------------------------------------------------------
+
+bool glint_tile_wants_coverage(const glint_plan *plan)
+{
+    return plan->desc.alpha || plan->desc.passes >> GLINT_PASS_ALPHA & 1;
+}
+
+void glint_tile_count_hits(glint_tile *tile, uint32_t k)
+{
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        tile->covered[i] = (k ? tile->covered[i] : 0) + (tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
+}
+
+static float coverage_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    return (float)(tile->covered[i] / plan->desc.samples);
+}
+
+static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float alpha[GLINT_TILE_SAMPLES];
+    if (!(frame->plan->desc.passes >> GLINT_PASS_ALPHA & 1))
+        return;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        alpha[i] = coverage_at(tile, frame->plan, i);
+    store_pass(tile, frame, GLINT_PASS_ALPHA, alpha);
+}
+
+// ---- Light --------------------------------------------------------------------------------------------------------
+
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
 {
+    store_coverage(tile, frame);
     if (!frame->plan->runs[GLINT_STAGE_BOUNCE] &&
         frame->plan->desc.passes & (1u << GLINT_PASS_MIRROR | 1u << GLINT_PASS_TRANSMISSION))
         memset(tile->film[GLINT_TERM_MIRROR], 0, 2 * sizeof tile->film[0]);
     store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);
+}
+
+/// Where in the tile's arrays pixel (x, y) of it is.
+static uint32_t place_of(const glint_tile *tile, uint32_t x, uint32_t y)
+{
+    return ((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
+}
+
+static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
+{
+    float row[3][GLINT_TILE_WIDTH], alpha[GLINT_TILE_WIDTH];
+    const glint_image *image = frame->image;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        for (uint32_t x = 0; x < tile->width; x++) {
+            const uint32_t i = place_of(tile, x, y);
+            alpha[x] = coverage_at(tile, frame->plan, i);
+            for (int c = 0; c < 3; c++)
+                row[c][x] = tile->beauty[c][i];
+        }
+        const size_t at = (size_t)(tile->y0 + y) * (size_t)image->width + tile->x0;
+        glint_tone_row_alpha(frame->tone_table, frame->gain, (const float *const[3]) { row[0], row[1], row[2] }, alpha,
+                             tile->width, (char *)image->codes + at * glint_image_pixel_bytes(image),
+                             &tile->counts.clipped, &tile->counts.nonfinite);
+    }
 }
 
 static void tone16(glint_tile *tile, const glint_tile_frame *frame)
@@ -83,7 +138,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++)
             for (int c = 0; c < 3; c++)
-                row[c][x] = tile->beauty[c][((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4];
+                row[c][x] = tile->beauty[c][place_of(tile, x, y)];
         uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
         glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);
@@ -92,6 +147,10 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
 
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
 {
+    if (frame->plan->desc.alpha) {
+        tone_alpha(tile, frame);
+        return;
+    }
     if (frame->plan->desc.tone.bits == 16) {
         tone16(tile, frame);
         return;
@@ -118,7 +177,7 @@ void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *from = frame->last;
     const size_t stride = (size_t)from->width, at = (size_t)tile->y0 * stride + tile->x0;
-    const size_t pixel = from->codes ? 3 * (size_t)from->code_tone.bits / 8 : 0;
+    const size_t pixel = from->codes ? glint_image_pixel_bytes(from) : 0;
     for (size_t y = 0; y < tile->height; y++) {
         const size_t row = at + y * stride;
         if (pixel)

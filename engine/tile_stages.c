@@ -256,7 +256,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .first = from == 0,
                               .lights = lights,
                               .light_count = count };
-    vec_copy(args.background, plan->background);
+    if (!tile->transparent)
+        vec_copy(args.background, plan->background);
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < GLINT_TERM_COUNT; k++) {
             args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;

@@ -301,7 +301,7 @@ options() {
         '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \
         '--size 65536x1' '--samples 0' '--samples 1.5' '--samples nan' '--precision half' '--bits 9' '--transfer foo' \
         '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--passes foo' '--passes depth,' '--encode foo' '-t 0' '-t x' '-t 1025' '--seed -1' \
-        '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--samples' '--fail 1'; do
+        '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--alpha=true' '--samples' '--fail 1'; do
         # shellcheck disable=SC2086
         exits 2 "wrong: $wrong" ten.lua $wrong
     done
@@ -319,7 +319,7 @@ options() {
     exits 2 "wrong field" fields.lua
     says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
     for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'precision=true' 'rounding="up"' \
-        'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'encode="x"' 'output="x.jpg"' 'output=3' '[1]=2'; do
+        'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'encode="x"' 'output="x.jpg"' 'output=3' '[1]=2'; do
         script fields "local S = require 'scene' S.scene:render { $wrong }"
         exits 2 "wrong field $wrong" fields.lua
     done

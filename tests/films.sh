@@ -331,6 +331,26 @@ check "the sheet" test -s p/sheet.png
 check "the page with the function's labels" grep -q '"2: x is 2"' plain.html
 absent "and no more" none.apng none.apng.frames plain.apng.frames
 
+# ---- Transparent background ----
+
+exits 0 "frames with alpha" turn.lua --alpha --samples 4 -f 1-3 -o 'clear_%04d.png' --json
+exits 0 "are kept" turn.lua --alpha --samples 4 -f 1-3 -o 'clear_%04d.png' --json
+check "all of them" test "$(grep -c '"status":"kept"' out)" -eq 3
+exits 0 "but not without alpha" turn.lua --samples 4 -f 1 -o 'clear_%04d.png' --json
+prints "it is another picture" '"status":"rendered"'
+exits 0 "and back" turn.lua --alpha --samples 4 -f 1 -o 'clear_%04d.png' -q
+exits 3 "one of each do not compare" compare clear_0001.png swept_0007.png
+exits 0 "alpha is reproduced" reproduce clear_0002.png turn.lua
+exits 0 "a sheet shows the grey behind it" sheet 'clear_%04d.png' -o clear_sheet.png
+exits 0 "an animated PNG has alpha" turn.lua --alpha -f 1-3 -o clear.apng
+check "and says so" test "$(head -c 26 clear.apng | tail -c 1 | od -An -tu1 | tr -d ' ')" -eq 6
+exits 0 "assembled as well" assemble 'clear_%04d.png' -o assembled.png --apng
+exits 2 "other films have no room for it" turn.lua --alpha -f 1-3 -o clear.mp4
+says "what has" "it has no room for alpha; an animated PNG does"
+exits 2 "frames that have it" assemble 'clear_%04d.png' -o clear.gif
+says "are named" "clear_0001.png: it has alpha, for which clear.gif has no room"
+absent "nothing was begun" clear.mp4 clear.gif clear.mp4.frames
+
 # ---- Reproduce ----
 
 mkdir temporary

@@ -350,7 +350,7 @@ static void check_played(const char *path, const char *const *pictures, uint32_t
     glint_bytes bytes = read_ok(path);
     player p = { .width = big_endian(bytes.data + 16) };
     memcpy(p.header, bytes.data + 8, 25);
-    p.pixel_bytes = bytes.data[24] == 16 ? 6 : 3;
+    p.pixel_bytes = (bytes.data[24] == 16 ? 2 : 1) * (bytes.data[25] == 6 ? 4 : 3);
     size_t size = (size_t)p.width * big_endian(bytes.data + 20) * p.pixel_bytes;
     p.canvas = calloc(1, size);
     for (size_t at = 8; at < bytes.size;) {
@@ -385,10 +385,11 @@ static void check_played(const char *path, const char *const *pictures, uint32_t
 }
 
 /// A frame with a bright square at a place; -1: the same as without it.
-static const char *write_frame(const char *name, int bits, int square)
+static const char *write_frame(const char *name, int bits, bool alpha, int square)
 {
     const char *path = in_folder(name);
     glint_image *image = make_image(40, 30, NULL);
+    image->alpha = alpha;
     for (int i = 0; square >= 0 && i < 9; i++)
         image->plane[GLINT_PASS_BEAUTY][1][(5 + i / 3) * 40 + square + i % 3] = 0.9f;
     glint_write_desc desc = describe(path);
@@ -419,17 +420,22 @@ static void test_apng(void **state)
     (void)state;
     static const struct {
         int bits;
+        bool alpha;
         double fps;
         unsigned above, below;
-    } cases[] = { { 8, 24, 1, 24 }, { 16, 30000.0 / 1001, 1001, 30000 }, { 8, 0.1, 10, 1 }, { 8, 12.5, 2, 25 } };
+    } cases[] = { { 8, false, 24, 1, 24 },  { 16, false, 30000.0 / 1001, 1001, 30000 },
+                  { 8, false, 0.1, 10, 1 }, { 8, true, 12.5, 2, 25 },
+                  { 16, true, 24, 1, 24 } };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char name[16];
         snprintf(name, sizeof name, "film%zu.png", i);
         char *film = strdup(in_folder(name));
-        const char *pictures[] = { write_frame("0.png", cases[i].bits, -1), write_frame("1.png", cases[i].bits, 0),
-                                   write_frame("2.png", cases[i].bits, 37), write_frame("3.png", cases[i].bits, 37),
-                                   write_frame("4.png", cases[i].bits, -1) };
-        glint_apng_desc desc = { 40, 30, cases[i].bits, GLINT_TRANSFER_SRGB, 5, cases[i].fps, 0, GLINT_ENCODE_FAST };
+        const int bits = cases[i].bits;
+        const bool alpha = cases[i].alpha;
+        const char *pictures[] = { write_frame("0.png", bits, alpha, -1), write_frame("1.png", bits, alpha, 0),
+                                   write_frame("2.png", bits, alpha, 37), write_frame("3.png", bits, alpha, 37),
+                                   write_frame("4.png", bits, alpha, -1) };
+        glint_apng_desc desc = { 40, 30, bits, alpha, GLINT_TRANSFER_SRGB, 5, cases[i].fps, 0, GLINT_ENCODE_FAST };
         make_apng(film, &desc, pictures);
         check_played(film, pictures, 5, cases[i].above, cases[i].below);
         free(film);
@@ -441,7 +447,7 @@ static void test_apng_refuses(void **state)
     (void)state;
     glint_error error = { 0 };
     glint_apng *apng = NULL;
-    glint_apng_desc desc = { 40, 30, 8, GLINT_TRANSFER_SRGB, 1, 24, 0, GLINT_ENCODE_FAST };
+    glint_apng_desc desc = { 40, 30, 8, false, GLINT_TRANSFER_SRGB, 1, 24, 0, GLINT_ENCODE_FAST };
     const char *path = in_folder("film.png");
     glint_apng_desc wrong[] = { desc, desc, desc, desc, desc };
     wrong[0].width = 0;
@@ -451,19 +457,22 @@ static void test_apng_refuses(void **state)
     wrong[4].fps = NAN;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(glint_apng_create(path, &wrong[i], &apng, &error), GLINT_ERR_INVALID);
-    glint_picture *deep = read_picture(write_frame("deep.png", 16, 1), true);
+    glint_picture *covered = read_picture(write_frame("covered.png", 8, true, 1), true);
+    glint_picture *deep = read_picture(write_frame("deep.png", 16, false, 1), true);
     glint_picture *small = read_picture(write_plain("small.png", 20, 10, 1), true);
-    glint_picture *unread = read_picture(write_frame("right.png", 8, 1), false);
+    glint_picture *unread = read_picture(write_frame("right.png", 8, false, 1), false);
     glint_picture *right = read_picture(in_folder("right.png"), true);
     assert_int_equal(glint_apng_create(path, &desc, &apng, &error), GLINT_OK);
     assert_int_equal(glint_apng_add(apng, deep, &error), GLINT_ERR_INVALID);
+    assert_int_equal(glint_apng_add(apng, covered, &error), GLINT_ERR_INVALID);
+    glint_picture_destroy(covered);
     assert_int_equal(glint_apng_add(apng, small, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, unread, &error), GLINT_ERR_INVALID);
     assert_int_equal(glint_apng_add(apng, right, &error), GLINT_OK);
     assert_int_equal(glint_apng_add(apng, right, &error), GLINT_ERR_INVALID); // one more than it has
     glint_apng_destroy(apng); // unfinished
     glint_apng_destroy(NULL);
-    assert_int_equal(files_in(folder), 3);
+    assert_int_equal(files_in(folder), 4);
     glint_picture_destroy(deep);
     glint_picture_destroy(small);
     glint_picture_destroy(unread);

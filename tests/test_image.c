@@ -208,23 +208,25 @@ static void test_view_passes(void **state)
     double nearest = INFINITY;
     for (size_t p = 0; p < 1200; p++)
         nearest = fmin(nearest, image->plane[GLINT_PASS_DEPTH][0][p]);
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 8; i++) {
         glint_write_desc desc = describe(in_folder("pass.png"));
-        desc.pass = (glint_pass)(GLINT_PASS_DEPTH + i % 3);
-        desc.tone.bits = i < 3 ? 8 : 16;
-        int max = i < 3 ? 255 : 65535;
+        desc.pass = (glint_pass)(GLINT_PASS_DEPTH + i % 4);
+        desc.tone.bits = i < 4 ? 8 : 16;
+        int max = i < 4 ? 255 : 65535;
         write_ok(image, &desc);
         glint_bytes bytes = read_ok(desc.path);
         glint_png png;
         assert_int_equal(glint_png_decode(bytes.data, bytes.size, &png, NULL), GLINT_OK);
         for (size_t p = 0; p < 1200; p++)
             for (size_t c = 0; c < 3; c++) {
-                int code = i < 3 ? ((uint8_t *)png.codes)[3 * p + c] : ((uint16_t *)png.codes)[3 * p + c];
+                int code = i < 4 ? ((uint8_t *)png.codes)[3 * p + c] : ((uint16_t *)png.codes)[3 * p + c];
                 bool hit = image->plane[GLINT_PASS_OBJECT_ID][0][p] != 0;
                 if (!hit)
                     assert_int_equal(code, 0);
                 else if (desc.pass == GLINT_PASS_NORMAL)
                     assert_int_equal(code, c == 2 ? max : max / 2 + 1);
+                else if (desc.pass == GLINT_PASS_ALPHA)
+                    assert_int_equal(code, (int)floor(max * image->plane[GLINT_PASS_ALPHA][0][p] + 0.5));
                 else if (desc.pass == GLINT_PASS_DEPTH)
                     assert_int_equal(code, (int)floor(max * (nearest / image->plane[GLINT_PASS_DEPTH][0][p]) + 0.5));
             }

@@ -128,6 +128,7 @@ static const field render_fields[] = {
     R(seed, WHOLE, 0, 2),
     R(passes, BITS, 0, GLINT_PASS_COUNT),
     R(codes, FLAG, 0, 1),
+    R(alpha, FLAG, 0, 1),
     R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 2),
     R(tone.rounding, CHOICE, 0, 2),
@@ -405,16 +406,17 @@ static bool same_codes(const glint_image *a, const glint_image *b)
 {
     if (!a->codes || !b->codes)
         return a->codes == b->codes;
-    return memcmp(a->codes, b->codes, (size_t)a->width * (size_t)a->height * 3 * (size_t)(a->code_tone.bits / 8)) == 0;
+    return a->channels == b->channels &&
+           memcmp(a->codes, b->codes, (size_t)a->width * (size_t)a->height * glint_image_pixel_bytes(a)) == 0;
 }
 
 /// Rows of tiles with equal stamps hold equal codes.
 static bool stamps_hold(const glint_image *a, const glint_image *b)
 {
-    if (!a->codes || !b->codes || a->width != b->width || a->height != b->height ||
+    if (!a->codes || !b->codes || a->width != b->width || a->height != b->height || a->channels != b->channels ||
         memcmp(&a->code_tone, &b->code_tone, sizeof a->code_tone))
         return true;
-    const size_t row = (size_t)a->width * 3 * (size_t)(a->code_tone.bits / 8);
+    const size_t row = (size_t)a->width * glint_image_pixel_bytes(a);
     for (size_t i = 0; i < glint_image_stamps(a); i++) {
         const size_t from = i * GLINT_TILE_HEIGHT, rest = (size_t)a->height - from;
         const size_t rows = rest < GLINT_TILE_HEIGHT ? rest : GLINT_TILE_HEIGHT;

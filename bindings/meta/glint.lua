@@ -513,6 +513,7 @@ function glint.scene(fields) end
 ---| "depth"  # distance from the eye, one number; inf where nothing is hit
 ---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
+---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
 
 --- What a frame and its file are to be. What the command line says beats it.
 ---@class glint.render
@@ -527,6 +528,7 @@ function glint.scene(fields) end
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
 ---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
+---@field alpha? boolean  transparent background: a .png is RGBA, and passes hold light times coverage. Default false
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
 ---@field output? string  file name, .png or .pfm; %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
@@ -550,7 +552,7 @@ local image = {}
 ---@param x integer  0 .. width - 1
 ---@param y integer  0 .. height - 1
 ---@param pass? glint.pass  Default "beauty"
----@return number r  the only one of "depth" and "object_id"
+---@return number r  the only one of "depth", "object_id" and "alpha"
 ---@return number g
 ---@return number b
 function image:pixel(x, y, pass) end

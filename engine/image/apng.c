@@ -83,7 +83,8 @@ static bool write_head(glint_apng *apng)
         return false;
     png_set_write_fn(apng->png, apng, take_bytes, nothing_to_flush);
     png_set_IHDR(apng->png, apng->info, (png_uint_32)desc->width, (png_uint_32)desc->height, desc->bits,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 desc->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (desc->transfer == GLINT_TRANSFER_SRGB)
         png_set_sRGB(apng->png, apng->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else
@@ -169,7 +170,7 @@ static glint_status check_desc(const glint_apng_desc *desc, glint_error *error)
 static glint_status open_apng(glint_apng *apng, const char *path, glint_error *error)
 {
     const glint_apng_desc *desc = &apng->desc;
-    apng->pixel_bytes = desc->bits == 16 ? 6 : 3;
+    apng->pixel_bytes = (desc->alpha ? 4 : 3) * (desc->bits == 16 ? 2 : 1);
     apng->before = calloc((size_t)desc->width * (size_t)desc->height, apng->pixel_bytes);
     apng->chunk = malloc(CHUNK_BYTES + 4);
     apng->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, jump_out, heed_warning);
@@ -263,9 +264,9 @@ static const void *row_of_part(const void *user, int y, void *scratch)
 static glint_status check_picture(const glint_apng *apng, const glint_picture *picture, glint_error *error)
 {
     const glint_apng_desc *desc = &apng->desc;
-    if (!glint_picture_codes(picture) || glint_picture_channels(picture) != 3)
-        return glint_fail(error, GLINT_ERR_INVALID, "picture: a .png of RGB without alpha expected, got %d channels",
-                          glint_picture_channels(picture));
+    if (!glint_picture_codes(picture) || glint_picture_channels(picture) != (desc->alpha ? 4 : 3))
+        return glint_fail(error, GLINT_ERR_INVALID, "picture: a .png of %s expected, got %d channels",
+                          desc->alpha ? "RGB with alpha" : "RGB without alpha", glint_picture_channels(picture));
     if (glint_picture_width(picture) != desc->width || glint_picture_height(picture) != desc->height ||
         glint_picture_bits(picture) != desc->bits || glint_picture_transfer(picture) != desc->transfer)
         return glint_fail(error, GLINT_ERR_INVALID, "picture: %dx%d pixels of %d bits expected, got %dx%d of %d",
@@ -290,6 +291,7 @@ glint_status glint_apng_add(glint_apng *apng, const glint_picture *picture, glin
         b = find_changed(apng, codes);
     part p = { codes, row_bytes, (size_t)b.y * row_bytes + (size_t)b.x * apng->pixel_bytes };
     glint_png_source source = { .width = b.width, .height = b.height, .row = row_of_part, .user = &p };
+    source.alpha = desc->alpha;
     source.tone = glint_tone_desc_default();
     source.tone.bits = desc->bits;
     status = glint_bands_deflate(NULL, &source, desc->encode, &stream, NULL, error);

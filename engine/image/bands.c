@@ -19,6 +19,7 @@ typedef uint16_t vector16 __attribute__((vector_size(VECTOR)));
 /// What has to agree for stamps to be compared, and for bands to take each other's place.
 typedef struct layout {
     int width, height;
+    bool alpha;
     glint_tone_desc tone;
     glint_encode encode;
     size_t row_bytes; ///< without the filter's byte
@@ -98,7 +99,7 @@ static void filter_rows(const glint_png_source *source, size_t row_bytes, size_t
         const void *codes = source->row(source->user, (int)y, memory->rows.data);
         if (wide)
             swap_to_file(codes, row_bytes / 2, memory->swapped.data);
-        filter_sub(wide ? memory->swapped.data : codes, row_bytes, wide ? 6 : 3, out);
+        filter_sub(wide ? memory->swapped.data : codes, row_bytes, glint_png_pixel_bytes(source), out);
     }
 }
 
@@ -170,7 +171,8 @@ static layout layout_of(const glint_png_source *source, glint_encode encode)
 {
     layout l = { .width = source->width, .height = source->height, .tone = source->tone, .encode = encode };
     const size_t height = (size_t)l.height;
-    l.row_bytes = (size_t)l.width * 3 * (l.tone.bits == 16 ? 2 : 1);
+    l.alpha = source->alpha;
+    l.row_bytes = (size_t)l.width * glint_png_pixel_bytes(source);
     const size_t tile_row = (l.row_bytes + 1) * GLINT_TILE_HEIGHT; // at most 2^24
     l.band_rows = (BAND_BYTES + tile_row - 1) / tile_row * GLINT_TILE_HEIGHT;
     if (l.band_rows > height || !glint_deflate_has_bands(encode))
@@ -182,8 +184,8 @@ static layout layout_of(const glint_png_source *source, glint_encode encode)
 
 static bool same_layout(const layout *a, const layout *b)
 {
-    return a->width == b->width && a->height == b->height && glint_tone_same(&a->tone, &b->tone) &&
-           a->encode == b->encode;
+    return a->width == b->width && a->height == b->height && a->alpha == b->alpha &&
+           glint_tone_same(&a->tone, &b->tone) && a->encode == b->encode;
 }
 
 static void free_picture(picture *p)

@@ -12,11 +12,17 @@ static const struct {
     const char *name;
     int channels;
 } pass_table[GLINT_PASS_COUNT] = {
-    [GLINT_PASS_BEAUTY] = { "beauty", 3 },     [GLINT_PASS_BACKGROUND] = { "background", 3 },
-    [GLINT_PASS_AMBIENT] = { "ambient", 3 },   [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
-    [GLINT_PASS_SPECULAR] = { "specular", 3 }, [GLINT_PASS_MIRROR] = { "mirror", 3 },
-    [GLINT_PASS_TRANSMISSION] = { "transmission", 3 }, [GLINT_PASS_DEPTH] = { "depth", 1 },
-    [GLINT_PASS_NORMAL] = { "normal", 3 },     [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
+    [GLINT_PASS_BEAUTY] = { "beauty", 3 },
+    [GLINT_PASS_BACKGROUND] = { "background", 3 },
+    [GLINT_PASS_AMBIENT] = { "ambient", 3 },
+    [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
+    [GLINT_PASS_SPECULAR] = { "specular", 3 },
+    [GLINT_PASS_MIRROR] = { "mirror", 3 },
+    [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
+    [GLINT_PASS_DEPTH] = { "depth", 1 },
+    [GLINT_PASS_NORMAL] = { "normal", 3 },
+    [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
+    [GLINT_PASS_ALPHA] = { "alpha", 1 },
 };
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
@@ -50,13 +56,13 @@ static bool allocate_all(glint_image *image, uint32_t passes, const glint_tone_d
     if (!codes_tone)
         return true;
     image->code_tone = *codes_tone;
-    image->codes = malloc(pixels * 3 * (codes_tone->bits == 16 ? 2 : 1));
+    image->codes = malloc(pixels * glint_image_pixel_bytes(image));
     image->row_stamp = calloc(glint_image_stamps(image), sizeof *image->row_stamp);
     return image->codes && image->row_stamp;
 }
 
-glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
-                                glint_image **out, glint_error *error)
+static glint_status create(int width, int height, uint32_t passes, bool alpha, const glint_tone_desc *codes_tone,
+                           glint_image **out, glint_error *error)
 {
     glint_status status = glint_check_whole("width", width, 1, GLINT_SIDE_MAX, error);
     if (!status)
@@ -74,6 +80,8 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
     atomic_init(&image->references, 1);
     image->width = width;
     image->height = height;
+    image->alpha = alpha;
+    image->channels = alpha ? 4 : 3;
     if (!allocate_all(image, passes, codes_tone)) {
         glint_image_release(image);
         return glint_fail_nomem(error);
@@ -82,10 +90,22 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
     return GLINT_OK;
 }
 
+glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
+                                glint_image **out, glint_error *error)
+{
+    return create(width, height, passes, false, codes_tone, out, error);
+}
+
+glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error)
+{
+    return create((int)desc->width, (int)desc->height, desc->passes, desc->alpha, desc->codes ? &desc->tone : NULL, out,
+                  error);
+}
+
 size_t glint_image_bytes(const glint_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;
-    size_t bytes = image->codes ? pixels * 3 * (size_t)(image->code_tone.bits / 8) : 0;
+    size_t bytes = image->codes ? pixels * glint_image_pixel_bytes(image) : 0;
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             bytes += image->plane[pass][c] ? pixels * sizeof(float) : 0;

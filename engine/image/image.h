@@ -13,7 +13,9 @@ struct glint_image {
     int width, height;
     float *plane[GLINT_PASS_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
         ///< One-channel passes have [0] only
-    void *codes; ///< 3 * width * height uint8_t or uint16_t (native order), RGB interleaved; NULL: none
+    void *codes; ///< channels * width * height uint8_t or uint16_t (native order), interleaved; NULL: none
+    bool alpha; ///< beauty is light times coverage, and the pass `alpha` is there wherever beauty is
+    int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
     glint_key *film; ///< one a tile, left to right, top to bottom: of what its pixels were made from. Equal keys: equal
         ///< pixels; all zero: unknown. NULL: nobody asked. Owned
@@ -35,7 +37,17 @@ size_t glint_image_bytes(const glint_image *image);
 /// width, height  1 .. GLINT_SIDE_MAX, else GLINT_ERR_INVALID, before anything is allocated.
 /// passes         bits 1u << GLINT_PASS_...
 /// codes_tone     NULL: no codes.
+/// Its codes have no alpha.
 glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
                                 glint_image **out, glint_error *error);
+
+/// The same for a frame that is rendered so.
+glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error);
+
+/// Bytes of one pixel's codes.
+static inline size_t glint_image_pixel_bytes(const glint_image *image)
+{
+    return (size_t)image->channels * (image->code_tone.bits == 16 ? 2 : 1);
+}
 
 #endif

@@ -109,7 +109,8 @@ static bool write_container(container *c)
     const glint_png_source *source = c->source;
     png_set_write_fn(c->png, c->out, take_bytes, nothing_to_flush);
     png_set_IHDR(c->png, c->info, (png_uint_32)source->width, (png_uint_32)source->height, source->tone.bits,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 source->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (source->tone.transfer == GLINT_TRANSFER_SRGB)
         png_set_sRGB(c->png, c->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else

@@ -8,16 +8,23 @@
 #define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value
 #define GLINT_PNG_KEY "glint:key" ///< tEXt keyword of a frame's key
 
-/// Where the codes of an RGB picture come from, a row at a time.
+/// Where the codes of an RGB or RGBA picture come from, a row at a time.
 typedef struct glint_png_source {
     int width, height; ///< 1 .. GLINT_SIDE_MAX
+    bool alpha; ///< four channels instead of three
     glint_tone_desc tone; ///< bits: 8 or 16; sRGB: an sRGB chunk; linear: gAMA 1.0
-    /// The 3 * width codes (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
+    /// The 3 * width codes, with alpha 4 * width (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
     /// large enough, or where they already are. Rows may be asked for in any order and by several threads.
     const void *(*row)(const void *user, int y, void *scratch);
     const void *user;
     const uint64_t *stamp; ///< of the rows of tiles, as in glint_image; NULL: nothing is known of the codes
 } glint_png_source;
+
+/// Bytes of one pixel.
+static inline size_t glint_png_pixel_bytes(const glint_png_source *source)
+{
+    return (source->alpha ? 4 : 3) * (source->tone.bits == 16 ? 2 : 1);
+}
 
 typedef struct glint_bands glint_bands; ///< bands.h
 

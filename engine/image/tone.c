@@ -337,3 +337,32 @@ void glint_tone_row16(const glint_tone_table *table, float gain, const float *r,
     if (nonfinite)
         *nonfinite += odd;
 }
+
+void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
+                          size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    const bool wide = table->desc.bits == 16;
+    const double most = wide ? 65535 : 255;
+    for (size_t i = 0; i < count; i++) {
+        const bool covered = alpha[i] > 0;
+        float light[3], x[3];
+        unsigned code[4] = { 0, 0, 0, (unsigned)((double)alpha[i] * most + 0.5) };
+        for (int c = 0; c < 3; c++) {
+            light[c] = covered ? rgb[c][i] / alpha[i] : 0;
+            x[c] = gain * light[c];
+            code[c] = wide ? code16(table, x[c]) : code8(table, x[c]);
+        }
+        for (size_t c = 0; c < 4; c++)
+            if (wide)
+                ((uint16_t *)rgba)[4 * i + c] = (uint16_t)code[c];
+            else
+                ((uint8_t *)rgba)[4 * i + c] = (uint8_t)code[c];
+        above += is_clipped(table, x);
+        odd += is_odd(light[0], light[1], light[2]);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}

@@ -50,4 +50,9 @@ void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, 
 void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
                       size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite);
 
+/// The same with alpha: `rgb` is light times coverage, of which the codes are without; where `alpha`, 0 .. 1, is 0 all four
+/// codes are. Alpha's is linear and rounded to nearest. Either number of bits.
+void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
+                          size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite);
+
 #endif

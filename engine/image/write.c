@@ -52,8 +52,7 @@ static const void *row_of_codes(const void *user, int y, void *scratch)
 {
     (void)scratch;
     const picture *p = user;
-    size_t bytes = (size_t)p->image->width * 3 * (p->tone.bits == 16 ? 2 : 1);
-    return (const uint8_t *)p->image->codes + (size_t)y * bytes;
+    return (const uint8_t *)p->image->codes + (size_t)y * (size_t)p->image->width * glint_image_pixel_bytes(p->image);
 }
 
 static const void *row_of_color(const void *user, int y, void *scratch)
@@ -68,6 +67,16 @@ static const void *row_of_color(const void *user, int y, void *scratch)
     return scratch;
 }
 
+/// Beauty with alpha.
+static const void *row_of_covered(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    const float *rgb[3] = { p->plane[0] + at, p->plane[1] + at, p->plane[2] + at };
+    glint_tone_row_alpha(p->table, p->gain, rgb, p->image->plane[GLINT_PASS_ALPHA][0] + at, width, scratch, NULL, NULL);
+    return scratch;
+}
+
 /// Stores `value` (of 0 .. 1) as the linear code number `at` of a row.
 static void put_linear(const picture *p, void *codes, size_t at, double value)
 {
@@ -76,6 +85,18 @@ static void put_linear(const picture *p, void *codes, size_t at, double value)
         ((uint16_t *)codes)[at] = (uint16_t)(x * 65535 + 0.5);
     else
         ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
+}
+
+/// A share, 0 .. 1.
+static const void *row_of_shares(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *share = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++)
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, share[x]);
+    return scratch;
 }
 
 /// Nearest over distance: white at the nearest point, half as bright at twice its distance, and a horizon far away
@@ -142,7 +163,8 @@ static void find_nearest(picture *p)
 
 static bool is_color(glint_pass pass)
 {
-    return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID;
+    return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
+           pass != GLINT_PASS_ALPHA;
 }
 
 static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
@@ -160,6 +182,7 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     if (status)
         return status;
     glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
+    source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
     glint_png_desc png = { desc->encode, desc->text, desc->text_count };
     if (!is_color(desc->pass))
         source.tone.transfer = GLINT_TRANSFER_LINEAR;
@@ -171,10 +194,12 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     } else if (is_color(desc->pass)) {
         status = glint_tone_table_shared(&desc->tone, &p.table, error);
         p.gain = glint_tone_gain(&desc->tone);
-        source.row = row_of_color;
+        source.row = source.alpha ? row_of_covered : row_of_color;
     } else if (desc->pass == GLINT_PASS_DEPTH) {
         find_nearest(&p);
         source.row = row_of_depth;
+    } else if (desc->pass == GLINT_PASS_ALPHA) {
+        source.row = row_of_shares;
     } else {
         source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
     }
