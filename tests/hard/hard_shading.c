@@ -1,5 +1,5 @@
 /// The named cases of reflections, of sums of lights and of codes, each also turned and scaled; shininess from 0 to 1e7;
-/// codes as they come out of a PNG file. And the list of the cases whose subject the engine does not have yet.
+/// codes as they come out of a PNG file.
 #include "tests/hard/drive.h"
 
 #include <math.h>
@@ -291,30 +291,6 @@ static void check_codes(void)
     }
 }
 
-// ---- What is not there yet ----
-
-static const struct {
-    const char *ids, *what;
-} waiting[] = {
-    { "P12", "Cook-Torrance" },
-    { "P13", "Cook-Torrance" },
-    { "L6", "spot lights" },
-    { "L7", "spot lights" },
-    { "L8", "area lights" },
-    { "L9", "sphere lights" },
-    { "L10", "sphere lights" },
-    { "L11", "disk and sphere lights" },
-    { "L12", "sphere lights" },
-    { "M1", "refraction" },
-    { "M2", "refraction" },
-    { "M3", "refraction" },
-    { "M4", "refraction" },
-    { "M5", "refraction" },
-    { "M6", "mirrors, and a depth to bound them by" },
-    { "G2", "meshes" },
-    { "G3", "textures" },
-};
-
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
@@ -330,9 +306,5 @@ int main(int argc, char **argv)
         printf("\nCodes, read back from PNG files.\n\n| case | of | as | wrong | verdict |\n| --- | --- | --- | --- | "
                "--- |\n");
     check_codes();
-    if (hard_table)
-        printf("\nWaiting for what the engine does not have yet.\n\n| case | |\n| --- | --- |\n");
-    for (size_t i = 0; i < sizeof waiting / sizeof *waiting; i++)
-        hard_needs(waiting[i].ids, waiting[i].what);
     return hard_end();
 }
