@@ -383,6 +383,7 @@ static void check_nothing(void)
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
+    hard_list_tests("At the edge of what may be asked for.");
     const bool soak = hard_rays > 10000000;
     check_scales(soak ? 200 : 10);
     check_machines(soak ? 100 : 6);
