@@ -72,6 +72,7 @@ static void print_counters(const cost_case *c, FILE *out)
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
     print_number(out, "light_samples", c->is_counted ? (double)c->work.light_samples : unknown);
     print_number(out, "powers", c->is_counted ? (double)c->work.powers : unknown);
+    print_number(out, "sites", c->is_counted ? (double)c->work.sites : unknown);
     fputc('}', out);
 }
 

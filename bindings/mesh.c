@@ -9,7 +9,7 @@ typedef struct arguments {
     double center[3], radius, segments;
 } arguments;
 
-static const char *const SHADINGS[] = { "flat", "phong", "gouraud", NULL };
+static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
 static const char *const FORMATS[] = { "f32", "f64", NULL };
 
 #define AT(member) offsetof(arguments, member)

@@ -69,7 +69,7 @@ static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
 
 static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
 
-static const char *const SHADINGS[] = { "flat", "phong", "gouraud", NULL };
+static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
 
 static const glintL_field MESH_FIELDS[] = {
     { .name = "shading", .kind = GLINTL_ENUM, .offset = AT(shading), .names = SHADINGS },

@@ -42,6 +42,8 @@ void glint_batch_load(glint_batch *batch, glint_precision precision);
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame);
 /// Makes the sums of the batch's tile: what surfaces and background themselves send back along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
+/// The same of those hits whose light is worked out for themselves.
+void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// The light of all local terms along ray `i`, in channel `c`.
 double glint_batch_found(const glint_batch *batch, int c, uint32_t i);
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or

@@ -54,7 +54,7 @@ static glint_status find_coincident(glint_geometry *geometry, glint_error *error
 static void make_keys(glint_geometry *geometry)
 {
     enum { CHUNK = 32 };
-    size_t smooth = 0;
+    size_t smooth = 0, sited = 0;
     for (uint32_t i = 0; i < geometry->table.prim_count; i += CHUNK) {
         double place[CHUNK * GLINT_PLACE_MAX];
         uint32_t look[CHUNK][2], n = 0;
@@ -62,14 +62,19 @@ static void make_keys(glint_geometry *geometry)
         for (; n < CHUNK && i + n < geometry->table.prim_count; n++) {
             const glint_prim *prim = &geometry->prims[i + n];
             numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
-            look[n][0] = prim->two_sided | (prim->kind == GLINT_PRIM_TRIANGLE && prim->item != GLINT_MISS ? 2u : 0);
+            const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
+            const bool sites = triangle && prim->sites != GLINT_MISS;
+            look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (sites ? 4u : 0);
             look[n][1] = prim->material;
-            smooth += look[n][0] >> 1;
+            smooth += !flat;
+            sited += sites;
         }
         geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
         geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
     }
     geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
+    if (sited)
+        geometry->look = glint_key_add(geometry->look, geometry->sites, sited * sizeof *geometry->sites);
 }
 
 // ---- The index's frame ----
@@ -229,6 +234,17 @@ static void arrange_chunk(void *context, size_t chunk, int worker)
         a->to[i] = a->from[a->index->order[i]];
 }
 
+/// Where each id is among those in the order of the index.
+static bool find_places(glint_geometry *geometry, const glint_prim *arranged, uint32_t count)
+{
+    geometry->places = glint_alloc(geometry->table.prim_count, sizeof *geometry->places);
+    if (!geometry->places)
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        geometry->places[arranged[i].id] = i;
+    return true;
+}
+
 /// Puts the primitives into the order of the index, those without an end last.
 static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
@@ -242,6 +258,10 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     else
         for (size_t i = 0; i < chunks; i++)
             arrange_chunk(&a, i, 0);
+    if (geometry->sites && !find_places(geometry, a.to, bounded)) {
+        free(a.to);
+        return glint_fail_nomem(error);
+    }
     for (uint32_t i = 0; i < geometry->table.unbounded_count; i++) {
         a.to[bounded + i] = geometry->prims[geometry->unbounded[i]];
         geometry->unbounded[i] = bounded + i;
@@ -288,6 +308,9 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->normals);
     free(geometry->solids);
     free(geometry->unbounded);
+    free(geometry->sites);
+    free(geometry->site_prims);
+    free(geometry->places);
     free(geometry);
 }
 

@@ -210,11 +210,13 @@ glint_transform glint_transform_scale(const double by[3]);
 /// are exact.
 glint_transform glint_transform_rotate(const double axis[3], double degrees);
 
-/// Where a mesh's normals come from.
+/// Where the light on a mesh is worked out, and with which normal. What the last two leave on a face is the same from
+/// wherever it is seen: in a mirror too, its highlights are those that the eye sees from its own place.
 typedef enum glint_shading {
-    GLINT_SHADING_FLAT, ///< each face has its own
-    GLINT_SHADING_PHONG, ///< between those of the corners, for each sample
-    GLINT_SHADING_GOURAUD ///< light is worked out at the vertices; refused: not there yet
+    GLINT_SHADING_FACETED, ///< for each sample, with the normal of its face
+    GLINT_SHADING_PHONG, ///< for each sample, with a normal between those of the corners
+    GLINT_SHADING_FLAT, ///< once a face, at its centroid, with its normal
+    GLINT_SHADING_GOURAUD ///< once a vertex; between them by barycentric coordinates, over triangles
 } glint_shading;
 
 typedef struct glint_shape_desc {
@@ -280,8 +282,9 @@ typedef struct glint_mesh_desc {
     const uint32_t
         *normal_corners; ///< a number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none
     ///< there. NULL: normals belong to vertices, one each
-    bool has_shading; ///< false: phong where there are normals, flat where there are none
-    glint_shading shading; ///< phong without normals: those of the faces around a vertex are averaged by area
+    bool has_shading; ///< false: phong where there are normals, faceted where there are none
+    glint_shading
+        shading; ///< phong and gouraud without normals: those of the faces around a vertex are averaged by area
     glint_material *material; ///< retained; NULL: one with default fields
     glint_transform transform; ///< default identity
     bool two_sided;
@@ -426,7 +429,7 @@ typedef struct glint_effect {
 } glint_effect;
 
 typedef struct glint_stage_info {
-    const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "shade", ...
+    const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", ...
     char key[33]; ///< hex XXH3-128 of exactly what the stage reads
     const char *why; ///< one line for people
 } glint_stage_info;
@@ -480,6 +483,7 @@ double glint_renderer_progress(const glint_renderer *renderer);
 typedef struct glint_work {
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, looked at
     uint64_t powers; ///< highlights raised to their exponent
+    uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
 } glint_work;
 
 typedef struct glint_frame_stats {

@@ -19,15 +19,16 @@ void glint_mesh_free(glint_mesh *mesh)
     free(mesh->triangles);
     free(mesh->normals);
     free(mesh->triangle_normals);
+    free(mesh->faces);
+    free(mesh->sites);
     free(mesh);
 }
 
 glint_status glint_check_shading(glint_shading shading, glint_error *error)
 {
-    if (shading == GLINT_SHADING_FLAT || shading == GLINT_SHADING_PHONG)
+    if (shading <= GLINT_SHADING_GOURAUD)
         return GLINT_OK;
-    return glint_fail(error, GLINT_ERR_INVALID,
-                      "shading: \"flat\" or \"phong\" expected; \"gouraud\", light at the vertices, is not there yet");
+    return glint_fail(error, GLINT_ERR_INVALID, "shading: faceted, phong, flat or gouraud expected");
 }
 
 // ---- Faces to triangles ----
@@ -85,8 +86,14 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
         if (mesh->triangle_normals && !normals)
             return glint_fail_nomem(b->error);
         mesh->triangle_normals = normals;
+        void *faces = mesh->faces ? realloc(mesh->faces, room * sizeof *mesh->faces) : NULL;
+        if (mesh->faces && !faces)
+            return glint_fail_nomem(b->error);
+        mesh->faces = faces;
         b->room = room;
     }
+    if (mesh->faces)
+        mesh->faces[mesh->triangle_count] = (uint32_t)(b->face.number - 1);
     const uint32_t place[3] = { i, j, k };
     for (int c = 0; c < 3; c++) {
         mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
@@ -295,8 +302,17 @@ static glint_status copy_vertices(const glint_mesh_desc *desc, glint_mesh *mesh,
     return GLINT_OK;
 }
 
+static bool has_polygons(const glint_mesh_desc *desc)
+{
+    for (size_t i = 0; i < desc->face_count; i++)
+        if (desc->face_sizes[i] > 3)
+            return true;
+    return false;
+}
+
 static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_error *error)
 {
+    const bool polygons = has_polygons(desc);
     builder b = { .desc = desc, .mesh = mesh, .room = desc->face_count, .error = error };
     const bool numbered = desc->normals && desc->normal_corners;
     glint_status status = copy_vertices(desc, mesh, error);
@@ -304,7 +320,9 @@ static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_er
         return status;
     mesh->triangles = malloc(b.room * sizeof *mesh->triangles);
     mesh->triangle_normals = numbered ? malloc(b.room * sizeof *mesh->triangles) : NULL;
-    if (!mesh->triangles || (numbered && !mesh->triangle_normals))
+    mesh->faces = polygons ? malloc(b.room * sizeof *mesh->faces) : NULL;
+    mesh->face_count = desc->face_count;
+    if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (polygons && !mesh->faces))
         return glint_fail_nomem(error);
     size_t first = 0;
     for (size_t i = 0; i < desc->face_count && !status; i++) {
@@ -320,39 +338,6 @@ static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_er
     return status;
 }
 
-glint_status glint_mesh_smooth(glint_mesh *mesh, glint_error *error)
-{
-    if (mesh->normals)
-        return GLINT_OK;
-    double(*normals)[3] = calloc(mesh->vertex_count, sizeof *normals);
-    if (!normals)
-        return glint_fail_nomem(error);
-    double largest = 0;
-    for (size_t i = 0; i < mesh->triangle_count; i++)
-        for (int c = 1; c < 3; c++) {
-            double side[3];
-            vec_sub(side, mesh->vertices[mesh->triangles[i][c]], mesh->vertices[mesh->triangles[i][0]]);
-            largest = fmax(largest, vec_max_abs(side));
-        }
-    const double scale = power_of_two_scale(largest);
-    for (size_t i = 0; i < mesh->triangle_count; i++) {
-        const uint32_t *at = mesh->triangles[i];
-        double f[3], g[3], cross[3];
-        vec_sub(f, mesh->vertices[at[1]], mesh->vertices[at[0]]);
-        vec_sub(g, mesh->vertices[at[2]], mesh->vertices[at[0]]);
-        vec_scale(f, f, scale);
-        vec_scale(g, g, scale);
-        vec_cross(cross, f, g);
-        for (int c = 0; c < 9; c++)
-            normals[at[c / 3]][c % 3] += cross[c % 3];
-    }
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        if (!is_zero(normals[i]))
-            vec_normalize(normals[i], normals[i]);
-    mesh->normals = normals;
-    return GLINT_OK;
-}
-
 static glint_status make_shape(const glint_mesh_desc *desc, glint_shape *shape, glint_error *error)
 {
     shape->mesh = calloc(1, sizeof *shape->mesh);
@@ -364,8 +349,8 @@ static glint_status make_shape(const glint_mesh_desc *desc, glint_shape *shape, 
     shape->material_count = 1;
     shape->desc.material = shape->materials[0];
     glint_status status = fill(desc, shape->mesh, error);
-    if (!status && shape->desc.shading == GLINT_SHADING_PHONG)
-        status = glint_mesh_smooth(shape->mesh, error);
+    if (!status)
+        status = glint_mesh_prepare(shape->mesh, shape->desc.shading, error);
     shape->count = shape->mesh->triangle_count;
     return status;
 }
@@ -380,7 +365,7 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
     glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_MESH);
     base.two_sided = desc->two_sided;
     base.transform = desc->transform;
-    base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FLAT;
+    base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED;
     memcpy(base.name, desc->name, sizeof base.name);
     glint_shape *shape = glint_shape_alloc(&base, 1);
     if (!shape)

@@ -28,6 +28,11 @@ typedef struct glint_mesh {
     size_t vertex_count, triangle_count;
     double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
     uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
+    uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
+    size_t face_count;
+    uint32_t (
+        *sites)[3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
+    size_t site_count; ///< pairs; 0: not counted yet
 } glint_mesh;
 
 struct glint_shape {
@@ -79,8 +84,8 @@ glint_status glint_check_transform(const char *name, const glint_transform *t, g
 /// Takes a reference to `material`, or makes one with default fields.
 glint_material *glint_material_or_default(glint_material *material, glint_error *error);
 void glint_mesh_free(glint_mesh *mesh);
-/// Makes normals of the vertices where a mesh that is to be smooth has none.
-glint_status glint_mesh_smooth(glint_mesh *mesh, glint_error *error);
+/// Makes what a mesh lacks to be shaded so: normals of the vertices, and the numbers of its sites.
+glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_error *error);
 glint_status glint_check_shading(glint_shading shading, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.

@@ -5,8 +5,9 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",  "cast",  "surface", "view",    "light", "facet",
-                                                           "occlude", "shade", "bounce",  "resolve", "tone" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
+    "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", "shade", "bounce", "resolve", "tone"
+};
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -61,12 +62,13 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->accumulate = plan->desc.samples > 1 || plan->runs[GLINT_STAGE_BOUNCE] || plan->tints ||
-                       plan->light_count > GLINT_LIGHT_CHUNK;
+                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
+    plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.site_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
     plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
@@ -142,11 +144,12 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
     const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * (uint64_t)plan->desc.samples;
+    const uint64_t sides = 2 * (uint64_t)plan->geometry->table.site_count;
     glint_ray_counts rays = { 0 };
     if (plan->runs[GLINT_STAGE_CAST])
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
-        rays.shadow = samples * plan->shadow_count;
+        rays.shadow = (samples + sides) * plan->shadow_count;
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
         rays.mirror = samples;
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)

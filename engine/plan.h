@@ -21,6 +21,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_LIGHT,
     GLINT_STAGE_FACET,
     GLINT_STAGE_OCCLUDE,
+    GLINT_STAGE_VERTEX,
     GLINT_STAGE_SHADE,
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_RESOLVE,
@@ -90,6 +91,7 @@ struct glint_plan {
     glint_key keys[GLINT_STAGE_COUNT];
     glint_key *material_keys; ///< of each row of materials
     glint_key all_materials_key, all_lights_key, background_key;
+    glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
     glint_key output_key; ///< of what pictures are made of pixels
     bool accumulate; ///< sums over samples or over chunks of lights
 

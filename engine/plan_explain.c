@@ -162,7 +162,13 @@ static bool is_solid(const glint_shape *shape)
 {
     return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_CONE;
 }
-static bool is_smooth(const glint_shape *shape) { return shape->mesh && shape->desc.shading == GLINT_SHADING_PHONG; }
+static bool is_shaded(const glint_shape *shape, glint_shading shading)
+{
+    return shape->mesh && shape->desc.shading == shading;
+}
+static bool is_smooth(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_PHONG); }
+static bool is_flat(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_FLAT); }
+static bool is_gouraud(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_GOURAUD); }
 
 static void shapes(explainer *e, const char *effect, shape_test *test)
 {
@@ -211,6 +217,10 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "soft shadow", casts_soft_shadows);
         shapes(e, "triangles", is_mesh);
         shapes(e, "smooth normals", is_smooth);
+        if (plan->runs[GLINT_STAGE_VERTEX]) {
+            shapes(e, "flat shading", is_flat);
+            shapes(e, "Gouraud shading", is_gouraud);
+        }
         shapes(e, "solid by an affine map", is_solid);
     }
     if (plan->highlights) {
@@ -250,6 +260,7 @@ static void list_stages(glint_plan *plan)
         "direction, distance and highlight angle of each light",
         "half vector and Fresnel factor of each light, for microfacets",
         "which points each shadow-casting light reaches",
+        "light worked out once for a face or a vertex",
         "ambient, diffuse and specular terms",
         "mirrored and refracted rays, and what they find",
         "mean of samples and lights",

@@ -32,6 +32,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
     [GLINT_STAGE_FACET] = 0,
     [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
+    [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
@@ -160,6 +161,22 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     return output_key(plan, which, key);
 }
 
+/// What sites are lit by. Where no material has a highlight, nothing of the camera.
+static glint_key vertex_key(const glint_plan *plan)
+{
+    const glint_plan_camera *c = &plan->camera;
+    const double frame[] = { plan->desc.precision, plan->highlights ? 1 + c->orthographic : 0 };
+    glint_key key = { 0 };
+    ADD(key, frame);
+    if (plan->highlights)
+        key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
+                              : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
+    return add_inputs(plan,
+                      READS(PLACES) | READS(LOOKS) | READS(HIGHLIGHTS) | READS(LIGHT_PLACES) | READS(SHADOWS) |
+                          READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS),
+                      key);
+}
+
 /// The keys of the parts that a tile may depend on alone.
 static glint_status part_keys(glint_plan *plan, glint_error *error)
 {
@@ -190,5 +207,6 @@ glint_status glint_plan_keys(glint_plan *plan, glint_error *error)
     glint_key key = { 0 };
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         plan->keys[id] = key = add_inputs(plan, stages[id], key);
+    plan->vertex_key = vertex_key(plan);
     return part_keys(plan, error);
 }

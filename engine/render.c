@@ -24,6 +24,7 @@ struct glint_renderer {
     atomic_size_t tile_count;
     glint_tile **tiles; ///< a tile's working memory for each worker
     glint_reuse reuse;
+    glint_sites_kept sites;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     glint_image
         *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
@@ -82,6 +83,7 @@ static void free_tile(glint_tile *tile)
         return;
     glint_bounce_destroy(tile->bounce);
     glint_tint_destroy(tile->tint);
+    glint_vertex_destroy(tile->vertex);
     free(tile->facets);
     free(tile);
 }
@@ -95,8 +97,10 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
         tile->tint = glint_tint_create();
     if (plan->facets && !tile->facets)
         tile->facets = glint_alloc(1, sizeof *tile->facets);
-    return (tile->facets || !plan->facets) && (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) &&
-           (tile->tint || !plan->tints);
+    if (plan->runs[GLINT_STAGE_VERTEX] && !tile->vertex)
+        tile->vertex = glint_vertex_create();
+    return (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) && (tile->facets || !plan->facets) &&
+           (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
 }
 
 void glint_renderer_destroy(glint_renderer *renderer)
@@ -107,6 +111,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
         free_tile(renderer->tiles[i]);
     free(renderer->tiles);
     drop_spares(renderer);
+    glint_sites_clear(&renderer->sites, &renderer->reuse);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
     glint_pool_destroy(renderer->pool);
@@ -169,11 +174,13 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.shadow += part->shadow;
         sum.work.light_samples += part->work.light_samples;
         sum.work.powers += part->work.powers;
+        sum.work.sites += part->work.sites;
         sum.mirror += part->mirror;
         sum.refraction += part->refraction;
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
     }
+    sum.reuses[GLINT_STAGE_VERTEX] += renderer->sites.ready;
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
     stats->rays = (glint_ray_counts) {
@@ -205,6 +212,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .tone_table = table,
                             .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
+                            .sites = &renderer->sites,
                             .cancelled = &renderer->cancelled,
                             .time_stages = renderer->time_stages,
                             .count_work = renderer->count_work } };
@@ -215,6 +223,9 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_reuse_begin(&renderer->reuse, plan, (size_t)f.across * down);
+    status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
+    if (status)
+        return status;
     if (renderer->reuse.tile_count && !image->film &&
         !(image->film = calloc((size_t)f.across * down, sizeof *image->film)))
         return glint_fail_nomem(error);

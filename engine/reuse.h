@@ -41,6 +41,7 @@ typedef struct glint_kept_tile {
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
     bool background; ///< some sample hits nothing
+    bool sites; ///< some sample has the light of a face or of vertices, which are not all in the tile
     uint64_t clipped, nonfinite; ///< pixels, when the tile was last run
 } glint_kept_tile;
 

@@ -164,8 +164,8 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     glint_status status = check(desc, error);
     if (status)
         return status;
-    if (shape->mesh && desc->shading == GLINT_SHADING_PHONG)
-        status = glint_mesh_smooth(shape->mesh, error);
+    if (shape->mesh)
+        status = glint_mesh_prepare(shape->mesh, desc->shading, error);
     if (status)
         return status;
     glint_material *material = glint_material_or_default(desc->material, error);

@@ -33,10 +33,12 @@ static bool find_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uin
     tile->at.t = tile->t;
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;
+    tile->at.sampled = tile->hits;
     if (known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
         tile->at.t = (char *)kept->t + first * reuse->real_size;
         tile->at.prim = kept->prim + first;
         tile->at.hits = kept->hits + first / GLINT_GROUP;
+        tile->at.sampled = tile->at.hits;
     }
     return known;
 }
@@ -90,6 +92,9 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
 
 // ---- What the tile shows ----
 
+/// Whether light is worked out for the faces or vertices of what is there.
+static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
+
 static void note_material(glint_kept_tile *kept, uint32_t material)
 {
     for (uint32_t i = 0; i < kept->shown_count && i < GLINT_SHOWN_MAX; i++)
@@ -107,15 +112,17 @@ static void note_surfaces(const glint_tile *tile, const glint_tile_frame *frame,
     glint_kept_tile *kept = tile->kept;
     if (k == 0) {
         kept->shown_count = 0;
-        kept->background = false;
+        kept->background = kept->sites = false;
     }
     uint32_t last = GLINT_MISS;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const uint32_t prim = tile->at.prim[i];
         if (prim == last)
             continue;
-        if (prim != GLINT_MISS)
+        if (prim != GLINT_MISS) {
             note_material(kept, frame->geometry.prims[prim].material);
+            kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
+        }
         last = prim;
     }
     for (uint32_t g = 0; g < tile->group_count; g++)
@@ -293,15 +300,26 @@ static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *
     glint_tile_book(tile, frame, GLINT_STAGE_BOUNCE, false);
 }
 
+/// The light of faces and vertices.
+static void find_sites(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (!glint_tile_has_sites(tile))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_vertex(tile, frame);
+}
+
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
     glint_tile_aim(tile, frame, k);
     const bool any = find_hits(tile, frame, &w);
-    const uint32_t lights = any ? frame->plan->light_count : 0;
+    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = sites ? glint_tile_choose_sampled(tile, frame) : any;
+    const uint32_t lights = lit ? frame->plan->light_count : 0;
     uint32_t from = 0;
-    if (any && frame->plan->runs[GLINT_STAGE_VIEW])
+    if (lit && frame->plan->runs[GLINT_STAGE_VIEW])
         find_view(tile, frame, &w);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
@@ -315,6 +333,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             find_tint(tile, frame, &w, from + i, i);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
+    if (sites)
+        find_sites(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
 }

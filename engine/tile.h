@@ -7,6 +7,7 @@
 #include "engine/media.h"
 #include "engine/plan.h"
 #include "engine/reuse.h"
+#include "engine/sites.h"
 
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
@@ -29,6 +30,7 @@ typedef struct glint_tile_frame {
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages, count_work;
     glint_media eye_media; ///< what the eye is in
+    glint_sites_kept *sites; ///< for the stage vertex
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -50,6 +52,7 @@ typedef struct glint_tile_sample {
     void *t;
     uint32_t *prim;
     uint16_t *hits;
+    const uint16_t *sampled; ///< of these, the lanes whose light is worked out for themselves
     struct {
         float *cosine, *attenuation, *log2_specular;
         float *sine2, *schlick; ///< only in frames with microfacets, as `facing`
@@ -84,8 +87,12 @@ typedef struct glint_tile {
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
+    uint16_t own_light[GLINT_TILE_GROUPS]; ///< what at.sampled points to in frames with the stage vertex
+    const uint32_t *owner; ///< for occlude: the primitives that points are on; NULL: those that were hit
+    const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
+    struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
@@ -181,6 +188,16 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
 /// Writes down what the kept arrays hold now.
 void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile_vertex.c: flat and Gouraud shading.
+struct glint_vertex *glint_vertex_create(void);
+void glint_vertex_destroy(struct glint_vertex *vertex);
+/// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.
+bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether there are others, of triangles with sites.
+bool glint_tile_has_sites(const glint_tile *tile);
+/// Adds the light of sites to the sums of these others, whose points are found; after `shade`.
+void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);

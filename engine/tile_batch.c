@@ -11,10 +11,12 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
     tile->tint = to->tint;
+    tile->vertex = to->vertex;
+    tile->facets = to->facets;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
-    tile->at = (glint_tile_sample) { .t = tile->t, .prim = tile->prim, .hits = tile->hits };
+    tile->at = (glint_tile_sample) { .t = tile->t, .prim = tile->prim, .hits = tile->hits, .sampled = tile->hits };
     for (int i = 0; i < GLINT_LIGHT_CHUNK; i++) {
         glint_tile_light *own = &tile->lights[i];
         tile->at.light[i].cosine = own->cosine;
@@ -32,6 +34,8 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.shadow += batch->tile.counts.shadow;
     to->counts.work.light_samples += batch->tile.counts.work.light_samples;
     to->counts.work.powers += batch->tile.counts.work.powers;
+    to->counts.work.sites += batch->tile.counts.work.sites;
+    to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
 }
 
 // ---- What the rays find ----
@@ -124,6 +128,16 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 }
 
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any)
+{
+    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    if (sites)
+        any = glint_tile_choose_sampled(&batch->tile, frame);
+    glint_batch_shine(batch, frame, any);
+    if (sites && glint_tile_has_sites(&batch->tile))
+        glint_tile_vertex(&batch->tile, frame);
+}
+
+void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any)
 {
     glint_tile *tile = &batch->tile;
     const glint_plan *plan = frame->plan;

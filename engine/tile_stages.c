@@ -168,7 +168,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_light_args args = { .group_count = tile->group_count,
-                              .hits = tile->at.hits,
+                              .hits = tile->at.sampled,
                               .camera = glint_tile_rays_of(tile),
                               .material = tile->material,
                               .materials = plan->materials,
@@ -206,7 +206,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
     const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_occlude_args args = { .group_count = tile->group_count,
                                 .sample_count = count,
-                                .prim = tile->at.prim,
+                                .prim = tile->owner ? tile->owner : tile->at.prim,
                                 .back = tile->back,
                                 .directional = light->directional,
                                 .scale = light->scale,
@@ -223,7 +223,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
     }
     for (int c = 0; c < 3; c++) {
         args.point[c] = tile->point[c];
-        args.direction[c] = tile->direction[c];
+        args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->direction[c];
     }
     frame->stages->geometry[plan->desc.precision].occlude(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);

@@ -4,7 +4,7 @@
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count)
 {
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
-        tile->counts.work.light_samples += (uint64_t)__builtin_popcount(tile->at.hits[g]) * count;
+        tile->counts.work.light_samples += (uint64_t)__builtin_popcount(tile->at.sampled[g]) * count;
 }
 
 static bool is_power(const glint_shade_material *material)

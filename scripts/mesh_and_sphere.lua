@@ -1,5 +1,5 @@
 -- What triangles make of a sphere: the exact one on the left, then meshes of 8, 16 and 64 segments, above with
--- normals of the sphere at the vertices ("phong"), below with one normal a face ("flat"). Smooth normals hide the
+-- normals of the sphere at the vertices ("phong"), below with one normal a face ("faceted"). Smooth normals hide the
 -- facets inside; nothing hides the outline.
 local glint = require "glint"
 
@@ -10,7 +10,7 @@ local scene = glint.scene {
   glint.point_light { position = { -12, 16, 30 }, shadows = false },
 }
 
-for row, shading in ipairs { "phong", "flat" } do
+for row, shading in ipairs { "phong", "faceted" } do
   local y = row == 1 and 1.45 or -1.45
   scene:add(glint.sphere { center = { -4.2, y, 0 }, radius = 1.25, material = clay })
   for i, segments in ipairs { 8, 16, 64 } do

@@ -55,7 +55,7 @@ function tests.meshes()
   end
   local red = glint.material { name = "red" }
   local m = square { material = red, name = "tile", two_sided = false }
-  check(m.count == 2 and m.material == red and m.shading == "flat" and not m.two_sided and tostring(m) == "mesh 'tile'", "fields")
+  check(m.count == 2 and m.material == red and m.shading == "faceted" and not m.two_sided and tostring(m) == "mesh 'tile'", "fields")
   for _, t in ipairs {
     {}, { vertices = flat }, { faces = { 1, 2, 3, 1, 3, 4 } }, { faces = { { 1, 2.0, 3 }, { 1, 3, 4 } } },
     { vertices = string.pack("=" .. ("f"):rep(12), table.unpack(flat)), format = "f32" },
@@ -72,7 +72,11 @@ function tests.meshes()
   m.shading = "phong"
   check(m.shading == "phong", "smooth now")
   check(glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 16 }.count == 16 * 14, "a sphere of triangles")
-  refused("mesh.shading: \"flat\" or \"phong\" expected", function() m.shading = "gouraud" end)
+  for _, shading in ipairs { "flat", "gouraud", "faceted" } do
+    m.shading = shading
+    check(m.shading == shading and square { shading = shading }.shading == shading, "%s", shading)
+  end
+  refused('mesh.shading: "faceted", "phong", "flat" or "gouraud" expected, got string "smooth"', function() m.shading = "smooth" end)
   refused("mesh.count: this field is only read", function() m.count = 3 end)
   refused("mesh.faces[1]: vertex 1 .. 4 expected, got 5", function() square { faces = { { 1, 2, 5 } } } end)
   refused("mesh.faces[2]: vertex 1 .. 4 expected, got 0", function() square { faces = { 1, 2, 3, 1, 2, 0 } } end)

@@ -48,4 +48,6 @@ picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
 picture spotlights scripts/spotlights.lua
 picture lobes scripts/lobes.lua
 picture roughness scripts/roughness.lua
+picture shading_0001 scripts/shading.lua -f 1
+picture shading_0005 scripts/shading.lua -f 5
 exit $bad

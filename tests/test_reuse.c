@@ -106,7 +106,7 @@ static const field camera_fields[] = {
 static const field shape_fields[] = {
 #define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
     S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
-    S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 2),
+    S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 4),
     S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
     S(top, VECTOR, -2, 2),         S(name, FIXED, 0, 0),
 #undef S
@@ -304,6 +304,8 @@ static glint_shape *new_mesh(const glint_shape_desc *like)
     glint_mesh_desc d = glint_mesh_desc_default();
     glint_shape *shape = NULL;
     d.material = like->material;
+    d.has_shading = true;
+    d.shading = GLINT_SHADING_GOURAUD;
     assert_int_equal(glint_sphere_mesh_create(like->center, 1.5, 9, &d, &shape, NULL), GLINT_OK);
     return shape;
 }

@@ -295,10 +295,10 @@ static glint_scene *random_scene(uint64_t seed)
     const double at[3] = { 0, 0, draw(4) ? 0 : PARALLEL };
     glint_scene *scene = new_scene(eye, at, uniform(0.3, 1.5), light, true);
     make_soup(&s, 1 + draw(60));
-    add(scene, mesh_of(&s, draw(2) ? GLINT_SHADING_FLAT : GLINT_SHADING_PHONG, draw(2)));
+    add(scene, mesh_of(&s, (glint_shading)draw(4), draw(2)));
     random_turn(m);
     make_box(&s, 1 + draw(6), uniform(0.5, 3), draw(2), m);
-    add(scene, mesh_of(&s, draw(2) ? GLINT_SHADING_FLAT : GLINT_SHADING_PHONG, draw(2)));
+    add(scene, mesh_of(&s, (glint_shading)draw(4), draw(2)));
     add(scene, random_group(draw(8)));
     soft_light = false;
     return scene;
@@ -343,12 +343,13 @@ static void no_cracks(void **unused)
         for (int c = 0; c < 3; c++)
             eye[c] += offset;
         glint_scene *scene = new_scene(eye, (double[3]) { 9, 9, 9 }, 1, eye, true);
-        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
         for (int k = 0; k < 3000; k++) {
             const size_t face = draw((uint32_t)s.face_count);
             const double *a = s.vertices[s.corners[4 * face + draw(4)]];
             const uint32_t turn = draw(4);
-            const double *b = s.vertices[s.corners[4 * face + turn]], *c = s.vertices[s.corners[4 * face + (turn + 1) % 4]];
+            const double *b = s.vertices[s.corners[4 * face + turn]],
+                         *c = s.vertices[s.corners[4 * face + (turn + 1) % 4]];
             double d[3], w = uniform(0, 1);
             for (int i = 0; i < 3; i++)
                 d[i] = k % 3 == 0 ? a[i] - eye[i] : (b[i] + w * (c[i] - b[i])) - eye[i];
@@ -379,7 +380,7 @@ static void no_light_by_an_edge(void **unused)
         random_vector(light, 6);
         light[draw(3)] = 3;
         glint_scene *scene = new_scene(eye, at, 2 * atan(1 + draw(2)), light, true);
-        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
         for (int precision = 0; precision < 2; precision++) {
             glint_image *image = render(scene, NULL, 1, 129, (glint_precision)precision);
             glint_image *same = render(scene, seed % 8 ? "sse2" : "ref", 1, 129, (glint_precision)precision);
@@ -434,7 +435,7 @@ static void no_acne(void **unused)
         glint_image *image[2];
         for (int shadows = 0; shadows < 2; shadows++) {
             glint_scene *scene = new_scene(eye, at, 1, light, shadows);
-            add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+            add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
             image[shadows] = render(scene, NULL, 1, 129, GLINT_DOUBLE);
             glint_scene_release(scene);
         }
@@ -490,13 +491,14 @@ static void triangles_against_oracle(void **unused)
         random_vector(o, 10 * scale);
         const double u = uniform(0, 1.1), v = uniform(0, 1.1 - u);
         for (int c = 0; c < 3; c++)
-            d[c] = s.vertices[0][c] + u * (s.vertices[1][c] - s.vertices[0][c]) + v * (s.vertices[2][c] - s.vertices[0][c]) - o[c];
+            d[c] = s.vertices[0][c] + u * (s.vertices[1][c] - s.vertices[0][c]) +
+                   v * (s.vertices[2][c] - s.vertices[0][c]) - o[c];
         quad t, w[2], n[3];
         triangle_truth(&s, o, d, &t, w, n);
         bool hit = false;
         glint_hit got;
         glint_scene *scene = new_scene((double[3]) { 0, 0, 9 }, (double[3]) { 0 }, 1, o, true);
-        add(scene, mesh_of(&s, GLINT_SHADING_FLAT, true));
+        add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
         assert_int_equal(glint_scene_cast(scene, o, d, &hit, &got, NULL), GLINT_OK);
         glint_scene_release(scene);
         const double least = fmin(fmin((double)w[0], (double)w[1]), (double)(1 - w[0] - w[1]));
@@ -673,10 +675,9 @@ static void groups_hold_together(void **unused)
         assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
         assert_int_equal(glint_shape_create(&d, &left, NULL), GLINT_OK);
         assert_int_equal(glint_shape_create(&d, &right, NULL), GLINT_OK);
-        const bool fits = glint_group_add(left, chain, NULL) == GLINT_OK &&
-                          glint_group_add(right, chain, NULL) == GLINT_OK &&
-                          glint_group_add(outer, left, NULL) == GLINT_OK &&
-                          glint_group_add(outer, right, NULL) == GLINT_OK;
+        const bool fits =
+            glint_group_add(left, chain, NULL) == GLINT_OK && glint_group_add(right, chain, NULL) == GLINT_OK &&
+            glint_group_add(outer, left, NULL) == GLINT_OK && glint_group_add(outer, right, NULL) == GLINT_OK;
         assert_int_equal(fits, 2 * i + 2 <= GLINT_GROUP_DEPTH); // the first of them is that deep
         glint_shape_release(left);
         glint_shape_release(right);
@@ -699,7 +700,8 @@ static void groups_hold_together(void **unused)
     for (int step = 0; step < 2; step++) {
         glint_hit hit;
         bool any;
-        assert_int_equal(glint_scene_cast(scene, (double[3]) { 5, 0, 9 }, (double[3]) { 0, 0, -1 }, &any, &hit, NULL), GLINT_OK);
+        assert_int_equal(glint_scene_cast(scene, (double[3]) { 5, 0, 9 }, (double[3]) { 0, 0, -1 }, &any, &hit, NULL),
+                         GLINT_OK);
         assert_true(any && hit.shape == ball && hit.t == (step ? 7 : 8));
         d = *glint_shape_get(ball);
         d.radius = 2;
@@ -739,14 +741,14 @@ static void good_files(void **unused)
         size_t triangles;
         glint_shading shading;
     } files[] = {
-        { CORNERS "f 1 2 3 4", 2, GLINT_SHADING_FLAT },
+        { CORNERS "f 1 2 3 4", 2, GLINT_SHADING_FACETED },
         { "# c\nmtllib a.mtl\no x\n" CORNERS "vt 0 0\nvn 0 0 1\ng a b\ns off\nusemtl m\nf 1/1/1 2/1/1 3/1/1\n\n", 1,
           GLINT_SHADING_PHONG },
         { CORNERS "vn 0 0 2\nf -4//-1 -3//-1 -2//1 -1//1\r\n", 2, GLINT_SHADING_PHONG },
         { CORNERS "f 1/ 2 3", 0, 0 },
-        { CORNERS "vt 1 1\nf 1/1 2/1 \\\n 3/1\nv 2 2 2 0.5 1 1\n", 1, GLINT_SHADING_FLAT },
-        { "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 5 1 2 3 4 # concave", 3, GLINT_SHADING_FLAT },
-        { "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4", 1, GLINT_SHADING_FLAT },
+        { CORNERS "vt 1 1\nf 1/1 2/1 \\\n 3/1\nv 2 2 2 0.5 1 1\n", 1, GLINT_SHADING_FACETED },
+        { "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 5 1 2 3 4 # concave", 3, GLINT_SHADING_FACETED },
+        { "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3 4", 1, GLINT_SHADING_FACETED },
     };
     (void)unused;
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
@@ -797,10 +799,14 @@ static void bad_files(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_on_every_instruction_set), cmocka_unit_test(no_cracks),
-        cmocka_unit_test(no_light_by_an_edge),           cmocka_unit_test(no_acne),
-        cmocka_unit_test(triangles_against_oracle),      cmocka_unit_test(good_files),
-        cmocka_unit_test(bad_files),                     cmocka_unit_test(solids_against_oracle),
+        cmocka_unit_test(same_on_every_instruction_set),
+        cmocka_unit_test(no_cracks),
+        cmocka_unit_test(no_light_by_an_edge),
+        cmocka_unit_test(no_acne),
+        cmocka_unit_test(triangles_against_oracle),
+        cmocka_unit_test(good_files),
+        cmocka_unit_test(bad_files),
+        cmocka_unit_test(solids_against_oracle),
         cmocka_unit_test(groups_hold_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

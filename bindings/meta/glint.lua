@@ -323,7 +323,11 @@ function spheres:close() end
 ---@return glint.spheres
 function glint.spheres(fields) end
 
----@alias glint.shading "flat"|"gouraud"|"phong"
+---@alias glint.shading
+---| "faceted"  # lit in each sample, with the normal of its face
+---| "phong"  # lit in each sample, with a normal between those of the vertices (without `normals`, the mean of the faces around)
+---| "flat"  # lit once a face, at its centroid
+---| "gouraud"  # lit once a vertex, with its normal; between them by barycentric coordinates
 
 --- Polygons that share vertices, from tables or from a Wavefront .obj file; copied once. Give `file`, or `vertices` and
 --- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
@@ -333,7 +337,7 @@ function glint.spheres(fields) end
 ---@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
 ---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
 ---@field format? "f32"|"f64"  of packed vertices and normals; required there and refused otherwise
----@field shading? glint.shading  "flat": each face has its own normal; "phong": between those of the vertices (without `normals`, the mean of the faces around). Default "phong" with normals, else "flat". "gouraud" is not there yet
+---@field shading? glint.shading  Default "phong" with normals, else "faceted"
 
 ---@class glint.mesh: glint.shape_fields
 ---@field shading glint.shading

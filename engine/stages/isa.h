@@ -20,6 +20,7 @@
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
 #include "engine/stages/surface.h"
+#include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
 #include "engine/stages/facet.h"
@@ -39,6 +40,7 @@
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
 #include "engine/stages/surface.h"
+#include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
 #include "engine/stages/facet.h"
@@ -54,9 +56,9 @@
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
     .geometry = { { camera_f64, in_sight_f64, cast_bundle_f64, cast_rays_f64, surface_f64, view_f64, light_f64,
-                    facet_f64, occlude_f64, bounce_f64 },
+                    facet_f64, occlude_f64, bounce_f64, vertex_f64 },
                   { camera_f32, in_sight_f32, cast_bundle_f32, cast_rays_f32, surface_f32, view_f32, light_f32,
-                    facet_f32, occlude_f32, bounce_f32 } },
+                    facet_f32, occlude_f32, bounce_f32, vertex_f32 } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -401,9 +401,9 @@ static void tone(const glint_tone_args *args)
 const glint_stages glint_stages_ref = {
     .name = "ref",
     .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, view_double,
-                    light_double, facet_double, occlude_double, bounce_double },
+                    light_double, facet_double, occlude_double, bounce_double, vertex_double },
                   { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, view_float,
-                    light_float, facet_float, occlude_float, bounce_float } },
+                    light_float, facet_float, occlude_float, bounce_float, vertex_float } },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -495,7 +495,7 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     int side = light_side(args->directional, position, prim, args->geometry->solids);
-    bool own = prim->coincident == args->geometry->prims[args->prim[i]].coincident;
+    bool own = args->prim[i] != GLINT_MISS && prim->coincident == args->geometry->prims[args->prim[i]].coincident;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         NAME(parted) plane = NAME(part)(args, prim, NAME(rounded)(position));

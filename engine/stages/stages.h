@@ -57,7 +57,8 @@ typedef struct glint_prim {
         };
         struct {
             double corner[3][3]; ///< triangle
-            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it is shaded flat; solid: index in solids
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids
+            uint32_t sites; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
         };
     };
 } glint_prim;
@@ -76,6 +77,11 @@ typedef struct glint_node {
 typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
+
+/// Where the light on a triangle is worked out once for all its samples: its corners, or its face three times.
+typedef struct glint_sites {
+    uint32_t at[3];
+} glint_sites;
 
 /// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
 /// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0.
@@ -106,6 +112,8 @@ typedef struct glint_geometry_table {
     bool triangles; ///< there are some
     const glint_corner_normals *corner_normals;
     const glint_solid *solids;
+    const glint_sites *sites;
+    uint32_t site_count; ///< 0: all light is worked out for each sample
 } glint_geometry_table;
 
 /// What the stages before shade find out for a material's specular term.
@@ -389,7 +397,7 @@ typedef struct glint_occlude_args {
     const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK];
     const void *point[3];
-    const uint32_t *prim; ///< on which the points are
+    const uint32_t *prim; ///< on which the points are; GLINT_MISS: on none, where the table has no duplicates
     const uint16_t *back;
     bool directional;
     double position[3]; ///< as in glint_light_args
@@ -433,6 +441,29 @@ typedef struct glint_occlude_args {
 //         light_side, double: k = inverse (position - center): -1 where k is inside of all bounds of the form, else 1; directional: 1
 //   The own: a disk never blocks; others, being convex: blocked where `back` and light_side > 0.
 //   Of triangles: a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
+
+// ---- vertex: light that was worked out once for a face or a vertex ----
+
+/// What all lights together add to the two terms at a site.
+typedef struct glint_site_light {
+    float term[2][3]; ///< diffuse, specular; finite
+} glint_site_light;
+
+typedef struct glint_vertex_args {
+    uint32_t group_count;
+    const uint16_t *wanted; ///< a bit a lane: its triangle has sites
+    const uint16_t *back; ///< of surface
+    const uint32_t *prim;
+    const glint_prim *prims;
+    double scale; ///< of the table
+    const glint_sites *sites;
+    const glint_site_light *light[2]; ///< of each site: seen from the front, from behind
+    const glint_camera_args *camera; ///< the rays, as in glint_surface_args
+    const void *origin[3], *direction[3];
+    double *sum[2][3]; ///< in and out: added to where wanted; NULL: there is no such term
+} glint_vertex_args;
+// w_j as in surface, x_j the light of the triangle's sites on the lane's side:
+// sum += at[0] = at[1] = at[2] ? x_0 : (w_0 x_0 + w_1 x_1) + w_2 x_2                                          in double
 
 // ---- bounce: where rays go on from a surface ----
 
@@ -583,6 +614,7 @@ typedef struct glint_stages {
         void (*facet)(const glint_facet_args *args);
         void (*occlude)(const glint_occlude_args *args);
         void (*bounce)(const glint_bounce_args *args);
+        void (*vertex)(const glint_vertex_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);

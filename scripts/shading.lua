@@ -1,0 +1,51 @@
+-- Where a mesh is lit: once a face, once a vertex, or in every sample. On the left of each picture is a ball of a few
+-- quadrangles, on the right the sphere it stands for.
+--
+--     flat      one evaluation of lights, shadows and material at the middle of each face
+--     Gouraud   one at each vertex, and between them by barycentric coordinates
+--     Phong     one for each sample, with a normal between those of the vertices
+-- Above, the highlight is on a vertex: Gouraud spreads what it finds there over the faces around, as a star. Below, the
+-- lamp has moved by half a face: the highlight is between the vertices, none of them sees it, and Gouraud has lost it.
+-- Phong shading has the sphere's own highlight in both. The outline stays a polygon, whatever the shading.
+--     glint scripts/shading.lua                       shading_sheet.png, and each picture by itself
+--     glint scripts/shading.lua --set segments=64     more vertices: what is left of all this
+local glint = require "glint"
+
+local P = glint.params {
+  segments = { 12, min = 4, max = 512, doc = "around the equator; half as many from pole to pole" },
+}
+
+local clay = glint.material { diffuse = { 0.55, 0.3, 0.18 }, specular = 0.7, shininess = 40 }
+local lamp = glint.directional_light { direction = { 0, 0, -1 }, shadows = false }
+local ball = glint.sphere_mesh {
+  center = { -1.3, 0, 0 }, radius = 1.15, segments = P.segments, material = clay, name = "ball",
+}
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 0, 10 }, at = { 0, 0, 0 }, projection = "orthographic", height = 2.8 },
+  ambient = 0.12, background = "#202530",
+  lamp, ball,
+  glint.sphere { center = { 1.3, 0, 0 }, radius = 1.15, material = clay, name = "sphere" },
+}
+
+-- The light comes from where it is mirrored to the eye at `turn` faces around the pole and `fall` faces from it.
+local function from(turn, fall)
+  local around, down = 2 * math.pi * turn / P.segments, math.pi * fall / ((P.segments + 1) // 2)
+  local n = { glint.sin(down) * glint.cos(around), glint.cos(down), glint.sin(down) * glint.sin(around) }
+  return { -2 * n[3] * n[1], -2 * n[3] * n[2], 1 - 2 * n[3] * n[3] }
+end
+
+local column = P.segments // 4 + P.segments // 12
+local row = (P.segments + 1) // 4 - P.segments // 12
+local ON_A_VERTEX <const>, BETWEEN <const> = from(column, row), from(column - 0.5, row + 0.5)
+
+return glint.sweep {
+  scene = scene, width = 520, height = 280, samples = 16,
+  over = { { ball, "shading", { "flat", "gouraud", "phong" } }, { lamp, "direction", { ON_A_VERTEX, BETWEEN } } },
+  sheet = {
+    title = "Lit once a face, once a vertex, once a sample",
+    label = function(_, n)
+      local shading = ({ "flat", "Gouraud", "Phong" })[(n - 1) % 3 + 1]
+      return shading .. (n > 3 and ": the highlight is between vertices" or ": the highlight is on a vertex")
+    end,
+  },
+}
