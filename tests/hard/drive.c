@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 bool hard_table;
+static bool listing; ///< each test is a line of the table
 uint64_t hard_rays = 1000000;
 
 static struct {
@@ -49,6 +50,9 @@ static void end_test(void)
     if (!hard_table)
         printf("%s %s: %s, %llu checks\n", test.failures ? "failed" : "passed", test.id, test.what,
                (unsigned long long)test.checks);
+    else if (listing)
+        printf("| %s | %s | %llu | %s |\n", test.id, test.what, (unsigned long long)test.checks,
+               test.failures ? "**wrong**" : "right");
 }
 
 void hard_test(const char *id, const char *what)
@@ -76,18 +80,48 @@ bool hard_check(bool ok, const char *format, ...)
 
 void hard_right(uint64_t checks) { test.checks += checks; }
 
-void hard_needs(const char *id, const char *what)
+void hard_absent(const char *id, const char *what)
 {
     waiting++;
     if (hard_table)
-        printf("| %s | needs %s |\n", id, what);
+        printf("| %s | %s | | |\n", id, what);
+    else
+        printf("skip: %s: %s\n", id, what);
+}
+
+void hard_list_tests(const char *title)
+{
+    listing = true;
+    if (hard_table)
+        printf("%s\n\n| case | what | checks | verdict |\n| --- | --- | --- | --- |\n", title);
+}
+
+void hard_columns(const char *title)
+{
+    if (hard_table)
+        printf("%s\n\n| case | what | truth | double | float | textbook double | textbook float | verdict |\n"
+               "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+               title);
+}
+
+void hard_row(const char *id, const char *what, const hard_values *values, bool right)
+{
+    if (!hard_table)
+        return;
+    const double list[] = { values->truth, values->in_double, values->in_float, values->naive_double,
+                            values->naive_float };
+    printf("| %s | %s |", id, what);
+    for (int i = 0; i < 5; i++)
+        if (list[i] == HARD_BLANK)
+            printf(" |");
+        else
+            printf(isnan(list[i]) ? " **nan** |" : " %.10g |", list[i]);
+    printf(" %s |\n", right ? "right" : "**wrong**");
 }
 
 int hard_end(void)
 {
     end_test();
-    if (waiting > 0 && !hard_table)
-        printf("skip: %d cases wait for what the engine does not have yet; make hard lists them\n", waiting);
     printf("%s%d passed, %d failed, %d skipped\n", hard_table ? "\n" : "", passed, failed, waiting);
     return failed > 0;
 }
@@ -238,7 +272,8 @@ bool isa_usable(const char *isa)
     return usable;
 }
 
-glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame_stats *stats)
+glint_image *frame_to_depth(const glint_scene *scene, const frame_desc *desc, double max_depth,
+                            glint_frame_stats *stats)
 {
     glint_error error;
     glint_render_desc render = glint_render_desc_default();
@@ -247,6 +282,7 @@ glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame
     render.precision = desc->precision;
     render.passes = desc->passes;
     render.codes = stats != NULL;
+    render.max_depth = max_depth;
     glint_renderer_desc workers = glint_renderer_desc_default();
     workers.threads = desc->threads ? desc->threads : 1;
     workers.isa = desc->isa;
@@ -260,6 +296,11 @@ glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame
     glint_renderer_destroy(renderer);
     glint_plan_destroy(plan);
     return image;
+}
+
+glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame_stats *stats)
+{
+    return frame_to_depth(scene, desc, glint_render_desc_default().max_depth, stats);
 }
 
 glint_image *frame_of_ray(glint_scene *scene, const hard_ray *ray, glint_precision precision, uint32_t passes)

@@ -5,6 +5,7 @@
 #include "engine/glint.h"
 #include "tests/hard/oracle.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -22,10 +23,22 @@ void hard_test(const char *id, const char *what);
 __attribute__((format(printf, 2, 3))) bool hard_check(bool ok, const char *format, ...);
 /// Counts checks that were right, where they are too many for a message each.
 void hard_right(uint64_t checks);
-/// A case of something that the engine does not have yet.
-void hard_needs(const char *id, const char *what);
+/// A case about something that the engine does not have.
+void hard_absent(const char *id, const char *what);
 /// Prints the totals; what main returns.
 int hard_end(void);
+
+/// In tables: the heading, and a line for each test as it ends, for programs whose tests have no numbers to show.
+void hard_list_tests(const char *title);
+/// In tables: the heading of lines of values.
+void hard_columns(const char *title);
+/// What a line of values shows; HARD_BLANK: nothing there.
+#define HARD_BLANK (-HUGE_VAL)
+typedef struct hard_values {
+    double truth, in_double, in_float; ///< the oracle's, the engine's
+    double naive_double, naive_float; ///< the textbook's formula
+} hard_values;
+void hard_row(const char *id, const char *what, const hard_values *values, bool right);
 
 // ---- Random numbers ----
 
@@ -70,6 +83,8 @@ bool isa_usable(const char *isa);
 
 /// Renders a frame; `stats` may be NULL.
 glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame_stats *stats);
+glint_image *frame_to_depth(const glint_scene *scene, const frame_desc *desc, double max_depth,
+                            glint_frame_stats *stats);
 /// The same, of one pixel, along the ray: 1 x 1 pixels of a camera that looks there.
 glint_image *frame_of_ray(glint_scene *scene, const hard_ray *ray, glint_precision precision, uint32_t passes);
 void pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3]);

@@ -1,6 +1,7 @@
 /// The oracle itself, where the answer is known without it.
 #include "tests/hard/aim.h"
 #include "tests/hard/drive.h"
+#include "tests/hard/oracle_light.h"
 #include "tests/hard/ray_cases.h"
 
 #include <math.h>
@@ -96,6 +97,34 @@ static void check_shading(void)
                "codes of 0, 1, 1/2 and 0.2140411");
 }
 
+/// Where a whole number or a fraction of them is the answer.
+static void check_light(void)
+{
+    const double n[3] = { 0, 0, 2 }, l[3] = { 3, 0, 4 }, v[3] = { -3, 0, 4 }, up[3] = { 0, 0, 1 };
+    hard_test("oracle", "microfacets, lights, glass");
+    hard_check(oracle_ggx(0.5, 0) == 4 / M_PI, "GGX at n = h is 1 / (pi alpha^2)");
+    // h = n: pi D = 16, Lambda = (sqrt(1 + (0.25 0.75)^2) - 1) / 2, F = 1
+    hard_check(fabs(oracle_facets(false, 0.5, 1, n, l, v) * sqrt(1 + 0.1875 * 0.1875) - 5) < 1e-15, "GGX, 3-4-5");
+    hard_check(oracle_facets(false, 1, 1, n, up, up) == 0.25 && oracle_facets(true, 1, 1, n, up, up) == 0.25,
+               "roughness 1, straight down");
+    hard_check(fabs(oracle_facets(true, 0.5, 0.25, n, l, v) / (16 / 3.2 * (0.25 + 0.75 * pow(0.2, 5))) - 1) < 1e-15,
+               "Beckmann, 3-4-5: its facets hide nothing, F = f0 + (1 - f0) 0.2^5");
+    hard_check(oracle_facets(false, 0.5, 1, n, (double[3]) { 3, 0, -4 }, v) == 0, "below the horizon");
+    const double a60 = acos(0.5), a90 = acos(0); // half way between the cosines 0.5 and 0
+    hard_check(fabs(oracle_spot(a60, a90, 0, up, (double[3]) { sqrt(15), 0, 1 }) - 0.5) < 1e-15, "spot, half way");
+    hard_check(oracle_spot(1, 1.5, 2, up, l) == 0.64 && oracle_spot(0.1, 0.2, 0, up, l) == 0, "spot, 0.8^2");
+    hard_check(fabs(oracle_cap(0.6) - 0.2) < 1e-16 && oracle_cap(1) == 1, "caps");
+    hard_check(oracle_disk(1, 2) == M_PI / 5 && oracle_ball(1, 2) == M_PI / 4, "disk and ball");
+    hard_check(oracle_shadow(true, 0.5, 4, 0.5, 2) == 0.5 &&
+                   fabs(oracle_shadow(false, 0.5, 4, 0.5, 2) - sqrt(3)) < 1e-15,
+               "umbra and penumbra");
+    hard_check(oracle_fresnel(1.5, 1) == 0.04 && oracle_fresnel(2, 0.6) == 1 && oracle_fresnel(1, 0.3) == 0, "Fresnel");
+    // sin 0.8 -> 0.6, cos 0.6 -> 0.8: (0.75 0.6 - 0.8) / (0.75 0.6 + 0.8) = -7/25, (0.6 - 0.6) / 1.2 = 0
+    hard_check(fabs(oracle_fresnel(0.75, 0.6) - 0.0392) < 1e-16, "Fresnel at Brewster's angle");
+    hard_check(fabs(oracle_snell(0.75, 0.8) - 0.6) < 1e-15, "Snell, 3-4-5");
+    hard_check(oracle_facing_mirrors(1, 0.5, 3) == 1.875 && oracle_facing_mirrors(2, 1, 9) == 20, "facing mirrors");
+}
+
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
@@ -103,5 +132,6 @@ int main(int argc, char **argv)
     check_known();
     check_quick(hard_rays / 20);
     check_shading();
+    check_light();
     return hard_end();
 }

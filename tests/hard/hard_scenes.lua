@@ -3,10 +3,17 @@
 -- largest numbers and counts in hard_limits.c, random scenes in hard_frames.c.
 local glint = require "glint"
 
-local count = 0
+local tabular = arg and arg[1] == "--table" -- for `make hard`
+if tabular then print "Whole scenes.\n\n| case | verdict |\n| --- | --- |" end
+local count, wrong_count = 0, 0
 local function check(ok, name, ...)
   count = count + 1
-  print(("%sok %d - %s"):format(ok and "" or "not ", count, name))
+  wrong_count = wrong_count + (ok and 0 or 1)
+  if tabular then
+    print(("| %s | %s |"):format(name, ok and "right" or "**wrong**"))
+  else
+    print(("%sok %d - %s"):format(ok and "" or "not ", count, name))
+  end
   if not ok then print("# " .. table.concat({ ... }, " ")) end
 end
 
@@ -240,5 +247,9 @@ do
   local empty = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = origin }, background = { 0.25, 0.5, 1 } }:render { width = 5, height = 4 }
   check(all(empty, function(r, g, b) return r == 0.25 and g == 0.5 and b == 1 end), "B1: an empty scene is its background")
 end
-print("1.." .. count)
-os.exit(true, true)
+if tabular then
+  print(("\n%d passed, %d failed, 0 skipped"):format(count - wrong_count, wrong_count))
+else
+  print("1.." .. count)
+end
+os.exit(not tabular or wrong_count == 0, true)

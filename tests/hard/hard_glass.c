@@ -1,0 +1,248 @@
+/// The named cases of mirrors and glass: Fresnel and Snell at and about the critical angle, mirrors that face each other, and
+/// chains as long as a million.
+#include "tests/hard/oracle_light.h"
+#include "tests/hard/point.h"
+
+#include <string.h>
+#include <sys/resource.h>
+
+#define LOSS 0x1p-20 ///< of light: what weak rays that are not followed may hold
+
+// ---- Fresnel ----
+
+/// The share that is mirrored, at depth 1, of a white world, where a ray in glass of `inside` (1: in the open) meets a plane
+/// of glass of `ior` from the side of its index, at this cosine.
+static double reflectance(double ior, bool from_inside, const double d[3], glint_precision precision)
+{
+    static const double white[3] = { 1, 1, 1 };
+    const hard_plane plane = { { 0 }, { 0, 1, 0 } };
+    hard_ray ray = { { 0, from_inside ? -1 : 1, 0 }, { d[0], d[1] * (from_inside ? 1 : -1), d[2] } };
+    glint_scene *scene = scene_new();
+    glint_material *glass = point_glass(0, 1, 1, ior, true);
+    scene_light_up(scene, 0, white);
+    scene_plane(scene, &plane, glass);
+    glint_material_release(glass);
+    const double mirrored = point_seen(scene, &ray, precision, 1, GLINT_PASS_MIRROR);
+    const double through = point_seen(scene, &ray, precision, 1, GLINT_PASS_TRANSMISSION);
+    glint_scene_release(scene);
+    hard_check(fabs(mirrored + through - 1) < 0x1p-22, "mirrored %g and let through %g", mirrored, through);
+    return mirrored;
+}
+
+/// Books: Snell's sine, then the two polarisations.
+#define NAIVE(name, real, root) \
+    static double name(double ratio, double cosine) \
+    { \
+        const real r = (real)ratio, c = (real)cosine, k = 1 - r * r * (1 - c * c), s = root(k); \
+        const real p = (r * c - s) / (r * c + s), q = (c - r * s) / (c + r * s); \
+        return (double)((p * p + q * q) / 2); \
+    }
+NAIVE(naive_float, float, sqrtf)
+NAIVE(naive_double, double, sqrt)
+
+/// `sine`: of the ray's angle to the normal. The rounding of the ray's direction moves the cosine beyond by ratio^2 2^-52 over
+/// itself, which near the critical angle is its root.
+static bool check_fresnel(const char *id, const char *what, double ior, bool from_inside, double cosine, double stated)
+{
+    const double ratio = from_inside ? ior : 1 / ior, sine = sqrt((1 - cosine) * (1 + cosine));
+    const double d[3] = { sine, cosine, 0 };
+    hard_values shown = { .truth = oracle_fresnel(ratio, cosine),
+                          .naive_double = naive_double(ratio, cosine),
+                          .naive_float = naive_float(ratio, cosine) };
+    bool right = isnan(stated) || hard_check(fabs(shown.truth - stated) <= 5e-11 * (1 + 4e3 * (stated == 1)),
+                                             "oracle %.15g, stated %.12g", shown.truth, stated);
+    double *const got[2] = { &shown.in_double, &shown.in_float };
+    for (int p = 0; p < 2; p++) {
+        const double rounding = p ? 0x1p-21 : 0x1p-50;
+        // R's slopes: 4/cos at grazing angles, 4/cos' at critical ones
+        const double beyond = sqrt(fabs(1 - ratio * ratio * sine * sine)), moved = rounding * ratio * ratio;
+        const double off =
+            0x1p-22 + 8 * (rounding / fmax(cosine, rounding) + ratio * fmin(sqrt(moved), moved / fmax(beyond, 1e-300)));
+        *got[p] = reflectance(ior, from_inside, d, (glint_precision)p);
+        right &= hard_check(fabs(*got[p] - shown.truth) <= off, "%s: %.12g, truth %.12g, %g allowed", what, *got[p],
+                            shown.truth, off);
+    }
+    hard_row(id, what, &shown, right);
+    return right;
+}
+
+static void fresnel(void)
+{
+    const double critical = sqrt(5) / 3; // sin = 2/3
+    char what[80];
+    hard_test("M1", "critical angle");
+    check_fresnel("M1", "1.5 -> 1, sin = 2/3: R", 1.5, true, critical, NAN);
+    for (double near = 1e-2; near > 1e-17; near *= 1e-3)
+        for (int side = -1; side <= 1; side += 2) {
+            snprintf(what, sizeof what, "cosine %s by %.0e", side < 0 ? "less" : "more", near);
+            check_fresnel("M1", what, 1.5, true, critical * (1 + side * near), side < 0 && near > 1e-15 ? 1 : NAN);
+        }
+    hard_test("M3", "Fresnel");
+    check_fresnel("M3", "1 -> 1.5 at cos 1", 1.5, false, 1, 0.04);
+    check_fresnel("M3", "1 -> 1.5 at cos 0.5", 1.5, false, 0.5, 0.0891867128);
+    check_fresnel("M3", "1 -> 1.5 at cos 0.1", 1.5, false, 0.1, 0.5715925203);
+    check_fresnel("M3", "1 -> 1.5 at cos 1e-9", 1.5, false, 1e-9, 1);
+    hard_test("M4", "Fresnel from inside");
+    check_fresnel("M4", "1.5 -> 1 at cos 0.75", 1.5, true, 0.75, 0.5);
+    const bool table = hard_table;
+    hard_table = false; // too many for lines
+    for (int i = 0; i < 300; i++) {
+        const double ior = chance(0.3) ? 1 + log_uniform(1e-6, 1) : log_uniform(0.1, 10);
+        check_fresnel("M3", "random", ior, chance(0.5), chance(0.3) ? log_uniform(1e-6, 1) : uniform(0, 1), NAN);
+    }
+    hard_table = table;
+}
+
+// ---- Snell ----
+
+/// A sheet at the height `below` that begins at x: is the ray that comes down from (0, 0, 0) at it there?
+static bool lands_beyond(double ior, const double d[3], double below, double x, glint_precision precision)
+{
+    const hard_plane plane = { { 0 }, { 0, 1, 0 } };
+    const double far = 1e3 * below, vertices[4][3] = {
+        { x, -below, -far }, { x + 4 * far, -below, -far }, { x + 4 * far, -below, far }, { x, -below, far }
+    };
+    const uint32_t corners[4] = { 0, 1, 2, 3 }, size = 4;
+    const hard_ray ray = { { -d[0], -d[1], -d[2] }, { d[0], d[1], d[2] } };
+    glint_mesh_desc mesh = glint_mesh_desc_default();
+    glint_scene *scene = scene_new();
+    glint_material *glass = point_glass(0, 0, 1, ior, false), *glow = point_glass(1, 0, 0, 1, false);
+    glint_shape *sheet;
+    glint_error error;
+    mesh.vertices = vertices[0];
+    mesh.vertex_count = 4;
+    mesh.corners = corners;
+    mesh.face_sizes = &size;
+    mesh.face_count = 1;
+    mesh.material = glow;
+    must(glint_mesh_create(&mesh, &sheet, &error), &error);
+    must(glint_scene_add_shape(scene, sheet, &error), &error);
+    glint_shape_release(sheet);
+    scene_plane(scene, &plane, glass);
+    scene_light_up(scene, 1, (double[3]) { 0 });
+    glint_material_release(glass);
+    glint_material_release(glow);
+    const double seen = point_seen(scene, &ray, precision, 2, GLINT_PASS_TRANSMISSION);
+    glint_scene_release(scene);
+    return seen > 0;
+}
+
+/// The refracted ray's tangent, found by moving the edge of a sheet.
+static double tangent(double ior, const double d[3], glint_precision precision)
+{
+    double low = 0, high = 1e3;
+    for (int i = 0; i < 64; i++) {
+        const double x = 0.5 * (low + high);
+        *(lands_beyond(ior, d, 1, x, precision) ? &low : &high) = x;
+    }
+    return low;
+}
+
+static void check_snell(const char *id, const char *what, double ior, double degrees, double stated)
+{
+    const double angle = degrees * M_PI / 180, d[3] = { sin(angle), -cos(angle), 0 };
+    const double sine = oracle_snell(1 / ior, sin(angle));
+    hard_values shown = { .truth = asin(sine) * 180 / M_PI,
+                          .naive_double = asin(sin(angle) / ior) * 180 / M_PI,
+                          .naive_float = (double)(asinf(sinf((float)angle) / (float)ior) * (180 / (float)M_PI)) };
+    double *const got[2] = { &shown.in_double, &shown.in_float };
+    bool right = true;
+    if (stated > 0)
+        hard_check(fabs(shown.truth - stated) < 5e-10, "oracle %.12g degrees, stated %.12g", shown.truth, stated);
+    for (int p = 0; p < 2; p++) {
+        *got[p] = atan(tangent(ior, d, (glint_precision)p)) * 180 / M_PI;
+        right &= hard_check(fabs(*got[p] - shown.truth) <= (p ? 2e-4 : 1e-12), "%s: %.14g degrees, truth %.14g", what,
+                            *got[p], shown.truth);
+    }
+    hard_row(id, what, &shown, right);
+}
+
+static void snell(void)
+{
+    hard_test("M5", "Snell");
+    check_snell("M5", "45 degrees, 1 -> 1.5", 1.5, 45, 28.125505702);
+    check_snell("M5", "5 degrees, 1 -> 2.4", 2.4, 5, 0);
+    check_snell("M5", "85 degrees, 1 -> 1.33", 1.33, 85, 0);
+    check_snell("M5", "30 degrees, 1 -> 1.0000001", 1.0000001, 30, 0);
+    hard_test("M2", "ior 1: direction unchanged");
+    for (int i = 1; i < 8; i++) {
+        char what[64];
+        snprintf(what, sizeof what, "%d degrees, 1 -> 1", 10 * i);
+        check_snell("M2", what, 1, 10 * i, 10 * i);
+    }
+    for (int i = 0; i < 2; i++)
+        check_fresnel("M2", i ? "1 -> 1: R, from inside" : "1 -> 1: R", 1, i, 0.7, 0);
+}
+
+// ---- Depth ----
+
+static long resident_kb(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+/// Two mirrors that face each other and glow.
+static double facing(double mirror, double depth, double glow, glint_precision precision)
+{
+    const hard_plane low = { { 0 }, { 0, 1, 0 } }, high = { { 0, 1, 0 }, { 0, -1, 0 } };
+    const hard_ray ray = { { 0, 0.5, 0 }, { 0.3, -1, 0 } };
+    glint_scene *scene = scene_new();
+    glint_material *wall = point_glass(glow, mirror, 0, 1.5, false);
+    scene_plane(scene, &low, wall);
+    scene_plane(scene, &high, wall);
+    glint_material_release(wall);
+    scene_light_up(scene, 1, (double[3]) { 0 });
+    const double seen = point_seen(scene, &ray, precision, depth, GLINT_PASS_BEAUTY);
+    glint_scene_release(scene);
+    return seen;
+}
+
+static void mirrors(void)
+{
+    static const double depths[] = { 0, 1, 2, 10, 60, 1000, 1e6 };
+    hard_test("M6", "facing mirrors");
+    for (size_t i = 0; i < sizeof depths / sizeof *depths; i++) {
+        char what[64];
+        const double depth = depths[i];
+        hard_values shown = { oracle_facing_mirrors(0.05, 0.9, depth), facing(0.9, depth, 0.05, GLINT_DOUBLE),
+                              facing(0.9, depth, 0.05, GLINT_FLOAT), HARD_BLANK, HARD_BLANK };
+        const bool right = hard_check(fabs(shown.in_double - shown.truth) <= LOSS + 0x1p-23, "depth %g: %.9g, not %.9g",
+                                      depth, shown.in_double, shown.truth) &
+                           hard_check(fabs(shown.in_float - shown.truth) <= LOSS + 0x1p-21, "depth %g: %.9g, not %.9g",
+                                      depth, shown.in_float, shown.truth);
+        snprintf(what, sizeof what, "mirrors of 0.9 that glow 0.05, depth %g", depth);
+        hard_row("M6", what, &shown, right);
+    }
+    for (double mirror = 0.5; mirror < 1; mirror += 0.07)
+        hard_check(fabs(facing(mirror, 1e6, 0.01, GLINT_DOUBLE) - oracle_facing_mirrors(0.01, mirror, 1e6)) <=
+                       LOSS + 0x1p-22,
+                   "mirrors of %g", mirror);
+}
+
+static void depth(void)
+{
+    hard_test("depth 1e6", "mirrors of 1: a million reflections");
+    hard_values shown = { .naive_double = HARD_BLANK, .naive_float = HARD_BLANK };
+    const long before = resident_kb();
+    shown.truth = oracle_facing_mirrors(1e-6, 1, 1e6);
+    shown.in_double = facing(1, 1e6, 1e-6, GLINT_DOUBLE);
+    const long memory = resident_kb() - before;
+    const bool right =
+        hard_check(fabs(shown.in_double - shown.truth) < 1e-6, "%.9g, not %.9g", shown.in_double, shown.truth) &
+        hard_check(memory < 64 << 10, "%ld KB more", memory);
+    shown.in_float = facing(1, 1e6, 1e-6, GLINT_FLOAT);
+    hard_row("depth 1e6", "mirrors of 1 that glow 1e-6", &shown, right);
+}
+
+int main(int argc, char **argv)
+{
+    hard_begin(argc, argv);
+    hard_columns("Mirrors and glass: shares of light, degrees.");
+    fresnel();
+    snell();
+    mirrors();
+    depth();
+    return hard_end();
+}

@@ -1,0 +1,222 @@
+/// Triangles: rays at the edges and corners that two or more share, triangles of no area, and texture coordinates, of which
+/// there are none. The textbook's triangle is Moller and Trumbore's.
+#include "tests/hard/drive.h"
+
+#include <string.h>
+
+// ---- The textbook ----
+
+#define NAIVE(name, real) \
+    static bool name(const double corner[3][3], const hard_ray *ray) \
+    { \
+        real e[2][3], p[3], q[3], s[3], det = 0, u = 0, v = 0, t = 0; \
+        for (int c = 0; c < 3; c++) { \
+            e[0][c] = (real)corner[1][c] - (real)corner[0][c]; \
+            e[1][c] = (real)corner[2][c] - (real)corner[0][c]; \
+            s[c] = (real)ray->o[c] - (real)corner[0][c]; \
+        } \
+        for (int c = 0; c < 3; c++) { \
+            const int i = (c + 1) % 3, k = (c + 2) % 3; \
+            p[c] = (real)ray->d[i] * e[1][k] - (real)ray->d[k] * e[1][i]; \
+            q[c] = s[i] * e[0][k] - s[k] * e[0][i]; \
+        } \
+        for (int c = 0; c < 3; c++) { \
+            det += e[0][c] * p[c]; \
+            u += s[c] * p[c]; \
+            v += (real)ray->d[c] * q[c]; \
+            t += e[1][c] * q[c]; \
+        } \
+        if (det == 0) \
+            return false; \
+        return u / det >= 0 && v / det >= 0 && u / det + v / det <= 1 && t / det > 0; \
+    }
+NAIVE(naive_float, float)
+NAIVE(naive_double, double)
+
+// ---- A closed mesh ----
+
+#define SIDE 4 ///< quadrangles along an edge of the box
+#define VERTICES (6 * (SIDE + 1) * (SIDE + 1))
+#define QUADS (6 * SIDE * SIDE)
+
+typedef struct shell {
+    double vertex[VERTICES][3];
+    uint32_t corner[QUADS][4], size[QUADS];
+    double middle[3];
+} shell;
+
+/// A box, or a ball, made of quadrangles that need not be flat, somewhere; its seams have the same numbers on both sides.
+static void make_shell(shell *s, bool round, double size, double away)
+{
+    uint32_t n = 0, q = 0;
+    double shear[3];
+    random_direction(shear);
+    for (int c = 0; c < 3; c++)
+        s->middle[c] = uniform(-1, 1) * away;
+    for (int face = 0; face < 6; face++) {
+        const uint32_t first = n;
+        for (int i = 0; i <= SIDE; i++)
+            for (int j = 0; j <= SIDE; j++) {
+                double p[3];
+                p[face % 3] = face < 3 ? 1 : -1;
+                p[(face + 1) % 3] = 2.0 * i / SIDE - 1;
+                p[(face + 2) % 3] = 2.0 * j / SIDE - 1;
+                // an order of its own, so that seams round alike
+                const double length = round ? sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) : 1;
+                const double lean = 0.2 * (p[0] * shear[0] + p[1] * shear[1] + p[2] * shear[2]);
+                for (int c = 0; c < 3; c++)
+                    s->vertex[n][c] = s->middle[c] + size * (p[c] / length + lean);
+                n++;
+            }
+        for (uint32_t i = 0; i < SIDE; i++)
+            for (uint32_t j = 0; j < SIDE; j++) {
+                const uint32_t at = first + i * (SIDE + 1) + j;
+                memcpy(s->corner[q], (uint32_t[4]) { at, at + SIDE + 1, at + SIDE + 2, at + 1 }, sizeof s->corner[q]);
+                s->size[q++] = 4;
+            }
+    }
+}
+
+static glint_shape *shape_of(const double *vertices, size_t vertex_count, const uint32_t *corners,
+                             const uint32_t *sizes, size_t faces)
+{
+    glint_mesh_desc desc = glint_mesh_desc_default();
+    glint_shape *shape;
+    glint_error error;
+    desc.vertices = vertices;
+    desc.vertex_count = vertex_count;
+    desc.corners = corners;
+    desc.face_sizes = sizes;
+    desc.face_count = faces;
+    must(glint_mesh_create(&desc, &shape, &error), &error);
+    return shape;
+}
+
+/// A ray from within at a corner, at a place on an edge or diagonal, or next to one.
+static hard_ray aim_at_seam(const shell *s, double size)
+{
+    const uint32_t *quad = s->corner[random_bits() % QUADS];
+    const double *a = s->vertex[quad[random_bits() % 4]], *b = s->vertex[quad[random_bits() % 4]];
+    const double w = chance(0.2) ? 0 : chance(0.3) ? 0.5 : uniform(0, 1);
+    hard_ray ray;
+    for (int c = 0; c < 3; c++) {
+        ray.o[c] = s->middle[c] + size * uniform(-0.3, 0.3);
+        ray.d[c] = (a[c] + w * (b[c] - a[c])) - ray.o[c];
+    }
+    if (chance(0.3))
+        ray.d[random_bits() % 3] *= 1 + log_uniform(1e-16, 1e-12);
+    return ray;
+}
+
+static bool naive_hit(const shell *s, const hard_ray *ray, bool (*meets)(const double corner[3][3], const hard_ray *))
+{
+    for (int q = 0; q < QUADS; q++)
+        for (int half = 0; half < 2; half++) {
+            double corner[3][3];
+            for (int j = 0; j < 3; j++)
+                memcpy(corner[j], s->vertex[s->corner[q][j == 0 ? 0 : j + half]], sizeof corner[j]);
+            if (meets((const double(*)[3])corner, ray))
+                return true;
+        }
+    return false;
+}
+
+/// G2: nothing gets out of a closed mesh. Frames in float are asked one ray in fifty.
+static void seams(uint64_t rays)
+{
+    static shell s;
+    static const char *const names[] = { "box", "box, far away", "ball", "ball, far away" };
+    for (int kind = 0; kind < 4; kind++) {
+        uint64_t count = 0, asked = 0;
+        hard_values shown = { 0 };
+        char what[96];
+        hard_test("G2", names[kind]);
+        while (count < rays) {
+            const double size = log_uniform(1e-6, 1e6);
+            make_shell(&s, kind / 2, size, kind % 2 ? size * log_uniform(1, 1e6) : 0);
+            glint_scene *scene = scene_new();
+            glint_shape *shape = shape_of(s.vertex[0], VERTICES, s.corner[0], s.size, QUADS);
+            glint_error error;
+            must(glint_scene_add_shape(scene, shape, &error), &error);
+            glint_shape_release(shape);
+            for (int i = 0; i < 500; i++, count++) {
+                const hard_ray ray = aim_at_seam(&s, size);
+                glint_hit hit;
+                shown.in_double += !hard_check(cast(scene, &ray, &hit), "a ray gets out");
+                shown.naive_double += !naive_hit(&s, &ray, naive_double);
+                shown.naive_float += !naive_hit(&s, &ray, naive_float);
+                if (i % 50)
+                    continue;
+                float id[3];
+                glint_image *image = frame_of_ray(scene, &ray, GLINT_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
+                pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
+                glint_image_release(image);
+                shown.in_float += id[0] != 1;
+                asked++;
+            }
+            glint_scene_release(scene);
+        }
+        // float loses the eye's place in a mesh far away; near by it keeps it
+        hard_check(kind % 2 || shown.in_float == 0, "%g of %llu rays get out in float", shown.in_float,
+                   (unsigned long long)asked);
+        snprintf(what, sizeof what, "%s: of %llu rays at seams, out (float: of %llu)", names[kind],
+                 (unsigned long long)count, (unsigned long long)asked);
+        hard_row("G2", what, &shown, shown.in_double == 0);
+    }
+}
+
+/// G2: three corners on one line are no face; where a polygon has such a triangle it is left out, and nothing is hit twice
+/// or by a hair of it.
+static void no_area(int count)
+{
+    hard_test("G2", "triangles of no area");
+    glint_error error;
+    int taken = 0;
+    for (int i = 0; i < count; i++) {
+        double v[5][3], along[3], length = log_uniform(1e-6, 1e6);
+        const uint32_t corners[5] = { 0, 1, 2, 3, 4 }, three = 3, five = 5;
+        random_direction(along);
+        for (int c = 0; c < 3; c++) { // whole steps: exactly on one line
+            along[c] = rint(along[c] * 1024) / 1024 * exp2(rint(log2(length)));
+            v[0][c] = 0;
+            v[1][c] = along[c];
+            v[2][c] = 2 * along[c];
+            v[3][c] = 2 * along[c] + (c == i % 3 ? -along[(c + 1) % 3] : c == (i + 1) % 3 ? along[i % 3] : 0);
+            v[4][c] = v[3][c] - 2 * along[c];
+        }
+        glint_mesh_desc desc = glint_mesh_desc_default();
+        glint_shape *shape = NULL;
+        desc.vertices = v[0];
+        desc.vertex_count = 5;
+        desc.corners = corners;
+        desc.face_sizes = &three;
+        desc.face_count = 1;
+        const glint_status status = glint_mesh_create(&desc, &shape, &error);
+        hard_check(status == GLINT_ERR_INVALID && !strncmp(error.message, "faces[1]", 8), "refused by name: %s",
+                   status ? error.message : "it is taken");
+        if (!status) {
+            glint_shape_release(shape);
+            taken++;
+            continue;
+        }
+        if (along[i % 3] == 0 && along[(i + 1) % 3] == 0)
+            continue; // the rest has no area either
+        desc.face_sizes = &five;
+        must(glint_mesh_create(&desc, &shape, &error), &error);
+        hard_check(glint_spheres_count(shape) == 2, "a quadrangle with a corner more is %zu triangles",
+                   glint_spheres_count(shape));
+        glint_shape_release(shape);
+    }
+    hard_row("G2", "three corners on one line: faces taken",
+             &(hard_values) { 0, taken, HARD_BLANK, HARD_BLANK, HARD_BLANK }, taken == 0);
+}
+
+int main(int argc, char **argv)
+{
+    hard_begin(argc, argv);
+    hard_columns("Triangles.");
+    seams(hard_rays / 100);
+    no_area(1000);
+    hard_absent("G3", "there are no textures, and so no texture coordinates");
+    return hard_end();
+}
