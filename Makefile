@@ -36,6 +36,10 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
+ifeq ($(call have,libseccomp),yes)
+  COMMAND_LIBS := $(shell pkg-config --libs libseccomp)
+  DEFINES += -DGLINT_HAVE_SECCOMP
+endif
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
 ifdef SANITIZE
@@ -59,8 +63,8 @@ ifeq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
 endif
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
-MAIN_OBJ     := $(BUILD)/bindings/main.o
-MODULE_OBJ   := $(filter-out $(MAIN_OBJ),$(BINDINGS_OBJ))
+COMMAND_OBJ  := $(BUILD)/bindings/main.o $(BUILD)/bindings/untrusted.o # the command has them, the module has not
+MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
 TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/test_*.c)))
 TEST_TOOLS   := $(BUILD)/tests/compare16
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
@@ -101,7 +105,7 @@ $(BUILD)/%.o: %.c $(BUILD)/flags | need
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) -ldl -o $@
+	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
 
 $(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -138,7 +142,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme warnings watch)))
+              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

@@ -70,6 +70,7 @@ typedef struct cli_options {
     bool has_frames;
     int http_port; ///< of watch; 0: any free one, -1: no page
     const char *terminal; ///< of watch: NULL: what the terminal says
+    double untrusted_s; ///< time that an untrusted script may take; 0: the script is trusted
 } cli_options;
 
 #define CLI_MAY_HAVE_NUMBER 2
@@ -83,7 +84,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 46
+#define CLI_OPTION_COUNT 47
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -161,11 +162,16 @@ void cli_progress_clear(cli_progress *progress);
 
 // ---- script.c ----
 
+typedef struct cli_lua_memory { ///< of one Lua state
+    size_t used, most; ///< bytes
+} cli_lua_memory;
+
 typedef struct cli_script {
     lua_State *state;
     int64_t frames; ///< of the jobs it returned
     bool has_jobs;
     int jobs; ///< reference to the list of jobs, when the run's mode is GLINTL_MODE_WATCH
+    cli_lua_memory memory; ///< of an untrusted script
 } cli_script;
 
 /// Runs the script, and what it returns. False: the run has failed, was interrupted or was stopped.

@@ -180,6 +180,26 @@ static bool check_output(cli_options *options, char *message)
     return false;
 }
 
+// An untrusted script writes pictures into one folder.
+static bool check_untrusted(const cli_options *options, char *message)
+{
+    const char *output = options->output;
+    if (!options->untrusted_s || !output || strcmp(output, "none") == 0)
+        return true;
+    const char *slash = strrchr(output, '/');
+    if (glintL_film_kind_of(output, options->asked.apng) != GLINTL_FILM_NONE)
+        snprintf(message, MESSAGE, "--untrusted: pictures expected, got '%.200s'; glint assemble makes a film of them",
+                 output);
+    else if (slash && memchr(output, '%', (size_t)(slash - output)))
+        snprintf(message, MESSAGE, "--untrusted: a folder without a place for the number expected, got '%.200s'",
+                 output);
+    else if (glintL_name_is_special(output))
+        snprintf(message, MESSAGE, "--untrusted: a file expected, got '%.200s'", output);
+    else
+        return true;
+    return false;
+}
+
 static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
@@ -250,7 +270,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     }
     if (!read_argv(words, argv, options, used, message) ||
         !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
-        !check_output(options, message) || !complete(options, message))
+        !check_output(options, message) || !check_untrusted(options, message) || !complete(options, message))
         return false;
     if (words < argc && !options->arguments) {
         options->arguments = argv + words + 1;
@@ -263,5 +283,6 @@ void cli_free_options(cli_options *options)
 {
     glintL_selection_clear(&options->asked.selection);
     free(options->asked.sets);
+    free(options->asked.folder);
     free(options->sweeps);
 }

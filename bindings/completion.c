@@ -53,6 +53,7 @@ static const struct hint {
     { "warnings", "what a warning does", "show error none", false },
     { "http", "also serve a page; on PORT", NULL, false },
     { "terminal", "how to draw", "kitty sixel blocks text", false },
+    { "untrusted", "the script gets a process behind walls; SECONDS", NULL, false },
     { "fail", "threshold of failure", NULL, false },
     { "warn", "threshold of a warning", NULL, false },
     { "help", "help, with a script its parameters", NULL, false },

@@ -99,6 +99,8 @@ bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *re
     }
     if (kind == GLINTL_FILM_NONE)
         return true;
+    if (run->asked.is_untrusted)
+        return refuse(message, path, "an untrusted script writes pictures alone; make the film with glint assemble");
     fps = run->asked.fps > 0 ? run->asked.fps : fps;
     if (run->asked.selection.shard_count > 1)
         return refuse(message, path,

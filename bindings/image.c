@@ -1,7 +1,7 @@
 // Images: what scene:render returns.
 #include <string.h>
 
-#include "bindings/glintL.h"
+#include "bindings/run.h"
 
 static const glintL_field NO_FIELDS[] = { { .name = NULL } };
 
@@ -136,6 +136,16 @@ static const char *check_path(lua_State *L)
     const char *path = lua_tolstring(L, 2, &length);
     if (length == 0 || strlen(path) != length)
         glintL_refuse(L, 2, "save.path", "file name without zero bytes");
+    const glintL_asked *asked = &glintL_get_run(L)->asked;
+    if (!asked->is_untrusted)
+        return path;
+    if (!asked->folder || !glintL_name_is_plain(path, length))
+        glintL_refuse(L, 2, "save.path", asked->folder ? GLINTL_PLAIN_NAME : "no file, for nothing is to be written,");
+    lua_pushfstring(L, "%s/%s", asked->folder, path);
+    lua_replace(L, 2);
+    path = lua_tostring(L, 2);
+    if (glintL_name_is_special(path))
+        glintL_refuse(L, 2, "save.path", "file that is no pipe or device");
     return path;
 }
 

@@ -7,6 +7,7 @@
 
 #include "bindings/cli.h"
 #include "bindings/film.h"
+#include "bindings/untrusted.h"
 
 static int run_command(cli_options *options, cli_output *output, glintL_run *run)
 {
@@ -70,6 +71,7 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
     run->asked = options->asked; // which now owns what it points to
     options->asked.sets = NULL;
+    options->asked.folder = NULL;
     options->asked.selection.ranges = NULL;
     run->reporter = cli_reporter(output);
     output->run = run;
@@ -107,6 +109,9 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, "a script expected; glint --help lists the commands");
         return GLINTL_EXIT_USAGE;
     }
+    int code;
+    if (options->untrusted_s > 0 && !cli_untrusted_begin(options, output, &code, signal_number))
+        return code;
     return run_scripted(options, output, signal_number);
 }
 

@@ -57,6 +57,14 @@ bool glintL_name_is_special(const char *path)
     return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+bool glintL_name_is_plain(const char *name, size_t length)
+{
+    bool good = length > 0 && length <= 200 && name[0] != '.';
+    for (size_t i = 0; good && i < length; i++)
+        good = name[i] != '/' && (unsigned char)name[i] >= ' ' && name[i] != 0x7f;
+    return good;
+}
+
 // The dot of ".png" or ".pfm"; NULL: another ending, or no name before it.
 static const char *ending(const char *path)
 {

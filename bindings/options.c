@@ -223,6 +223,18 @@ static bool read_terminal(cli_options *options, const cli_option *option, char *
     return false;
 }
 
+// The seconds that the script may take; without a number a minute.
+static bool read_untrusted(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)option;
+    int64_t seconds = 60;
+    if (text && !read_whole(text, 1, 1000000, &seconds, message))
+        return false;
+    options->untrusted_s = (double)seconds;
+    options->asked.is_untrusted = true;
+    return true;
+}
+
 static bool read_warnings(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
@@ -319,6 +331,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "warnings", 0, true, CLI_RENDER | CLI_WATCH, read_warnings },
     { "http", 0, CLI_MAY_HAVE_NUMBER, CLI_WATCH, read_port },
     { "terminal", 0, true, CLI_WATCH, read_terminal },
+    { "untrusted", 0, CLI_MAY_HAVE_NUMBER, CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE, read_untrusted },
     { "fail", 0, true, CLI_COMPARE, read_threshold },
     { "warn", 0, true, CLI_COMPARE, read_threshold },
     { "help", 'h', false, ALL, read_flag },

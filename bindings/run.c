@@ -9,6 +9,7 @@
 #include "bindings/film.h"
 
 #define QUEUE_DEPTH 3 // files that may wait while the next frame renders
+#define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
 
 static const char RUN; // its address is the registry's key of the run
 
@@ -58,6 +59,7 @@ void glintL_run_destroy(glintL_run *run)
     }
     glintL_selection_clear(&run->asked.selection);
     free(run->asked.sets);
+    free(run->asked.folder);
     glintL_films_destroy(run->films);
     free(run->params_text);
     glintL_forget_warnings(run);
@@ -159,7 +161,8 @@ int glintL_message_handler(lua_State *L)
 {
     if (lua_type(L, 1) == LUA_TSTRING)
         return 1;
-    if (luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
+    // Hooks, which end a script that goes on for ever, may be off here.
+    if (!glintL_get_run(L)->asked.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
         return 1;
     if (lua_type(L, 1) == LUA_TNUMBER)
         luaL_tolstring(L, 1, NULL);
@@ -207,6 +210,8 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
     desc.count_work = run->counts_work;
     desc.no_reuse = run->asked.no_reuse || run->asked.repeat > 1; // repeats measure the whole frame
     desc.reuse_memory = run->asked.reuse_memory;
+    if (run->asked.is_untrusted && !desc.reuse_memory)
+        desc.reuse_memory = UNTRUSTED_REUSE_MEMORY;
     glint_status status = glint_renderer_create(&desc, &renderer, error);
     if (status)
         return status;

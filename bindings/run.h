@@ -90,6 +90,9 @@ bool glintL_name_has_number(const char *pattern);
 bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
 bool glintL_name_is_pfm(const char *path);
 bool glintL_name_is_special(const char *path); ///< an existing pipe or device
+/// Whether an untrusted script may write a file of this name: a plain one, with no folder and nothing hidden.
+bool glintL_name_is_plain(const char *name, size_t length);
+#define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.', at most 200 bytes)"
 
 // ---- What is asked ----
 
@@ -112,6 +115,8 @@ typedef struct glintL_asked {
     int threads; ///< 0: one per processor
     int repeat; ///< >= 1
     bool force, no_reuse;
+    bool is_untrusted; ///< the script: its pictures have plain names
+    char *folder; ///< owned; where an untrusted script's pictures go; NULL: nowhere
     glintL_warnings warnings;
     size_t reuse_memory; ///< bytes; 0: the engine's default
 } glintL_asked;

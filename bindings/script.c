@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/cli.h"
+#include "bindings/untrusted.h"
+
+#define UNTRUSTED_LUA_MEMORY ((size_t)64 << 20)
 
 typedef struct task { // what the protected function works on
     cli_script *script;
@@ -47,6 +49,11 @@ static void set_path(lua_State *L, const char *script)
 
 static void open_libraries(lua_State *L, const task *work)
 {
+    if (work->options->untrusted_s > 0) {
+        cli_open_untrusted(L, work->run);
+        set_arguments(L, work->options);
+        return;
+    }
     luaL_openlibs(L);
     glintL_attach_run(L, work->run);
     luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
@@ -155,7 +162,8 @@ static int run_protected(lua_State *L)
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
 {
     task work = { script, options, run };
-    *script = (cli_script) { .state = luaL_newstate() };
+    *script = (cli_script) { .memory.most = UNTRUSTED_LUA_MEMORY };
+    script->state = options->untrusted_s > 0 ? cli_untrusted_state(&script->memory) : luaL_newstate();
     lua_State *L = script->state;
     if (!L)
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
@@ -163,9 +171,9 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     lua_pushcfunction(L, run_protected);
     lua_pushlightuserdata(L, &work);
     int status = lua_pcall(L, 1, 0, 1);
+    const bool is_short = status == LUA_ERRMEM && !run->asked.is_untrusted; // such a script has a limit of its own
     if (status != LUA_OK && !run->is_stopped && !run->interrupted)
-        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
-                        lua_tostring(L, -1));
+        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
     return status == LUA_OK && !run->exit_code && !run->interrupted;
 }
 

@@ -37,6 +37,7 @@ void cli_print_usage(FILE *out)
           "           --alpha                            transparent background\n"
           "machine    -t, --threads N  --no-reuse  --reuse-memory SIZE\n"
           "           --repeat N                         render each frame N times, report each\n"
+          "           --untrusted [SECONDS]              the script can compute, and write pictures; no more\n"
           "cost       --quick  --budget SECONDS          fewer runs; what fits, and what was left out\n"
           "           --knobs LIST                       these only: samples,precision\n"
           "           --report DIR                       a page with the plot and the pictures\n"

@@ -16,6 +16,7 @@ libxxhash-dev   module:libxxhash
 build_optional='
 libisal-dev     module:libisal
 libdeflate-dev  module:libdeflate
+libseccomp-dev  module:libseccomp
 '
 test_required='
 libcmocka-dev   module:cmocka
@@ -117,7 +118,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "PNG files will be written with zlib"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libseccomp there is no --untrusted"
         ;;
     test)
         require "$test_required"

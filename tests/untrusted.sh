@@ -1,0 +1,150 @@
+#!/usr/bin/env bash
+# --untrusted: what a hostile script tries, and what becomes of it. Prints TAP.
+set -u
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+bad=0
+
+result() { # STATUS NAME
+    if [ "$1" -eq 0 ]; then echo "ok - $2"; else
+        echo "not ok - $2"
+        cat out err
+        bad=1
+    fi
+}
+# script LINE...: scene.lua, which renders a small picture when the lines are through
+script() {
+    {
+        printf '%s\n' "$@"
+        echo 'local glint = require "glint"'
+        echo 'local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,'
+        echo '  glint.sphere { center = { 0, 0, 0 }, radius = 2 } }'
+        echo 'image = scene:render { width = 16, height = 16, output = name }'
+        echo 'if after then after() end'
+    } >scene.lua
+}
+run() { timeout 30 "$glint" scene.lua --untrusted=2 "$@" -q >out 2>err </dev/null; }
+# passes NAME: the script goes through
+passes() {
+    run -o none
+    result $? "$1"
+}
+# refused NAME PATTERN OPTION...: exit 2 with one line that matches, and no new file
+refused() {
+    local name=$1 pattern=$2 before
+    shift 2
+    before=$(find . -type f | sort)
+    run "$@"
+    [ $? -eq 2 ] && grep -q "^glint: error: .*$pattern" err && [ "$(find . -type f | sort)" = "$before" ]
+    result $? "$name"
+}
+
+script
+run -o pictures/deep/a.png
+if grep -q 'without libseccomp' err; then
+    echo "1..0 # SKIP glint was built without libseccomp"
+    exit 77
+fi
+[ $? -eq 0 ] && [ -s pictures/deep/a.png ]
+result $? "a picture, in a folder that is made"
+"$glint" scene.lua -o trusted.png -q && cmp -s trusted.png pictures/deep/a.png
+result $? "the same bytes as of a trusted run"
+script 'name = "plain.png"'
+(cd pictures && timeout 30 "$glint" --untrusted ../scene.lua -q) >out 2>err && [ -s pictures/plain.png ]
+result $? "without -o: into the working directory"
+timeout 30 "$glint" explain scene.lua --untrusted >out 2>err && grep -q cast out
+result $? "explain"
+
+# ---- What is there, and what is not ----
+
+script 'for _, gone in ipairs { "io", "debug", "package", "dofile", "loadfile", "xpcall", "collectgarbage", "warn" } do' \
+    'assert(_G[gone] == nil, gone) end' \
+    'for _, gone in ipairs { "execute", "exit", "getenv", "remove", "rename", "setlocale", "tmpname" } do' \
+    'assert(os[gone] == nil, gone) end' \
+    'assert(string.dump == nil and ("").dump == nil)' \
+    'assert(getmetatable("") == false and not pcall(setmetatable, "", {}))' \
+    'assert(("x"):rep(3) == "xxx" and math.pi and table.concat and coroutine.wrap and utf8.char and os.time())'
+passes "the names that a script has"
+script 'assert(not load("\27Lua") and not load("\27Lua", "x", "b") and load("return 1", "x", "b")() == 1)' \
+    'assert(load("return y", "x", "t", { y = 7 })() == 7 and load("return glint")() == nil)' \
+    'assert(load(coroutine.wrap(function() coroutine.yield("return ") coroutine.yield("5") end))() == 5)'
+passes "load takes text alone"
+script 'assert(not pcall(setmetatable, {}, { __gc = true }) and not pcall(setmetatable, {}, { __gc = function() end }))' \
+    'local late = setmetatable({}, {}); getmetatable(late).__gc = function() while true do end end; late = nil' \
+    'local locked = setmetatable({}, { __metatable = 1 }); assert(not pcall(setmetatable, locked, nil))'
+passes "no finalizers"
+script 'assert(not pcall(require, "io") and not pcall(require, "lfs") and require "glint" == require "glint")'
+passes "no modules"
+script 'assert(getmetatable(require "glint".material {}) ~= nil and type(getmetatable(require "glint".material {})) ~= "table")'
+passes "no metatables of the engine"
+
+# ---- Time and memory ----
+
+late='the script took longer than 2 s'
+script 'while true do end'
+refused "an endless loop" "$late" -o a.png
+script 'while true do pcall(function() while true do end end) end'
+refused "an endless loop that catches its errors" "$late" -o a.png
+script 'while true do pcall(coroutine.wrap(function() for i = 1, 4e5 do end end)) end'
+refused "coroutines that are each short" "$late" -o a.png
+script 'while true do coroutine.wrap(function() for i = 1, 100 do end end)() end'
+refused "coroutines that no hook sees" "$late" -o a.png
+script 'string.rep("a", 40):find(string.rep("a-", 40) .. "b")'
+refused "a pattern that takes for ever" "$late" -o a.png
+script 'error(setmetatable({}, { __tostring = function() while true do end end }))'
+refused "an error that is spelt for ever" "(error object is a table value)" -o a.png
+script 'local t = {}; for i = 1, 1e9 do t[i] = ("x"):rep(1e5) .. i end'
+refused "memory" "not enough memory" -o a.png
+script 'local t = { ("x"):rep(6e7) }; t[2] = ("y"):rep(6e7)'
+refused "memory in two strings" "not enough memory" -o a.png
+script 'local function deep(n) return 1 + deep(n + 1) end deep(1)'
+refused "a deep stack" "stack overflow" -o a.png
+
+# ---- Files ----
+
+mkdir -p inside
+echo kept >outside.png
+ln -s ../outside.png inside/link.png
+for name in ../a.png /tmp/a.png .hidden.png a/b.png 'a\tb.png' "$(printf 'a%.0s' {1..300}).png" 'a.png\0.txt'; do
+    script "name = \"$name\""
+    refused "a picture called ${name:0:20}" "expected, got" # without -o, into the working directory
+    script "function after() image:save(\"$name\") end"
+    refused "image:save of ${name:0:20}" "save.path: .*expected, got" -o none
+done
+script 'function after() assert(image:save("saved.png")) end'
+run -o inside/a.png && [ -s inside/saved.png ] && [ ! -e saved.png ]
+result $? "image:save goes where -o goes"
+script 'function after() local good, why = image:save("link.png"); assert(not good, why) end'
+run -o inside/b.png && [ "$(cat outside.png)" = kept ]
+result $? "a symbolic link leads nowhere"
+script 'local good, why = pcall(require "glint".mesh, { file = "/etc/passwd" }); assert(not good and why:find("denied"), why)'
+passes "no file is read"
+script
+refused "a film" "pictures expected" -o a.mp4
+refused "a device" "a file expected" -o /dev/null
+refused "a folder with a number" "without a place for the number" -o '%d/a.png'
+run -o /proc/nowhere/a.png
+[ $? -eq 1 ] && grep -q '^glint: error: --untrusted: /proc/nowhere: ' err
+result $? "a folder that cannot be made"
+timeout 30 "$glint" scene.lua --untrusted=0 -o none >out 2>err </dev/null
+[ $? -eq 2 ] && grep -q -e "--untrusted: whole number 1 .. 1000000 expected, got '0'" err
+result $? "seconds"
+
+# ---- Signals ----
+
+script 'while true do end'
+for signal in INT TERM; do
+    "$glint" --untrusted scene.lua -o a.png >out 2>err </dev/null &
+    pid=$!
+    sleep 0.5
+    kill -s $signal $pid # a background job of a shell ignores INT: it is sent to the process itself
+    [ $signal = INT ] && sleep 0.3 && kill -s TERM $pid 2>/dev/null
+    wait $pid
+    [ $? -ge 130 ] && ! pgrep -P $pid >/dev/null
+    result $? "SIG$signal ends it"
+done
+[ -z "$(find . -name '*.tmp')" ]
+result $? "nothing half written is left"
+exit $bad
