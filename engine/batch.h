@@ -15,6 +15,7 @@ typedef struct glint_batch_ray {
     uint32_t depth; ///< mirrors and refractions on its way so far
     uint16_t term; ///< where its light goes
     bool inward;
+    bool blind; ///< it does not see lights: where it starts their light is counted already
     glint_media media;
 } glint_batch_ray;
 

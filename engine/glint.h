@@ -127,7 +127,12 @@ typedef struct glint_light_desc {
     double diffuse[3], specular[3];
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
-    bool visible; ///< rays may see the light's surface; lights without one may be called so. No area light can be yet
+    bool
+        visible; ///< rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default
+    ///< false. It shows pi L color by `radiance` L, as the background does: pixels are pi times radiance. By
+    ///< `intensity` I: color I A(D), with D its radius, of a polygon that of a disk of its area. It throws no
+    ///< shadow, and is no object: to the passes it is background with a depth and a normal. Lights without a
+    ///< surface may be called visible too, and are not
     double position[3]; ///< point and spot light; disk and sphere light: the centre
     double direction[3]; ///< directional and spot light: the direction of travel; not zero, need not be unit
     double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light within, none without,
@@ -484,6 +489,7 @@ typedef struct glint_work {
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, looked at
     uint64_t powers; ///< highlights raised to their exponent
     uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
+    uint64_t lights_seen; ///< rays that end on a visible light
 } glint_work;
 
 typedef struct glint_frame_stats {

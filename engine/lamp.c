@@ -29,6 +29,12 @@ static void area_vector(const glint_light_desc *desc, double out[3])
     }
 }
 
+void glint_lamp_polygon_normal(const glint_light_desc *desc, double normal[3])
+{
+    area_vector(desc, normal);
+    vec_normalize(normal, normal);
+}
+
 /// The largest distance of a corner from the first, by components.
 static double polygon_size(const glint_light_desc *desc)
 {

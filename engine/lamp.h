@@ -8,6 +8,9 @@
 /// At least three corners, finite, different, in one plane, convex, with an area.
 glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error *error);
 
+/// Unit, to the side from which the corners run counter-clockwise.
+void glint_lamp_polygon_normal(const glint_light_desc *desc, double normal[3]);
+
 /// Of the side or sides that shine; 0 for a light without a surface.
 double glint_lamp_area(const glint_light_desc *desc);
 

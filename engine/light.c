@@ -65,9 +65,6 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
     if (!status && desc->has_radiance && desc->intensity != 1)
         status =
             glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected beside a radiance, got %.15g", desc->intensity);
-    if (!status && desc->visible)
-        status =
-            glint_fail(error, GLINT_ERR_INVALID, "visible: false expected: the surface of a light cannot be seen yet");
     if (!status && desc->kind != GLINT_LIGHT_POLYGON)
         status = glint_check_range("radius", desc->radius, 0, DBL_MAX, "number >= 0", error);
     if (!status && desc->kind == GLINT_LIGHT_DISK)

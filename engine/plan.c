@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
-    "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", "shade", "bounce", "resolve", "tone"
-};
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",    "glow",    "surface", "view",
+                                                           "light",  "facet",   "occlude", "vertex",  "shade",
+                                                           "bounce", "resolve", "tone" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -61,9 +61,12 @@ static void choose_stages(glint_plan *plan)
     const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
     plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
-    plan->accumulate = plan->desc.samples > 1 || plan->runs[GLINT_STAGE_BOUNCE] || plan->tints ||
-                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
-    plan->runs[GLINT_STAGE_CAMERA] = plan->runs[GLINT_STAGE_CAST] = surfaces;
+    plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
+    plan->accumulate = plan->desc.samples > 1 || plan->glow_count > 0 || plan->runs[GLINT_STAGE_BOUNCE] ||
+                       plan->tints || plan->light_count > GLINT_LIGHT_CHUNK ||
+                       (lit && plan->geometry->table.site_count > 0);
+    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
+    plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
@@ -80,6 +83,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
+    if (!status)
+        status = glint_plan_glows(plan, scene, error);
     if (!status)
         status = glint_plan_bounce(plan, error);
     if (status)
@@ -119,6 +124,8 @@ void glint_plan_destroy(glint_plan *plan)
     glint_geometry_release(plan->geometry);
     free(plan->lights);
     free(plan->lamps);
+    free(plan->glows);
+    free(plan->glow_edges);
     free(plan->materials);
     free(plan->bouncing);
     free(plan->material_keys);
@@ -146,7 +153,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
     const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * (uint64_t)plan->desc.samples;
     const uint64_t sides = 2 * (uint64_t)plan->geometry->table.site_count;
     glint_ray_counts rays = { 0 };
-    if (plan->runs[GLINT_STAGE_CAST])
+    if (plan->runs[GLINT_STAGE_CAMERA])
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
         rays.shadow = (samples + sides) * plan->shadow_count;

@@ -6,6 +6,7 @@
 ///   plan_camera.c     the view
 ///   plan_shading.c    materials and lights
 ///   plan_bounce.c     mirrors and transparent materials
+///   plan_glow.c       lights that are seen
 ///   plan_explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
@@ -16,6 +17,7 @@
 typedef enum glint_stage_id {
     GLINT_STAGE_CAMERA,
     GLINT_STAGE_CAST,
+    GLINT_STAGE_GLOW,
     GLINT_STAGE_SURFACE,
     GLINT_STAGE_VIEW,
     GLINT_STAGE_LIGHT,
@@ -54,6 +56,22 @@ typedef struct glint_plan_light {
     glint_key place_key, look_key; ///< of that and whether it casts shadows; of the place and the colours
 } glint_plan_light;
 
+/// An edge of a polygon: where it begins, and the unit vector across it.
+typedef struct glint_plan_edge {
+    double corner[3], inwards[3];
+} glint_plan_edge;
+
+/// The surface of a light that rays see.
+typedef struct glint_plan_glow {
+    bool ball; ///< else flat
+    bool one_sided; ///< flat: to the side of the normal
+    double center[3], radius; ///< of a ball around all of it; disk, ball: its own
+    double normal[3]; ///< flat: unit
+    const glint_plan_edge *edges; ///< polygon
+    size_t edge_count; ///< 0: a disk
+    double shown[3]; ///< pi times its radiance: as everything in the film
+} glint_plan_glow;
+
 /// What a material sends on.
 typedef struct glint_bounce_material {
     double mirror[3], transmission[3], absorption[3], ior;
@@ -81,6 +99,10 @@ struct glint_plan {
     glint_lamp *lamps; ///< of all area lights
     uint32_t light_count, shadow_count;
     double ambient[3], background[3];
+    glint_plan_glow *glows; ///< NULL: no light is seen
+    glint_plan_edge *glow_edges; ///< of all of them
+    uint32_t glow_count;
+    size_t glow_edge_count;
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits; ///< some material
@@ -113,6 +135,15 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
 
 /// Fills what mirrors and transparent materials need, after shading.
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
+
+/// Fills the lights that are seen.
+glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error);
+/// Whether rays see a light, and what they see: pi times its radiance.
+///
+/// By `radiance` L: pi L color. By `intensity` I: color I A(D), A its fall-off and D the radius of a disk of its area (of a
+/// sphere: its own). A light that falls off as 1/(c2 d^2) so looks like what lights the same from afar, I/(c2 area); one
+/// that does not fall off looks as bright as the white surface it lights.
+bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);

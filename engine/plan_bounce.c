@@ -41,10 +41,12 @@ static double gain(const glint_bounce_material *m)
     return most;
 }
 
-/// A bound of the light that surfaces themselves give to any ray, and of the background.
+/// A bound of the light that surfaces themselves give to any ray, of the background and of lights that are seen.
 static double brightest_surface(const glint_plan *plan)
 {
     double most = brightest_of(plan->background);
+    for (uint32_t i = 0; i < plan->glow_count; i++)
+        most = fmax(most, brightest_of(plan->glows[i].shown));
     for (uint32_t i = 0; i < plan->material_count; i++) {
         const glint_shade_material *m = &plan->materials[i];
         double sum = brightest_of(m->ambient);

@@ -85,6 +85,11 @@ static bool has_size(const glint_light_desc *d)
 static bool casts_hard_shadows(const glint_light_desc *d) { return gives(d) && d->shadows && !has_size(d); }
 static bool casts_soft_shadows(const glint_light_desc *d) { return d->shadows && has_size(d); }
 static bool radiates(const glint_light_desc *d) { return gives(d) && d->has_radiance; }
+static bool is_seen(const glint_light_desc *d)
+{
+    double shown[3];
+    return glint_light_shows(d, shown);
+}
 static bool falls_off(const glint_light_desc *d)
 {
     const double *a = d->attenuation;
@@ -202,6 +207,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     const bool surfaces = plan->geometry->table.prim_count > 0;
     one(e, plan->camera.orthographic, "orthographic projection", "camera");
     one(e, any(scene->desc.background), "background", "scene.background");
+    lights(e, scene, "visible light", is_seen);
     if (surfaces) {
         one(e, any(scene->desc.ambient), "ambient light", "scene.ambient");
         lights(e, scene, "ambient light", gives_ambient);
@@ -255,6 +261,7 @@ static void list_stages(glint_plan *plan)
     static const char *const why[GLINT_STAGE_COUNT] = {
         "rays of each sample",
         "nearest object and distance of each ray",
+        "which rays see a light before any object",
         "point, normal and material of each hit",
         "cosine of the angle each point is seen at, for microfacets",
         "direction, distance and highlight angle of each light",

@@ -9,13 +9,14 @@
 typedef enum input {
     INPUT_VIEW, ///< camera, picture size, samples
     INPUT_PLACES, ///< where the surfaces are
+    INPUT_GLOW_PLACES, ///< where lights are seen
     INPUT_LOOKS, ///< which material each has, and its sides
     INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
     INPUT_LIGHT_PLACES, ///< kind, position, fall-off
     INPUT_SHADOWS, ///< which lights cast them
     INPUT_LIGHT_COLORS,
     INPUT_MATERIALS, ///< reflectances, exponents
-    INPUT_BACKGROUND,
+    INPUT_BACKGROUND, ///< and what lights look like
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_PASSES,
@@ -27,6 +28,7 @@ typedef enum input {
 static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAMERA] = READS(VIEW),
     [GLINT_STAGE_CAST] = READS(PLACES),
+    [GLINT_STAGE_GLOW] = READS(GLOW_PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
     [GLINT_STAGE_VIEW] = 0,
     [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
@@ -73,6 +75,15 @@ static glint_key light_color_key(const glint_plan_light *l, glint_key key)
     ADD(key, l->diffuse);
     ADD(key, l->specular);
     return key;
+}
+
+static glint_key glow_place_key(const glint_plan_glow *glow, glint_key key)
+{
+    const double kind[] = { glow->ball, glow->one_sided, glow->radius, (double)glow->edge_count };
+    ADD(key, kind);
+    ADD(key, glow->center);
+    ADD(key, glow->normal);
+    return glint_key_add(key, glow->edges, glow->edge_count * sizeof *glow->edges);
 }
 
 static glint_key highlights_key(const glint_plan *plan, glint_key key)
@@ -140,6 +151,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, geometry->look);
     if (which & READS(HIGHLIGHTS))
         key = highlights_key(plan, key);
+    for (uint32_t i = 0; i < plan->glow_count && which & READS(GLOW_PLACES); i++)
+        key = glow_place_key(&plan->glows[i], key);
     for (uint32_t i = 0; i < plan->light_count; i++) {
         if (which & READS(LIGHT_PLACES))
             key = light_place_key(&plan->lights[i], key);
@@ -158,6 +171,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, plan->background);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
         ADD(key, plan->desc.alpha);
+    for (uint32_t i = 0; i < plan->glow_count && which & READS(BACKGROUND); i++)
+        ADD(key, plan->glows[i].shown);
     return output_key(plan, which, key);
 }
 

@@ -84,6 +84,7 @@ static void free_tile(glint_tile *tile)
     glint_bounce_destroy(tile->bounce);
     glint_tint_destroy(tile->tint);
     glint_vertex_destroy(tile->vertex);
+    glint_glow_destroy(tile->glow);
     free(tile->facets);
     free(tile);
 }
@@ -99,6 +100,10 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
         tile->facets = glint_alloc(1, sizeof *tile->facets);
     if (plan->runs[GLINT_STAGE_VERTEX] && !tile->vertex)
         tile->vertex = glint_vertex_create();
+    if (plan->glow_count && !tile->glow)
+        tile->glow = glint_glow_create();
+    if (plan->glow_count && !glint_glow_fits(tile->glow, plan))
+        return false;
     return (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) && (tile->facets || !plan->facets) &&
            (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
 }
@@ -175,6 +180,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.work.light_samples += part->work.light_samples;
         sum.work.powers += part->work.powers;
         sum.work.sites += part->work.sites;
+        sum.work.lights_seen += part->work.lights_seen;
         sum.mirror += part->mirror;
         sum.refraction += part->refraction;
         sum.clipped += part->clipped;

@@ -195,6 +195,13 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
             need_rays(tile, frame, w);
         glint_tile_cast(tile, frame, in_sight);
     }
+    if (plan->runs[GLINT_STAGE_GLOW]) {
+        if (glint_tile_glow_in_sight(tile, frame)) {
+            need_rays(tile, frame, w);
+            glint_tile_see_lights(tile, frame, tile->active);
+        }
+        glint_tile_book(tile, frame, GLINT_STAGE_GLOW, false);
+    }
     const bool any = any_hit(tile);
     if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
         if (any)
@@ -203,7 +210,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
             note_nothing(tile, w->sample);
     }
     if (glint_tile_wants_coverage(plan))
-        glint_tile_count_hits(tile, w->sample);
+        glint_tile_count_hits(tile, plan, w->sample);
     if (w->sample == 0 && glint_tile_wants_geometry(plan)) {
         if (any)
             need_points(tile, frame, w);

@@ -93,6 +93,7 @@ typedef struct glint_tile {
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
+    struct glint_glow *glow; ///< of tile_glow.c; NULL unless the frame has lights that are seen
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
@@ -141,6 +142,23 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 /// What the eye of a perspective camera is inside of.
 void glint_find_eye_media(const glint_plan *plan, const glint_geometry_table *geometry, glint_media *media);
+
+/// tile_glow.c: lights that are seen.
+struct glint_glow *glint_glow_create(void);
+void glint_glow_destroy(struct glint_glow *glow);
+/// Makes room for the plan's lights; false: no memory.
+bool glint_glow_fits(struct glint_glow *glow, const glint_plan *plan);
+/// Forgets what was seen. False: no ray of the tile can see a light.
+bool glint_tile_glow_in_sight(glint_tile *tile, const glint_tile_frame *frame);
+/// Of the rays in `lanes`, which are made and whose hits are known, those that see a light become misses at its distance.
+void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
+/// Whether ray i sees one; the normal of its surface there, turned to the eye.
+bool glint_tile_sees_light(const glint_tile *tile, uint32_t i);
+void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3]);
+/// Fills in the active lanes that see no light.
+const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
+/// Adds what lights look like to the sums, as background.
+void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_tint.c: light through transparent objects.
 struct glint_tint *glint_tint_create(void);
@@ -201,10 +219,12 @@ void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);
+/// A component of the ray of sample i.
+double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i);
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
-void glint_tile_count_hits(glint_tile *tile, uint32_t k);
+void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Takes the tile's pixels from the last picture.

@@ -13,6 +13,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     tile->tint = to->tint;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
+    tile->glow = to->glow;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
@@ -36,6 +37,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.work.powers += batch->tile.counts.work.powers;
     to->counts.work.sites += batch->tile.counts.work.sites;
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
+    to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
 }
 
 // ---- What the rays find ----
@@ -56,6 +58,22 @@ void glint_batch_load(glint_batch *batch, glint_precision precision)
     }
 }
 
+/// Those of the rays that may see lights.
+static void see_lights(glint_batch *batch, const glint_tile_frame *frame)
+{
+    glint_tile *tile = &batch->tile;
+    uint16_t lanes[GLINT_TILE_GROUPS];
+    if (!glint_tile_glow_in_sight(tile, frame))
+        return;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        lanes[g] = tile->active[g];
+        for (unsigned left = lanes[g]; left; left &= left - 1)
+            if (batch->ray[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)].blind)
+                lanes[g] = (uint16_t)(lanes[g] & ~(left & -left));
+    }
+    glint_tile_see_lights(tile, frame, lanes);
+}
+
 static bool cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
@@ -73,6 +91,8 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
+    if (frame->plan->runs[GLINT_STAGE_GLOW])
+        see_lights(batch, frame);
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= tile->at.hits[g];

@@ -26,7 +26,7 @@ static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, gl
         store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
 }
 
-static double direction_at(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
+double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
 {
     if (tile->camera.orthographic)
         return glint_real_at(tile->direction[c], precision, i);
@@ -53,12 +53,16 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
         id[i] =
             hit ? (float)(glint_geometry_object(plan->geometry, frame->geometry.prims[tile->at.prim[i]].id) + 1) : 0;
         double d[3] = { 0 };
+        double n[3] = { 0 };
+        const bool light = plan->glow_count && glint_tile_sees_light(tile, i);
+        if (light)
+            glint_tile_glow_normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++) {
-            normal[c][i] = hit ? (float)glint_real_at(tile->normal[c], precision, i) : 0;
-            if (hit)
-                d[c] = direction_at(tile, precision, c, i);
+            normal[c][i] = hit ? (float)glint_real_at(tile->normal[c], precision, i) : (float)n[c];
+            if (hit || light)
+                d[c] = glint_tile_direction(tile, precision, c, i);
         }
-        if (hit)
+        if (hit || light)
             depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
     }
     store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
@@ -73,10 +77,13 @@ bool glint_tile_wants_coverage(const glint_plan *plan)
     return plan->desc.alpha || plan->desc.passes >> GLINT_PASS_ALPHA & 1;
 }
 
-void glint_tile_count_hits(glint_tile *tile, uint32_t k)
+void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
 {
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-        tile->covered[i] = (k ? tile->covered[i] : 0) + (tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool light = plan->glow_count && glint_tile_sees_light(tile, i);
+        tile->covered[i] =
+            (k ? tile->covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
+    }
 }
 
 static float coverage_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)

@@ -256,6 +256,9 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .first = from == 0,
                               .lights = lights,
                               .light_count = count };
+    uint16_t unlit[GLINT_TILE_GROUPS];
+    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+        args.active = glint_tile_unlit_lanes(tile, unlit);
     if (!tile->transparent)
         vec_copy(args.background, plan->background);
     for (int c = 0; c < 3; c++) {
@@ -266,6 +269,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.beauty[c] = tile->beauty[c];
     }
     frame->stages->shade(&args);
+    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+        glint_tile_add_glow(tile, frame);
     glint_tile_count_powers(tile, frame, from, count);
     glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
 }

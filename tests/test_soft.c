@@ -46,6 +46,8 @@ static glint_scene *make_floor(void)
     return scene;
 }
 
+static bool visible; ///< whether lights are, from here on
+
 static void add_light(glint_scene *scene, glint_light_kind kind, double height, double radius, double samples)
 {
     static const double square[4][3] = { { -1, 6, -1 }, { 1, 6, -1 }, { 1, 6, 1 }, { -1, 6, 1 } };
@@ -54,6 +56,7 @@ static void add_light(glint_scene *scene, glint_light_kind kind, double height, 
     d.position[1] = height;
     d.radius = radius;
     d.samples = samples;
+    d.visible = visible;
     d.vertices = square;
     d.vertex_count = 4;
     assert_int_equal(glint_light_create(&d, &light, NULL), GLINT_OK);
@@ -175,6 +178,7 @@ static void every_way_gives_one_picture(void **state)
     };
     const glint_light_kind kinds[] = { GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK, GLINT_LIGHT_POLYGON, GLINT_LIGHT_SPHERE };
     glint_scene *scene = make_floor();
+    visible = true;
     for (int i = 0; i < 30; i++) // so many between that groups walk by themselves
         add_ball(scene, i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2, 0.3);
     add_ball(scene, 0, 6, 0, 1.2); // a lamp's samples inside and outside
@@ -194,6 +198,7 @@ static void every_way_gives_one_picture(void **state)
             }
             glint_image_release(want);
         }
+    visible = false;
     glint_scene_release(scene);
 }
 
@@ -247,6 +252,42 @@ static void effects_are_those_called_for(void **state)
             assert_int_equal(has_effect(scene, lights[k].effect), i == k);
         assert_int_equal(has_effect(scene, "soft shadow"), lights[i].soft);
         assert_int_equal(has_effect(scene, "hard shadow"), !lights[i].soft);
+        assert_false(has_effect(scene, "visible light"));
+        glint_scene_release(scene);
+    }
+}
+
+static void stages_run(const glint_scene *scene, glint_frame_stats *stats, bool *glows)
+{
+    *glows = false;
+    glint_image_release(render(scene, (setting) { .no_reuse = true }, stats, NULL));
+    for (int i = 0; i < stats->stage_count; i++)
+        *glows = *glows || strcmp(stats->stage_name[i], "glow") == 0;
+}
+
+/// A light without a surface, without light, or not called visible, calls for nothing.
+static void lights_are_seen_where_called_for(void **state)
+{
+    (void)state;
+    const struct {
+        glint_light_kind kind;
+        double radius;
+        bool visible, seen;
+    } cases[] = { { GLINT_LIGHT_SPHERE, 1, true, true },    { GLINT_LIGHT_DISK, 1, true, true },
+                  { GLINT_LIGHT_POLYGON, 1, true, true },   { GLINT_LIGHT_SPHERE, 1, false, false },
+                  { GLINT_LIGHT_SPHERE, 0, true, false },   { GLINT_LIGHT_POINT, 1, true, false },
+                  { GLINT_LIGHT_SPOT, 1, true, false },     { GLINT_LIGHT_DIRECTIONAL, 1, true, false },
+                  { GLINT_LIGHT_POLYGON, 1, false, false }, { GLINT_LIGHT_DISK, 0, true, false } };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        glint_scene *scene = make_floor();
+        glint_frame_stats stats;
+        bool glows;
+        visible = cases[i].visible;
+        add_light(scene, cases[i].kind, 6, cases[i].radius, 4);
+        visible = false;
+        stages_run(scene, &stats, &glows);
+        assert_int_equal(glows, cases[i].seen);
+        assert_int_equal(has_effect(scene, "visible light"), cases[i].seen);
         glint_scene_release(scene);
     }
 }
@@ -268,10 +309,11 @@ static void too_many_samples_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_between_costs_no_rays), cmocka_unit_test(one_ball_hides_the_whole),
-        cmocka_unit_test(rays_are_of_the_penumbra),      cmocka_unit_test(point_like_lights_cost_one_ray),
-        cmocka_unit_test(every_way_gives_one_picture),   cmocka_unit_test(bad_descriptions_are_refused),
-        cmocka_unit_test(effects_are_those_called_for),  cmocka_unit_test(too_many_samples_are_refused),
+        cmocka_unit_test(nothing_between_costs_no_rays),    cmocka_unit_test(one_ball_hides_the_whole),
+        cmocka_unit_test(rays_are_of_the_penumbra),         cmocka_unit_test(point_like_lights_cost_one_ray),
+        cmocka_unit_test(every_way_gives_one_picture),      cmocka_unit_test(bad_descriptions_are_refused),
+        cmocka_unit_test(lights_are_seen_where_called_for), cmocka_unit_test(effects_are_those_called_for),
+        cmocka_unit_test(too_many_samples_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,8 +99,10 @@ function glint.material(fields) end
 ---@field specular? glint.color  >= 0; follows `color` until set; nil: follows again
 ---@field attenuation? glint.vec3  {c0, c1, c2} of A = 1 / (c0 + c1 d + c2 d^2), each >= 0, not all 0. Default {1, 0, 0}
 ---@field shadows? boolean  whether it casts shadows. Default true
----@field visible? boolean  whether rays see its surface; true does nothing to lights without one, and is refused by
---- area lights as yet. Default false
+---@field visible? boolean  whether the eye, mirrors and glass see its surface, from the sides that shine. By `radiance` L it
+--- shows pi L color, by `intensity` I color I A(D) with D its radius (of a polygon, that of a disk of its area). It throws
+--- no shadow, and is no object: to the passes it is background with a depth and a normal. Does nothing to lights without a
+--- surface. Default false
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@class glint.point_light_fields: glint.light_fields
