@@ -4,6 +4,7 @@
 ///   cost.c          the command: what is asked, the phases of a study in order
 ///   cost_knobs.c    the table of knobs: a setting that trades accuracy for time is a row of it
 ///   cost_scene.c    a scene whose materials and lights a knob edits, and gets back as they were
+///   cost_shapes.c   the same for meshes: shading, and spheres of other segments
 ///   cost_cases.c    the settings to be measured, and the rows of the table that show them
 ///   cost_measure.c  one setting in the engine: its plan, and its picture in time
 ///   cost_errors.c   how far it is from the truth: the reference, decisions pixel by pixel
@@ -25,9 +26,25 @@
 
 // ---- cost_scene.c ----
 
+typedef struct cost_shaded {
+    glint_shape *shape; ///< borrowed
+    glint_shading shading; ///< before it was edited
+} cost_shaded;
+
+/// The scene with spheres of other segments.
+typedef struct cost_copy {
+    double segments; ///< 0: exact
+    glint_scene *scene; ///< owned
+} cost_copy;
+
 /// What a knob may edit, each object once, with its description as the script left it.
 typedef struct cost_scene {
-    glint_scene *scene; ///< borrowed
+    glint_scene *scene; ///< what is planned: the original or a copy
+    glint_scene *original; ///< borrowed
+    cost_copy copies[COST_VALUES_MAX];
+    int copy_count;
+    cost_shaded *shaded; ///< meshes whose shading is edited now
+    size_t shaded_count;
     glint_material **materials;
     glint_material_desc *material_descs;
     size_t material_count;
@@ -47,6 +64,22 @@ glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light
 /// Every surface matt white, and of the lights only number `light` (all of them when it is not one's) at strength 1:
 /// what is lit then is what that light reaches. Shadows stay as they are set.
 glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error);
+
+// ---- cost_shapes.c ----
+
+typedef struct cost_meshes {
+    size_t count, globe_count; ///< as often as they show; the latter: spheres of triangles
+    bool is_mixed; ///< in their shading
+    glint_shading shading; ///< of one of them
+    double segments; ///< of all spheres of triangles; 0: they differ
+} cost_meshes;
+
+cost_meshes cost_scene_meshes(const cost_scene *scene);
+glint_status cost_scene_set_shading(cost_scene *scene, glint_shading shading, glint_error *error);
+/// Every sphere of triangles has so many segments, or, with 0, is exact. Before shading is set.
+glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_error *error);
+void cost_scene_restore_meshes(cost_scene *scene);
+void cost_scene_close_meshes(cost_scene *scene);
 
 // ---- cost_knobs.c ----
 
@@ -68,6 +101,8 @@ typedef struct cost_values {
     int count; ///< 0: the scene does not respond
     int own; ///< which is the script's own
     int base; ///< which the other knobs' rows are measured with; mostly the same
+    int truth; ///< which the reference is made with, where `has_truth`; else the base
+    bool has_truth;
     cost_value value[COST_VALUES_MAX];
 } cost_values;
 
@@ -220,6 +255,8 @@ bool cost_expect(cost_study *study, const cost_case *c, double *rays);
 
 // ---- cost_errors.c ----
 
+/// What the reference is made with where that is not the script's own: ", with segments exact"; else "".
+void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE]);
 /// The reference, its own error and the true decisions. `allowance_ms` is for both halves.
 bool cost_make_reference(cost_study *study, double allowance_ms);
 /// A case's first run, its work, errors and decisions, and pictures for the report.

@@ -107,8 +107,33 @@ static double choose_samples(const cost_study *study, double allowance_ms)
     return samples < LEAST_TIMES * own ? 0 : fmin(samples, 65536);
 }
 
+// What the reference is a picture of: the script's scene, where a knob knows nothing nearer to the truth.
+static cost_case true_case(const cost_study *study)
+{
+    cost_case c = study->cases[0];
+    for (int i = 0; i < cost_knob_count; i++)
+        if (study->values[i].count > 0 && study->values[i].has_truth)
+            c.choice[i] = study->values[i].truth;
+    return c;
+}
+
+void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE])
+{
+    size_t used = 0;
+    out[0] = 0;
+    for (int i = 0; i < cost_knob_count; i++) {
+        const cost_values *values = &study->values[i];
+        char text[32];
+        if (values->count == 0 || !values->has_truth || used >= COST_LABEL_SIZE)
+            continue;
+        cost_value_text(values->value[values->truth], text);
+        used += (size_t)snprintf(out + used, COST_LABEL_SIZE - used, ", with %s %s", cost_knobs[i].name, text);
+    }
+}
+
 static glint_status render_halves(cost_study *study, glint_image *halves[2], glint_error *error)
 {
+    const cost_case c = true_case(study);
     const double half_ms = study->cases[0].stats.render_ms / study->own->desc.samples * study->reference_samples;
     glint_status status = GLINT_OK;
     for (int i = 0; i < 2 && !status; i++) {
@@ -117,7 +142,7 @@ static glint_status render_halves(cost_study *study, glint_image *halves[2], gli
                                 .seed = study->reference_seed[i],
                                 .is_exact = true };
         cost_show(study, "reference", half_ms, (1 - i) * half_ms + cost_round_ms(study) * (study->runs + 2));
-        status = cost_take(study, &study->cases[0], &how, &halves[i], NULL, error);
+        status = cost_take(study, &c, &how, &halves[i], NULL, error);
     }
     return status;
 }
@@ -140,6 +165,7 @@ static glint_status measure_halves(cost_study *study, glint_image *const halves[
 bool cost_make_reference(cost_study *study, double allowance_ms)
 {
     const double own = study->own->desc.samples, seed = study->own->desc.seed;
+    const cost_case truth = true_case(study);
     glint_image *halves[2] = { NULL, NULL };
     glint_error error;
     study->reference_samples = choose_samples(study, allowance_ms);
@@ -153,7 +179,7 @@ bool cost_make_reference(cost_study *study, double allowance_ms)
     if (!status)
         status = measure_halves(study, halves, &error);
     if (!status)
-        status = decide(study, &study->cases[0], true, &study->truth, &error);
+        status = decide(study, &truth, true, &study->truth, &error);
     glint_image_release(halves[0]);
     glint_image_release(halves[1]);
     return status ? cost_fail(study, &error) : true;

@@ -157,6 +157,69 @@ static glint_status apply_model(cost_draft *draft, cost_value value, glint_error
     return status;
 }
 
+// ---- segments: spheres of triangles against the sphere ----
+
+#define TRIANGLES_MAX 0x1p21 // of all spheres together; finer ones are not tried
+
+// The truth is what the triangles stand for: the exact sphere.
+static void list_segments(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 16, 64, 256, 1024 };
+    const cost_meshes meshes = cost_scene_meshes(subject->scene);
+    int count = 0;
+    while (count < COUNT(counts) && counts[count] * counts[count] * (double)meshes.globe_count <= TRIANGLES_MAX)
+        count++;
+    if (meshes.globe_count == 0 || !has_effect(subject->plan, "triangles"))
+        return;
+    if (meshes.segments > 0) {
+        list_numbers(counts, count, meshes.segments, out);
+    } else {
+        for (int i = 0; i < count; i++)
+            out->value[i].number = counts[i];
+        out->value[count].text = "mixed";
+        out->own = out->base = count;
+        out->count = count + 1;
+    }
+    out->has_truth = true;
+    out->truth = out->count;
+    out->value[out->count++].text = "exact";
+}
+
+static glint_status apply_segments(cost_draft *draft, cost_value value, glint_error *error)
+{
+    if (value.text && strcmp(value.text, "mixed") == 0)
+        return GLINT_OK;
+    return cost_scene_set_segments(draft->scene, value.text ? 0 : value.number, error);
+}
+
+// ---- shading: where meshes are lit ----
+
+static const char *const SHADINGS[] = { "flat", "gouraud", "phong", "faceted", "mixed" };
+static const glint_shading SHADING[] = { GLINT_SHADING_FLAT, GLINT_SHADING_GOURAUD, GLINT_SHADING_PHONG,
+                                         GLINT_SHADING_FACETED };
+
+static void list_shading(const cost_subject *subject, cost_values *out)
+{
+    const cost_meshes meshes = cost_scene_meshes(subject->scene);
+    int own = 0;
+    if (meshes.count == 0 || !has_stage(subject->plan, "light"))
+        return;
+    while (!meshes.is_mixed && SHADING[own] != meshes.shading)
+        own++;
+    list_words(SHADINGS, 3, own, out);
+    if (meshes.is_mixed || own == 3) {
+        out->value[3].text = SHADINGS[meshes.is_mixed ? 4 : 3];
+        out->count = 4;
+        out->own = out->base = 3;
+    }
+}
+
+static glint_status apply_shading(cost_draft *draft, cost_value value, glint_error *error)
+{
+    const int shading = find_word(value, SHADINGS, COUNT(SHADINGS));
+    return shading < COUNT(SHADING) ? cost_scene_set_shading(draft->scene, SHADING[shading], error) : GLINT_OK;
+}
+
 // ---- bits, encode: the file ----
 
 static void list_bits(const cost_subject *subject, cost_values *out)
@@ -217,6 +280,8 @@ const cost_knob cost_knobs[] = {
     { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
     { "precision", SURFACES, COST_ERROR_FILM, true, false, list_precision, apply_precision },
     { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
+    { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, apply_segments },
+    { "shading", "a mesh and a light", COST_ERROR_FILM, true, false, list_shading, apply_shading },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
     { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
     { "reuse", "a second frame (of a loop of scene:render, name a later one than the first by --frame)",

@@ -245,11 +245,15 @@ static void write_reference(const cost_study *study, FILE *out)
         fputs("No reference was rendered, so no error is known.", out);
         return;
     }
-    fprintf(out,
-            "Errors are against the mean of two pictures of %.0f samples a pixel, decided in double, of seeds %.0f and "
-            "%.0f. By their difference that mean is itself %.2g RMSE from the truth; an error under ten times that is "
-            "marked as not resolved.",
-            study->reference_samples, study->reference_seed[0], study->reference_seed[1], study->reference_error.rmse);
+    char truth[COST_LABEL_SIZE];
+    cost_truth_name(study, truth);
+    fprintf(
+        out,
+        "Errors are against the mean of two pictures of %.0f samples a pixel, decided in double, of seeds %.0f and "
+        "%.0f%s. By their difference that mean is itself %.2g RMSE from the truth; an error under ten times that is "
+        "marked as not resolved.",
+        study->reference_samples, study->reference_seed[0], study->reference_seed[1], truth,
+        study->reference_error.rmse);
 }
 
 static void write_left_out(const cost_study *study, FILE *out)

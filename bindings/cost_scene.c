@@ -55,7 +55,7 @@ bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
         most += glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
     for (size_t i = 0; i < lights; i++)
         corners += glint_light_get(glint_scene_light_at(engine_scene, i))->vertex_count;
-    *scene = (cost_scene) { .scene = engine_scene };
+    *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene };
     scene->materials = calloc(most, sizeof *scene->materials);
     scene->material_descs = calloc(most, sizeof *scene->material_descs);
     scene->lights = calloc(lights + 1, sizeof *scene->lights);
@@ -75,6 +75,7 @@ void cost_scene_close(cost_scene *scene)
     free(scene->lights);
     free(scene->light_descs);
     free(scene->corners);
+    cost_scene_close_meshes(scene);
     memset(scene, 0, sizeof *scene);
 }
 
@@ -84,6 +85,7 @@ void cost_scene_restore(cost_scene *scene)
         glint_material_set(scene->materials[i], &scene->material_descs[i], NULL);
     for (size_t i = 0; i < scene->light_count; i++)
         glint_light_set(scene->lights[i], &scene->light_descs[i], NULL);
+    cost_scene_restore_meshes(scene);
 }
 
 glint_status cost_scene_set_material(cost_scene *scene, size_t i, const glint_material_desc *desc, glint_error *error)

@@ -26,15 +26,17 @@ void cost_machine(const cost_study *study, char out[256])
 
 static void print_head(const cost_study *study, FILE *out)
 {
-    char machine[256];
+    char machine[256], truth[COST_LABEL_SIZE];
     cost_machine(study, machine);
+    cost_truth_name(study, truth);
     fprintf(out, "%s\n", machine);
     if (study->reference)
-        fprintf(out,
-                "reference: the mean of two pictures of %.0f samples a pixel, decided in double, seeds %.0f and %.0f; "
-                "its own error %.2g RMSE\n",
-                study->reference_samples, study->reference_seed[0], study->reference_seed[1],
-                study->reference_error.rmse);
+        fprintf(
+            out,
+            "reference: the mean of two pictures of %.0f samples a pixel, decided in double, seeds %.0f and %.0f%s; "
+            "its own error %.2g RMSE\n",
+            study->reference_samples, study->reference_seed[0], study->reference_seed[1], truth,
+            study->reference_error.rmse);
     fprintf(out, "\n%-24s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "ms", "+-", "x", "rmse", "relmse",
             "codes", ">1", ">8", "FLIP", "object", "shadow", "Mrays");
 }

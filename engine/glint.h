@@ -313,6 +313,9 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
 glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 
+/// What glint_sphere_mesh_create was asked for; false, and nothing written, when the shape was not made by it.
+bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
+
 // ---- Scene --------------------------------------------------------------------------------------------------------
 
 typedef struct glint_scene glint_scene;

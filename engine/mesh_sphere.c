@@ -103,9 +103,24 @@ glint_status glint_sphere_mesh_create(const double center[3], double radius, dou
         mesh.face_count = g.face_count;
         status = glint_mesh_create(&mesh, out, error);
     }
+    if (!status) {
+        vec_copy((*out)->mesh->center, center);
+        (*out)->mesh->radius = radius;
+        (*out)->mesh->segments = segments;
+    }
     free(g.vertices);
     free(g.normals);
     free(g.corners);
     free(g.sizes);
     return status;
+}
+
+bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments)
+{
+    if (!shape->mesh || shape->mesh->segments == 0)
+        return false;
+    vec_copy(center, shape->mesh->center);
+    *radius = shape->mesh->radius;
+    *segments = shape->mesh->segments;
+    return true;
 }

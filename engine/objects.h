@@ -33,6 +33,7 @@ typedef struct glint_mesh {
     uint32_t (
         *sites)[3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
     size_t site_count; ///< pairs; 0: not counted yet
+    double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
 } glint_mesh;
 
 struct glint_shape {

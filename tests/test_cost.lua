@@ -292,6 +292,25 @@ local mixed = study("mixed", still("mixed.lua", [[glint.directional_light { dire
   .. " --knobs model")
 check(find(mixed, "model", "mixed").default and find(mixed, "model", "blinn_phong").rmse > 0, "highlights of both sorts")
 
+-- ---- Meshes: against the sphere they stand for, and lit in other places ----
+
+local globe = study("globe", still("globe.lua", [[glint.directional_light { direction = { -1, -1, -2 }, shadows = false },
+  glint.group { glint.sphere_mesh { center = { 0, 1, 0 }, radius = 1, segments = 24, name = "globe",
+    material = glint.material { specular = 0.6 } }, transform = glint.translate(0.3, 0, 0) } ]], "samples = 16,") .. " --knobs segments,shading")
+check(knobs_of(globe) == "segments shading", "a sphere of triangles: %s", knobs_of(globe))
+local ball, exact = find(globe, "segments", 24), find(globe, "segments", "exact")
+check(ball.default and find(globe, "shading", "phong").default and ball.rmse == find(globe, "shading", "phong").rmse, "its own")
+check(find(globe, "segments", 16).rmse > ball.rmse and ball.rmse > exact.rmse and ball.wrong_object > exact.wrong_object
+  and exact.wrong_object == 0, "the exact sphere is the truth: %g, %g", ball.rmse, exact.rmse)
+check(math.abs(find(globe, "segments", 1024).rmse - exact.rmse) < exact.rmse / 10, "1024 segments are as good as the sphere")
+local flat, gouraud = find(globe, "shading", "flat"), find(globe, "shading", "gouraud")
+check(flat.rmse > gouraud.rmse and gouraud.rmse > ball.rmse, "flat %g, gouraud %g, phong %g", flat.rmse, gouraud.rmse, ball.rmse)
+check(flat.counters.sites > 50 and gouraud.counters.sites > 50 and ball.counters.sites == 0, "faces and vertices lit")
+local sheets = study("sheets", still("sheets.lua", [[glint.directional_light { direction = { 0, -1, -1 } },
+  glint.mesh { vertices = { -2, 0, 0, 2, 0, 0, 0, 3, 0 }, faces = { { 1, 2, 3 } } }, glint.mesh { vertices = { -2, 0, 1, 2, 0, 1, 0, 1, 1 },
+  faces = { { 1, 2, 3 } }, shading = "flat" } ]]) .. " --knobs shading,samples")
+check(find(sheets, "shading", "mixed").default and find(sheets, "shading", "phong"), "meshes of both sorts")
+
 -- ---- Precision: what float gets wrong under a ground of radius 1e7 ----
 
 local ground = study("ground", still("ground.lua", matt .. [[glint.point_light { position = { 3, 6, 4 } },
