@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # --untrusted: what a hostile script tries, and what becomes of it. Prints TAP.
 set -u
+export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
