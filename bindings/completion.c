@@ -35,8 +35,11 @@ static const struct hint {
     { "tone", "curve", NULL, false },
     { "exposure", "stops brighter or darker", NULL, false },
     { "alpha", "transparent background", NULL, false },
+    { "outline", "lines where objects end or have an edge", NULL, false },
     { "passes", "also write these",
-      "background ambient diffuse specular mirror transmission depth normal object_id alpha", false },
+      "background ambient diffuse specular mirror transmission depth normal object_id alpha "
+      "outline",
+      false },
     { "encode", "fast to write or small on disk", NULL, false },
     { "seed", "another sample pattern", NULL, false },
     { "threads", "worker threads", NULL, false },

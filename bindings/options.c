@@ -314,6 +314,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "tone", 0, true, SHOWN, read_render },
     { "exposure", 0, true, SHOWN, read_render },
     { "alpha", 0, false, SHOWN, read_switch },
+    { "outline", 0, true, SHOWN, read_render },
     { "passes", 0, true, SCRIPTED, read_render },
     { "encode", 0, true, SHOWN, read_render },
     { "seed", 0, true, SHOWN, read_render },

@@ -374,6 +374,7 @@ typedef enum glint_pass {
     GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
     GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
+    GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
     GLINT_PASS_COUNT
 } glint_pass;
 
@@ -407,6 +408,9 @@ typedef struct glint_tone_desc {
 
 glint_tone_desc glint_tone_desc_default(void);
 
+/// Lines drawn into a PNG of beauty where the pass `outline` is 1.
+typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
+
 typedef struct glint_render_desc {
     double width,
         height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
@@ -415,12 +419,14 @@ typedef struct glint_render_desc {
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
     double max_depth; ///< longest chain of mirrors and refractions; whole number, 0 .. 2^31; default 5. At most 31
         ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface
-    uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out
+    uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out.
+        ///< With `outline` those that it is made of, depth, normal and object_id, are kept too
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`
     /// Where nothing is hit nothing is shown: the background is black there and codes have alpha, so that a PNG of beauty
     /// is RGBA. Passes hold light times coverage; codes are of the light alone, beauty / alpha. What rays find behind
     /// mirrors and glass is the scene's background as ever. Where beauty is kept, GLINT_PASS_ALPHA is too
     bool alpha;
+    glint_outline_color outline; ///< in files alone: planes and codes are without; the pass is kept. Default none
     glint_tone_desc tone;
 } glint_render_desc;
 
@@ -485,7 +491,7 @@ void glint_renderer_cancel(glint_renderer *renderer);
 /// Share of the running frame that is done, 0 .. 1. Any thread.
 double glint_renderer_progress(const glint_renderer *renderer);
 
-#define GLINT_STAGE_MAX 16
+#define GLINT_STAGE_MAX 24
 
 /// Work that a frame took: free of noise, unlike time.
 typedef struct glint_work {

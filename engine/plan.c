@@ -2,12 +2,13 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/image/tone.h"
+#include "engine/outline.h"
 
 #include <stdlib.h>
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",    "glow",    "surface", "view",
                                                            "light",  "facet",   "occlude", "vertex",  "shade",
-                                                           "bounce", "resolve", "tone" };
+                                                           "bounce", "resolve", "tone",    "outline" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -50,6 +51,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");
     if (!status && desc->passes >> GLINT_PASS_COUNT)
         status = glint_fail(error, GLINT_ERR_INVALID, "passes: no such pass");
+    if (!status && desc->outline > GLINT_OUTLINE_WHITE)
+        status = glint_fail(error, GLINT_ERR_INVALID, "outline: none, black or white expected");
     if (!status)
         status = glint_tone_check(&desc->tone, error);
     return status;
@@ -75,6 +78,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_SHADE] = true;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
     plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
+    plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
 }
 
 static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error *error)
@@ -108,6 +112,10 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     plan->desc = *desc;
     if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
         plan->desc.passes |= 1u << GLINT_PASS_ALPHA;
+    if (desc->outline)
+        plan->desc.passes |= 1u << GLINT_PASS_OUTLINE;
+    if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
+        plan->desc.passes |= GLINT_OUTLINE_READS;
     status = fill(plan, scene, error);
     if (status) {
         glint_plan_destroy(plan);
@@ -170,6 +178,8 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
     glint_key key = glint_key_add(plan->keys[GLINT_STAGE_BOUNCE], options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
+    if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
+        key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
     key = glint_key_add_string(key, GLINT_VERSION);
     key = glint_key_add_string(key, glint_encoder_name(desc->encode));
     glint_key_hex(key, hex);

@@ -28,6 +28,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
+    GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
     GLINT_STAGE_COUNT
 } glint_stage_id;
 

@@ -245,6 +245,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->tints)
         materials(e, "tinted shadow", is_transparent);
+    static const char *const inks[] = { "none", "black", "white" };
+    one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
@@ -272,6 +274,7 @@ static void list_stages(glint_plan *plan)
         "mirrored and refracted rays, and what they find",
         "mean of samples and lights",
         "light to 8 or 16-bit codes",
+        "lines where depth, normal or object changes",
     };
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         if (!plan->runs[id])

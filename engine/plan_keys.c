@@ -39,6 +39,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
+    [GLINT_STAGE_OUTLINE] = 0,
 };
 
 #define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
@@ -134,6 +135,8 @@ static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key ke
     };
     if (which & READS(PASSES))
         ADD(key, plan->desc.passes);
+    if (which & READS(PASSES) && plan->desc.outline)
+        ADD(key, plan->desc.outline);
     if (which & READS(TONE))
         ADD(key, numbers);
     return key;

@@ -4,6 +4,7 @@
 #include "engine/base/status.h"
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
+#include "engine/outline.h"
 #include "engine/reuse.h"
 #include "engine/tile.h"
 
@@ -207,6 +208,18 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
     }
 }
 
+/// What needs all tiles.
+static void finish(glint_renderer *renderer, const glint_plan *plan, glint_image *image)
+{
+    glint_tile_counts *counts = &renderer->tiles[0]->counts;
+    if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(&renderer->cancelled))
+        return;
+    const uint64_t start = glint_tile_now_ns();
+    glint_outline(plan, renderer->pool, image);
+    counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
+    counts->runs[GLINT_STAGE_OUTLINE]++;
+}
+
 static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                         const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
@@ -246,6 +259,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     atomic_store(&renderer->tile_count, (size_t)f.across * down);
     const double start = now_ms();
     glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
+    finish(renderer, plan, image);
     collect_stats(renderer, plan, now_ms() - start, stats);
     stats->build_ms = start - begin;
     if (atomic_load(&renderer->cancelled))
@@ -298,7 +312,7 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
     return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
-           image->alpha == desc->alpha && (image->codes != NULL) == desc->codes &&
+           image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
            (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
 }
 

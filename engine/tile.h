@@ -107,7 +107,10 @@ static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
-/// tile_stages.c: each calls one stage for the current sample, and books it.
+/// tile_stages.c: where sample k of a pixel lies, 0 .. 1 across and down.
+void glint_tile_offset(const glint_plan *plan, uint32_t k, double out[2]);
+
+/// Each calls one stage for the current sample, and books it.
 void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
 void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame);
 /// False: no ray of the tile hits anything. Not booked.

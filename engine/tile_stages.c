@@ -33,8 +33,7 @@ void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stag
     lap(tile, frame, stage);
 }
 
-/// Where sample k of a pixel lies.
-static void sample_offset(const glint_plan *plan, uint32_t k, double out[2])
+void glint_tile_offset(const glint_plan *plan, uint32_t k, double out[2])
 {
     glint_sequence_point(k, glint_sequence_bits((uint32_t)plan->desc.samples), plan->desc.seed, out);
     for (int i = 0; i < 2; i++)
@@ -54,7 +53,7 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
                                   .height = plan->desc.height,
                                   .orthographic = camera->orthographic };
     tile->sample = k;
-    sample_offset(plan, k, args->offset);
+    glint_tile_offset(plan, k, args->offset);
     vec_copy(args->eye, camera->eye);
     vec_copy(args->forward, camera->forward);
     vec_copy(args->right, camera->right);

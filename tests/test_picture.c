@@ -1,4 +1,4 @@
-// What a picture may be asked to be besides its codes: alpha. Against its definition, and the picture without it.
+// What a picture may be asked to be besides its codes: alpha, outline. Against its definition, and the picture without it.
 #include "tests/image_case.h"
 
 #include <stdlib.h>
@@ -220,6 +220,178 @@ static void test_alpha_opaque(void **state)
     free_world(&w);
 }
 
+// ---- Outline --------------------------------------------------------------------------------------------------------
+
+/// A pixel's own line by what it and its neighbours hit: only true where shapes are smooth and hide nothing of their own.
+static bool ends_here(const glint_image *image, int x, int y)
+{
+    static const int steps[4][2] = { { 1, 0 }, { 0, 1 }, { -1, 0 }, { 0, -1 } };
+    const float *id = image->plane[GLINT_PASS_OBJECT_ID][0], *depth = image->plane[GLINT_PASS_DEPTH][0];
+    const size_t at = (size_t)y * WIDTH + (size_t)x;
+    for (int i = 0; i < 4; i++) {
+        const int u = x + steps[i][0], v = y + steps[i][1];
+        const size_t next = (size_t)v * WIDTH + (size_t)u;
+        if (u >= 0 && v >= 0 && u < WIDTH && v < HEIGHT && id[at] != id[next] && depth[at] < depth[next])
+            return true;
+    }
+    return false;
+}
+
+/// Of two balls the ends, and nothing within them.
+static void test_outline_objects(void **state)
+{
+    (void)state;
+    world w;
+    make_world(&w, 0);
+    glint_render_desc desc = small_frame(1, 1u << GLINT_PASS_OUTLINE);
+    glint_image *image = render(&w, &desc);
+    int lines = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const bool line = image->plane[GLINT_PASS_OUTLINE][0][y * WIDTH + x] == 1;
+            assert_int_equal(line, ends_here(image, x, y));
+            lines += line;
+        }
+    assert_true(lines > 100 && lines < 300);
+    glint_image_release(image);
+    free_world(&w);
+}
+
+/// One shape alone before the eye, as wide as the picture is high.
+static glint_image *outline_of(glint_shape *shape, double height)
+{
+    world w;
+    glint_camera_desc view = glint_camera_desc_default();
+    glint_scene_desc desc = { 0 };
+    glint_renderer_desc how = glint_renderer_desc_default();
+    view.projection = GLINT_ORTHOGRAPHIC;
+    view.height = height;
+    view.eye[0] = 3;
+    view.eye[1] = 4;
+    view.eye[2] = 12;
+    assert_int_equal(glint_scene_create(&w.scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&view, &desc.camera, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(w.scene, &desc, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(w.scene, shape, NULL), GLINT_OK);
+    assert_int_equal(glint_renderer_create(&how, &w.renderer, NULL), GLINT_OK);
+    glint_render_desc frame = small_frame(1, 1u << GLINT_PASS_OUTLINE);
+    glint_image *image = render(&w, &frame);
+    glint_camera_release(desc.camera);
+    glint_shape_release(shape);
+    free_world(&w);
+    return image;
+}
+
+/// Lines that no end of the shape explains.
+static int inner_lines(const glint_image *image)
+{
+    int count = 0;
+    for (int y = 1; y < HEIGHT - 1; y++)
+        for (int x = 1; x < WIDTH - 1; x++)
+            count += image->plane[GLINT_PASS_OUTLINE][0][y * WIDTH + x] == 1 && !ends_here(image, x, y);
+    return count;
+}
+
+static glint_shape *make(const glint_shape_desc *desc)
+{
+    glint_shape *out = NULL;
+    assert_int_equal(glint_shape_create(desc, &out, NULL), GLINT_OK);
+    return out;
+}
+
+static glint_shape *two_quads(const double *vertices, size_t count, const uint32_t corners[8])
+{
+    static const uint32_t sizes[] = { 4, 4 };
+    glint_mesh_desc desc = glint_mesh_desc_default();
+    glint_shape *out = NULL;
+    desc.vertices = vertices;
+    desc.vertex_count = count;
+    desc.corners = corners;
+    desc.face_sizes = sizes;
+    desc.face_count = 2;
+    assert_int_equal(glint_mesh_create(&desc, &out, NULL), GLINT_OK);
+    return out;
+}
+
+/// Edges of a box, its three that are seen; none on a ball of four pixels and more, nor on a smooth mesh of few triangles,
+/// nor on a plane towards the horizon; of one mesh those where a sheet hides another, and where two meet.
+static void test_outline_edges(void **state)
+{
+    (void)state;
+    glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX);
+    glint_image *image = outline_of(make(&box), 5);
+    const int edges = inner_lines(image); // 2 units each, some 10 pixels a unit, and seen at a slant
+    assert_true(edges > 30 && edges < 75);
+    glint_image_release(image);
+    for (double pixels = 4; pixels <= 25; pixels += 0.7) {
+        glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+        ball.radius = 1;
+        image = outline_of(make(&ball), HEIGHT / pixels);
+        assert_int_equal(inner_lines(image), 0);
+        glint_image_release(image);
+    }
+    static const double middle[3] = { 0, 0, 0 };
+    for (double segments = 8; segments <= 64; segments *= 2) {
+        glint_mesh_desc smooth = glint_mesh_desc_default();
+        glint_shape *mesh = NULL;
+        smooth.has_shading = true;
+        smooth.shading = GLINT_SHADING_PHONG;
+        assert_int_equal(glint_sphere_mesh_create(middle, 2, segments, &smooth, &mesh, NULL), GLINT_OK);
+        image = outline_of(mesh, 5);
+        assert_int_equal(inner_lines(image), 0);
+        glint_image_release(image);
+    }
+    glint_shape_desc plane = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    plane.normal[1] = 1;
+    image = outline_of(make(&plane), 5);
+    assert_int_equal(inner_lines(image), 0);
+    glint_image_release(image);
+    static const double sheets[8][3] = { { -1, -1, 2 },  { 0, -1, 2 },  { 0, 1, 2 },  { -1, 1, 2 },
+                                         { -3, -2, -2 }, { 3, -2, -2 }, { 3, 2, -2 }, { -3, 2, -2 } };
+    static const double valley[6][3] = { { -2, -1, 2 }, { 0, -1, 0 }, { 0, 1, 0 }, { -2, 1, 2 }, { 2, -1, 2 }, { 2, 1, 2 } };
+    image = outline_of(two_quads(&sheets[0][0], 8, (const uint32_t[]) { 0, 1, 2, 3, 4, 5, 6, 7 }), 5);
+    const int steps = inner_lines(image); // above the front sheet and beside it down to where the other ends: 4 units
+    assert_true(steps > 36 && steps < 50);
+    glint_image_release(image);
+    image = outline_of(two_quads(&valley[0][0], 6, (const uint32_t[]) { 0, 1, 2, 3, 1, 4, 5, 2 }), 5);
+    const int bend = inner_lines(image); // 2 units
+    assert_true(bend > 14 && bend < 30);
+    glint_image_release(image);
+}
+
+/// In the file the lines cover, and nothing else is touched: of codes and of planes, with alpha and without.
+static void test_outline_drawn(void **state)
+{
+    (void)state;
+    world w;
+    make_world(&w, 0);
+    for (int i = 0; i < 16; i++) {
+        glint_render_desc desc = small_frame(4, i & 1 ? every_pass : 0);
+        desc.codes = !(i & 1);
+        desc.alpha = i & 2;
+        desc.tone.bits = i & 4 ? 16 : 8;
+        glint_image *plain = render(&w, &desc);
+        desc.outline = i & 8 ? GLINT_OUTLINE_WHITE : GLINT_OUTLINE_BLACK;
+        glint_image *drawn = render(&w, &desc);
+        glint_png a = decode(plain, &desc), b = decode(drawn, &desc);
+        const unsigned most = i & 4 ? 65535 : 255, ink = i & 8 ? most : 0;
+        const size_t channels = i & 2 ? 4 : 3;
+        for (size_t p = 0; p < PIXELS; p++) {
+            const bool line = drawn->plane[GLINT_PASS_OUTLINE][0][p] == 1;
+            for (size_t c = 0; c < channels; c++)
+                assert_int_equal(png_code(&b, channels * p + c),
+                                 !line    ? png_code(&a, channels * p + c)
+                                 : c == 3 ? most
+                                          : ink);
+        }
+        free(a.codes);
+        free(b.codes);
+        glint_image_release(plain);
+        glint_image_release(drawn);
+    }
+    free_world(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -227,6 +399,9 @@ int main(void)
         cmocka_unit_test(test_alpha_mirror),
         cmocka_unit_test(test_alpha_codes),
         cmocka_unit_test(test_alpha_opaque),
+        cmocka_unit_test(test_outline_objects),
+        cmocka_unit_test(test_outline_edges),
+        cmocka_unit_test(test_outline_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,6 +129,7 @@ static const field render_fields[] = {
     R(passes, BITS, 0, GLINT_PASS_COUNT),
     R(codes, FLAG, 0, 1),
     R(alpha, FLAG, 0, 1),
+    R(outline, CHOICE, 0, 3),
     R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 2),
     R(tone.rounding, CHOICE, 0, 2),

@@ -520,6 +520,7 @@ function glint.scene(fields) end
 ---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
 ---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
+---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
 
 --- What a frame and its file are to be. What the command line says beats it.
 ---@class glint.render
@@ -535,6 +536,7 @@ function glint.scene(fields) end
 ---@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
 ---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
 ---@field alpha? boolean  transparent background: a .png is RGBA, and passes hold light times coverage. Default false
+---@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
 ---@field output? string  file name, .png or .pfm; %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
@@ -558,7 +560,7 @@ local image = {}
 ---@param x integer  0 .. width - 1
 ---@param y integer  0 .. height - 1
 ---@param pass? glint.pass  Default "beauty"
----@return number r  the only one of "depth", "object_id" and "alpha"
+---@return number r  the only one of "depth", "object_id", "alpha" and "outline"
 ---@return number g
 ---@return number b
 function image:pixel(x, y, pass) end

@@ -23,6 +23,7 @@ static const struct {
     [GLINT_PASS_NORMAL] = { "normal", 3 },
     [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
     [GLINT_PASS_ALPHA] = { "alpha", 1 },
+    [GLINT_PASS_OUTLINE] = { "outline", 1 },
 };
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
@@ -98,8 +99,11 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
 
 glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error)
 {
-    return create((int)desc->width, (int)desc->height, desc->passes, desc->alpha, desc->codes ? &desc->tone : NULL, out,
-                  error);
+    glint_status status = create((int)desc->width, (int)desc->height, desc->passes, desc->alpha,
+                                 desc->codes ? &desc->tone : NULL, out, error);
+    if (!status)
+        (*out)->outline = desc->outline;
+    return status;
 }
 
 size_t glint_image_bytes(const glint_image *image)

@@ -15,6 +15,7 @@ struct glint_image {
         ///< One-channel passes have [0] only
     void *codes; ///< channels * width * height uint8_t or uint16_t (native order), interleaved; NULL: none
     bool alpha; ///< beauty is light times coverage, and the pass `alpha` is there wherever beauty is
+    glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
     glint_key *film; ///< one a tile, left to right, top to bottom: of what its pixels were made from. Equal keys: equal

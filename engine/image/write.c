@@ -22,6 +22,7 @@ typedef struct picture {
     const glint_tone_table *table; ///< colour passes
     float gain; ///< likewise
     double nearest; ///< of all depths
+    const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
 } picture;
 
 /// A pipe or a device: what has no ending to go by is written as PNG there.
@@ -85,6 +86,27 @@ static void put_linear(const picture *p, void *codes, size_t at, double value)
         ((uint16_t *)codes)[at] = (uint16_t)(x * 65535 + 0.5);
     else
         ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
+}
+
+/// Beauty with its lines, which cover.
+static const void *row_of_outlined(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    const size_t width = (size_t)p->image->width, channels = p->image->alpha ? 4 : 3, size = p->tone.bits / 8;
+    const float *line = p->image->plane[GLINT_PASS_OUTLINE][0] + (size_t)y * width;
+    const void *row = p->under(user, y, scratch);
+    const int ink = p->image->outline == GLINT_OUTLINE_WHITE ? 0xff : 0;
+    uint8_t *out = scratch;
+    if (row != scratch)
+        memcpy(scratch, row, width * channels * size);
+    for (size_t x = 0; x < width; x++) {
+        if (line[x] == 0)
+            continue;
+        memset(out + x * channels * size, ink, 3 * size);
+        if (channels == 4)
+            memset(out + (x * channels + 3) * size, 0xff, size);
+    }
+    return scratch;
 }
 
 /// A share, 0 .. 1.
@@ -164,7 +186,7 @@ static void find_nearest(picture *p)
 static bool is_color(glint_pass pass)
 {
     return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
-           pass != GLINT_PASS_ALPHA;
+           pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE;
 }
 
 static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
@@ -198,10 +220,15 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     } else if (desc->pass == GLINT_PASS_DEPTH) {
         find_nearest(&p);
         source.row = row_of_depth;
-    } else if (desc->pass == GLINT_PASS_ALPHA) {
+    } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE) {
         source.row = row_of_shares;
     } else {
         source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
+    }
+    if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
+        p.under = source.row;
+        source.row = row_of_outlined;
+        source.stamp = NULL; // of the codes without lines
     }
     return status ? status : glint_png_encode(bands, &source, &png, out, reused, error);
 }
