@@ -10,7 +10,7 @@
 
 typedef struct glint_batch_ray {
     double origin[3], direction[3], weight[3]; ///< the direction is unit but for rounding
-    uint32_t leaving; ///< `coincident` of the primitive it starts on
+    uint32_t leaving; ///< the primitive it starts on
     uint32_t pixel; ///< its sample's place in the tile
     uint32_t depth; ///< mirrors and refractions on its way so far
     uint16_t term; ///< where its light goes

@@ -17,8 +17,8 @@ static float float_up(double x)
 
 static float float_down(double x) { return -float_up(-x); }
 
-/// Finds, for each primitive, the first one with bit-equal geometry.
-static glint_status find_coincident(glint_geometry *geometry, glint_error *error)
+/// Finds the primitives that are bit-equal to one before them.
+static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
     size_t size = 16, unlike = 0;
@@ -27,11 +27,13 @@ static glint_status find_coincident(glint_geometry *geometry, glint_error *error
     while (size < 2 * unlike)
         size *= 2;
     uint32_t *slots = calloc(size, sizeof *slots); // index + 1
-    if (!slots)
+    geometry->repeats = calloc((size_t)count + 1, sizeof *geometry->repeats);
+    if (!slots || !geometry->repeats) {
+        free(slots);
         return glint_fail_nomem(error);
+    }
     for (uint32_t i = 0; i < count; i++) {
         double place[GLINT_PLACE_MAX], other[GLINT_PLACE_MAX];
-        geometry->prims[i].coincident = i;
         if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
             continue; // has a rule for all triangles of its plane
         const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
@@ -41,10 +43,10 @@ static glint_status find_coincident(glint_geometry *geometry, glint_error *error
             if (memcmp(place, other, bytes) == 0) // the kind comes first: other counts differ there
                 break;
         }
-        if (!slots[at])
+        if (slots[at])
+            geometry->repeats[i] = true;
+        else
             slots[at] = i + 1;
-        geometry->prims[i].coincident = slots[at] - 1;
-        geometry->table.duplicates = geometry->table.duplicates || slots[at] != i + 1;
     }
     free(slots);
     return GLINT_OK;
@@ -157,7 +159,7 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
         prim->filter_bound = HUGE_VALF;
-        if (prim->coincident != prim->id)
+        if (geometry->repeats[i])
             continue; // the first of equal ones wins every tie and casts every shadow
         if (glint_prim_bounded(prim)) {
             place_in_frame(&geometry->table, prim, &index->boxes[index->box_count]);
@@ -167,6 +169,8 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
         }
     }
     geometry->table.unbounded = geometry->unbounded;
+    free(geometry->repeats);
+    geometry->repeats = NULL;
     return GLINT_OK;
 }
 
@@ -269,7 +273,6 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     free(geometry->prims);
     geometry->table.prims = geometry->prims = a.to;
     geometry->table.prim_count = bounded + geometry->table.unbounded_count;
-    geometry->table.duplicates = false;
     geometry->table.nodes = geometry->index->bvh.nodes;
     geometry->arranged = true;
     return GLINT_OK;
@@ -304,6 +307,7 @@ void glint_geometry_release(glint_geometry *geometry)
     glint_list_free(&geometry->materials);
     free(geometry->prims);
     free(geometry->prim_part);
+    free(geometry->repeats);
     free(geometry->parts);
     free(geometry->normals);
     free(geometry->solids);
@@ -319,7 +323,7 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
     const glint_geometry *last = scene->geometry;
     glint_status status = glint_geometry_fill(geometry, scene, error);
     if (!status)
-        status = find_coincident(geometry, error);
+        status = find_repeats(geometry, error);
     if (status)
         return status;
     make_keys(geometry);

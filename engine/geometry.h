@@ -34,6 +34,7 @@ struct glint_geometry {
     glint_prim *prims; ///< in order of definition, and in that of the index once it is built
     bool arranged; ///< the latter
     uint32_t *prim_part; ///< which part each is of, by id
+    bool *repeats; ///< which are bit-equal to one before, by id; until the index is made
     glint_part *parts; ///< in order of definition
     uint32_t part_count;
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly

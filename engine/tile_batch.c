@@ -244,7 +244,7 @@ glint_batch_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile
     glint_batch_ray ray = { .weight = { 1, 1, 1 }, .pixel = i, .media = *media_of(batch, tile, frame, i) };
     if (tile == &batch->tile)
         ray = batch->ray[i];
-    ray.leaving = frame->geometry.prims[tile->at.prim[i]].coincident;
+    ray.leaving = tile->at.prim[i];
     for (int c = 0; c < 3; c++)
         ray.origin[c] = glint_real_at(tile->point[c], frame->plan->desc.precision, i);
     return ray;

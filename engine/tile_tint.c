@@ -57,7 +57,7 @@ static void aim(struct glint_tint *tint, const glint_tile *tile, const glint_til
         glint_real_put(tint->origin[c], precision, i, from);
         glint_real_put(tint->direction[c], precision, i, light->directional ? position : position - from);
     }
-    tint->leaving[i] = frame->geometry.prims[prim].coincident;
+    tint->leaving[i] = prim;
     *inwards = (uint16_t)(inward ? *inwards | bit : *inwards & ~bit);
 }
 

@@ -143,12 +143,6 @@ static inline float rounded_up(long double x)
 
 static inline float rounded_down(long double x) { return -rounded_up(-x); }
 
-static inline bool same_geometry(const glint_prim *a, const glint_prim *b)
-{
-    return a->center[0] == b->center[0] && a->kind == b->kind && memcmp(a->center, b->center, sizeof a->center) == 0 &&
-           memcmp(a->normal, b->normal, sizeof a->normal) == 0 && memcmp(&a->radius, &b->radius, sizeof a->radius) == 0;
-}
-
 /// Any frame will do; most are around the scene, in its own units.
 static inline void choose_frame(const scene_plan *plan, test_scene *scene)
 {
@@ -229,26 +223,10 @@ static inline void number_prims(test_scene *scene)
     }
 }
 
-/// The lowest id of those in the same place.
-static inline void find_coincident(test_scene *scene)
-{
-    const uint32_t count = scene->table.prim_count;
-    scene->table.duplicates = false;
-    for (uint32_t i = 0; i < count; i++) {
-        glint_prim *prim = &scene->prims[i];
-        prim->coincident = prim->id;
-        for (uint32_t k = 0; k < count; k++)
-            if (scene->prims[k].id < prim->coincident && same_geometry(prim, &scene->prims[k]))
-                prim->coincident = scene->prims[k].id;
-        scene->table.duplicates = scene->table.duplicates || prim->coincident != prim->id;
-    }
-}
-
 /// Fills what follows from kind, centre, normal and radius of the primitives; prim_count is set.
 static inline void finish_scene(const scene_plan *plan, test_scene *scene)
 {
     number_prims(scene);
-    find_coincident(scene);
     for (uint32_t i = 0; i < scene->table.prim_count; i++) {
         scene->prims[i].material = below(4);
         scene->prims[i].two_sided = one_in(2);

@@ -122,9 +122,10 @@ static void leaving_case(int precision, bool odd)
     const uint32_t n = c.cast.group_count * GLINT_GROUP;
     uint32_t *leaving = input(KIND_U32, n);
     for (uint32_t i = 0; i < n; i++) {
-        const glint_prim *prim = &c.scene->prims[below(c.scene->table.prim_count)];
+        const uint32_t index = below(c.scene->table.prim_count);
+        const glint_prim *prim = &c.scene->prims[index];
         double direction[3], point[3];
-        leaving[i] = one_in(8) ? GLINT_MISS : prim->coincident;
+        leaving[i] = one_in(8) ? GLINT_MISS : index;
         if (prim->kind == GLINT_PRIM_TRIANGLE || one_in(8))
             continue;
         random_unit(direction);

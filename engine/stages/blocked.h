@@ -37,7 +37,6 @@ typedef struct R(shadow_group) {
     int shafts_failed; ///< of the last groups in a row
     _Alignas(64) real to_light[3][GLINT_GROUP]; ///< in the light's units
     R(ray_group) rays;
-    uint32_t surface[GLINT_GROUP]; ///< the coincident of the primitive each ray leaves
 } R(shadow_group);
 
 /// 1: the light is outside or in front of the primitive, -1: inside or behind, 0: on it.
@@ -106,17 +105,10 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
         }
 }
 
-/// lit: the lanes to test.
-static inline void R(begin_group)(const R(shadow_tile) * tile, uint32_t g, unsigned lit, R(shadow_group) * group)
+static inline void R(begin_group)(uint32_t g, R(shadow_group) * group)
 {
-    const glint_occlude_args *args = tile->args;
     group->at = (size_t)g * GLINT_GROUP;
     group->made = false;
-    if (args->geometry->duplicates)
-        for (; lit; lit &= lit - 1) {
-            const int lane = __builtin_ctz(lit);
-            group->surface[lane] = args->geometry->prims[args->prim[group->at + (size_t)lane]].coincident;
-        }
 }
 
 /// From points to the light, in its units.
@@ -144,19 +136,6 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
     }
     R(set_origins)(args->point, at, tile->local[at / GLINT_GROUP], &group->rays);
     group->made = true;
-}
-
-/// Lanes of `lit` that leave the primitive's surface.
-static inline unsigned R(own_lanes)(const glint_occlude_args *args, const R(shadow_group) * group,
-                                    const glint_prim *prim, uint32_t id, unsigned lit)
-{
-    if (!args->geometry->duplicates)
-        return lanes_equal(args->prim + group->at, id) & lit;
-    unsigned own = 0;
-    for (unsigned left = lit; left; left &= left - 1)
-        if (group->surface[__builtin_ctz(left)] == prim->coincident)
-            own |= left & -left;
-    return own;
 }
 
 static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
@@ -239,6 +218,20 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
+/// Of VR segments from lane i of the group at `at` along d, those that a sphere or a plane blocks, a bit each; none of the
+/// points is its own.
+static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, R(light_sides) sides,
+                                        size_t at, int i, const vr d[3])
+{
+    const unsigned all = (1u << VR) - 1, outside = sides.outside >> i & all, inside = sides.inside >> i & all;
+    vr p[3], f[3];
+    R(load3)(args->point, at + (size_t)i, p);
+    R(offset)(p, prim, f);
+    const vr c = R(offset_constant)(f, prim);
+    return rm_bits(prim->kind == GLINT_PRIM_SPHERE ? R(sphere_blocks)(args, prim, outside, inside, f, c, d)
+                                                   : R(plane_blocks)(outside, inside, c));
+}
+
 /// The lanes of `wanted` that the primitive blocks.
 static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder,
                                                                     R(shadow_group) * group, unsigned wanted)
@@ -246,7 +239,7 @@ static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shad
     const glint_occlude_args *args = tile->args;
     const glint_prim *prim = &args->geometry->prims[occluder.id];
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    const unsigned own = R(own_lanes)(args, group, prim, occluder.id, wanted), all = (1u << VR) - 1;
+    const unsigned own = lanes_equal(args->prim + group->at, occluder.id) & wanted;
     unsigned blocked = 0;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         if (!group->made)
@@ -270,19 +263,13 @@ static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shad
     if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is asked
         wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
-        const unsigned lanes = wanted >> i & all;
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        vr d[3];
         if (!lanes)
             continue;
-        const unsigned outside = occluder.sides.outside >> i & all, inside = occluder.sides.inside >> i & all;
-        vr p[3], f[3], d[3];
-        R(load3)(args->point, group->at + i, p);
-        R(offset)(p, prim, f);
         for (int k = 0; k < 3; k++)
             d[k] = r_load(group->to_light[k] + i);
-        const vr c = R(offset_constant)(f, prim);
-        const rm hit =
-            sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
-        blocked |= (rm_bits(hit) & lanes) << i;
+        blocked |= (R(lanes_blocked)(args, prim, occluder.sides, group->at, i, d) & lanes) << i;
     }
     return blocked;
 }

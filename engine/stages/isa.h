@@ -9,6 +9,7 @@
 #include "engine/stages/stages.h"
 
 #include "engine/stages/walk.h"
+#include "engine/stages/beam.h"
 
 #define GLINT_REAL 64
 #include "engine/stages/real.h"
@@ -26,6 +27,8 @@
 #include "engine/stages/facet.h"
 #include "engine/stages/blocked.h"
 #include "engine/stages/occlude.h"
+#include "engine/stages/beam_points.h"
+#include "engine/stages/occlude_beam.h"
 #include "engine/stages/soft.h"
 #include "engine/stages/bounce.h"
 
@@ -46,6 +49,8 @@
 #include "engine/stages/facet.h"
 #include "engine/stages/blocked.h"
 #include "engine/stages/occlude.h"
+#include "engine/stages/beam_points.h"
+#include "engine/stages/occlude_beam.h"
 #include "engine/stages/soft.h"
 #include "engine/stages/bounce.h"
 

@@ -187,16 +187,23 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp
     return open;
 }
 
-/// The lanes of `open` that nothing blocks, for a group that walks by itself.
+/// The lanes of `open` that no surface without an end blocks.
+static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
+                                         unsigned open)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
+        open = R(test_occluder)(tile, lamp, group, geometry->unbounded[i], open);
+    return open;
+}
+
+/// The lanes of `open` that nothing in the index blocks, for a group that walks by itself.
 static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
                               unsigned open)
 {
-    const glint_geometry_table *geometry = tile->args->geometry;
-    bool done = !geometry->nodes;
+    bool done = !tile->args->geometry->nodes;
     if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
         open = R(test_occluder)(tile, lamp, group, group->last_blocker, open);
-    for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, lamp, group, geometry->unbounded[i], open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
         open = R(walk_shaft)(tile, lamp, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
@@ -253,28 +260,4 @@ static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16
     loosen(tile->lower, tile->upper, R(walk_slack)(geometry));
     R(place_light)(tile);
     R(find_occluders)(tile);
-}
-
-static void R(occlude_point)(const glint_occlude_args *args)
-{
-    const uint16_t *lit = args->lit[0];
-    uint16_t *out = args->open[0];
-    R(shadow_tile) tile;
-    R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    R(begin_shadows)(args, lit, &tile);
-    if (tile.count)
-        R(aim_at)(&tile, NULL);
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        unsigned open = lit[g];
-        *args->rays += (unsigned)__builtin_popcount(open);
-        if (open && tile.count) {
-            R(begin_group)(&tile, g, open, &group);
-            if (tile.count > GLINT_OCCLUDERS)
-                open = R(walk_group)(&tile, NULL, &group, open);
-            else
-                for (int k = 0; k < tile.count && open; k++)
-                    open &= ~R(blocked_by)(&tile, tile.occluders[k], &group, open);
-        }
-        out[g] = (uint16_t)open;
-    }
 }

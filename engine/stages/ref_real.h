@@ -156,10 +156,11 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
 }
 
 /// Whether ray i starts on the primitive; then *t is where it meets it again, or 0.
-static bool NAME(leaves)(const glint_cast_args *args, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction,
+static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                          uint32_t i, REAL *t)
 {
-    if (!args->leaving || args->leaving[i] != prim->coincident)
+    const glint_prim *prim = &args->geometry->prims[index];
+    if (!args->leaving || args->leaving[i] != index)
         return false;
     *t = 0;
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
@@ -188,7 +189,7 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
             REAL t;
-            if (eye || !NAME(leaves)(args, &args->geometry->prims[index], origin, direction, i, &t))
+            if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
                 t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
             bool first = t == best && best_prim != GLINT_MISS &&
                          args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
@@ -495,7 +496,7 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
     int side = light_side(args->directional, position, prim, args->geometry->solids);
-    bool own = args->prim[i] != GLINT_MISS && prim->coincident == args->geometry->prims[args->prim[i]].coincident;
+    bool own = args->prim[i] != GLINT_MISS && prim == &args->geometry->prims[args->prim[i]];
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         NAME(parted) plane = NAME(part)(args, prim, NAME(rounded)(position));

@@ -18,6 +18,7 @@ typedef __m128d dm;
 
 static inline vf f_set(float x) { return _mm_set1_ps(x); }
 static inline vf f_load(const float *p) { return _mm_load_ps(p); }
+static inline vf f_load_any(const float *p) { return _mm_loadu_ps(p); }
 static inline void f_store(float *p, vf x) { _mm_store_ps(p, x); }
 static inline vf f_sqrt(vf x) { return _mm_sqrt_ps(x); }
 static inline vf f_min(vf a, vf b) { return _mm_min_ps(a, b); }

@@ -90,7 +90,7 @@ static R(soft_group) R(sort_group)(const R(shadow_tile) * tile, R(shadow_group) 
     for (int k = 0; k < tile->count && !out.hidden; k++) {
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
-        const unsigned own = R(own_lanes)(args, group, prim, id, lit);
+        const unsigned own = lanes_equal(args->prim + group->at, id) & lit;
         const bool passes_own =
             prim->kind == GLINT_PRIM_PLANE || (prim->kind != GLINT_PRIM_TRIANGLE && !(own & args->back[g]));
         if (own == lit && passes_own)
@@ -133,7 +133,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, R(shadow
     unsigned any = 0;
     for (uint32_t s = 0; s < args->sample_count; s++)
         any |= samples->open[s];
-    const unsigned own = R(own_lanes)(args, group, prim, id, any);
+    const unsigned own = lanes_equal(args->prim + group->at, id) & any;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (uint32_t s = 0; s < args->sample_count; s++)
             samples->open[s] &= ~R(blocked_by_triangle)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s],
@@ -180,7 +180,7 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(soft_group) sorted = { 0 };
         if (lit[g]) {
-            R(begin_group)(tile, g, lit[g], &group);
+            R(begin_group)(g, &group);
             sorted = R(sort_group)(tile, &group, g, lit[g]);
         }
         for (uint32_t s = 0; s < args->sample_count; s++) {
@@ -206,7 +206,8 @@ static void R(occlude_walking)(R(shadow_tile) * tile)
             unsigned open = args->lit[s][g];
             *args->rays += (unsigned)__builtin_popcount(open);
             if (open) {
-                R(begin_group)(tile, g, open, &group);
+                R(begin_group)(g, &group);
+                open = R(test_unbounded)(tile, args->lamp[s], &group, open);
                 open = R(walk_group)(tile, args->lamp[s], &group, open);
             }
             args->open[s][g] = (uint16_t)open;

@@ -44,7 +44,6 @@ typedef struct glint_prim {
     uint16_t two_sided; ///< 0: seen from behind it gets ambient light only
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
-    uint32_t coincident; ///< id of the first primitive with bit-equal geometry: what a leaving ray skips
     float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
     float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
     union {
@@ -99,11 +98,10 @@ typedef struct glint_solid {
     uint32_t form;
 } glint_solid;
 
-/// What rays meet: the surfaces, and the index over those that have an end. Its frame is (x - reference) * scale.
+/// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
     uint32_t prim_count;
-    bool duplicates; ///< some primitive is not its own `coincident`
     const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
     const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
     uint32_t unbounded_count;
@@ -170,8 +168,8 @@ typedef struct glint_cast_args {
     const glint_camera_args *camera; ///< cast_bundle only: the rays
     bool parallel; ///< cast_rays only: the directions of a group are all the same
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
-    const uint32_t *leaving; ///< cast_rays only: the `coincident` of the primitive that each ray starts on, or
-        ///< GLINT_MISS; NULL: none of them does
+    const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: none of
+        ///< them does
     const uint16_t *inward; ///< with `leaving`: a bit a lane: its way begins inside that primitive
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
@@ -223,7 +221,7 @@ typedef struct glint_cast_args {
 //                 where in < enter: in = enter, by this face; where leave < out: out = leave, by this face
 //                 disk: in = out = -f.z / e.z; x = f.x + in e.x, y likewise; hits where x x + y y <= 1
 //                 and in <= out
-// A ray that leaves a primitive: of all with that `coincident`, a sphere is hit where the lane is inward, b > 0 and
+// A ray meets the primitive that it leaves by a rule of its own: a sphere is hit where the lane is inward, b > 0 and
 //                 disc >= 0, at t = (b + b) / (a * scale), t > 0; a solid other than a disk where the lane is inward and its
 //                 span hits, at t = out, t > 0; nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
@@ -414,7 +412,7 @@ typedef struct glint_occlude_args {
 // light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1
 //         where length2(f) overflows; directional: 1.  plane: the sign of dot(normal, position - center); directional: of
 //         dot(normal, position)
-// A lane is blocked where any primitive other than its own (of another coincident) blocks it:
+// A lane is blocked where any primitive other than its own blocks it:
 // sphere: d = (position - point) scale (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
 //         a = length2(d), b = -dot(f, d)
 //         light_side < 0: blocked = c > 0

@@ -1,0 +1,169 @@
+// beam_points: the points of a tile in the order in which their light sees them (beam.h): in cells, so that what may come
+// between is asked about few of them.
+
+/// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
+typedef struct R(beam_batch) {
+    glint_occlude_args args; ///< of the call, with these points in place of the tile's
+    _Alignas(64) real point[3][GLINT_GROUP], direction[3][GLINT_GROUP], slack[GLINT_GROUP];
+    uint16_t back;
+    uint16_t from[GLINT_GROUP]; ///< index in the beam
+    int count;
+    unsigned own; ///< lanes that are on the surface itself
+} R(beam_batch);
+
+typedef struct R(beam) {
+    const R(shadow_tile) * tile;
+    beam_view view;
+    uint32_t count, open; ///< points; of them, those that nothing blocks so far
+    // the points, a cell's in a row, the cells row by row
+    _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
+    _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< of blocked ones: -inf
+    uint32_t prim[GLINT_TILE_SAMPLES + GLINT_GROUP];
+    uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
+    uint16_t begin[BEAM_DOWN * BEAM_ACROSS + 1]; ///< where each cell's begin
+    _Alignas(64) float far[BEAM_DOWN][BEAM_ACROSS]; ///< largest w of each cell's open points
+    R(beam_batch) batch;
+} R(beam);
+
+// ---- The points ----
+
+/// Sets the beam's frame. False: the light is in the middle of the points.
+static bool R(aim_beam)(const R(shadow_tile) * tile, beam_view *view)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_geometry_table *geometry = args->geometry;
+    double away[3], along[3] = { 0, 0, 0 }, size = 0;
+    int longest = 0;
+    for (int k = 0; k < 3; k++) {
+        view->origin[k] = 0.5f * (tile->lower[k] + tile->upper[k]);
+        const double light = (args->position[k] - geometry->reference[k]) * geometry->scale;
+        away[k] = args->directional ? -args->position[k] : (double)view->origin[k] - light;
+        size += largest_of(tile->lower[k], tile->upper[k]);
+        if (tile->upper[k] - tile->lower[k] > tile->upper[longest] - tile->lower[longest])
+            longest = k;
+    }
+    along[longest] = 1;
+    // a tile's points lie one behind the other as the camera sees them
+    const bool seen = args->camera && make_beam_axes(away, args->camera->forward, view);
+    for (int next = 0; !seen && !make_beam_axes(away, along, view); next++) {
+        if (next == 3)
+            return false;
+        for (int k = 0; k < 3; k++)
+            along[k] = k == next;
+    }
+    view->inverse = args->directional ? 0 : (float)(1 / sqrt(DOT(away, away)));
+    view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
+    return true;
+}
+
+/// Where the light sees the points, in the order of the call's groups.
+typedef struct R(beam_places) {
+    _Alignas(64) float place[2][GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t cell[GLINT_TILE_SAMPLES];
+} R(beam_places);
+
+/// The interval of lanes that are lit.
+static inline void R(extent)(const float *x, const uint16_t *lit, uint32_t groups, float *least, float *most)
+{
+    vf low = f_set(HUGE_VALF), high = f_set(-HUGE_VALF);
+    for (uint32_t g = 0; g < groups; g++)
+        if (lit[g])
+            widen(x + (size_t)g * GLINT_GROUP, lit[g], &low, &high);
+    *least = f_min_all(low);
+    *most = f_max_all(high);
+}
+
+/// Projects the points and bounds their places. Returns whether a beam can be made of them. NaN: no.
+static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, beam_view *view,
+                              R(beam_places) * places)
+{
+    vf least[3], most[3];
+    for (int j = 0; j < 3; j++) {
+        least[j] = f_set(HUGE_VALF);
+        most[j] = f_set(-HUGE_VALF);
+    }
+    for (uint32_t g = 0; g < tile->args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        float *const out[3] = { places->place[0] + at, places->place[1] + at, places->w + at };
+        if (!lit[g])
+            continue;
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vf x[3], seen[3];
+            for (int k = 0; k < 3; k++)
+                x[k] = f_load(tile->local[g][k] + i) - f_set(view->origin[k]);
+            for (int j = 0; j < 3; j++)
+                seen[j] =
+                    (f_set(view->axis[j][0]) * x[0] + f_set(view->axis[j][1]) * x[1]) + f_set(view->axis[j][2]) * x[2];
+            const vf k = f_set(1) + seen[2] * f_set(view->inverse);
+            f_store(out[0] + i, seen[0] / k);
+            f_store(out[1] + i, seen[1] / k);
+            f_store(out[2] + i, seen[2]);
+        }
+        for (int j = 0; j < 3; j++)
+            widen(out[j], lit[g], &least[j], &most[j]);
+    }
+    float wide2 = 0;
+    for (int j = 0; j < 2; j++) {
+        view->first[j] = f_min_all(least[j]);
+        view->last[j] = f_max_all(most[j]);
+        const float width = view->last[j] - view->first[j];
+        const float wide = largest_of(view->first[j], view->last[j]) * view->inverse;
+        if (!(width < 0x1p100f))
+            return false;
+        view->cells[j] = width > 0x1p-100f ? (float)(j ? BEAM_DOWN : BEAM_ACROSS) / width : 0;
+        wide2 += wide * wide;
+    }
+    view->far = f_max_all(most[2]);
+    view->stretch = 1.00001f * (1 + wide2);
+    return 1 + f_min_all(least[2]) * view->inverse > BEAM_NEAREST && wide2 < BEAM_WIDEST * BEAM_WIDEST;
+}
+
+/// Sorts the points by cell.
+static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) * places)
+{
+    const glint_occlude_args *args = beam->tile->args;
+    uint16_t next[BEAM_DOWN * BEAM_ACROSS] = { 0 };
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        if (!lit[g])
+            continue;
+        for (size_t i = at; i < at + GLINT_GROUP; i += VF)
+            i_store(places->cell + i, i_add(beam_cells(&beam->view, 0, f_load(places->place[0] + i)),
+                                            i_shl(beam_cells(&beam->view, 1, f_load(places->place[1] + i)), 4)));
+        for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1)
+            next[places->cell[at + (unsigned)__builtin_ctz(lanes)]]++;
+    }
+    beam->count = 0;
+    for (int c = 0; c < BEAM_DOWN * BEAM_ACROSS; c++) {
+        beam->begin[c] = (uint16_t)beam->count;
+        beam->count += next[c];
+        next[c] = beam->begin[c];
+        beam->far[c / BEAM_ACROSS][c % BEAM_ACROSS] = -HUGE_VALF;
+    }
+    beam->begin[BEAM_DOWN * BEAM_ACROSS] = (uint16_t)beam->count;
+    beam->open = beam->count;
+    for (uint32_t g = 0; g < args->group_count; g++)
+        for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1) {
+            const size_t from = (size_t)g * GLINT_GROUP + (unsigned)__builtin_ctz(lanes);
+            const uint32_t cell = places->cell[from], to = next[cell]++;
+            float *far = &beam->far[cell / BEAM_ACROSS][cell % BEAM_ACROSS];
+            beam->place[0][to] = places->place[0][from];
+            beam->place[1][to] = places->place[1][from];
+            beam->w[to] = places->w[from];
+            beam->prim[to] = args->prim[from];
+            beam->at[to] = (uint16_t)from;
+            beam->cell[to] = (uint16_t)cell;
+            *far = larger(*far, places->w[from]);
+        }
+}
+
+/// Whether any open point in a rectangle of cells is as far away as `near`.
+static inline bool R(any_behind)(const R(beam) * beam, float near, int first, int last, int top, int bottom)
+{
+    const unsigned columns = bit_range(first, last);
+    for (int row = top; row <= bottom; row++)
+        for (int i = 0; i < BEAM_ACROSS; i += VF)
+            if (fm_bits(f_le(f_set(near), f_load(beam->far[row] + i))) & columns >> i)
+                return true;
+    return false;
+}
