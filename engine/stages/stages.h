@@ -395,7 +395,7 @@ typedef struct glint_occlude_args {
     const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK];
     const void *point[3];
-    const uint32_t *prim; ///< on which the points are; GLINT_MISS: on none, where the table has no duplicates
+    const uint32_t *prim; ///< on which the points are; GLINT_MISS: on none
     const uint16_t *back;
     bool directional;
     double position[3]; ///< as in glint_light_args
