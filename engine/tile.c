@@ -162,6 +162,7 @@ static bool any_hit(const glint_tile *tile)
 typedef struct walk {
     uint32_t sample;
     bool rays, points; ///< made already
+    bool lit; ///< points and the only light's work are made, and no normals
 } walk;
 
 static void need_rays(glint_tile *tile, const glint_tile_frame *frame, walk *w)
@@ -247,6 +248,15 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     glint_tile_view(tile, frame);
 }
 
+/// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
+/// nobody asks for normals. Where stages are timed, each runs by itself.
+static bool is_plain(const glint_tile_frame *frame, const walk *w)
+{
+    const glint_plan *plan = frame->plan;
+    return !w->points && !frame->time_stages && plan->light_count == 1 && !plan->lights[0].lamps &&
+           !plan->lights[0].is_spot && !frame->geometry.triangles && !frame->geometry.solids;
+}
+
 /// What one light does to this sample: `count` rows of the plan from `first + slot` on.
 static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
                        uint32_t count)
@@ -265,10 +275,16 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
         else if (light->shadows)
             occlude[occluding++] = i;
     }
-    if (shining || occluding)
-        need_points(tile, frame, w);
-    if (shining)
-        glint_tile_shine(tile, frame, first, shine, shining);
+    if (shining && is_plain(frame, w)) {
+        need_rays(tile, frame, w);
+        glint_tile_find_lit_surfaces(tile, frame, first);
+        w->lit = true;
+    } else {
+        if (shining || occluding)
+            need_points(tile, frame, w);
+        if (shining)
+            glint_tile_shine(tile, frame, first, shine, shining);
+    }
     if (occluding)
         glint_tile_occlude(tile, frame, first, occlude, occluding);
     if (frame->plan->runs[GLINT_STAGE_FACET])
@@ -331,7 +347,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         find_lights(tile, frame, &w, from, count);
-        if (from == 0 && any && !w.points) {
+        if (from == 0 && any && !w.points && !w.lit) {
             glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);
         }

@@ -80,6 +80,7 @@ typedef struct glint_tile {
     bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
+    glint_point_box box; ///< of its points, once they are found
     uint32_t sample; ///< which it is
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
@@ -118,6 +119,8 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// `in_sight` false: nothing is hit, and no rays need to have been made.
 void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
+/// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
 /// One light, or samples of one: light `first + slot[i]` of the plan, for each of `count` slots of the chunk.
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count);

@@ -122,9 +122,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_si
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
+static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_plan *plan = frame->plan;
     glint_surface_args args = { .group_count = tile->group_count,
                                 .hits = tile->at.hits,
                                 .prim = tile->at.prim,
@@ -138,14 +137,21 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
                                 .t = tile->at.t,
                                 .material = tile->material,
                                 .back = tile->back,
-                                .dark = tile->dark };
+                                .dark = tile->dark,
+                                .box = &tile->box };
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
         args.point[c] = tile->point[c];
         args.normal[c] = tile->normal[c];
     }
-    frame->stages->geometry[plan->desc.precision].surface(&args);
+    return args;
+}
+
+void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_surface_args args = surface_args(tile, frame);
+    frame->stages->geometry[frame->plan->desc.precision].surface(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
 }
 
@@ -161,8 +167,8 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
-                      uint32_t count)
+static glint_light_args light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                   const uint32_t *slot, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
@@ -192,10 +198,28 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.normal[c] = tile->normal[c];
         args.direction[c] = tile->direction[c];
     }
-    frame->stages->geometry[plan->desc.precision].light(&args);
+    return args;
+}
+
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count)
+{
+    const glint_light_args args = light_args(tile, frame, first, slot, count);
+    frame->stages->geometry[frame->plan->desc.precision].light(&args);
     glint_tile_count_light(tile, frame, count);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
+}
+
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light)
+{
+    const uint32_t slot = 0;
+    const glint_surface_args surface = surface_args(tile, frame);
+    const glint_light_args args = light_args(tile, frame, light, &slot, 1);
+    frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
+    glint_tile_count_light(tile, frame, 1);
+    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
 }
 
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -213,6 +237,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->slack,
+                                .box = &tile->box,
                                 .rays = &tile->counts.shadow };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {

@@ -361,29 +361,110 @@ static void make_hits(ray_case *c, bool odd)
     }
 }
 
+/// What surface reads; returns how many lanes there are.
+static uint32_t make_surface_case(ray_case *c, glint_surface_args *args, int precision, bool odd)
+{
+    start_rays(c, (ray_kind)below(RAY_KINDS), precision);
+    make_hits(c, odd);
+    *args = (glint_surface_args) { .group_count = c->cast.group_count,
+                                   .hits = c->cast.hits,
+                                   .prim = c->cast.prim,
+                                   .prims = c->scene->prims,
+                                   .camera = c->kind == RAYS_OF_EYE ? &c->camera : NULL,
+                                   .t = c->cast.t };
+    memcpy(args->origin, c->origin, sizeof args->origin);
+    memcpy(args->direction, c->direction, sizeof args->direction);
+    return args->group_count * GLINT_GROUP;
+}
+
+static void ask_surface(glint_surface_args *args, uint32_t n)
+{
+    args->material = output("material", KIND_U32, n);
+    args->back = output("back", KIND_U16, args->group_count);
+    args->dark = output("dark", KIND_U16, args->group_count);
+}
+
+static void put_box(const glint_point_box *box)
+{
+    double *ends = output("box", KIND_DOUBLE, 6);
+    uint32_t *only = output("only", KIND_U32, 1);
+    memcpy(ends, box->lower, sizeof box->lower);
+    memcpy(ends + 3, box->upper, sizeof box->upper);
+    *only = box->only;
+}
+
 static void surface_case(int precision, bool odd)
 {
     ray_case c;
-    start_rays(&c, (ray_kind)below(RAY_KINDS), precision);
-    make_hits(&c, odd);
-    const uint32_t groups = c.cast.group_count, n = groups * GLINT_GROUP;
-    glint_surface_args args = { .group_count = groups,
-                                .hits = c.cast.hits,
-                                .prim = c.cast.prim,
-                                .prims = c.scene->prims,
-                                .camera = c.kind == RAYS_OF_EYE ? &c.camera : NULL,
-                                .t = c.cast.t };
-    memcpy(args.origin, c.origin, sizeof args.origin);
-    memcpy(args.direction, c.direction, sizeof args.direction);
+    glint_surface_args args;
+    glint_point_box box;
+    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    args.box = one_in(2) ? &box : NULL;
     FOR_EACH_TESTED
     {
         output3(args.point, "point", real_kind(precision), n);
         output3(args.normal, "normal", real_kind(precision), n);
-        args.material = output("material", KIND_U32, n);
-        args.back = output("back", KIND_U16, groups);
-        args.dark = output("dark", KIND_U16, groups);
+        ask_surface(&args, n);
         geometry(precision)->surface(&args);
+        if (args.box)
+            put_box(&box);
         compare_outputs("surface");
+    }
+    end_rays(&c);
+}
+
+/// A lamp near what is hit, or far from it, for materials of every kind.
+static void make_lamp(const ray_case *c, glint_light_args *light)
+{
+    static glint_shade_material materials[4]; // as many as finish_scene gives out
+    for (uint32_t i = 0; i < COUNT_OF(materials); i++)
+        materials[i].highlight = below(3);
+    *light = (glint_light_args) { .group_count = c->cast.group_count,
+                                  .hits = c->cast.hits,
+                                  .materials = materials,
+                                  .camera = c->kind == RAYS_OF_EYE ? &c->camera : NULL,
+                                  .directional = one_in(3),
+                                  .scale = one_in(2) ? 1 : 0x1p-3,
+                                  .sample_count = 1,
+                                  .attenuated = one_in(2),
+                                  .coefficients = { between(0, 2), between(0, 1), between(0, 1) },
+                                  .highlights = !one_in(4) };
+    const glint_prim *prim = &c->scene->prims[below(c->scene->table.prim_count)];
+    const double away = c->plan.size * power_of_ten(-2, 2);
+    random_unit(light->position);
+    for (int k = 0; k < 3 && !light->directional; k++)
+        light->position[k] = prim->center[k] + away * light->position[k];
+}
+
+static void lit_surface_case(int precision, bool odd)
+{
+    static _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
+    ray_case c;
+    glint_surface_args args;
+    glint_light_args light;
+    glint_point_box box;
+    const uint32_t n = make_surface_case(&c, &args, precision, odd);
+    args.box = &box;
+    make_lamp(&c, &light);
+    for (int k = 0; k < 3; k++) {
+        args.normal[k] = normal[k];
+        light.normal[k] = normal[k];
+        light.direction[k] = c.direction[k];
+    }
+    FOR_EACH_TESTED
+    {
+        output3(args.point, "point", real_kind(precision), n);
+        memcpy(light.point, args.point, sizeof args.point);
+        ask_surface(&args, n);
+        light.material = args.material;
+        light.dark = args.dark;
+        light.lit[0] = output("lit", KIND_U16, args.group_count);
+        light.cosine[0] = output("cosine", KIND_FLOAT, n);
+        light.attenuation[0] = output("attenuation", KIND_FLOAT, n);
+        light.log2_specular[0] = output("log2_specular", KIND_FLOAT, n);
+        geometry(precision)->lit_surface(&args, &light);
+        put_box(&box);
+        compare_outputs("lit_surface");
     }
     end_rays(&c);
 }
@@ -394,13 +475,19 @@ static void test_surface(void **state)
     run_cases(2 * CASES, 6000, surface_case);
 }
 
+static void test_lit_surface(void **state)
+{
+    (void)state;
+    run_cases(2 * CASES, 7000, lit_surface_case);
+}
+
 int main(void)
 {
     find_tested();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
-        cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving),
+        cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving), cmocka_unit_test(test_lit_surface),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

@@ -159,11 +159,38 @@ static uint64_t lit_lanes(const shadow_case *c)
     return lanes;
 }
 
+/// A box as surface gives it: around the lit points, and maybe around more.
+static void make_box(const shadow_case *c, glint_point_box *box)
+{
+    *box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
+    const bool all = one_in(2);
+    bool several = false;
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        bool lit = all;
+        for (uint32_t s = 0; s < c->args.sample_count; s++)
+            lit = lit || lane_of(c->args.lit[s], i);
+        if (!lit)
+            continue;
+        several = several || lane_of(c->back, i) || (box->only != GLINT_MISS && box->only != c->prim[i]);
+        box->only = c->prim[i];
+        for (int k = 0; k < 3; k++) {
+            const double x = get(c->args.point[k], c->precision, i);
+            box->lower[k] = x < box->lower[k] ? x : box->lower[k];
+            box->upper[k] = x > box->upper[k] ? x : box->upper[k];
+        }
+    }
+    if (several)
+        box->only = GLINT_MISS;
+}
+
 static uint32_t settled; ///< cases in which the whole of an area light settled something
 
 static void occlude_all(shadow_case *c)
 {
     glint_occlude_args args = c->args;
+    glint_point_box box;
+    make_box(c, &box);
+    args.box = one_in(2) ? &box : NULL;
     FOR_EACH_TESTED
     {
         uint64_t rays = 5;

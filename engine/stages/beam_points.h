@@ -77,6 +77,7 @@ static inline void R(extent)(const float *x, const uint16_t *lit, uint32_t group
 static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, beam_view *view,
                               R(beam_places) * places)
 {
+    _Alignas(64) float local[3][GLINT_GROUP];
     vf least[3], most[3];
     for (int j = 0; j < 3; j++) {
         least[j] = f_set(HUGE_VALF);
@@ -87,10 +88,11 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
         float *const out[3] = { places->place[0] + at, places->place[1] + at, places->w + at };
         if (!lit[g])
             continue;
+        R(index_frame)(tile->args->point, at, tile->args->geometry, local);
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             vf x[3], seen[3];
             for (int k = 0; k < 3; k++)
-                x[k] = f_load(tile->local[g][k] + i) - f_set(view->origin[k]);
+                x[k] = f_load(local[k] + i) - f_set(view->origin[k]);
             for (int j = 0; j < 3; j++)
                 seen[j] =
                     (f_set(view->axis[j][0]) * x[0] + f_set(view->axis[j][1]) * x[1]) + f_set(view->axis[j][2]) * x[2];

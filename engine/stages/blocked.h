@@ -25,14 +25,14 @@ typedef struct R(shadow_tile) {
     float local_light[3][GLINT_GROUP]; ///< the same in the index's frame
     R(occluder) occluders[GLINT_OCCLUDERS];
     int count; ///< more than GLINT_OCCLUDERS: too many, groups walk by themselves
-    _Alignas(64) float local[GLINT_TILE_GROUPS][3][GLINT_GROUP]; ///< the points of lit groups, in the index's frame
-    float lower[3], upper[3]; ///< their box
+    float lower[3], upper[3]; ///< a box around the lit points, in the index's frame
 } R(shadow_tile);
 
 /// A group's shadow rays; made as soon as one needs them.
 typedef struct R(shadow_group) {
     size_t at;
-    bool made;
+    bool placed, made;
+    _Alignas(64) float local[3][GLINT_GROUP]; ///< where placed: the points in the index's frame
     uint32_t last_blocker; ///< of the groups so far, or GLINT_MISS
     int shafts_failed; ///< of the last groups in a row
     _Alignas(64) real to_light[3][GLINT_GROUP]; ///< in the light's units
@@ -108,7 +108,7 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
 static inline void R(begin_group)(uint32_t g, R(shadow_group) * group)
 {
     group->at = (size_t)g * GLINT_GROUP;
-    group->made = false;
+    group->placed = group->made = false;
 }
 
 /// From points to the light, in its units.
@@ -122,6 +122,13 @@ static inline void R(directions_to)(const glint_occlude_args *args, const real p
     }
 }
 
+static inline void R(place_group)(const R(shadow_tile) * tile, R(shadow_group) * group)
+{
+    if (!group->placed)
+        R(index_frame)(tile->args->point, group->at, tile->args->geometry, group->local);
+    group->placed = true;
+}
+
 static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_group) * group)
 {
     const glint_occlude_args *args = tile->args;
@@ -129,12 +136,13 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr d[3];
         R(directions_to)(args, tile->position, at, i, d);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             r_store(group->to_light[k] + i, d[k]);
-            r_store_f(group->rays.direction[k] + i, d[k]);
-        }
     }
-    R(set_origins)(args->point, at, tile->local[at / GLINT_GROUP], &group->rays);
+    for (int k = 0; k < 3; k++)
+        R(narrow)(group->to_light[k], group->rays.direction[k]);
+    R(place_group)(tile, group);
+    R(set_origins)(args->point, at, (const float(*)[GLINT_GROUP])group->local, &group->rays);
     group->made = true;
 }
 

@@ -132,8 +132,7 @@ static void R(cast_rays)(const glint_cast_args *args)
         R(index_frame)((const void *const *)args->origin, at, geometry, local);
         R(set_origins)((const void *const *)args->origin, at, (const float(*)[GLINT_GROUP])local, &rays);
         for (int k = 0; k < 3; k++)
-            for (int i = 0; i < GLINT_GROUP; i += VR)
-                r_store_f(rays.direction[k] + i, r_load((const real *)args->direction[k] + at + i));
+            R(narrow)((const real *)args->direction[k] + at, rays.direction[k]);
         for (uint32_t i = 0; i < geometry->unbounded_count; i++)
             R(cast_on_group)(args, g, &rays, geometry->unbounded[i]);
         if (geometry->nodes && args->parallel)

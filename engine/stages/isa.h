@@ -24,6 +24,7 @@
 #include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
+#include "engine/stages/lit_surface.h"
 #include "engine/stages/facet.h"
 #include "engine/stages/blocked.h"
 #include "engine/stages/occlude.h"
@@ -46,6 +47,7 @@
 #include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
 #include "engine/stages/light.h"
+#include "engine/stages/lit_surface.h"
 #include "engine/stages/facet.h"
 #include "engine/stages/blocked.h"
 #include "engine/stages/occlude.h"
@@ -58,12 +60,18 @@
 #include "engine/stages/resolve.h"
 #include "engine/stages/tone.h"
 
+// Of one precision, a line each.
+#define GEOMETRY_STAGES(real) \
+    { \
+        .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
+        .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
+        .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, \
+    }
+
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
-    .geometry = { { camera_f64, in_sight_f64, cast_bundle_f64, cast_rays_f64, surface_f64, view_f64, light_f64,
-                    facet_f64, occlude_f64, bounce_f64, vertex_f64 },
-                  { camera_f32, in_sight_f32, cast_bundle_f32, cast_rays_f32, surface_f32, view_f32, light_f32,
-                    facet_f32, occlude_f32, bounce_f32, vertex_f32 } },
+    .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

@@ -3,14 +3,14 @@
 
 /// What one light or sample does to a group.
 typedef struct R(lit_group) {
-    _Alignas(64) float along[GLINT_GROUP]; ///< n.l, in the light's units
-    _Alignas(64) float distance2[GLINT_GROUP];
-    _Alignas(64) float x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
+    _Alignas(64) real along[GLINT_GROUP]; ///< n.l, in the light's units
+    _Alignas(64) real distance2[GLINT_GROUP];
+    _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
     _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< of a spot
     unsigned lit, shiny;
 } R(lit_group);
 
-static inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
+static __attribute__((always_inline)) inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
 {
     vr rv = (r_set(2) * nl) * nv - lv;
     *x = r_min((rv * rv) / l2a, r_set(1));
@@ -27,19 +27,23 @@ static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 }
 
 /// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
-typedef struct R(lit_surface) {
+typedef struct R(lit_point) {
     unsigned phong, blinn; ///< lanes by the highlight of their material
     R(group_directions) directions;
     vr point[3], normal[3];
-    bool viewed; ///< the following are made
-    vr direction[3], a, nv; ///< a = length2(direction)
-} R(lit_surface);
+    bool aimed; ///< the next is made
+    vr direction[3];
+    bool viewed; ///< and these
+    vr a, nv; ///< a = length2(direction)
+} R(lit_point);
 
-static inline void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_surface) * surface)
+static __attribute__((always_inline)) inline void R(view_lanes)(const glint_light_args *args, size_t at, int i,
+                                                                R(lit_point) * surface)
 {
     if (surface->viewed)
         return;
-    R(load_direction)(surface->directions, args->direction, at, i, surface->direction);
+    if (!surface->aimed)
+        R(load_direction)(surface->directions, args->direction, at, i, surface->direction);
     surface->a = DOT(surface->direction, surface->direction);
     surface->nv = -DOT(surface->normal, surface->direction);
     surface->viewed = true;
@@ -54,8 +58,10 @@ static inline vr R(fall_off)(const glint_light_args *args, vr l2)
 }
 
 /// The real part of one vector of lanes, for sample s. `kind` is a constant.
-static inline void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(lamp_lanes) * lanes,
-                                  size_t at, int i, unsigned open, R(lit_surface) * surface, R(lit_group) * group)
+static __attribute__((always_inline)) inline void R(light_lanes)(const glint_light_args *args, const int kind,
+                                                                 uint32_t s, const R(lamp_lanes) * lanes, size_t at,
+                                                                 int i, unsigned open, R(lit_point) * surface,
+                                                                 R(lit_group) * group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr l[3], m = zero;
@@ -76,8 +82,8 @@ static inline void R(light_lanes)(const glint_light_args *args, const int kind, 
     group->lit |= lit << i;
     if (!lit)
         return;
-    r_store_f(group->along + i, nl);
-    r_store_f(group->distance2 + i, l2);
+    r_store(group->along + i, nl);
+    r_store(group->distance2 + i, l2);
     if (args->attenuated) {
         vr attenuation = R(fall_off)(args, l2);
         if (aimed && args->lamp[s]->emission != GLINT_EMIT_FRONT)
@@ -97,8 +103,8 @@ static inline void R(light_lanes)(const glint_light_args *args, const int kind, 
         some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn)(nl, nv, lv, l2, a, &xb)));
         x = r_select(rm_from_bits(blinn), xb, x);
     }
-    r_store_f(group->x + i, x);
-    r_store_f(group->x_less_1 + i, x - r_set(1));
+    r_store(group->x + i, x);
+    r_store(group->x_less_1 + i, x - r_set(1));
     group->shiny |= rm_bits(rm_and(some, r_le(r_set(0x1p-126), x))) << i;
 }
 
@@ -108,9 +114,9 @@ static inline void R(finish_light)(const glint_light_args *args, const int kind,
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
-        vf cosine = f_load(group->along + i);
+        vf cosine = R(load_narrow)(group->along + i);
         if (!args->directional)
-            cosine = cosine / f_sqrt(f_load(group->distance2 + i));
+            cosine = cosine / f_sqrt(R(load_narrow)(group->distance2 + i));
         f_store(args->cosine[s] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
         if (args->attenuated) {
             vf attenuation = f_min(f_load(args->attenuation[s] + at + i), f_set(GLINT_ATTENUATION_MAX));
@@ -125,14 +131,15 @@ static inline void R(finish_light)(const glint_light_args *args, const int kind,
             f_store(args->log2_specular[s] + at + i, f_set(GLINT_NO_SPECULAR));
         } else if (args->highlights) {
             const fm shiny = fm_from_bits(shiny_lanes);
-            vf log2 = f_log2(f_select(shiny, f_load(group->x + i), f_set(1)), f_load(group->x_less_1 + i));
+            vf log2 =
+                f_log2(f_select(shiny, R(load_narrow)(group->x + i), f_set(1)), R(load_narrow)(group->x_less_1 + i));
             f_store(args->log2_specular[s] + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
         }
     }
 }
 
 /// Lanes by the highlight of their material.
-static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_surface) * surface)
+static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
 {
     surface->phong = surface->blinn = 0;
     while (args->highlights && left) {
@@ -146,32 +153,39 @@ static inline void R(sort_highlights)(const glint_light_args *args, size_t at, u
     }
 }
 
+/// The real part of a group for each sample, after its surfaces.
+static inline void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
+                                  const R(lamp_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
+                                  R(lit_group) * groups)
+{
+    const size_t at = (size_t)place.g * GLINT_GROUP;
+    const unsigned open = args->hits[place.g] & ~(unsigned)args->dark[place.g];
+    for (uint32_t s = 0; s < samples; s++)
+        groups[s].lit = groups[s].shiny = 0;
+    if (!open)
+        return;
+    surface->directions = R(directions_of)(args->camera, place.x, place.y);
+    R(sort_highlights)(args, at, open, surface);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        R(load3)(args->point, at + i, surface->point);
+        R(load3)(args->normal, at + i, surface->normal);
+        surface->aimed = surface->viewed = false;
+        for (uint32_t s = 0; s < samples; s++)
+            R(light_lanes)(args, kind, s, &lanes[s], at, i, open, surface, &groups[s]);
+    }
+}
+
 /// All groups. `kind` and `samples` of a light without samples are constants.
 static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
                                    const R(lamp_lanes) * lanes, R(lit_group) * groups)
 {
-    R(lit_surface) surface = { 0 };
+    R(lit_point) surface = { 0 };
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const uint32_t g = place.g;
-        const size_t at = (size_t)g * GLINT_GROUP;
-        const unsigned open = args->hits[g] & ~(unsigned)args->dark[g];
-        for (uint32_t s = 0; s < samples; s++)
-            groups[s].lit = groups[s].shiny = 0;
-        if (open) {
-            surface.directions = R(directions_of)(args->camera, place.x, place.y);
-            R(sort_highlights)(args, at, open, &surface);
-            for (int i = 0; i < GLINT_GROUP; i += VR) {
-                R(load3)(args->point, at + i, surface.point);
-                R(load3)(args->normal, at + i, surface.normal);
-                surface.viewed = false;
-                for (uint32_t s = 0; s < samples; s++)
-                    R(light_lanes)(args, kind, s, &lanes[s], at, i, open, &surface, &groups[s]);
-            }
-        }
+        R(light_group)(args, kind, samples, lanes, place, &surface, groups);
         for (uint32_t s = 0; s < samples; s++) {
-            args->lit[s][g] = (uint16_t)groups[s].lit;
+            args->lit[s][place.g] = (uint16_t)groups[s].lit;
             if (groups[s].lit)
-                R(finish_light)(args, kind, s, at, &groups[s]);
+                R(finish_light)(args, kind, s, (size_t)place.g * GLINT_GROUP, &groups[s]);
         }
     }
 }

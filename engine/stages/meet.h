@@ -61,10 +61,13 @@ static inline unsigned R(near_lanes)(const vf f[3], const vf d[3], vf limit2)
 static inline void R(index_frame)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
                                   float (*local)[GLINT_GROUP])
 {
-    for (int i = 0; i < GLINT_GROUP; i += VR)
-        for (int k = 0; k < 3; k++)
-            r_store_f(local[k] + i, (r_load((const real *)point[k] + at + i) - r_set(geometry->reference[k])) *
-                                        r_set(geometry->scale));
+    _Alignas(64) real moved[GLINT_GROUP];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < GLINT_GROUP; i += VR)
+            r_store(moved + i,
+                    (r_load((const real *)point[k] + at + i) - r_set(geometry->reference[k])) * r_set(geometry->scale));
+        R(narrow)(moved, local[k]);
+    }
 }
 
 /// A group of rays as filter and walk see them.
@@ -203,10 +206,12 @@ static inline void R(finish_group)(const glint_cast_args *args, uint32_t g)
 /// The farthest hit of a group in the index's units, rounded up; infinite while a ray has none.
 static inline float R(farthest)(const glint_cast_args *args, size_t at)
 {
-    _Alignas(64) float t[GLINT_GROUP];
+    _Alignas(64) real t[GLINT_GROUP];
+    _Alignas(64) float far[GLINT_GROUP];
     for (int i = 0; i < GLINT_GROUP; i += VR)
-        r_store_f(t + i, r_load((const real *)args->t + at + i) * r_set(args->geometry->scale));
-    return group_highest(t) * (1 + 0x1p-22f);
+        r_store(t + i, r_load((const real *)args->t + at + i) * r_set(args->geometry->scale));
+    R(narrow)(t, far);
+    return group_highest(far) * (1 + 0x1p-22f);
 }
 
 /// What float arithmetic adds to the rounding of the walk, in the index's units.

@@ -48,14 +48,16 @@ static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
     return true;
 }
 
-static void R(find_occluders)(R(shadow_tile) * tile)
+/// only: the primitive that all points are on, where that is known. A ball does not shadow what is seen of its outside,
+/// nor does a plane shadow itself.
+static void R(find_occluders)(R(shadow_tile) * tile, uint32_t only)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     uint32_t stack[WALK_STACK];
     int height = 0;
     light_shaft shaft;
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
-        if (!R(note_occluder)(tile, geometry->unbounded[i]))
+        if (geometry->unbounded[i] != only && !R(note_occluder)(tile, geometry->unbounded[i]))
             return;
     if (!geometry->nodes)
         return;
@@ -67,7 +69,7 @@ static void R(find_occluders)(R(shadow_tile) * tile)
             const uint32_t child = node->child[__builtin_ctz(mask)], id = child & ~GLINT_NODE_PRIM;
             if (!(child & GLINT_NODE_PRIM))
                 stack[height++] = child;
-            else if (!R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
+            else if (id != only && !R(sphere_apart)(&geometry->prims[id], tile->lower, tile->upper, &tile->light) &&
                      !R(note_occluder)(tile, id))
                 return;
         }
@@ -111,11 +113,13 @@ static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const glint
 }
 
 /// The box of a group's lanes, loosened.
-static inline void R(group_box)(const R(shadow_tile) * tile, uint32_t g, unsigned lanes, float lower[3], float upper[3])
+static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * group, unsigned lanes, float lower[3],
+                                float upper[3])
 {
+    R(place_group)(tile, group);
     for (int k = 0; k < 3; k++) {
         vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
-        widen(tile->local[g][k], lanes, &least, &most);
+        widen(group->local[k], lanes, &least, &most);
         lower[k] = f_min_all(least);
         upper[k] = f_max_all(most);
     }
@@ -131,7 +135,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_lamp *lam
     uint32_t stack[WALK_STACK];
     int height = 0;
     light_shaft shaft;
-    R(group_box)(tile, (uint32_t)(group->at / GLINT_GROUP), open, lower, upper);
+    R(group_box)(tile, group, open, lower, upper);
     make_shaft(lower, upper, &tile->light, &shaft);
     stack[height++] = 0;
     for (int nodes = 0; height > 0 && open; nodes++) {
@@ -157,15 +161,14 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp
                              unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const float(*local)[GLINT_GROUP] = tile->local[group->at / GLINT_GROUP];
     const float far = tile->args->directional ? HUGE_VALF : 1;
     ray_view ray = { .slack = R(walk_slack)(geometry) };
     uint32_t stack[WALK_STACK];
     int height = 0;
     for (int k = 0; k < 3; k++) {
-        ray.origin[k] = local[k][lane];
+        ray.origin[k] = group->local[k][lane];
         const float light = tile->local_light[k][lane];
-        ray.inverse[k] = 1 / (tile->args->directional ? light : light - local[k][lane]);
+        ray.inverse[k] = 1 / (tile->args->directional ? light : light - group->local[k][lane]);
         // the light's own rounding: as if the box were that much larger
         ray.slack = larger(ray.slack, WALK_SLACK * fabsf(light));
     }
@@ -202,6 +205,7 @@ static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_lamp *lam
                               unsigned open)
 {
     bool done = !tile->args->geometry->nodes;
+    R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
         open = R(test_occluder)(tile, lamp, group, group->last_blocker, open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
@@ -231,33 +235,46 @@ static void R(place_light)(R(shadow_tile) * tile)
         loosen(tile->light.lower, tile->light.upper, R(walk_slack)(geometry));
 }
 
+/// The box of the lit points, in the world.
+static void R(box_of_points)(const glint_occlude_args *args, const uint16_t *lit, glint_point_box *out)
+{
+    R(point_box) box;
+    R(empty_box)(&box);
+    for (uint32_t g = 0; g < args->group_count; g++)
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            const unsigned lanes = lit[g] >> i & ((1u << VR) - 1);
+            vr point[3];
+            if (!lanes)
+                continue;
+            R(load3)(args->point, (size_t)g * GLINT_GROUP + i, point);
+            R(enclose)(&box, point, false, rm_from_bits(lanes));
+        }
+    R(write_box)(box, out);
+    out->only = GLINT_MISS;
+}
+
 /// lit: of the light or of any of its samples, for each group.
 static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16_t *lit, R(shadow_tile) * tile)
 {
     const glint_geometry_table *geometry = args->geometry;
-    vf least[3], most[3];
-    bool any = false;
+    glint_point_box box;
+    unsigned any = 0;
     tile->args = args;
     tile->count = 0;
-    for (int k = 0; k < 3; k++) {
-        least[k] = f_set(HUGE_VALF);
-        most[k] = f_set(-HUGE_VALF);
-    }
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        if (!lit[g])
-            continue;
-        R(index_frame)(args->point, (size_t)g * GLINT_GROUP, geometry, tile->local[g]);
-        for (int k = 0; k < 3; k++)
-            widen(tile->local[g][k], lit[g], &least[k], &most[k]);
-        any = true;
-    }
+    for (uint32_t g = 0; g < args->group_count; g++)
+        any |= lit[g];
     if (!any)
         return;
-    for (int k = 0; k < 3; k++) {
-        tile->lower[k] = f_min_all(least[k]);
-        tile->upper[k] = f_max_all(most[k]);
+    if (!args->box)
+        R(box_of_points)(args, lit, &box);
+    else
+        box = *args->box;
+    for (int k = 0; k < 3; k++) { // as index_frame does it, which keeps the order of numbers
+        const real reference = (real)geometry->reference[k], scale = (real)geometry->scale;
+        tile->lower[k] = (float)(((real)box.lower[k] - reference) * scale);
+        tile->upper[k] = (float)(((real)box.upper[k] - reference) * scale);
     }
     loosen(tile->lower, tile->upper, R(walk_slack)(geometry));
     R(place_light)(tile);
-    R(find_occluders)(tile);
+    R(find_occluders)(tile, box.only);
 }

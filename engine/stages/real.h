@@ -82,3 +82,21 @@
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
 #endif
+
+/// VF lanes of real as floats. What is stored as real and read as float comes by this: a wide load of what narrower
+/// stores left would wait until they are in the cache.
+static inline vf R(load_narrow)(const real *p)
+{
+#if GLINT_REAL == 64
+    return f_join(d_load(p), d_load(p + VD));
+#else
+    return f_load(p);
+#endif
+}
+
+/// A group of reals as floats.
+static inline void R(narrow)(const real from[GLINT_GROUP], float to[GLINT_GROUP])
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        f_store(to + i, R(load_narrow)(from + i));
+}

@@ -398,12 +398,18 @@ static void tone(const glint_tone_args *args)
 
 // ------------------------------------------------------------------------------------------------------------------
 
+// Of one precision, a line each.
+#define GEOMETRY_STAGES(real) \
+    { \
+        .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
+        .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
+        .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, \
+    }
+
 const glint_stages glint_stages_ref = {
     .name = "ref",
-    .geometry = { { camera_double, in_sight_double, cast_bundle_double, cast_rays_double, surface_double, view_double,
-                    light_double, facet_double, occlude_double, bounce_double, vertex_double },
-                  { camera_float, in_sight_float, cast_bundle_float, cast_rays_float, surface_float, view_float,
-                    light_float, facet_float, occlude_float, bounce_float, vertex_float } },
+    .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .shade = shade,
     .resolve = resolve,
     .tone = tone,

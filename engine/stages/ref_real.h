@@ -310,10 +310,33 @@ static void NAME(surface_group)(const glint_surface_args *args, uint32_t group)
     args->dark[group] = (uint16_t)dark;
 }
 
+/// Around every hit's point; what is not a number stays outside.
+static void NAME(surface_box)(const glint_surface_args *args)
+{
+    glint_point_box box = { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
+    bool several = false;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+        if (!(args->hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
+            continue;
+        several = several || args->back[i / GLINT_GROUP] || (box.only != GLINT_MISS && box.only != args->prim[i]);
+        box.only = args->prim[i];
+        for (int k = 0; k < 3; k++) {
+            double x = (double)((const REAL *)args->point[k])[i];
+            box.lower[k] = x < box.lower[k] ? x : box.lower[k];
+            box.upper[k] = x > box.upper[k] ? x : box.upper[k];
+        }
+    }
+    if (several)
+        box.only = GLINT_MISS;
+    *args->box = box;
+}
+
 static void NAME(surface)(const glint_surface_args *args)
 {
     for (uint32_t group = 0; group < args->group_count; group++)
         NAME(surface_group)(args, group);
+    if (args->box)
+        NAME(surface_box)(args);
 }
 
 // ---- light -------------------------------------------------------------------------------------------------------
@@ -464,6 +487,12 @@ static void NAME(light)(const glint_light_args *args)
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (uint32_t group = 0; group < args->group_count; group++)
             NAME(light_group)(args, s, group);
+}
+
+static void NAME(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
+{
+    NAME(surface)(surface);
+    NAME(light)(light);
 }
 
 // ---- occlude -----------------------------------------------------------------------------------------------------

@@ -127,6 +127,12 @@ static inline dm dm_from_bits(unsigned bits)
 static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
 
+/// Two vectors of doubles, rounded.
+static inline vf f_join(vd low, vd high)
+{
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+}
+
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {

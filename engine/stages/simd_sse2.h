@@ -111,6 +111,9 @@ static inline vd d_load_f(const float *p)
 }
 static inline void d_store_f(float *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_castps_si128(_mm_cvtpd_ps(x))); }
 
+/// Two vectors of doubles, rounded.
+static inline vf f_join(vd low, vd high) { return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)); }
+
 /// p = i in the lanes of the mask.
 static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
 {

@@ -86,7 +86,7 @@ static R(soft_group) R(sort_group)(const R(shadow_tile) * tile, R(shadow_group) 
     const glint_occlude_args *args = tile->args;
     R(soft_group) out = { 0 };
     float lower[3], upper[3];
-    R(group_box)(tile, g, lit, lower, upper);
+    R(group_box)(tile, group, lit, lower, upper);
     for (int k = 0; k < tile->count && !out.hidden; k++) {
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];

@@ -229,6 +229,12 @@ typedef struct glint_cast_args {
 
 // ---- surface: point, normal and material of each hit ----
 
+/// A box around points, in the world, and what they are on.
+typedef struct glint_point_box {
+    double lower[3], upper[3]; ///< lower > upper: there is none
+    uint32_t only; ///< the primitive that all of them are on, none seen from behind; GLINT_MISS: not known
+} glint_point_box;
+
 typedef struct glint_surface_args {
     uint32_t group_count;
     const uint16_t *hits;
@@ -247,6 +253,7 @@ typedef struct glint_surface_args {
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
     void
         *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; NULL: not asked
+    glint_point_box *box; ///< out: of all hits' points; NULL: not asked
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
 // and material = 0. Where it is asked, `slack` of lanes that hit no triangle is 0.
@@ -362,6 +369,11 @@ typedef struct glint_light_args {
 //   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
 // In --precision float all of this is float, l2 a included.
 
+// ---- lit_surface: surface and the light of a plain lamp in one ----
+//
+// surface and then light of the same groups, with three differences: there are spheres and planes alone, a light without
+// samples and without a cone, and normals may be left out.
+
 // ---- facet: how a light's half vector lies, for materials of microfacets ----
 
 typedef struct glint_facet_args {
@@ -405,6 +417,7 @@ typedef struct glint_occlude_args {
     const glint_camera_args *camera; ///< the rays that found the points, of a perspective camera; NULL: in direction
     const void *direction[3];
     const void *slack; ///< of surface; read where the table has triangles
+    const glint_point_box *box; ///< of surface, around all lit points and maybe others; NULL: not known
     uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes that nothing blocks
     uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled
 } glint_occlude_args;
@@ -607,6 +620,7 @@ typedef struct glint_stages {
         void (*cast_bundle)(const glint_cast_args *args);
         void (*cast_rays)(const glint_cast_args *args);
         void (*surface)(const glint_surface_args *args);
+        void (*lit_surface)(const glint_surface_args *surface, const glint_light_args *light);
         void (*view)(const glint_view_args *args);
         void (*light)(const glint_light_args *args);
         void (*facet)(const glint_facet_args *args);

@@ -19,8 +19,9 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 }
 
 /// `near`: the origin is known to be within 2^20 radii in every lane.
-static inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius,
-                                     bool near, vr n[3], vr p[3])
+static __attribute__((always_inline)) inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t,
+                                                                    const glint_prim *prim, real inverse_radius,
+                                                                    bool near, vr n[3], vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
     vr ts = t * scale;
@@ -59,38 +60,42 @@ typedef struct R(seen_prim) {
     real normal[3]; ///< of a plane or triangle
 } R(seen_prim);
 
-static void R(see_prim)(const glint_surface_args *args, uint32_t id, R(seen_prim) * seen)
+static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
 {
     const glint_prim *prim = &args->prims[id];
-    *seen = (R(seen_prim)) { .id = id, .prim = prim };
+    R(seen_prim) seen = { .id = id, .prim = prim };
     if (prim->kind != GLINT_PRIM_SPHERE) {
         double n[3] = { prim->normal[0], prim->normal[1], prim->normal[2] };
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             R(triangle_normal)(prim, args->scale, n);
         for (int k = 0; k < 3; k++)
-            seen->normal[k] = (real)n[k];
-        return;
+            seen.normal[k] = (real)n[k];
+        return seen;
     }
-    seen->inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
+    seen.inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
     if (!args->camera)
-        return;
+        return seen;
     for (int k = 0; k < 3; k++)
-        seen->f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
-    seen->near = (seen->f[0] * seen->f[0] + seen->f[1] * seen->f[1]) + seen->f[2] * seen->f[2] < (real)0x1p40;
+        seen.f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
+    seen.near = (seen.f[0] * seen.f[0] + seen.f[1] * seen.f[1]) + seen.f[2] * seen.f[2] < (real)0x1p40;
+    return seen;
 }
 
-/// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
-/// is seen from behind.
-static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
-                                                                       const R(seen_prim) * seen,
-                                                                       R(group_directions) directions, size_t at, int i,
-                                                                       unsigned lanes, bool mixed)
+/// One vector of lanes of one primitive.
+typedef struct R(found) {
+    vr direction[3], point[3], normal[3], slack;
+    rm back;
+} R(found);
+
+static __attribute__((always_inline)) inline void R(find_lanes)(const glint_surface_args *args,
+                                                                const R(seen_prim) * seen,
+                                                                R(group_directions) directions, size_t at, int i,
+                                                                bool mixed, R(found) * found)
 {
     const glint_prim *prim = seen->prim;
-    const bool whole = lanes == (1u << VR) - 1;
-    const rm mask = rm_from_bits(lanes);
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
-    vr d[3], n[3], p[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) }, slack = r_set(0);
+    vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
+    found->slack = r_set(0);
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
     if (prim->kind == GLINT_PRIM_SPHERE) {
@@ -108,23 +113,75 @@ static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const gli
             p[k] = from[k] + t * d[k];
         }
         if (mixed && prim->kind == GLINT_PRIM_TRIANGLE)
-            R(triangle_point)(prim, args->scale, from, d, w, p, &slack);
+            R(triangle_point)(prim, args->scale, from, d, w, p, &found->slack);
         else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
-    const rm back = r_lt(r_set(0), DOT(n, d));
-    vr turned[3] = { r_select(back, -n[0], n[0]), r_select(back, -n[1], n[1]), r_select(back, -n[2], n[2]) };
+    found->back = r_lt(r_set(0), DOT(n, d));
+    for (int k = 0; k < 3; k++)
+        found->normal[k] = r_select(found->back, -n[k], n[k]);
     if (smooth) {
-        const vr facing[3] = { turned[0], turned[1], turned[2] };
-        R(smooth_normal)(&args->corner_normals[prim->item], w, n, facing, turned);
+        const vr facing[3] = { found->normal[0], found->normal[1], found->normal[2] };
+        R(smooth_normal)(&args->corner_normals[prim->item], w, n, facing, found->normal);
     }
+}
+
+/// A box around points. What is not a number stays outside.
+typedef struct R(point_box) {
+    vr least[3], most[3];
+} R(point_box);
+
+static __attribute__((always_inline)) inline void R(empty_box)(R(point_box) * box)
+{
     for (int k = 0; k < 3; k++) {
-        R(put)(args->point[k], at + i, whole, mask, p[k]);
-        R(put)(args->normal[k], at + i, whole, mask, turned[k]);
+        box->least[k] = r_set(HUGE_VAL);
+        box->most[k] = r_set(-HUGE_VAL);
     }
+}
+
+static __attribute__((always_inline)) inline void R(enclose)(R(point_box) * box, const vr point[3], bool whole, rm mask)
+{
+    for (int k = 0; k < 3; k++) {
+        const vr least = r_min(point[k], box->least[k]), most = r_max(point[k], box->most[k]);
+        box->least[k] = whole ? least : r_select(mask, least, box->least[k]);
+        box->most[k] = whole ? most : r_select(mask, most, box->most[k]);
+    }
+}
+
+static void R(write_box)(R(point_box) box, glint_point_box *out)
+{
+    _Alignas(64) real lanes[VR];
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = HUGE_VAL;
+        out->upper[k] = -HUGE_VAL;
+        r_store(lanes, box.least[k]);
+        for (int i = 0; i < VR; i++)
+            out->lower[k] = lanes[i] < out->lower[k] ? (double)lanes[i] : out->lower[k];
+        r_store(lanes, box.most[k]);
+        for (int i = 0; i < VR; i++)
+            out->upper[k] = lanes[i] > out->upper[k] ? (double)lanes[i] : out->upper[k];
+    }
+}
+
+/// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
+/// is seen from behind.
+static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
+                                                                       const R(seen_prim) * seen,
+                                                                       R(group_directions) directions, size_t at, int i,
+                                                                       unsigned lanes, bool mixed, R(point_box) * box)
+{
+    const bool whole = lanes == (1u << VR) - 1;
+    const rm mask = rm_from_bits(lanes);
+    R(found) found;
+    R(find_lanes)(args, seen, directions, at, i, mixed, &found);
+    for (int k = 0; k < 3; k++) {
+        R(put)(args->point[k], at + i, whole, mask, found.point[k]);
+        R(put)(args->normal[k], at + i, whole, mask, found.normal[k]);
+    }
+    R(enclose)(box, found.point, whole, mask);
     if (mixed && args->slack)
-        R(put)(args->slack, at + i, whole, mask, slack);
-    return rm_bits(back) & lanes;
+        R(put)(args->slack, at + i, whole, mask, found.slack);
+    return rm_bits(found.back) & lanes;
 }
 
 /// Zeroes the lanes of a group that is hit in part.
@@ -140,35 +197,83 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
     lanes_put(args->material + at, 0xffff, 0);
 }
 
+/// What is known while the groups of a tile are gone through.
+typedef struct R(surface_walk) {
+    R(seen_prim) seen; ///< the last primitive
+    R(point_box) box;
+    uint32_t only; ///< the only primitive so far, GLINT_MISS: none
+    bool several, turned; ///< there are others; some lane is seen from behind
+} R(surface_walk);
+
+static __attribute__((always_inline)) inline void R(begin_walk)(R(surface_walk) * walk)
+{
+    walk->seen = (R(seen_prim)) { .id = GLINT_MISS };
+    walk->only = GLINT_MISS;
+    walk->several = walk->turned = false;
+    R(empty_box)(&walk->box);
+}
+
+static __attribute__((always_inline)) inline void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk,
+                                                             uint32_t id)
+{
+    if (walk->seen.id == id)
+        return;
+    walk->seen = R(see_prim)(args, id);
+    walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
+    walk->only = id;
+}
+
+static __attribute__((always_inline)) inline void R(end_walk)(const glint_surface_args *args,
+                                                              const R(surface_walk) * walk)
+{
+    if (!args->box)
+        return;
+    R(write_box)(walk->box, args->box);
+    args->box->only = walk->several || walk->turned ? GLINT_MISS : walk->only;
+}
+
+/// One group that is hit, primitive by primitive.
+static __attribute__((always_inline)) inline void
+R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(group_place) place, bool mixed)
+{
+    const uint32_t g = place.g;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    unsigned left = args->hits[g], back = 0, dark = 0;
+    if (left != 0xffff)
+        R(clear_surface)(args, at);
+    while (left) {
+        const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
+        const unsigned lanes = lanes_equal(args->prim + at, id);
+        unsigned behind = 0;
+        R(look_at)(args, walk, id);
+        for (int i = 0; i < GLINT_GROUP; i += VR)
+            if (lanes >> i & ((1u << VR) - 1))
+                behind |= R(surface_lanes)(args, &walk->seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed,
+                                           &walk->box)
+                          << i;
+        lanes_put(args->material + at, lanes, walk->seen.prim->material);
+        back |= behind;
+        if (!walk->seen.prim->two_sided)
+            dark |= behind;
+        left &= ~lanes;
+    }
+    args->back[g] = (uint16_t)back;
+    args->dark[g] = (uint16_t)dark;
+    walk->turned = walk->turned || back;
+}
+
 static __attribute__((always_inline)) inline void R(surface_groups)(const glint_surface_args *args, bool mixed)
 {
-    R(seen_prim) seen = { .id = GLINT_MISS };
+    R(surface_walk) walk;
+    R(begin_walk)(&walk);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        const uint32_t g = place.g;
-        const size_t at = (size_t)g * GLINT_GROUP;
-        const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-        unsigned left = args->hits[g], back = 0, dark = 0;
-        if (left && left != 0xffff)
-            R(clear_surface)(args, at);
-        while (left) {
-            const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
-            const unsigned lanes = lanes_equal(args->prim + at, id);
-            unsigned behind = 0;
-            if (seen.id != id)
-                R(see_prim)(args, id, &seen);
-            for (int i = 0; i < GLINT_GROUP; i += VR)
-                if (lanes >> i & ((1u << VR) - 1))
-                    behind |= R(surface_lanes)(args, &seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed)
-                              << i;
-            lanes_put(args->material + at, lanes, seen.prim->material);
-            back |= behind;
-            if (!seen.prim->two_sided)
-                dark |= behind;
-            left &= ~lanes;
-        }
-        args->back[g] = (uint16_t)back;
-        args->dark[g] = (uint16_t)dark;
+        if (args->hits[place.g])
+            R(surface_group)(args, &walk, place, mixed);
+        else
+            args->back[place.g] = args->dark[place.g] = 0;
     }
+    R(end_walk)(args, &walk);
 }
 
 /// Each way is compiled for its constant.
