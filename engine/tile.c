@@ -30,6 +30,7 @@ static bool find_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uin
     glint_kept_tile *kept = tile->kept;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
     const bool known = kept && glint_key_equal(kept->cast, frame->plan->keys[GLINT_STAGE_CAST]);
+    tile->at.box = NULL;
     tile->at.t = tile->t;
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;

@@ -52,6 +52,7 @@ typedef struct glint_tile_sample {
     void *t;
     uint32_t *prim;
     uint16_t *hits;
+    const glint_point_box *box; ///< of the points, NULL: not known
     const uint16_t *sampled; ///< of these, the lanes whose light is worked out for themselves
     struct {
         float *cosine, *attenuation, *log2_specular;
@@ -80,7 +81,7 @@ typedef struct glint_tile {
     bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
-    glint_point_box box; ///< of its points, once they are found
+    glint_point_box box; ///< what at.box points to
     uint32_t sample; ///< which it is
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture

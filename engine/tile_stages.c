@@ -152,6 +152,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_surface_args args = surface_args(tile, frame);
     frame->stages->geometry[frame->plan->desc.precision].surface(&args);
+    tile->at.box = args.box;
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
 }
 
@@ -217,6 +218,7 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     const glint_surface_args surface = surface_args(tile, frame);
     const glint_light_args args = light_args(tile, frame, light, &slot, 1);
     frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
+    tile->at.box = surface.box;
     glint_tile_count_light(tile, frame, 1);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
@@ -237,7 +239,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->slack,
-                                .box = &tile->box,
+                                .box = tile->at.box,
                                 .rays = &tile->counts.shadow };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
