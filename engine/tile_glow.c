@@ -189,6 +189,7 @@ static void own_hits(glint_tile *tile, glint_precision precision)
     tile->at.t = tile->t;
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;
+    tile->at.sampled = tile->hits;
 }
 
 static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
