@@ -52,6 +52,7 @@ static const glintL_field ROUND_FIELDS[] = {
     { .name = "base", .kind = GLINTL_VECTOR, .offset = AT(base), .required = true },
     { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
     { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "capped", .kind = GLINTL_BOOLEAN, .offset = AT(capped) },
     EVERY_SHAPE,
     { .name = NULL },
 };

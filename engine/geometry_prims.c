@@ -58,9 +58,9 @@ static void solid_bounds(const glint_solid *solid, const double center[3], doubl
             high = sqrt(vec_dot(m, m));
         else if (solid->form == GLINT_FORM_BOX)
             high = (fabs(m[0]) + fabs(m[1])) + fabs(m[2]);
-        else if (solid->form == GLINT_FORM_CYLINDER)
+        else if (solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE)
             high = round + fabs(m[2]);
-        if (solid->form == GLINT_FORM_CONE) {
+        if (solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL) {
             low = fmin(0, m[2] - round);
             high = fmax(0, m[2] + round);
         } else {
@@ -111,17 +111,17 @@ static void round_map(double m[3][4], const double origin[3], const double along
     }
 }
 
-static glint_form form_of(glint_shape_kind kind)
+static glint_form form_of(const glint_shape_desc *desc)
 {
-    switch (kind) {
+    switch (desc->kind) {
     case GLINT_SHAPE_BOX:
         return GLINT_FORM_BOX;
     case GLINT_SHAPE_DISK:
         return GLINT_FORM_DISK;
     case GLINT_SHAPE_CYLINDER:
-        return GLINT_FORM_CYLINDER;
+        return desc->capped ? GLINT_FORM_CYLINDER : GLINT_FORM_TUBE;
     case GLINT_SHAPE_CONE:
-        return GLINT_FORM_CONE;
+        return desc->capped ? GLINT_FORM_CONE : GLINT_FORM_FUNNEL;
     default:
         return GLINT_FORM_BALL;
     }
@@ -297,7 +297,7 @@ static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc,
     if (place->map)
         map = glint_transform_product(place->map, &map);
     prim->item = f->solid_count++;
-    solid_init(prim, &f->geometry->solids[prim->item], form_of(desc->kind), &map);
+    solid_init(prim, &f->geometry->solids[prim->item], form_of(desc), &map);
 }
 
 static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const placing *place)

@@ -196,8 +196,8 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_MESH, ///< made by the functions of meshes
     GLINT_SHAPE_BOX,
     GLINT_SHAPE_DISK,
-    GLINT_SHAPE_CYLINDER, ///< closed at both ends
-    GLINT_SHAPE_CONE, ///< closed at its base
+    GLINT_SHAPE_CYLINDER,
+    GLINT_SHAPE_CONE,
     GLINT_SHAPE_GROUP ///< of shapes; see glint_group_add
 } glint_shape_kind;
 
@@ -233,6 +233,8 @@ typedef struct glint_shape_desc {
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
     double base[3], top[3]; ///< cylinder, cone: the middles of its ends; the cone's top is its apex; not the same place
+    bool capped; ///< cylinder: closed at both ends, cone: at its base; default true. False: its side alone, seen from
+        ///< within too; it has no inside, so that what it transmits is bent as by a solid that never ends
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;

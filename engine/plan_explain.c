@@ -171,6 +171,10 @@ static bool is_shaded(const glint_shape *shape, glint_shading shading)
 {
     return shape->mesh && shape->desc.shading == shading;
 }
+static bool is_uncapped(const glint_shape *shape)
+{
+    return (shape->desc.kind == GLINT_SHAPE_CYLINDER || shape->desc.kind == GLINT_SHAPE_CONE) && !shape->desc.capped;
+}
 static bool is_smooth(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_PHONG); }
 static bool is_flat(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_FLAT); }
 static bool is_gouraud(const glint_shape *shape) { return is_shaded(shape, GLINT_SHADING_GOURAUD); }
@@ -228,6 +232,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
             shapes(e, "Gouraud shading", is_gouraud);
         }
         shapes(e, "solid by an affine map", is_solid);
+        shapes(e, "open cylinder or cone", is_uncapped);
     }
     if (plan->highlights) {
         materials(e, "Phong highlight", is_phong);

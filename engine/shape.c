@@ -15,6 +15,7 @@ glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
     return (glint_shape_desc) { .kind = kind,
                                 .transform = glint_transform_identity(),
                                 .two_sided = true,
+                                .capped = true,
                                 .radius = 1,
                                 .normal = { 0, 1, 0 },
                                 .min = { -1, -1, -1 },

@@ -46,6 +46,7 @@ picture mirror_and_glass_float scripts/mirror_and_glass.lua --precision float
 picture soft_shadows_0011 scripts/soft_shadows.lua -f 11
 picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
 picture lamps scripts/lamps.lua
+picture lampshade scripts/lampshade.lua
 picture spotlights scripts/spotlights.lua
 picture lobes scripts/lobes.lua
 picture roughness scripts/roughness.lua

@@ -108,7 +108,7 @@ static const field shape_fields[] = {
     S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
     S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 4),
     S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
-    S(top, VECTOR, -2, 2),         S(name, FIXED, 0, 0),
+    S(top, VECTOR, -2, 2),         S(capped, FLAG, 0, 1),    S(name, FIXED, 0, 0),
 #undef S
 };
 

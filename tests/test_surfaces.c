@@ -242,7 +242,8 @@ static glint_transform random_map(double move)
     return out;
 }
 
-static glint_shape *random_solid(int kind)
+/// capped: closed for certain.
+static glint_shape *random_solid(int kind, bool capped)
 {
     glint_shape *shape;
     glint_shape_desc d = glint_shape_desc_default((glint_shape_kind)kind);
@@ -256,6 +257,7 @@ static glint_shape *random_solid(int kind)
     }
     d.radius = uniform(0.2, 1.5);
     d.two_sided = draw(2);
+    d.capped = capped || draw(2);
     if (draw(4))
         d.transform = random_map(2);
     assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
@@ -273,7 +275,7 @@ static glint_shape *random_group(uint32_t count)
     d.transform = random_map(3);
     assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
     for (uint32_t i = 0; i < count; i++) {
-        glint_shape *shape = random_solid(kinds[draw(5)]);
+        glint_shape *shape = random_solid(kinds[draw(5)], false);
         assert_int_equal(glint_group_add(outer, shape, NULL), GLINT_OK);
         if (draw(2))
             assert_int_equal(glint_group_add(inner, shape, NULL), GLINT_OK);
@@ -600,7 +602,7 @@ static void solids_against_oracle(void **unused)
     (void)unused;
     for (int n = 0; n < 4000; n++) {
         state = (uint64_t)n;
-        glint_shape *shape = random_solid(kinds[n % 4]);
+        glint_shape *shape = random_solid(kinds[n % 4], true);
         const glint_shape_desc d = *glint_shape_get(shape);
         double o[3], dir[3], aim[3];
         quad m[3][4], p[3];

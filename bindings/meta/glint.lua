@@ -396,11 +396,11 @@ function disk:close() end
 ---@return glint.disk
 function glint.disk(fields) end
 
---- Closed at both ends.
 ---@class glint.cylinder_fields: glint.shape_fields
 ---@field base glint.vec3  the middle of one end
 ---@field top glint.vec3  the middle of the other; not the same place
 ---@field radius number  world units, > 0
+---@field capped? boolean  closed at both ends; false: its side alone, seen from within too. Default true
 
 ---@class glint.cylinder: glint.cylinder_fields
 local cylinder = {}
@@ -412,11 +412,11 @@ function cylinder:close() end
 ---@return glint.cylinder
 function glint.cylinder(fields) end
 
---- Closed at its base.
 ---@class glint.cone_fields: glint.shape_fields
 ---@field base glint.vec3  the middle of the base
 ---@field top glint.vec3  the apex; not the same place
 ---@field radius number  of the base, world units, > 0
+---@field capped? boolean  closed at its base; false: its side alone, seen from within too. Default true
 
 ---@class glint.cone: glint.cone_fields
 local cone = {}

@@ -212,8 +212,9 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
                                     unsigned outside)
 {
     const glint_solid *solid = &args->geometry->solids[prim->item];
-    unsigned blocked = solid->form == GLINT_FORM_DISK ? 0 : own & args->back[at / GLINT_GROUP] & outside;
-    wanted &= ~own;
+    const unsigned back = own & args->back[at / GLINT_GROUP], within = is_open(solid) ? back : 0;
+    unsigned blocked = solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
+    wanted &= ~(own & ~within);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr p[3], d[3];
@@ -221,7 +222,8 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
             continue;
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
-        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional)) & lanes) << i;
+        const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine)) & lanes) << i;
     }
     return blocked;
 }

@@ -12,7 +12,7 @@ static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t a
         vr e[3];
         R(to_unit)(solid, d, e);
         const R(span) span = R(span_of)(solid, f, e);
-        const rm leaves = rm_and(span.hit, r_lt(r_set(0), span.t[1]));
+        const rm leaves = rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), span.t[1]));
         *t = r_select(mask, span.t[1], *t);
         return rm_or(rm_andnot(hit, mask), rm_and(rm_from_bits(solid->form == GLINT_FORM_DISK ? 0 : inward), leaves));
     }

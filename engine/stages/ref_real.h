@@ -167,7 +167,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     if (prim->kind == GLINT_PRIM_SOLID && inward) {
         const glint_solid *solid = &args->geometry->solids[prim->item];
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
-        *t = p.hit && p.out.t > 0 && solid->form != GLINT_FORM_DISK ? p.out.t : 0;
+        *t = p.hit && !p.ends && p.out.t > 0 && solid->form != GLINT_FORM_DISK ? p.out.t : 0;
     }
     if (prim->kind != GLINT_PRIM_SPHERE || !inward)
         return true;
@@ -533,12 +533,14 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
             return back ? plane.light > 0 : plane.light < 0;
         return NAME(triangle_blocks)(args, prim, plane, NAME(rounded)(position), i);
     }
-    bool flat = prim->kind == GLINT_PRIM_PLANE ||
-                (prim->kind == GLINT_PRIM_SOLID && args->geometry->solids[prim->item].form == GLINT_FORM_DISK);
-    if (own)
-        return !flat && back && side > 0;
-    if (prim->kind == GLINT_PRIM_SOLID)
-        return NAME(solid_blocks)(args, prim, NAME(rounded)(position), NAME(load)(args->point, i));
+    bool solid = prim->kind == GLINT_PRIM_SOLID;
+    uint32_t form = solid ? args->geometry->solids[prim->item].form : GLINT_FORM_BALL;
+    bool open = form == GLINT_FORM_TUBE || form == GLINT_FORM_FUNNEL;
+    if (own && !open)
+        return prim->kind != GLINT_PRIM_PLANE && form != GLINT_FORM_DISK && back && side > 0;
+    if (solid)
+        return (back || !own) &&
+               NAME(solid_blocks)(args, prim, NAME(rounded)(position), NAME(load)(args->point, i), own);
     NAME(vec3) point = NAME(load)(args->point, i);
     return sphere ? NAME(sphere_blocks)(args, prim, side, NAME(rounded)(position), point)
                   : NAME(plane_blocks)(prim, side, point);

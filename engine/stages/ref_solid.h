@@ -9,6 +9,7 @@ typedef struct NAME(crossing) {
 typedef struct NAME(passage) {
     bool hit;
     NAME(crossing) in, out;
+    bool ends; ///< an open form: the ray leaves through an end of it
 } NAME(passage);
 
 static NAME(vec3) NAME(into_unit)(const glint_solid *solid, NAME(vec3) v)
@@ -49,11 +50,12 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
     b = -b;
     c = c - 1;
     if (a == 0)
-        return (NAME(passage)) { c <= 0, { .t = -INFINITY }, { .t = INFINITY } };
+        return (NAME(passage)) { .hit = c <= 0, .in = { .t = -INFINITY }, .out = { .t = INFINITY } };
     REAL disc = b * b < a ? b * b - a * c : a - across;
     REAL s = NAME(square_root)(NAME(max)(disc, 0));
     REAL q = b >= 0 ? b + s : b - s, far = q / a, other = c / q;
-    return (NAME(passage)) { disc >= 0, { .t = b >= 0 ? other : far }, { .t = b >= 0 ? far : other } };
+    return (
+        NAME(passage)) { .hit = disc >= 0, .in = { .t = b >= 0 ? other : far }, .out = { .t = b >= 0 ? far : other } };
 }
 
 static NAME(passage) NAME(pass_cone)(NAME(vec3) f, NAME(vec3) e)
@@ -67,32 +69,44 @@ static NAME(passage) NAME(pass_cone)(NAME(vec3) f, NAME(vec3) e)
     REAL low = NAME(min)(far, other), high = NAME(max)(far, other);
     if (a < 0 || a == 0) {
         REAL end = a == 0 ? c / (2 * b) : e.z > 0 ? high : low;
-        return (NAME(passage)) { true, { .t = e.z > 0 ? end : -INFINITY }, { .t = e.z > 0 ? INFINITY : end } };
+        return (NAME(passage)) { .hit = true,
+                                 .in = { .t = e.z > 0 ? end : -INFINITY },
+                                 .out = { .t = e.z > 0 ? INFINITY : end } };
     }
-    return (NAME(passage)) { disc >= 0, { .t = low }, { .t = high } };
+    return (NAME(passage)) { .hit = disc >= 0, .in = { .t = low }, .out = { .t = high } };
 }
 
 static NAME(passage) NAME(pass_disk)(NAME(vec3) f, NAME(vec3) e)
 {
     NAME(crossing) at = { .t = -f.z / e.z, .flat = true, .face = { 0, 0, 1 } };
     REAL x = f.x + at.t * e.x, y = f.y + at.t * e.y;
-    return (NAME(passage)) { x * x + y * y <= 1, at, at };
+    return (NAME(passage)) { .hit = x * x + y * y <= 1, .in = at, .out = at };
 }
 
 static NAME(passage) NAME(pass_solid)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e)
 {
-    NAME(passage) p = { true, { .t = -INFINITY }, { .t = INFINITY } };
-    if (solid->form == GLINT_FORM_BALL || solid->form == GLINT_FORM_CYLINDER)
+    NAME(passage) p = { .hit = true, .in = { .t = -INFINITY }, .out = { .t = INFINITY } };
+    bool cylinder = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE;
+    bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    if (solid->form == GLINT_FORM_BALL || cylinder)
         p = NAME(pass_round)(f, e, solid->form == GLINT_FORM_BALL);
-    else if (solid->form == GLINT_FORM_CONE)
+    else if (cone)
         p = NAME(pass_cone)(f, e);
     else if (solid->form == GLINT_FORM_DISK)
         p = NAME(pass_disk)(f, e);
-    if (solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_CONE)
-        NAME(pass_slab)(&p, f, e, 2, solid->form == GLINT_FORM_CONE ? 0 : -1);
+    if (cylinder || cone)
+        NAME(pass_slab)(&p, f, e, 2, cone ? 0 : -1);
     for (int axis = 0; axis < 3 && solid->form == GLINT_FORM_BOX; axis++)
         NAME(pass_slab)(&p, f, e, axis, -1);
     p.hit = p.hit && p.in.t <= p.out.t;
+    if (solid->form != GLINT_FORM_TUBE && solid->form != GLINT_FORM_FUNNEL)
+        return p;
+    p.ends = p.out.flat;
+    p.hit = p.hit && !(p.in.flat && p.out.flat);
+    if (p.in.flat)
+        p.in = p.out;
+    else if (p.out.flat)
+        p.out = p.in;
     return p;
 }
 
@@ -119,8 +133,9 @@ static NAME(vec3) NAME(onto_side)(uint32_t form, NAME(vec3) * k)
         *k = NAME(over)(*k, NAME(square_root)(round + k->z * k->z));
         return *k;
     }
-    REAL length = NAME(square_root)(round), radius = form == GLINT_FORM_CONE ? k->z : 1;
-    NAME(vec3) g = NAME(vec)(0, 0, form == GLINT_FORM_CONE ? -1 : 0);
+    bool cone = form == GLINT_FORM_CONE || form == GLINT_FORM_FUNNEL;
+    REAL length = NAME(square_root)(round), radius = cone ? k->z : 1;
+    NAME(vec3) g = NAME(vec)(0, 0, cone ? -1 : 0);
     if (length > 0) {
         g.x = k->x / length;
         g.y = k->y / length;
@@ -160,12 +175,13 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
     return NAME(add)(NAME(rounded)(prim->center), NAME(vec)(offset[0], offset[1], offset[2]));
 }
 
+/// `own`: the segment begins on it, within.
 static bool NAME(solid_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
-                               NAME(vec3) point)
+                               NAME(vec3) point, bool own)
 {
     NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
     NAME(passage) p = NAME(pass_prim)(&args->geometry->solids[prim->item], prim, point, d);
     REAL unit = args->directional ? 1 : (REAL)args->scale, end = args->directional ? (REAL)INFINITY : 1;
     bool in = p.in.t > 0 && p.in.t * unit<end, out = p.out.t> 0 && p.out.t * unit < end;
-    return p.hit && (in || out);
+    return p.hit && (own ? out && !p.ends : in || out);
 }

@@ -1,10 +1,12 @@
-// solid: what cast, surface and occlude ask of affine images of the unit ball, cube, cylinder, cone and disk. The ray is
+// solid: what cast, surface and occlude ask of affine images of the unit ball, cube, cylinder, cone and disk, and of a
+// cylinder's and a cone's side alone. The ray is
 // taken to where the shape is the unit one; its t stays. Contract: stages.h.
 
 /// Where a ray goes into a solid and where it leaves.
 typedef struct R(span) {
     vr t[2];
     rm hit;
+    rm second; ///< t[1] is where the ray leaves: of an open form, through the side
     rm flat[2]; ///< by way of a face of the slab, not of the curved side
     vr face[2][3]; ///< the outward normal of that face
 } R(span);
@@ -95,6 +97,18 @@ static inline void R(cut_cone)(R(span) * span, const vr f[3], const vr e[3])
     span->hit = rm_or(open, r_le(zero, disc));
 }
 
+/// Takes the faces of a cylinder or cone away: what went through one meets the side once or not at all.
+static inline void R(open_ends)(R(span) * span)
+{
+    const rm none = rm_from_bits(0);
+    const vr in = span->t[0];
+    span->t[0] = r_select(span->flat[0], span->t[1], in);
+    span->t[1] = r_select(span->flat[1], in, span->t[1]);
+    span->second = rm_andnot(span->second, span->flat[1]);
+    span->hit = rm_andnot(span->hit, rm_and(span->flat[0], span->flat[1]));
+    span->flat[0] = span->flat[1] = none;
+}
+
 static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const vr e[3])
 {
     const vr zero = r_set(0);
@@ -102,6 +116,7 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
     R(span)
     span = { .t = { r_set(-HUGE_VAL), r_set(HUGE_VAL) },
              .hit = all,
+             .second = all,
              .flat = { none, none },
              .face = { { zero, zero, zero }, { zero, zero, zero } } };
     switch (solid->form) {
@@ -109,10 +124,12 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
         R(cut_round)(&span, f, e, true);
         break;
     case GLINT_FORM_CYLINDER:
+    case GLINT_FORM_TUBE:
         R(cut_round)(&span, f, e, false);
         R(cut_by_slab)(&span, f, e, 2, -1);
         break;
     case GLINT_FORM_CONE:
+    case GLINT_FORM_FUNNEL:
         R(cut_cone)(&span, f, e);
         R(cut_by_slab)(&span, f, e, 2, 0);
         break;
@@ -129,6 +146,8 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
         break;
     }
     span.hit = rm_and(span.hit, r_le(span.t[0], span.t[1]));
+    if (is_open(solid))
+        R(open_ends)(&span);
     return span;
 }
 
@@ -152,13 +171,14 @@ static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
         return;
     }
     const vr length = r_sqrt(round);
-    const vr radius = form == GLINT_FORM_CONE ? k[2] : r_set(1);
+    const bool cone = form == GLINT_FORM_CONE || form == GLINT_FORM_FUNNEL;
+    const vr radius = cone ? k[2] : r_set(1);
     const rm off_axis = r_lt(r_set(0), length);
     for (int c = 0; c < 2; c++) {
         g[c] = r_select(off_axis, k[c] / length, r_set(0));
         k[c] = g[c] * radius;
     }
-    g[2] = form == GLINT_FORM_CONE ? r_set(-1) : r_set(0);
+    g[2] = cone ? r_set(-1) : r_set(0);
 }
 
 /// Where a ray meets the solid, and the unit normal there.
@@ -195,16 +215,17 @@ static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *
         n[c] = n[c] / length;
 }
 
-/// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere.
+/// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes
+/// of `own` they begin on it, within: what they can meet is the other side of an open form.
 static inline rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
-                                 double scale, bool directional)
+                                 double scale, bool directional, rm own)
 {
     vr f[3], e[3];
     R(unit_offset)(solid, prim, point, f);
     R(to_unit)(solid, d, e);
     const R(span) span = R(span_of)(solid, f, e);
     const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
-    const rm first = rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end));
+    const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
-    return rm_and(span.hit, rm_or(first, second));
+    return rm_and(span.hit, rm_or(first, rm_andnot(second, rm_andnot(own, span.second))));
 }

@@ -89,7 +89,9 @@ typedef enum glint_form {
     GLINT_FORM_BOX,
     GLINT_FORM_CYLINDER,
     GLINT_FORM_CONE,
-    GLINT_FORM_DISK
+    GLINT_FORM_DISK,
+    GLINT_FORM_TUBE, ///< a cylinder's and a cone's side alone, which has no inside
+    GLINT_FORM_FUNNEL
 } glint_form;
 
 /// The image of a unit shape under center + forward k.
@@ -221,9 +223,11 @@ typedef struct glint_cast_args {
 //                 where in < enter: in = enter, by this face; where leave < out: out = leave, by this face
 //                 disk: in = out = -f.z / e.z; x = f.x + in e.x, y likewise; hits where x x + y y <= 1
 //                 and in <= out
+//                 tube, funnel: as cylinder and cone, without the faces: where `in` is by a face, in = out, and where `out` is,
+//                 out = in; both: no hit
 // A ray meets the primitive that it leaves by a rule of its own: a sphere is hit where the lane is inward, b > 0 and
 //                 disc >= 0, at t = (b + b) / (a * scale), t > 0; a solid other than a disk where the lane is inward and its
-//                 span hits, at t = out, t > 0; nothing else is.
+//                 span hits, at t = out, t > 0 (tube, funnel: where `out` is not by a face); nothing else is.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
@@ -450,7 +454,8 @@ typedef struct glint_occlude_args {
 // solid:  d as of spheres, in and out of the ray from `point` along d: blocked = hits and (0 < in and in scale < 1 or
 //         0 < out and out scale < 1); directional: < inf, without scale
 //         light_side, double: k = inverse (position - center): -1 where k is inside of all bounds of the form, else 1; directional: 1
-//   The own: a disk never blocks; others, being convex: blocked where `back` and light_side > 0.
+//   The own: a disk never blocks; tube and funnel: blocked where `back` and the span hits, `out` is not by a face, 0 < out and
+//         out scale < 1 (directional: < inf); others, being convex: blocked where `back` and light_side > 0.
 //   Of triangles: a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
 
 // ---- vertex: light that was worked out once for a face or a vertex ----

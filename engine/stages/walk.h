@@ -293,6 +293,12 @@ static inline bool is_stopped(const atomic_bool *stop)
 
 // ---- On which side of a solid a light is ----
 
+/// Whether it is a side alone.
+static inline bool is_open(const glint_solid *solid)
+{
+    return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
+}
+
 /// Whether a place at `offset` from the centre is inside, not on, the solid. Double, whatever the precision.
 static inline bool within_solid(const glint_solid *solid, const double offset[3])
 {
