@@ -148,6 +148,23 @@ static const glintL_field *writable_field(lua_State *L, const glintL_class *clas
     return NULL;
 }
 
+// Reading a table allocates, which may run a finalizer of the script that changes or closes the object: its description is
+// got again, and what was read put into that.
+static void *read_nested(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
+{
+    description fields = *desc;
+    glintL_read_field(L, 3, class->variant(glintL_check_object(L, 1, class->type))->name, field, &fields);
+    void *object = glintL_check_object(L, 1, class->type);
+    class->get(object, desc);
+    for (const glintL_field *f = field->nested; f->name; f++) {
+        memcpy(desc->bytes + f->offset, fields.bytes + f->offset, (f->kind == GLINTL_COLOR ? 3 : 1) * sizeof(double));
+        if (f->set_offset)
+            desc->bytes[f->set_offset] = fields.bytes[f->set_offset];
+    }
+    desc->bytes[field->set_offset] = fields.bytes[field->set_offset];
+    return object;
+}
+
 static int write_member(lua_State *L)
 {
     const glintL_class *class = this_class(L);
@@ -161,7 +178,9 @@ static int write_member(lua_State *L)
     if (part < 0)
         field = writable_field(L, class, variant, name);
     class->get(object, &desc);
-    if (field)
+    if (field && field->kind == GLINTL_NESTED)
+        object = read_nested(L, class, field, &desc);
+    else if (field)
         glintL_read_field(L, 3, variant->name, field, &desc);
     else
         read_component(L, variant, part, &desc);

@@ -186,6 +186,20 @@ static void read_transform(lua_State *L, int index, const char *path, glint_tran
     *out = t ? *t : glint_transform_identity();
 }
 
+// What push_nested gave is read from the table behind it.
+static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
+{
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "table");
+    luaL_checkstack(L, 2, "table");
+    const int top = lua_gettop(L);
+    if (luaL_getmetafield(L, index, "__index") != LUA_TTABLE)
+        lua_pushvalue(L, index);
+    field->begin_nested(desc);
+    glintL_read_table(L, -1, path, field->nested, desc, false);
+    lua_settop(L, top);
+}
+
 // Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
 // whose pointer was read.
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
@@ -235,6 +249,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     case GLINTL_TRANSFORM:
         read_transform(L, index, full, out);
         break;
+    case GLINTL_NESTED:
+        read_nested(L, index, full, field, desc);
+        break;
     case GLINTL_OTHER:
         break;
     }
@@ -265,6 +282,40 @@ static void push_points(lua_State *L, const void *in)
         glintL_push_vector(L, points[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
+}
+
+static int refuse_part(lua_State *L)
+{
+    return glintL_error(L, "%s: assign a whole table; its fields are only read", lua_tostring(L, lua_upvalueindex(1)));
+}
+
+static int each_part(lua_State *L)
+{
+    lua_getglobal(L, "next");
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_pushnil(L);
+    return 3;
+}
+
+// An empty table that reads as one of the fields' values: assigning to a field of what was read would not reach the object.
+static void push_nested(lua_State *L, const glintL_field *field, const void *desc)
+{
+    luaL_checkstack(L, 6, "field");
+    lua_newtable(L);
+    lua_newtable(L); // its metatable
+    lua_newtable(L); // the values
+    for (const glintL_field *f = field->nested; f->name; f++) {
+        glintL_push_field(L, f, desc);
+        lua_setfield(L, -2, f->name);
+    }
+    lua_pushvalue(L, -1);
+    lua_pushcclosure(L, each_part, 1);
+    lua_setfield(L, -3, "__pairs");
+    lua_setfield(L, -2, "__index");
+    lua_pushstring(L, field->name);
+    lua_pushcclosure(L, refuse_part, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_setmetatable(L, -2);
 }
 
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc)
@@ -308,6 +359,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         break;
     case GLINTL_TRANSFORM:
         glintL_push_transform(L, in);
+        break;
+    case GLINTL_NESTED:
+        push_nested(L, field, desc);
         break;
     case GLINTL_OTHER:
         lua_pushnil(L);

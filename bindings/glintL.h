@@ -25,6 +25,7 @@ typedef enum glintL_kind {
     GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
     GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
     GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
+    GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
 
@@ -35,6 +36,8 @@ typedef struct glintL_field {
     size_t set_offset; ///< of a bool that says the field was set (has_ambient ...); 0: none
     const char *const *names; ///< GLINTL_ENUM, GLINTL_OBJECT
     bool required; ///< in the constructor's table
+    const struct glintL_field *nested; ///< GLINTL_NESTED
+    void (*begin_nested)(void *desc); ///< GLINTL_NESTED: writes the defaults of its fields
 } glintL_field;
 
 /// Raises `message` with the position of the Lua code that called.

@@ -11,10 +11,29 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 static const char *const CAMERA[] = { GLINTL_CAMERA };
 
+static const glintL_field DEPTH_CUE[] = {
+    { .name = "color", .kind = GLINTL_COLOR, .offset = AT(depth_cue_color), .set_offset = AT(has_depth_cue_color) },
+    { .name = "near", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_near) },
+    { .name = "far", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_far), .required = true },
+    { .name = NULL },
+};
+
+static void begin_depth_cue(void *desc)
+{
+    ((desc_type *)desc)->has_depth_cue_color = false;
+    ((desc_type *)desc)->depth_cue_near = 0;
+}
+
 static const glintL_field FIELDS[] = {
     { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
     { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
     { .name = "background", .kind = GLINTL_COLOR, .offset = AT(background) },
+    { .name = "depth_cue",
+      .kind = GLINTL_NESTED,
+      .offset = AT(depth_cue_near),
+      .set_offset = AT(has_depth_cue),
+      .nested = DEPTH_CUE,
+      .begin_nested = begin_depth_cue },
     { .name = NULL },
 };
 

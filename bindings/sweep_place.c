@@ -39,6 +39,59 @@ static void push_axis_name(lua_State *L, int axes, lua_Integer i)
     lua_settop(L, top + 1);
 }
 
+// Pushes the least string among the keys of the table at `value` that comes after the one at `after` (nil: of all), or nil.
+static void push_next_name(lua_State *L, int value, int after)
+{
+    lua_pushnil(L);
+    int least = lua_gettop(L);
+    lua_pushnil(L);
+    while (lua_next(L, value)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING && (lua_isnil(L, after) || lua_compare(L, after, -1, LUA_OPLT)) &&
+            (lua_isnil(L, least) || lua_compare(L, -1, least, LUA_OPLT))) {
+            lua_pushvalue(L, -1);
+            lua_replace(L, least);
+        }
+    }
+}
+
+// Pushes the table at `value`, of numbers or of named ones: a vector, a colour, the fields of indirect.
+static void push_table_text(lua_State *L, int value)
+{
+    luaL_Buffer text;
+    const char *between = "{";
+    lua_pushnil(L);
+    int name = lua_gettop(L);
+    luaL_buffinit(L, &text);
+    for (lua_Integer k = 1; k <= (lua_Integer)lua_rawlen(L, value); k++) {
+        luaL_addstring(&text, between);
+        lua_rawgeti(L, value, k);
+        luaL_tolstring(L, -1, NULL);
+        lua_remove(L, -2);
+        luaL_addvalue(&text);
+        between = ", ";
+    }
+    for (;;) {
+        push_next_name(L, value, name);
+        lua_replace(L, name);
+        if (lua_isnil(L, name))
+            break;
+        luaL_addstring(&text, between);
+        lua_pushvalue(L, name);
+        luaL_addvalue(&text);
+        luaL_addstring(&text, " = ");
+        lua_pushvalue(L, name);
+        lua_rawget(L, value);
+        luaL_tolstring(L, -1, NULL);
+        lua_remove(L, -2);
+        luaL_addvalue(&text);
+        between = ", ";
+    }
+    luaL_addstring(&text, *between == '{' ? "{}" : "}");
+    luaL_pushresult(&text);
+    lua_remove(L, name);
+}
+
 // Pushes how the value on top, number `i` of its axis, is spelt on one line.
 static void push_value_text(lua_State *L, int64_t i)
 {
@@ -47,17 +100,8 @@ static void push_value_text(lua_State *L, int64_t i)
     if (lua_type(L, value) == LUA_TNUMBER && !lua_isinteger(L, value)) {
         glintL_format_number(number, lua_tonumber(L, value));
         lua_pushstring(L, number);
-    } else if (lua_istable(L, value)) { // of numbers: a vector or a colour
-        lua_pushliteral(L, "{");
-        for (lua_Integer k = 1; k <= (lua_Integer)lua_rawlen(L, value); k++) {
-            lua_rawgeti(L, value, k);
-            lua_pushfstring(L, k > 1 ? ", %s" : "%s", luaL_tolstring(L, -1, NULL));
-            lua_insert(L, value + 2);
-            lua_settop(L, value + 2);
-            lua_concat(L, 2);
-        }
-        lua_pushliteral(L, "}");
-        lua_concat(L, 2);
+    } else if (lua_istable(L, value)) {
+        push_table_text(L, value);
     } else if (lua_isuserdata(L, value) && !glintL_to_vector(L, value)) { // an object
         lua_pushfstring(L, "number %d", (int)i);
     } else {

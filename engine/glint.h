@@ -326,6 +326,13 @@ typedef struct glint_scene_desc {
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
     double ambient[3]; ///< finite, >= 0; default 0
     double background[3]; ///< finite, >= 0; default 0
+    /// Light fades with the distance d of the first surface from the eye (that of the pass depth) towards a colour:
+    /// f = min(max((d - near) / (far - near), 0), 1) of the colour and 1 - f of the light. The colour's share is in the term
+    /// of the background; the background itself, and what mirrors show, do not fade
+    bool has_depth_cue;
+    bool has_depth_cue_color; ///< false: `background`
+    double depth_cue_color[3]; ///< finite, >= 0
+    double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
 } glint_scene_desc;
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error);

@@ -6,9 +6,9 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",    "glow",    "surface", "view",
-                                                           "light",  "facet",   "occlude", "vertex",  "shade",
-                                                           "bounce", "resolve", "tone",    "outline" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",  "glow",    "surface", "view",
+                                                           "light",  "facet", "occlude", "vertex",  "shade",
+                                                           "bounce", "cue",   "resolve", "tone",    "outline" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -65,12 +65,14 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
-    plan->accumulate = plan->desc.samples > 1 || plan->glow_count > 0 || plan->runs[GLINT_STAGE_BOUNCE] ||
-                       plan->tints || plan->light_count > GLINT_LIGHT_CHUNK ||
+    plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
+    plan->accumulate = plan->cue.on || plan->desc.samples > 1 || plan->glow_count > 0 ||
+                       plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK ||
                        (lit && plan->geometry->table.site_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
+    plan->runs[GLINT_STAGE_CUE] = plan->cue.on;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
@@ -176,7 +178,7 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 {
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
-    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_BOUNCE], options, sizeof options);
+    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_CUE], options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);

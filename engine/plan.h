@@ -26,6 +26,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_VERTEX,
     GLINT_STAGE_SHADE,
     GLINT_STAGE_BOUNCE,
+    GLINT_STAGE_CUE,
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
     GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
@@ -100,6 +101,10 @@ struct glint_plan {
     glint_lamp *lamps; ///< of all area lights
     uint32_t light_count, shadow_count;
     double ambient[3], background[3];
+    struct {
+        bool on;
+        double color[3], near, far; ///< see glint_scene_desc
+    } cue;
     glint_plan_glow *glows; ///< NULL: no light is seen
     glint_plan_edge *glow_edges; ///< of all of them
     uint32_t glow_count;
@@ -124,6 +129,12 @@ struct glint_plan {
     glint_effect *effects;
     size_t effect_count, effect_capacity;
 };
+
+/// Whether sums of this term are made.
+static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
+{
+    return term < GLINT_TERM_LOCAL || plan->runs[GLINT_STAGE_BOUNCE];
+}
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);

@@ -250,6 +250,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->tints)
         materials(e, "tinted shadow", is_transparent);
+    one(e, plan->cue.on, "depth cue", "scene.depth_cue");
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
@@ -277,6 +278,7 @@ static void list_stages(glint_plan *plan)
         "light worked out once for a face or a vertex",
         "ambient, diffuse and specular terms",
         "mirrored and refracted rays, and what they find",
+        "light faded towards a colour by distance",
         "mean of samples and lights",
         "light to 8 or 16-bit codes",
         "lines where depth, normal or object changes",

@@ -19,6 +19,7 @@ typedef enum input {
     INPUT_BACKGROUND, ///< and what lights look like
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
+    INPUT_CUE, ///< how light fades with the distance
     INPUT_PASSES,
     INPUT_TONE
 } input;
@@ -37,6 +38,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
+    [GLINT_STAGE_CUE] = READS(CUE),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
     [GLINT_STAGE_OUTLINE] = 0,
@@ -170,6 +172,11 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         key = tint_key(&plan->bouncing[i], key);
     if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
         key = bounces_key(plan, key);
+    if (which & READS(CUE) && plan->cue.on) {
+        ADD(key, plan->cue.color);
+        ADD(key, plan->cue.near);
+        ADD(key, plan->cue.far);
+    }
     if (which & READS(BACKGROUND))
         ADD(key, plan->background);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
@@ -216,7 +223,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
     plan->all_materials_key = add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
-    plan->output_key = add_inputs(plan, READS(PASSES) | READS(TONE), none);
+    plan->output_key = add_inputs(plan, READS(CUE) | READS(PASSES) | READS(TONE), none);
     return GLINT_OK;
 }
 

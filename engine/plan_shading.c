@@ -146,6 +146,10 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
     }
     bounded(plan->ambient, plan->ambient, 1);
     bounded(plan->background, scene->desc.background, 1);
+    plan->cue.on = scene->desc.has_depth_cue;
+    plan->cue.near = scene->desc.depth_cue_near;
+    plan->cue.far = scene->desc.depth_cue_far;
+    bounded(plan->cue.color, scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
 }
 
 /// Which kinds of highlight there are among the materials.

@@ -86,6 +86,7 @@ static void free_tile(glint_tile *tile)
     glint_tint_destroy(tile->tint);
     glint_vertex_destroy(tile->vertex);
     glint_glow_destroy(tile->glow);
+    glint_cue_destroy(tile->cue);
     free(tile->facets);
     free(tile);
 }
@@ -105,8 +106,11 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
         tile->glow = glint_glow_create();
     if (plan->glow_count && !glint_glow_fits(tile->glow, plan))
         return false;
-    return (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) && (tile->facets || !plan->facets) &&
-           (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
+    if (plan->runs[GLINT_STAGE_CUE] && !tile->cue)
+        tile->cue = glint_cue_create();
+    return (tile->cue || !plan->runs[GLINT_STAGE_CUE]) && (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) &&
+           (tile->facets || !plan->facets) && (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) &&
+           (tile->tint || !plan->tints);
 }
 
 void glint_renderer_destroy(glint_renderer *renderer)

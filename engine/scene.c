@@ -2,6 +2,8 @@
 #include "engine/geometry.h"
 #include "engine/objects.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error)
@@ -14,11 +16,27 @@ glint_status glint_scene_create(glint_scene **out, glint_error *error)
     return GLINT_OK;
 }
 
+static glint_status check_depth_cue(const glint_scene_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if (desc->has_depth_cue_color)
+        status = glint_check_color("depth_cue.color", desc->depth_cue_color, error);
+    if (!status)
+        status = glint_check_range("depth_cue.near", desc->depth_cue_near, 0, DBL_MAX, "finite number >= 0", error);
+    if (!status && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
+        status =
+            glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
+                       desc->depth_cue_near, desc->depth_cue_far);
+    return status;
+}
+
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error)
 {
     glint_status status = glint_check_color("ambient", desc->ambient, error);
     if (!status)
         status = glint_check_color("background", desc->background, error);
+    if (!status && desc->has_depth_cue)
+        status = check_depth_cue(desc, error);
     if (status)
         return status;
     glint_camera_retain(desc->camera);

@@ -333,12 +333,22 @@ static void find_sites(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     glint_tile_vertex(tile, frame);
 }
 
+static void find_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
+{
+    const bool seen = any || frame->plan->runs[GLINT_STAGE_GLOW];
+    if (seen)
+        need_rays(tile, frame, w);
+    glint_tile_find_cue(tile, frame->plan, seen);
+}
+
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
     glint_tile_aim(tile, frame, k);
     const bool any = find_hits(tile, frame, &w);
+    if (frame->plan->runs[GLINT_STAGE_CUE])
+        find_cue(tile, frame, &w, any);
     const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
     const bool lit = sites ? glint_tile_choose_sampled(tile, frame) : any;
     const uint32_t lights = lit ? frame->plan->light_count : 0;
@@ -361,6 +371,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         find_sites(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
+    if (frame->plan->runs[GLINT_STAGE_CUE])
+        glint_tile_cue(tile, frame);
 }
 
 static bool is_per_light(glint_stage_id id)
@@ -422,6 +434,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
             return;
     }
     sign_kept(tile, frame);
+    if (plan->runs[GLINT_STAGE_CUE])
+        glint_tile_take_cued(tile, plan);
     if (plan->accumulate)
         glint_tile_resolve(tile, frame);
     glint_tile_store_light(tile, frame);

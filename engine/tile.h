@@ -95,6 +95,7 @@ typedef struct glint_tile {
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
+    struct glint_cue *cue; ///< of tile_cue.c; NULL until a frame fades
     struct glint_glow *glow; ///< of tile_glow.c; NULL unless the frame has lights that are seen
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
@@ -149,6 +150,16 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 /// What the eye of a perspective camera is inside of.
 void glint_find_eye_media(const glint_plan *plan, const glint_geometry_table *geometry, glint_media *media);
+
+/// tile_cue.c: light that fades with the distance.
+struct glint_cue *glint_cue_create(void);
+void glint_cue_destroy(struct glint_cue *cue);
+/// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
+void glint_tile_find_cue(glint_tile *tile, const glint_plan *plan, bool any);
+/// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
+void glint_tile_cue(glint_tile *tile, const glint_tile_frame *frame);
+/// Puts the totals where resolve reads.
+void glint_tile_take_cued(glint_tile *tile, const glint_plan *plan);
 
 /// tile_glow.c: lights that are seen.
 struct glint_glow *glint_glow_create(void);

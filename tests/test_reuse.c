@@ -116,6 +116,11 @@ static const field scene_fields[] = {
     FIELD(glint_scene_desc, camera, FIXED, 0, 0),
     FIELD(glint_scene_desc, ambient, COLOR, 0, 1),
     FIELD(glint_scene_desc, background, COLOR, 0, 1),
+    FIELD(glint_scene_desc, has_depth_cue, FLAG, 0, 1),
+    FIELD(glint_scene_desc, has_depth_cue_color, FLAG, 0, 1),
+    FIELD(glint_scene_desc, depth_cue_color, COLOR, 0, 1),
+    FIELD(glint_scene_desc, depth_cue_near, NUMBER, 0, 6),
+    FIELD(glint_scene_desc, depth_cue_far, NUMBER, 4, 15),
 };
 
 static const field render_fields[] = {

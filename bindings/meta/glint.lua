@@ -462,6 +462,7 @@ function glint.group(fields) end
 ---@field camera? glint.camera  needed for a frame; nil: none
 ---@field ambient? glint.color  light from everywhere, >= 0. Default 0
 ---@field background? glint.color  what a ray sees that hits nothing, >= 0. Default 0
+---@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background) from distance near (default 0) to far. Default nil: it does not
 
 ---@class glint.scene_table: glint.scene_fields
 ---@field [integer] glint.shape|glint.light  the objects, numbered in this order, without holes
