@@ -92,7 +92,7 @@ $(BUILD)/engine/image/flip.o:         ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch_page.html.h has the bytes of bindings/watch_page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*.html bindings/watch_*.lua))
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*.html bindings/watch_*.lua scripts/lib/gr.lua scripts/lib/gr/*.lua))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
@@ -325,7 +325,7 @@ install-rock: all
 uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
-	@for folder in $(datadir)/glint $(luasharedir)/glint; do \
+	@for folder in $(datadir)/glint $(luasharedir)/glint $(luasharedir)/gr; do \
 	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 
 deps: ## installs what the build and the tests need, through apt

@@ -46,6 +46,8 @@ typedef struct cli_sweep { ///< --sweep name=from:to:count
     char text[32]; ///< the value of the point that runs
 } cli_sweep;
 
+#define CLI_DIALECT_OPTIONS 4 ///< --gr-order and the like
+
 typedef struct cli_options {
     cli_command command;
     bool json, quiet, help, version;
@@ -71,6 +73,8 @@ typedef struct cli_options {
     int http_port; ///< of watch; 0: any free one, -1: no page
     const char *terminal; ///< of watch: NULL: what the terminal says
     double untrusted_s; ///< time that an untrusted script may take; 0: the script is trusted
+    const char *dialect; ///< of the script; NULL: glint's own
+    const char *dialect_text[CLI_DIALECT_OPTIONS]; ///< what --gr-order ... were given; NULL: nothing
 } cli_options;
 
 #define CLI_MAY_HAVE_NUMBER 2
@@ -84,7 +88,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 48
+#define CLI_OPTION_COUNT 53
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
@@ -93,6 +97,17 @@ bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_options(cli_options *options);
 void cli_print_usage(FILE *out); ///< usage.c
+
+// ---- dialect.c ----
+
+extern const char *const cli_dialect_options[CLI_DIALECT_OPTIONS]; ///< their names after "gr-"
+/// The reader of --dialect and its options.
+bool cli_read_dialect(cli_options *options, const cli_option *option, char *text, char *message);
+bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
+/// Has `require` find the modules that the command carries.
+void cli_carry_dialect(lua_State *L);
+/// Loads the dialect, if any, sets its global and passes the options on. May raise; empties the stack.
+void cli_open_dialect(lua_State *L, const cli_options *options);
 
 // ---- file_list.c ----
 

@@ -232,7 +232,7 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
         snprintf(message, MESSAGE, "--sweep: at most %d points together expected", GLINTL_FRAMES_MAX);
         return false;
     }
-    return true;
+    return cli_check_dialect(options, message);
 }
 
 // Room for the swept parameters, behind those that are set; and -s -e -j as a range.

@@ -1,6 +1,7 @@
 // Names of files: a pattern, the frame's number and the pass.
 //
 //   "shot_%04d.png", "shot_####.png"   the number, padded with zeros
+//   "50%%.png", "shot%#3.png"          a per cent sign, a number sign
 //   "shot.png"                         "shot_0012.png" when the pattern serves several frames
 //   passes                             "shot_0012.ambient.png"
 #include <inttypes.h>
@@ -17,7 +18,7 @@
 // What stands in a pattern at `text`, which begins with '%' or '#'.
 typedef struct place {
     size_t length; // of the pattern; 0: wrong
-    int digits; // -1: a plain '%'
+    int digits; // -1: a plain sign
 } place;
 
 static place read_place(const char *text)
@@ -28,7 +29,7 @@ static place read_place(const char *text)
         found.digits = found.length <= DIGITS_MAX ? (int)found.length : DIGITS_MAX;
         return found;
     }
-    if (text[1] == '%')
+    if (text[1] == '%' || text[1] == '#')
         return (place) { 2, -1 };
     size_t figures = strspn(text + 1, "0123456789");
     if (text[1 + figures] != 'd' || figures > 3 || (figures > 0 && text[1] != '0'))
@@ -126,7 +127,7 @@ static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_P
         if (found.digits >= 0)
             used += (size_t)snprintf(path + used, GLINTL_PATH_SIZE - used, "%0*" PRId64, found.digits, number);
         else
-            path[used++] = *at;
+            path[used++] = at[found.length == 2 ? 1 : 0];
         at += found.length ? found.length : 1;
     }
     if (used >= GLINTL_PATH_SIZE)

@@ -62,6 +62,7 @@ static void open_libraries(lua_State *L, const task *work)
     lua_settop(L, 0);
     set_arguments(L, work->options);
     set_path(L, work->options->script);
+    cli_carry_dialect(L);
 }
 
 static int refuse_results(lua_State *L, int count)
@@ -70,12 +71,16 @@ static int refuse_results(lua_State *L, int count)
     return lua_error(L);
 }
 
-static int refuse_silence(lua_State *L, const char *script)
+static int refuse_silence(lua_State *L, const cli_options *options)
 {
-    lua_pushfstring(L,
-                    "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
-                    "expected, or calls of scene:render",
-                    cli_base_name(script));
+    if (options->dialect)
+        lua_pushfstring(L, "%s rendered nothing; calls of %s.render expected", cli_base_name(options->script),
+                        options->dialect);
+    else
+        lua_pushfstring(L,
+                        "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
+                        "expected, or calls of scene:render",
+                        cli_base_name(options->script));
     return lua_error(L);
 }
 
@@ -84,6 +89,8 @@ static void take_results(lua_State *L, const task *work)
 {
     glintL_run *run = work->run;
     cli_script *script = work->script;
+    if (work->options->dialect)
+        lua_settop(L, 0); // its scenes render by themselves, and may return anything
     int count = lua_gettop(L);
     luaL_checkstack(L, 8, "jobs");
     if (glintL_push_unknown_set(L))
@@ -92,7 +99,7 @@ static void take_results(lua_State *L, const task *work)
         refuse_results(L, count);
     if (lua_isnoneornil(L, 1)) {
         if (run->mode != GLINTL_MODE_DESCRIBE && run->call_count == 0 && run->earlier == 0 && run->count == 0)
-            refuse_silence(L, work->options->script);
+            refuse_silence(L, work->options);
         return;
     }
     if (!glintL_push_jobs(L, 1))
@@ -147,6 +154,7 @@ static int run_protected(lua_State *L)
     cli_set_state(L);
     if (work->run->reporter.prepare)
         work->run->reporter.prepare(work->run->reporter.context, L);
+    cli_open_dialect(L, work->options);
     if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
         return lua_error(L);
     work->run->since_ms = glintL_now_ms();
@@ -157,6 +165,12 @@ static int run_protected(lua_State *L)
     if (work->run->mode == GLINTL_MODE_RENDER && !work->run->exit_code && !work->run->interrupted)
         glintL_report_observed(L, work->run, work->options->script);
     return 0;
+}
+
+// A scene of the dialect, run without it, stops where it first names it.
+static const char *dialect_hint(const cli_options *options, const char *message)
+{
+    return !options->dialect && strstr(message, "(global 'gr')") ? "; is it a scene for --dialect gr?" : "";
 }
 
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
@@ -172,8 +186,11 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     lua_pushlightuserdata(L, &work);
     int status = lua_pcall(L, 1, 0, 1);
     const bool is_short = status == LUA_ERRMEM && !run->asked.is_untrusted; // such a script has a limit of its own
-    if (status != LUA_OK && !run->is_stopped && !run->interrupted)
-        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s", lua_tostring(L, -1));
+    if (status != LUA_OK && !run->is_stopped && !run->interrupted) {
+        const char *message = lua_tostring(L, -1);
+        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s%s", message,
+                        dialect_hint(options, message));
+    }
     return status == LUA_OK && !run->exit_code && !run->interrupted;
 }
 

@@ -1,0 +1,112 @@
+-- The arguments of the dialect's calls, as the course's glue code takes them: numeric strings pass for numbers, vectors
+-- have exactly n entries, arguments too many are ignored. Errors name the function, the argument and the value, and
+-- stand at the scene's line. The libraries' functions are kept here: a scene may overwrite the globals.
+local check = {}
+
+local error, pairs, rawget, rawlen, tonumber, tostring, type = error, pairs, rawget, rawlen, tonumber, tostring, type
+local format, getinfo, huge, mathtype = string.format, debug.getinfo, math.huge, math.type
+
+local own = {} -- sources of the dialect's modules: errors are not theirs
+
+--- Called by each module of the dialect as it loads.
+function check.own_source() own[getinfo(2, "S").source] = true end
+check.own_source()
+
+--- Raises at the nearest line that is the scene's.
+function check.raise(text, ...)
+  local message = format(text, ...)
+  for level = 2, huge do
+    local at = getinfo(level, "Sl")
+    if not at then break end
+    if at.currentline > 0 and not own[at.source] then
+      message = at.short_src .. ":" .. at.currentline .. ": " .. message
+      break
+    end
+  end
+  error(message, 0)
+end
+
+--- The file whose code calls the dialect, or nil where it is no file.
+function check.caller()
+  for level = 2, huge do
+    local at = getinfo(level, "Sl")
+    if not at then return nil end
+    if at.currentline > 0 and not own[at.source] then return at.source:match "^@(.*)" end
+  end
+end
+
+local spelt = setmetatable({}, { __mode = "k" }) -- what nodes, materials and lights are called in messages
+
+--- Says what a table of the dialect's is called in messages.
+function check.name_object(object, name) spelt[object] = name end
+
+--- A value as messages show it.
+function check.spelling(value)
+  local kind = type(value)
+  if kind == "string" then
+    return #value <= 40 and format("%q", value):gsub("\\\n", "\\n") or format("%q...", value:sub(1, 40))
+  elseif kind == "number" then
+    return value ~= value and "nan" or mathtype(value) == "integer" and tostring(value) or format("%.14g", value)
+  elseif kind == "table" then
+    return spelt[value] or format("table of %d", rawlen(value))
+  elseif kind == "boolean" then
+    return tostring(value)
+  end
+  return kind
+end
+
+function check.refuse(call, argument, expected, value)
+  check.raise("gr.%s: %s: %s expected, got %s", call, argument, expected, check.spelling(value))
+end
+
+--- A finite number, or a string that spells one.
+function check.number(call, argument, value)
+  local number = tonumber(value)
+  if not number then check.refuse(call, argument, "number", value) end
+  if number ~= number or number == huge or number == -huge then
+    check.refuse(call, argument, "finite number", value)
+  end
+  return number
+end
+
+--- A number from `least` on.
+function check.at_least(call, argument, value, least)
+  local number = check.number(call, argument, value)
+  if number < least then check.refuse(call, argument, "number >= " .. least, value) end
+  return number
+end
+
+--- A table that is nothing of the dialect's.
+function check.list(call, argument, value)
+  if type(value) ~= "table" or spelt[value] then check.refuse(call, argument, "table", value) end
+  return value
+end
+
+--- A new table of exactly n numbers, each at least `least` where that is given.
+function check.vector(call, argument, value, n, least)
+  check.list(call, argument, value)
+  if rawlen(value) ~= n then check.refuse(call, argument, "table of " .. n .. " numbers", value) end
+  local out = {}
+  for i = 1, n do
+    local entry = argument .. "[" .. i .. "]"
+    local number = rawget(value, i)
+    out[i] = least and check.at_least(call, entry, number, least) or check.number(call, entry, number)
+  end
+  return out
+end
+
+--- A string; a number counts as one.
+function check.text(call, argument, value)
+  if type(value) ~= "string" and type(value) ~= "number" then check.refuse(call, argument, "string", value) end
+  return tostring(value)
+end
+
+--- Options: one of the choices, or an error that lists them.
+function check.choice(name, choices, value)
+  for _, choice in pairs(choices) do
+    if value == choice then return value end
+  end
+  check.raise("gr.options.%s: %s expected, got %s", name, choices.text, check.spelling(value))
+end
+
+return check

@@ -1,0 +1,162 @@
+-- Meshes: the numbers as the scene gives them, and the glint.mesh made of them. Faces without an area are never hit and
+-- left out; a face that crosses itself becomes the fan from its first corner.
+local check = require "gr.check"
+local glint = require "glint"
+local obj = require "gr.obj"
+check.own_source()
+local mesh = {}
+
+local ipairs, pcall, rawget, rawlen, tonumber, type = ipairs, pcall, rawget, rawlen, tonumber, type
+local floor = math.floor
+local loaded = {} -- models by the name the scene gives
+
+-- Twice the area's vector of a polygon; corners are places in the flat list of coordinates.
+local function area(numbers, corners)
+  local a = corners[1]
+  local ax, ay, az = numbers[a], numbers[a + 1], numbers[a + 2]
+  local x, y, z = 0, 0, 0
+  local b = corners[2]
+  local bx, by, bz = numbers[b] - ax, numbers[b + 1] - ay, numbers[b + 2] - az
+  for i = 3, #corners do
+    local c = corners[i]
+    local cx, cy, cz = numbers[c] - ax, numbers[c + 1] - ay, numbers[c + 2] - az
+    x, y, z = x + (by * cz - bz * cy), y + (bz * cx - bx * cz), z + (bx * cy - by * cx)
+    bx, by, bz = cx, cy, cz
+  end
+  return x, y, z
+end
+
+local function has_area(numbers, corners)
+  local x, y, z = area(numbers, corners)
+  return x ~= 0 or y ~= 0 or z ~= 0
+end
+
+-- The model of the flat list of coordinates and the faces, lists of numbers from 0: faces that count from 1, flat when
+-- all are triangles.
+local function new_model(numbers, faces, generation)
+  local model = { vertices = numbers, generation = generation, faces = {}, polygons = {} }
+  local triangles, polygons = model.faces, model.polygons
+  local places, n = {}, 0
+  for i = 1, #faces do
+    local face = faces[i]
+    local size = #face
+    for j = 1, size do places[j] = 3 * face[j] + 1 end
+    for j = size + 1, #places do places[j] = nil end
+    if not has_area(numbers, places) then goto next end
+    if size == 3 then
+      triangles[n + 1], triangles[n + 2], triangles[n + 3] = face[1] + 1, face[2] + 1, face[3] + 1
+      n = n + 3
+    else
+      local corners = {}
+      for j = 1, size do corners[j] = face[j] + 1 end
+      polygons[#polygons + 1] = corners
+    end
+    ::next::
+  end
+  return model
+end
+
+local function read_vertex(vertex, i)
+  if type(vertex) ~= "table" or rawlen(vertex) ~= 3 then
+    check.refuse("mesh", "vertices[" .. i .. "]", "table of 3 numbers", vertex)
+  end
+  local x, y, z = rawget(vertex, 1), rawget(vertex, 2), rawget(vertex, 3)
+  if type(x) ~= "number" or type(y) ~= "number" or type(z) ~= "number" or x - x ~= 0 or y - y ~= 0 or z - z ~= 0 then
+    local read = check.vector("mesh", "vertices[" .. i .. "]", vertex, 3)
+    return read[1], read[2], read[3]
+  end
+  return x, y, z
+end
+
+local function read_face(face, i, count)
+  local name = "faces[" .. i .. "]"
+  check.list("mesh", name, face)
+  local size = rawlen(face)
+  if size < 3 then check.refuse("mesh", name, "table of 3 numbers or more", face) end
+  local out = {}
+  for j = 1, size do
+    local number = tonumber(rawget(face, j))
+    local vertex = number and floor(number)
+    if not vertex or not (vertex >= 0 and vertex < count) then
+      check.refuse("mesh", name .. "[" .. j .. "]", "vertex 0 .. " .. count - 1, rawget(face, j))
+    end
+    out[j] = vertex
+  end
+  return out
+end
+
+--- A model of tables, the first generation's.
+function mesh.of_tables(vertices, faces)
+  check.list("mesh", "vertices", vertices)
+  check.list("mesh", "faces", faces)
+  local numbers, read, count = {}, {}, rawlen(vertices)
+  if count < 1 then check.refuse("mesh", "vertices", "1 vertex or more", vertices) end
+  if rawlen(faces) < 1 then check.refuse("mesh", "faces", "1 face or more", faces) end
+  for i = 1, count do
+    numbers[3 * i - 2], numbers[3 * i - 1], numbers[3 * i] = read_vertex(rawget(vertices, i), i)
+  end
+  for i = 1, rawlen(faces) do read[i] = read_face(rawget(faces, i), i, count) end
+  return new_model(numbers, read, 1)
+end
+
+--- A model of a file, the second generation's; read once.
+function mesh.of_file(path)
+  if not loaded[path] then
+    local numbers = {}
+    local faces = obj.read("gr.mesh", path, function(i, x, y, z)
+      numbers[3 * i - 2], numbers[3 * i - 1], numbers[3 * i] = x, y, z
+    end)
+    loaded[path] = new_model(numbers, faces, 2)
+  end
+  return loaded[path]
+end
+
+local function try(vertices, faces, name)
+  return pcall(glint.mesh, { vertices = vertices, faces = faces, shading = "flat", two_sided = false, name = name })
+end
+
+local function add_fan(faces, corners, numbers)
+  for i = 2, #corners - 1 do
+    local a, b, c = corners[1], corners[i], corners[i + 1]
+    if has_area(numbers, { 3 * a - 2, 3 * b - 2, 3 * c - 2 }) then faces[#faces + 1] = { a, b, c } end
+  end
+end
+
+-- Whether the polygon crosses itself, by the engine's own judgement.
+local function is_crossed(numbers, corners)
+  local own, face = {}, {}
+  for i, corner in ipairs(corners) do
+    for c = 1, 3 do own[3 * i - 3 + c] = numbers[3 * corner - 3 + c] end
+    face[i] = i
+  end
+  return not try(own, { face }, "")
+end
+
+-- Triangles and polygons in one list, the crossed ones among these as fans where `fans` is true.
+local function all_faces(model, fans)
+  local faces, flat = {}, model.faces
+  for i = 1, #flat, 3 do faces[#faces + 1] = { flat[i], flat[i + 1], flat[i + 2] } end
+  for _, corners in ipairs(model.polygons) do
+    if fans and is_crossed(model.vertices, corners) then
+      add_fan(faces, corners, model.vertices)
+    else
+      faces[#faces + 1] = corners
+    end
+  end
+  return faces
+end
+
+--- A new glint.mesh, or nil where no face has an area.
+function mesh.shape(model, name)
+  local flat = #model.polygons == 0
+  local faces = flat and model.faces or all_faces(model, false)
+  if #faces == 0 then return nil end
+  local good, shape = try(model.vertices, faces, name)
+  if not good and not flat and shape:find "cross itself" then
+    good, shape = try(model.vertices, all_faces(model, true), name)
+  end
+  if not good then check.raise("gr.mesh: '%s': %s", name, (shape:gsub("^.-mesh%.", ""))) end
+  return shape
+end
+
+return mesh

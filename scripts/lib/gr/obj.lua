@@ -1,0 +1,90 @@
+-- Models: the `v` and `f` lines of .obj files, as the course's hosts read them. What follows a slash in a face is
+-- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such file.
+local check = require "gr.check"
+local files = require "gr.files"
+check.own_source()
+local obj = {}
+
+local lines, tonumber = io.lines, tonumber
+local raise, tointeger = check.raise, math.tointeger
+
+local function find(call, path)
+  local found, places = files.find(path)
+  if not found then raise("%s: '%s': no such file; looked for %s", call, path, places) end
+  return found
+end
+
+local function read_vertex(text, place)
+  local x, y, z = text:match "^(%S+)%s+(%S+)%s+(%S+)"
+  x, y, z = tonumber(x), tonumber(y), tonumber(z)
+  if not (x and y and z) or x - x ~= 0 or y - y ~= 0 or z - z ~= 0 then
+    raise("%s: three numbers expected, got '%s'", place, text)
+  end
+  return x, y, z
+end
+
+-- Numbers count from 1, or from the last vertex where negative; in the list from 0.
+local function read_face(text, count, place)
+  local face, n = {}, 0
+  for word in text:gmatch "[^%s#]+" do
+    local number = tointeger(tonumber(word:match "^[^/]*"))
+    local vertex = number and (number < 0 and count + number or number - 1)
+    if not vertex or number == 0 or vertex < 0 then
+      raise("%s: numbers of vertices from 1 expected, got '%s'", place, text)
+    end
+    n = n + 1
+    face[n] = vertex
+  end
+  if n < 3 then raise("%s: 3 vertices or more expected, got '%s'", place, text) end
+  return face
+end
+
+local function check_faces(faces, numbers, count, path)
+  for i = 1, #faces do
+    local face = faces[i]
+    for j = 1, #face do
+      if face[j] >= count then
+        raise("%s: line %d: vertex 1 .. %d expected, got %d", path, numbers[i], count, face[j] + 1)
+      end
+    end
+  end
+end
+
+--- Calls vertex(i, x, y, z) for each vertex; returns the faces, lists of numbers from 0.
+function obj.read(call, path, vertex)
+  local found = find(call, path)
+  local faces, numbers, count, number = {}, {}, 0, 0
+  for line in lines(found) do
+    number = number + 1
+    local word, text = line:match "^%s*([vf])%s+(.-)%s*$"
+    if word == "v" then
+      count = count + 1
+      vertex(count, read_vertex(text, found .. ": line " .. number))
+    elseif word == "f" then
+      faces[#faces + 1] = read_face(text, count, found .. ": line " .. number)
+      numbers[#faces] = number
+    end
+  end
+  check_faces(faces, numbers, count, found)
+  if #faces == 0 then raise("%s: %s: faces expected, got %d vertices and none", call, found, count) end
+  return faces
+end
+
+--- The course's readobj(file): a list of vertices and one of faces, for gr.mesh.
+function obj.readobj(path)
+  local vertices = {}
+  local faces = obj.read("readobj", check.text("readobj", "file", path), function(i, x, y, z)
+    vertices[i] = { x, y, z }
+  end)
+  return vertices, faces
+end
+
+package.searchers[#package.searchers + 1] = function(name)
+  if name ~= "readobj" then return nil end
+  return function()
+    _G.readobj = obj.readobj -- luacheck: ignore 122
+    return obj.readobj
+  end
+end
+
+return obj

@@ -1,0 +1,54 @@
+-- What the course left open, as fields of gr.options: they are checked as they are set.
+--
+--   order       "pre" or "post": how transforms are multiplied; nil, the default: as the scene's generation does
+--   pixel       where in its pixel a ray passes, 0 (the corner) or 0.5
+--   specular    "phong" or "blinn"
+--   background  {r, g, b} from 0 on, "r,g,b", or "#rrggbb", the codes of the picture
+local check = require "gr.check"
+check.own_source()
+
+local pairs, tonumber, type = pairs, tonumber, type
+local values = { pixel = 0.5, specular = "phong", background = { 0, 0, 0 } }
+
+local function read_background(value)
+  if type(value) == "table" then return check.vector("options.background", "colour", value, 3, 0) end
+  local text = type(value) == "string" and value or ""
+  local r, g, b = text:match "^#(%x%x)(%x%x)(%x%x)$"
+  if r then -- the middle of a step: codes are truncated
+    return { (tonumber(r, 16) + 0.5) / 255, (tonumber(g, 16) + 0.5) / 255, (tonumber(b, 16) + 0.5) / 255 }
+  end
+  local parts = { text:match "^([^,]+),([^,]+),([^,]+)$" }
+  if #parts ~= 3 then
+    check.raise('gr.options.background: "r,g,b" or "#rrggbb" expected, got %s', check.spelling(value))
+  end
+  return check.vector("options.background", "colour", parts, 3, 0)
+end
+
+local readers = {
+  order = function(value)
+    return value and check.choice("order", { "pre", "post", text = '"pre" or "post"' }, value)
+  end,
+  pixel = function(value) return check.choice("pixel", { 0, 0.5, text = "0 or 0.5" }, tonumber(value) or value) end,
+  specular = function(value)
+    return check.choice("specular", { "phong", "blinn", text = '"phong" or "blinn"' }, value)
+  end,
+  background = read_background,
+}
+
+local function no_such(name)
+  local names = {}
+  for known in pairs(readers) do names[#names + 1] = known end
+  table.sort(names)
+  check.raise("gr.options: %s expected, got %s", table.concat(names, ", "), check.spelling(name))
+end
+
+return setmetatable({}, {
+  __index = function(_, name)
+    if not readers[name] then no_such(name) end
+    return values[name]
+  end,
+  __newindex = function(_, name, value)
+    if not readers[name] then no_such(name) end
+    values[name] = readers[name](value)
+  end,
+})

@@ -1,0 +1,259 @@
+-- gr.render: from the graph of nodes to a glint scene and its picture.
+--
+-- The graph is walked at every call, so that what was called on a shared node shows under all its parents. Each place
+-- where a shape shows is a glint shape of its own that lives as long as the node: a picture of the same places as the
+-- last one is the same glint scene, with what has changed set anew.
+local check = require "gr.check"
+local generation = require "gr.generation"
+local glint = require "glint"
+local mesh = require "gr.mesh"
+local options = require "gr.options"
+check.own_source()
+local picture = {}
+
+local error, ipairs, pairs, pcall, type, utf8 = error, ipairs, pairs, pcall, type, utf8
+local floor = math.floor
+
+local MOST_SHAPES = 1 << 22
+
+-- ---- The places where shapes show ----
+
+local OPEN = -1
+
+-- How often a shape shows under each node. Raises when a node is within itself.
+local function count_shapes(root)
+  local count, stack = {}, { root }
+  while #stack > 0 do
+    local node = stack[#stack]
+    if not count[node] then
+      count[node] = OPEN
+      for _, child in ipairs(node.children) do
+        if count[child] == OPEN then check.raise("gr.render: node '%s' is within itself", child.name) end
+        if not count[child] then stack[#stack + 1] = child end
+      end
+    else
+      if count[node] == OPEN then
+        local sum = node.kind and 1 or 0
+        for _, child in ipairs(node.children) do sum = sum + count[child] end
+        count[node] = sum
+      end
+      stack[#stack] = nil
+    end
+  end
+  if count[root] > MOST_SHAPES then
+    check.raise("gr.render: at most %d shapes expected, got %.14g, each as often as it shows", MOST_SHAPES, count[root])
+  end
+  return count
+end
+
+-- 1 or 2 by what the meshes in the graph were made of, nil without meshes.
+local function generation_of_meshes(count)
+  local found
+  for node in pairs(count) do
+    if node.kind == "mesh" then
+      if found and found ~= node.model.generation then return nil end
+      found = node.model.generation
+    end
+  end
+  return found
+end
+
+-- Calls visit(node, map) for each place of a shape, in the order in which a walk from the root meets them.
+local function walk(root, order, count, visit)
+  local nodes, maps, top = { root }, { false }, 1
+  while top > 0 do
+    local node, map = nodes[top], maps[top]
+    nodes[top], maps[top], top = nil, nil, top - 1
+    map = map and map * node[order] or node[order]
+    if node.kind then visit(node, map) end
+    for i = #node.children, 1, -1 do
+      local child = node.children[i]
+      if count[child] > 0 then
+        top = top + 1
+        nodes[top], maps[top] = child, map
+      end
+    end
+  end
+end
+
+-- ---- glint shapes ----
+
+local function cut_name(name)
+  while #name > 63 or not utf8.len(name) do name = name:sub(1, -2) end
+  return (name:gsub("%c", " "))
+end
+
+-- Shapes that are a glint shape under a transform of its own.
+local makers = {
+  sphere = function(fields, node)
+    fields.center, fields.radius = node.center, node.radius
+    return glint.sphere(fields)
+  end,
+  box = function(fields, node)
+    fields.min, fields.max = node.min, node.max
+    return glint.box(fields)
+  end,
+  cylinder = function(fields)
+    fields.base, fields.top, fields.radius = { 0, 0, 0 }, { 0, 0, 1 }, 1
+    return glint.cylinder(fields)
+  end,
+  cone = function(fields)
+    fields.base, fields.top, fields.radius = { 0, 0, 0 }, { 0, 0, 1 }, 1
+    return glint.cone(fields)
+  end,
+}
+
+-- Errors of the engine as the scene's own.
+local function fail(message)
+  if type(message) ~= "string" then error(message, 0) end
+  check.raise("gr.render: %s", (message:gsub("^[^:]*:%d+: ", "")))
+end
+
+local function engine(call, ...)
+  local good, result = pcall(call, ...)
+  return good and result or good or fail(result)
+end
+
+-- Makes or changes a shape; nil where the map flattens space: what is flat is not hit.
+local function try(change, ...)
+  local good, result = pcall(change, ...)
+  if good then return result end
+  return type(result) == "string" and result:find "flattens space" and nil or fail(result)
+end
+
+local function make_shape(node, map)
+  local fields = { material = node.material.shade, two_sided = false, name = cut_name(node.name), transform = map }
+  return makers[node.kind](fields, node)
+end
+
+-- Meshes are shared by their places: a group for each has the transform.
+local function make_mesh_place(node, map) return glint.group { node.mesh_shape, transform = map } end
+
+-- Whether the mesh has anything to hit.
+local function has_mesh(node)
+  if node.mesh_shape == nil then node.mesh_shape = mesh.shape(node.model, cut_name(node.name)) or false end
+  return node.mesh_shape ~= false
+end
+
+local function set_map(shape, map)
+  if shape.transform ~= map then shape.transform = map end
+  return shape
+end
+
+-- The shape of the n-th place of the node; nil where there is nothing to hit.
+local function place_of(node, n, map)
+  local is_mesh = node.kind == "mesh"
+  if node.is_nothing or is_mesh and not has_mesh(node) then return nil end
+  local shape = node.places[n]
+  if shape then
+    shape = try(set_map, shape, map)
+  else
+    shape = try(is_mesh and make_mesh_place or make_shape, node, map)
+    node.places[n] = shape
+  end
+  local painted = is_mesh and node.mesh_shape or shape
+  if painted and painted.material ~= node.material.shade then painted.material = node.material.shade end
+  return shape
+end
+
+-- ---- The scene ----
+
+local last = { members = {} } -- the scene of the last picture, and what is in it
+
+local function has_members(members)
+  if #members ~= #last.members then return false end
+  for i = 1, #members do
+    if members[i] ~= last.members[i] then return false end
+  end
+  return true
+end
+
+local function members_of(root, order, count, lights)
+  local members, seen = {}, {}
+  walk(root, order, count, function(node, map)
+    if not node.material then
+      check.raise("gr.render: %s '%s' has no material; set_material gives it one", node.call, node.name)
+    end
+    seen[node] = (seen[node] or 0) + 1
+    members[#members + 1] = place_of(node, seen[node], map)
+  end)
+  local had = {}
+  for _, light in ipairs(lights) do
+    members[#members + 1] = had[light] and light.again(had[light]) or light.shine
+    had[light] = (had[light] or 0) + 1
+  end
+  return members
+end
+
+local function scene_of(root, lights)
+  local count = count_shapes(root)
+  local order = options.order or generation.order(generation_of_meshes(count))
+  local members = members_of(root, order, count, lights)
+  if not has_members(members) then
+    last.scene = engine(glint.scene, members)
+    last.members = members
+  end
+  return last.scene
+end
+
+-- ---- The arguments ----
+
+local function read_side(name, value)
+  local side = check.number("render", name, value)
+  side = floor(side)
+  if side < 1 or side > 65535 then check.refuse("render", name, "pixels, 1 .. 65535,", value) end
+  return side
+end
+
+local function read_direction(name, value)
+  local direction = check.vector("render", name, value, 3)
+  if direction[1] == 0 and direction[2] == 0 and direction[3] == 0 then
+    check.raise("gr.render: %s: a direction other than {0, 0, 0} expected", name)
+  end
+  return direction
+end
+
+local function read_fov(value)
+  local fov = check.number("render", "fov", value)
+  if not (fov > 0 and fov < 180) then check.refuse("render", "fov", "degrees between 0 and 180", value) end
+  return fov
+end
+
+-- The name stands for itself: what would be a place for a number is escaped.
+local function read_file(value)
+  local name = check.text("render", "file", value)
+  if name == "" or name:find "/$" then check.refuse("render", "file", "name of a file", value) end
+  if not name:lower():find "%.png$" then name = name .. ".png" end
+  return (name:gsub("%%", "%%%%"):gsub("#", "%%#"))
+end
+
+local function read_lights(value, to_light)
+  check.list("render", "lights", value)
+  local lights = {}
+  for i = 1, #value do
+    lights[i] = to_light(value[i])
+    if not lights[i] then check.refuse("render", "lights[" .. i .. "]", "light", value[i]) end
+  end
+  return lights
+end
+
+--- gr.render. to_light: what was made by gr.light, of a value, or nil.
+function picture.render(root, to_light, file, width, height, eye, view, up, fov, ambient, lights)
+  local options_of_picture = { transfer = "linear", rounding = "truncate" }
+  options_of_picture.output = read_file(file)
+  options_of_picture.width = read_side("width", width)
+  options_of_picture.height = read_side("height", height)
+  local camera = { pixel_offset = options.pixel }
+  camera.eye = check.vector("render", "eye", eye, 3)
+  camera.direction = read_direction("view", view)
+  camera.up = read_direction("up", up)
+  camera.fov = read_fov(fov)
+  ambient = check.vector("render", "ambient", ambient, 3, 0)
+  local scene = scene_of(root, read_lights(lights, to_light))
+  scene.camera = engine(glint.camera, camera)
+  scene.ambient = ambient
+  scene.background = options.background
+  engine(scene.render, scene, options_of_picture)
+end
+
+return picture
