@@ -90,7 +90,7 @@ static int pixel(lua_State *L)
 
 static void read_options(lua_State *L, glint_write_desc *desc)
 {
-    static const char *const transfers[] = { "srgb", "linear", NULL };
+    static const char *const transfers[] = { "srgb", "linear", "none", NULL };
     static const char *const roundings[] = { "nearest", "truncate", NULL }, *const encodes[] = { "fast", "small",
                                                                                                  NULL };
     typedef struct options {

@@ -29,7 +29,7 @@ typedef struct detail {
 } detail;
 
 static const char *const precisions[] = { "double", "float", NULL };
-static const char *const transfers[] = { "srgb", "linear", NULL };
+static const char *const transfers[] = { "srgb", "linear", "none", NULL };
 static const char *const roundings[] = { "nearest", "truncate", NULL };
 static const char *const outlines[] = { "none", "black", "white", NULL };
 static const char *const encodes[] = { "fast", "small", NULL };

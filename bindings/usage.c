@@ -32,7 +32,7 @@ void cli_print_usage(FILE *out)
           "sheets     --columns N  --label TEXT  --title TEXT  --difference N  --gain X\n"
           "picture    -D, --set NAME=VALUE               a parameter of the script\n"
           "           --size WxH  --samples N  --seed N  --precision double|float\n"
-          "           --transfer srgb|linear  --rounding nearest|truncate\n"
+          "           --transfer srgb|linear|none  --rounding nearest|truncate\n"
           "           --tone clamp|reinhard|filmic  --exposure STOPS\n"
           "           --alpha                            transparent background\n"
           "           --outline black|white              lines where objects end or have an edge\n"

@@ -393,7 +393,11 @@ const char *glint_pass_name(glint_pass pass);
 glint_pass glint_pass_from_name(const char *name);
 int glint_pass_channels(glint_pass pass); ///< 1 or 3
 
-typedef enum glint_transfer { GLINT_TRANSFER_SRGB, GLINT_TRANSFER_LINEAR } glint_transfer;
+typedef enum glint_transfer {
+    GLINT_TRANSFER_SRGB,
+    GLINT_TRANSFER_LINEAR, ///< codes are light, and the file says so (gAMA): viewers brighten them
+    GLINT_TRANSFER_NONE ///< codes are light, and the file does not say so: viewers take them for sRGB
+} glint_transfer;
 typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
 
 /// What becomes of bright light, each channel on its own. x is the light after exposure, the result 0 .. 1.

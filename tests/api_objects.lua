@@ -237,7 +237,7 @@ function tests.image()
   raises('save.path: file name without zero bytes expected, got string ""', function() image:save "" end)
   raises("save.bits: 8 or 16 expected, got 9.0", function() image:save("x.png", { bits = 9 }) end)
   raises("save.bit: no such field; did you mean 'bits'?", function() image:save("x.png", { bit = 8 }) end)
-  raises('save.transfer: "srgb" or "linear" expected, got string "gamma"',
+  raises('save.transfer: "srgb", "linear" or "none" expected, got string "gamma"',
     function() image:save("x.png", { transfer = "gamma" }) end)
   raises('save.pass: name of a pass expected, got string "shadow"', function() image:save("x.png", { pass = "shadow" }) end)
   local done, message = image:save "/proc/no such folder/x.png"

@@ -136,7 +136,7 @@ static const field render_fields[] = {
     R(alpha, FLAG, 0, 1),
     R(outline, CHOICE, 0, 3),
     R(tone.curve, CHOICE, 0, 3),
-    R(tone.transfer, CHOICE, 0, 2),
+    R(tone.transfer, CHOICE, 0, 3),
     R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),
     R(tone.exposure, NUMBER, -2, 3),

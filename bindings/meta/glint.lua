@@ -532,7 +532,7 @@ function glint.scene(fields) end
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 where mirror + transmission is above 1. Default 5
 ---@field precision? "double"|"float"  what decides hits and shadows. Default "double"
 ---@field bits? 8|16  a channel of a .png. Default 8
----@field transfer? "srgb"|"linear"  how light becomes codes. Default "srgb"
+---@field transfer? "srgb"|"linear"|"none"  how light becomes codes; "none": linear, but not marked so: viewers take the codes for sRGB. Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  what becomes of bright light: cut at 1; x/(1+x); Hable's curve, white at 5.6. Default "clamp"
 ---@field exposure? number  stops, -32 .. 32: light is multiplied by 2^exposure before the curve. Default 0
@@ -544,7 +544,7 @@ function glint.scene(fields) end
 
 ---@class glint.save_options
 ---@field bits? 8|16  a channel of a .png. Default 8
----@field transfer? "srgb"|"linear"  Default "srgb"
+---@field transfer? "srgb"|"linear"|"none"  Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0

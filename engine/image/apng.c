@@ -87,7 +87,7 @@ static bool write_head(glint_apng *apng)
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (desc->transfer == GLINT_TRANSFER_SRGB)
         png_set_sRGB(apng->png, apng->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    else
+    else if (desc->transfer == GLINT_TRANSFER_LINEAR)
         png_set_gAMA_fixed(apng->png, apng->info, 100000);
     png_write_info(apng->png, apng->info);
     put32(control, desc->frame_count);

@@ -113,7 +113,7 @@ static bool write_container(container *c)
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (source->tone.transfer == GLINT_TRANSFER_SRGB)
         png_set_sRGB(c->png, c->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    else
+    else if (source->tone.transfer == GLINT_TRANSFER_LINEAR)
         png_set_gAMA_fixed(c->png, c->info, 100000);
     set_text(c);
     png_write_info(c->png, c->info);

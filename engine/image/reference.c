@@ -46,13 +46,13 @@ static double code_at(const codes *c, size_t i)
     return c->bits == 16 ? ((const uint16_t *)c->rgb)[i] / 257.0 : ((const uint8_t *)c->rgb)[i];
 }
 
-/// What every code of a transfer stands for on a screen, as linear light. NULL: no memory.
-static float *decoding(glint_transfer transfer, int bits)
+/// What every code stands for as linear light, sRGB codes or linear ones. NULL: no memory.
+static float *decoding(bool srgb, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;
     float *table = malloc(((size_t)last + 1) * sizeof *table);
     for (int k = 0; table && k <= last; k++)
-        table[k] = (float)(transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode((double)k / last) : (double)k / last);
+        table[k] = (float)(srgb ? glint_srgb_decode((double)k / last) : (double)k / last);
     return table;
 }
 
@@ -60,7 +60,7 @@ static float *decoding(glint_transfer transfer, int bits)
 static float *scene_light(const glint_tone_desc *tone, int bits)
 {
     const int last = bits == 16 ? 65535 : 255;
-    float *table = decoding(tone->transfer, bits);
+    float *table = decoding(tone->transfer == GLINT_TRANSFER_SRGB, bits);
     for (int k = 0; table && k <= last; k++)
         table[k] = (float)glint_tone_curve_inverse(tone->curve, (double)table[k]) / glint_tone_gain(tone);
     return table;
@@ -89,7 +89,7 @@ static glint_status prepare_flip(const glint_image *image, const glint_tone_desc
     codes c = { 0 };
     float *planes[3] = { NULL };
     glint_status status = make_codes(image, *tone, bits, &c, error);
-    float *table = status ? NULL : decoding(tone->transfer, bits);
+    float *table = status ? NULL : decoding(tone->transfer != GLINT_TRANSFER_LINEAR, bits);
     if (table)
         decode(&c, table, pixel_count(image), planes);
     if (!status)

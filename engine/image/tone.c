@@ -20,8 +20,9 @@ glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
     if (desc->curve > GLINT_TONE_FILMIC)
         return glint_fail(error, GLINT_ERR_INVALID, "tone: clamp, reinhard or filmic expected, got %d",
                           (int)desc->curve);
-    if (desc->transfer != GLINT_TRANSFER_SRGB && desc->transfer != GLINT_TRANSFER_LINEAR)
-        return glint_fail(error, GLINT_ERR_INVALID, "transfer: srgb or linear expected, got %d", (int)desc->transfer);
+    if (desc->transfer > GLINT_TRANSFER_NONE)
+        return glint_fail(error, GLINT_ERR_INVALID, "transfer: srgb, linear or none expected, got %d",
+                          (int)desc->transfer);
     if (desc->rounding != GLINT_ROUND_NEAREST && desc->rounding != GLINT_ROUND_TRUNCATE)
         return glint_fail(error, GLINT_ERR_INVALID, "rounding: nearest or truncate expected, got %d",
                           (int)desc->rounding);
