@@ -66,7 +66,7 @@ BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/main.o $(BUILD)/bindings/untrusted.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
 TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/test_*.c)))
-TEST_TOOLS   := $(BUILD)/tests/compare16
+TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
 HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/hard/hard_%.c,$(sort $(wildcard tests/hard/*.c))))
 KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa_%.o,$(ENGINE_OBJ))

@@ -47,11 +47,40 @@ static const struct carried {
     { "gr.picture", "@gr/picture.lua", PICTURE, sizeof PICTURE },
 };
 
+typedef struct code_buffer {
+    luaL_Buffer buffer;
+    bool begun; // once the function that is dumped need not be on top of the stack
+} code_buffer;
+
+static int add_code(lua_State *L, const void *bytes, size_t size, void *context)
+{
+    code_buffer *code = context;
+    if (!code->begun)
+        luaL_buffinit(L, &code->buffer);
+    code->begun = true;
+    luaL_addlstring(&code->buffer, bytes, size);
+    return 0;
+}
+
+// Without the numbers of its lines: errors and warnings are then at the nearest line of the scene.
+static void strip(lua_State *L)
+{
+    code_buffer code = { .begun = false };
+    size_t size;
+    if (lua_dump(L, add_code, &code, true))
+        luaL_error(L, "out of memory");
+    luaL_pushresult(&code.buffer);
+    const char *bytes = lua_tolstring(L, -1, &size);
+    if (luaL_loadbufferx(L, bytes, size, "=gr", "b") != LUA_OK)
+        lua_error(L);
+}
+
 static int load_module(lua_State *L)
 {
     const struct carried *module = lua_touserdata(L, lua_upvalueindex(1));
     if (luaL_loadbufferx(L, (const char *)module->text, module->size, module->source, "t") != LUA_OK)
         return lua_error(L);
+    strip(L);
     lua_pushvalue(L, 1);
     lua_call(L, 1, 1);
     return 1;

@@ -1,5 +1,6 @@
 -- Models: the `v` and `f` lines of .obj files, as the course's hosts read them. What follows a slash in a face is
--- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such file.
+-- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such
+-- file.
 local check = require "gr.check"
 local files = require "gr.files"
 check.own_source()

@@ -118,7 +118,7 @@ end
 local function try(change, ...)
   local good, result = pcall(change, ...)
   if good then return result end
-  return type(result) == "string" and result:find "flattens space" and nil or fail(result)
+  if type(result) ~= "string" or not result:find "flattens space" then fail(result) end
 end
 
 local function make_shape(node, map)
@@ -161,7 +161,7 @@ end
 local last = { members = {} } -- the scene of the last picture, and what is in it
 
 local function has_members(members)
-  if #members ~= #last.members then return false end
+  if not last.scene or #members ~= #last.members then return false end
   for i = 1, #members do
     if members[i] ~= last.members[i] then return false end
   end
@@ -239,7 +239,7 @@ end
 
 --- gr.render. to_light: what was made by gr.light, of a value, or nil.
 function picture.render(root, to_light, file, width, height, eye, view, up, fov, ambient, lights)
-  local options_of_picture = { transfer = "linear", rounding = "truncate" }
+  local options_of_picture = { transfer = "none", rounding = "truncate" }
   options_of_picture.output = read_file(file)
   options_of_picture.width = read_side("width", width)
   options_of_picture.height = read_side("height", height)

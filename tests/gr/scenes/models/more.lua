@@ -1,0 +1,8 @@
+-- What a scene runs by dofile.
+function ball(name, material, x, y, z)
+  local s = gr.sphere(name)
+  s:set_material(material)
+  s:scale(0.5, 0.5, 0.5)
+  s:translate(x, y, z)
+  return s
+end
