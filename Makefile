@@ -155,8 +155,8 @@ check-run: tests
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/povray.sh tests/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
-# popen (test_api.lua, test_cost.lua, test_data.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/cli.sh tests/films.sh $(addprefix tests/test_,$(addsuffix .lua,api cost data misuse)),$(SANITIZED))
+# popen (test_api.lua, test_cost.lua, test_data.lua, test_gr.lua), and lets through any allocation that ought to fail (test_misuse.lua).
+WATCHED   := $(filter-out tests/cli.sh tests/films.sh $(addprefix tests/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test

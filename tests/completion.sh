@@ -71,12 +71,20 @@ cat >"$work/scene.lua" <<'END'
 local glint = require "glint"
 return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
 END
+cat >"$work/gr.lua" <<'END'
+gr.render(gr.node 'root', 'empty', 8, 8, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})
+END
 grep -E -- '^ +--[a-z-]+.*compgen -W' "$work/bash" | sed -E 's/^ +--([a-z-]+).*compgen -W "([^"]*)".*/\1 \2/' >"$work/choices"
 check "there are choices" test "$(wc -l <"$work/choices")" -ge 7
 while read -r option words; do
     [ "$option" != terminal ] || continue # of watch, which does not end
+    scene=("$work/scene.lua")
+    case $option in
+    dialect) scene=("$work/gr.lua") ;;
+    gr-*) scene=("$work/gr.lua" --dialect gr) ;;
+    esac
     for word in $words; do
-        check "--$option $word" "$glint" "$work/scene.lua" --size 8x8 --quiet -o none "--$option" "$word"
+        check "--$option $word" "$glint" "${scene[@]}" --size 8x8 --quiet -o none "--$option" "$word"
     done
 done <"$work/choices"
 

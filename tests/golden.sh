@@ -52,4 +52,5 @@ picture lobes scripts/lobes.lua
 picture roughness scripts/roughness.lua
 picture shading_0001 scripts/shading.lua -f 1
 picture shading_0005 scripts/shading.lua -f 5
+picture gr_scene scripts/gr_scene.lua --dialect gr
 exit $bad

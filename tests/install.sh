@@ -25,6 +25,10 @@ check "the module, in plain Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" "${LUA
     'assert(require("glint").version)'
 check "the modules in Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" LUA_PATH="$prefix/share/lua/5.4/?.lua" \
     "${LUA:-lua5.4}" -e 'assert(require("glint.particles").new and require("glint.xyz").frames)'
+echo 'gr.render(gr.node "root", "empty", 8, 6, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})' >"$work/gr.lua"
+check "the dialect" env -C "$work" "$prefix/bin/glint" --dialect gr gr.lua
+check "the dialect, in plain Lua" env -C "$work" LUA_CPATH="$prefix/lib/lua/5.4/?.so" \
+    LUA_PATH="$prefix/share/lua/5.4/?.lua" "${LUA:-lua5.4}" -l gr gr.lua
 check "the manual page" grep -q '^\.TH GLINT 1' "$prefix/share/man/man1/glint.1"
 check "its version" grep -q "\"glint $("$prefix/bin/glint" --version | cut -d ' ' -f 2)\"" "$prefix/share/man/man1/glint.1"
 for file in bash-completion/completions/glint zsh/site-functions/_glint fish/vendor_completions.d/glint.fish; do

@@ -173,7 +173,8 @@ end
 
 -- ---- Plain Lua, and from any folder ----
 
-local lua = ("LUA_PATH='%s/scripts/lib/?.lua;;' LUA_CPATH='%s/%s/?.so' lua5.4"):format(here, here, build)
+local lua = ("LUA_PATH='%s/scripts/lib/?.lua;;' LUA_CPATH='%s/%s/?.so' '%s'"):format(here, here, build,
+  os.getenv "LUA" or "lua5.4")
 run "rm -f *.png"
 local first = ("%s/tests/gr/scenes/first.lua"):format(here)
 local compare = ("'%s' compare first.png plain.png"):format(glint)

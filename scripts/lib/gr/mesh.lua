@@ -112,7 +112,7 @@ function mesh.of_file(path)
 end
 
 local function try(vertices, faces, name)
-  return pcall(glint.mesh, { vertices = vertices, faces = faces, shading = "flat", two_sided = false, name = name })
+  return pcall(glint.mesh, { vertices = vertices, faces = faces, shading = "faceted", two_sided = false, name = name })
 end
 
 local function add_fan(faces, corners, numbers)
