@@ -45,6 +45,7 @@ typedef struct cost_scene {
     int copy_count;
     cost_shaded *shaded; ///< meshes whose shading is edited now
     size_t shaded_count;
+    glint_scene_desc desc; ///< of the original, as the script left it
     glint_material **materials;
     glint_material_desc *material_descs;
     size_t material_count;
@@ -56,12 +57,14 @@ typedef struct cost_scene {
 
 bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene); ///< false: out of memory
 void cost_scene_close(cost_scene *scene);
-/// Puts every material and light back.
+/// Puts everything back.
 void cost_scene_restore(cost_scene *scene);
 /// What to edit: sets material or light i to a description.
 glint_status cost_scene_set_material(cost_scene *scene, size_t i, const glint_material_desc *desc, glint_error *error);
 glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light_desc *desc, glint_error *error);
-/// Every surface matt white, and of the lights only number `light` (all of them when it is not one's) at strength 1:
+/// Sets what the scene itself is described by.
+glint_status cost_scene_set(cost_scene *scene, const glint_scene_desc *desc, glint_error *error);
+/// Without indirect light every surface matt white, and of the lights only number `light` (all of them when it is not one's) at strength 1:
 /// what is lit then is what that light reaches. Shadows stay as they are set.
 glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error);
 

@@ -220,6 +220,37 @@ static glint_status apply_shading(cost_draft *draft, cost_value value, glint_err
     return shading < COUNT(SHADING) ? cost_scene_set_shading(draft->scene, SHADING[shading], error) : GLINT_OK;
 }
 
+// ---- indirect_samples, indirect_bounces: ways of light from surface to surface ----
+
+static void list_indirect_samples(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 1, 4, 16, 64, 256 };
+    if (has_stage(subject->plan, "indirect"))
+        list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_samples, out);
+}
+
+static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, glint_error *error)
+{
+    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
+    desc.indirect_samples = value.number;
+    return cost_scene_set(draft->scene, &desc, error);
+}
+
+// With 0 the ambient light stands for all of it.
+static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 0, 1, 2, 4, 8 };
+    if (has_stage(subject->plan, "indirect"))
+        list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
+}
+
+static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, glint_error *error)
+{
+    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
+    desc.indirect_bounces = value.number;
+    return cost_scene_set(draft->scene, &desc, error);
+}
+
 // ---- bits, encode: the file ----
 
 static void list_bits(const cost_subject *subject, cost_values *out)
@@ -273,6 +304,7 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 // ---- The table, in the order of the output ----
 
 #define SURFACES "a surface to be seen"
+#define INDIRECT "indirect light"
 #define PNG "an output in .png"
 
 const cost_knob cost_knobs[] = {
@@ -282,6 +314,8 @@ const cost_knob cost_knobs[] = {
     { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
     { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, apply_segments },
     { "shading", "a mesh and a light", COST_ERROR_FILM, true, false, list_shading, apply_shading },
+    { "indirect_samples", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_samples, apply_indirect_samples },
+    { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, apply_indirect_bounces },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
     { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
     { "reuse", "a second frame (of a loop of scene:render, name a later one than the first by --frame)",

@@ -55,7 +55,7 @@ bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
         most += glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
     for (size_t i = 0; i < lights; i++)
         corners += glint_light_get(glint_scene_light_at(engine_scene, i))->vertex_count;
-    *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene };
+    *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene, .desc = *glint_scene_get(engine_scene) };
     scene->materials = calloc(most, sizeof *scene->materials);
     scene->material_descs = calloc(most, sizeof *scene->material_descs);
     scene->lights = calloc(lights + 1, sizeof *scene->lights);
@@ -81,6 +81,7 @@ void cost_scene_close(cost_scene *scene)
 
 void cost_scene_restore(cost_scene *scene)
 {
+    glint_scene_set(scene->scene, &scene->desc, NULL);
     for (size_t i = 0; i < scene->material_count; i++) // they were good before
         glint_material_set(scene->materials[i], &scene->material_descs[i], NULL);
     for (size_t i = 0; i < scene->light_count; i++)
@@ -98,12 +99,19 @@ glint_status cost_scene_set_light(cost_scene *scene, size_t i, const glint_light
     return glint_light_set(scene->lights[i], desc, error);
 }
 
+glint_status cost_scene_set(cost_scene *scene, const glint_scene_desc *desc, glint_error *error)
+{
+    return glint_scene_set(scene->scene, desc, error);
+}
+
 static void set_three(double out[3], double value) { out[0] = out[1] = out[2] = value; }
 
 glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error *error)
 {
     glint_material_desc white = glint_material_desc_default();
-    glint_status status = GLINT_OK;
+    glint_scene_desc direct = *glint_scene_get(scene->scene);
+    direct.has_indirect = false;
+    glint_status status = glint_scene_set(scene->scene, &direct, error);
     white.model = GLINT_MODEL_LAMBERT;
     set_three(white.diffuse, 1);
     for (size_t i = 0; i < scene->material_count && !status; i++)

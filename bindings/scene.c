@@ -24,6 +24,18 @@ static void begin_depth_cue(void *desc)
     ((desc_type *)desc)->depth_cue_near = 0;
 }
 
+static const glintL_field INDIRECT[] = {
+    { .name = "samples", .kind = GLINTL_NUMBER, .offset = AT(indirect_samples) },
+    { .name = "bounces", .kind = GLINTL_NUMBER, .offset = AT(indirect_bounces) },
+    { .name = NULL },
+};
+
+static void begin_indirect(void *desc)
+{
+    ((desc_type *)desc)->indirect_samples = 16;
+    ((desc_type *)desc)->indirect_bounces = 2;
+}
+
 static const glintL_field FIELDS[] = {
     { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
     { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
@@ -34,6 +46,12 @@ static const glintL_field FIELDS[] = {
       .set_offset = AT(has_depth_cue),
       .nested = DEPTH_CUE,
       .begin_nested = begin_depth_cue },
+    { .name = "indirect",
+      .kind = GLINTL_NESTED,
+      .offset = AT(indirect_samples),
+      .set_offset = AT(has_indirect),
+      .nested = INDIRECT,
+      .begin_nested = begin_indirect },
     { .name = NULL },
 };
 

@@ -1,6 +1,6 @@
 /// A batch of rays that start on surfaces: at most a tile's samples, walked through the stages together. Internal.
 ///
-/// tile_bounce.c decides which rays there are and what becomes of the light they find.
+/// tile_bounce.c and tile_indirect.c decide which rays there are and what becomes of the light they find.
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 
@@ -13,9 +13,10 @@ typedef struct glint_batch_ray {
     uint32_t leaving; ///< the primitive it starts on
     uint32_t pixel; ///< its sample's place in the tile
     uint32_t depth; ///< mirrors and refractions on its way so far
+    uint32_t scatters; ///< matt surfaces
+    double least; ///< the weight below which a way of indirect light ends
     uint16_t term; ///< where its light goes
     bool inward;
-    bool blind; ///< it does not see lights: where it starts their light is counted already
     glint_media media;
 } glint_batch_ray;
 

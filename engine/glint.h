@@ -333,6 +333,14 @@ typedef struct glint_scene_desc {
     bool has_depth_cue_color; ///< false: `background`
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
+    bool has_indirect; ///< false: `ambient` stands for all light that surfaces get from each other and the background
+    /// Ways of light that are followed from each point seen, over cosine-weighted directions: the diffuse term gets kd times
+    /// the mean of what they find. Whole number, 1 .. 65536.
+    double indirect_samples;
+    /// Matt surfaces on such a way that light is followed beyond; whole number, 0 .. 2^31. At the one after the last
+    /// `ambient` stands for the rest: with 0 it does so at once. What a material's `ambient` has beyond its `diffuse` is
+    /// light of its own, and stays everywhere.
+    double indirect_bounces;
 } glint_scene_desc;
 
 glint_status glint_scene_create(glint_scene **out, glint_error *error);
@@ -372,11 +380,12 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
 typedef enum glint_pass {
-    GLINT_PASS_BEAUTY, ///< ((((background + ambient) + diffuse) + specular) + mirror) + transmission, in float32
+    GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
     GLINT_PASS_BACKGROUND,
     GLINT_PASS_AMBIENT,
     GLINT_PASS_DIFFUSE,
     GLINT_PASS_SPECULAR,
+    GLINT_PASS_INDIRECT,
     GLINT_PASS_MIRROR,
     GLINT_PASS_TRANSMISSION,
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
@@ -475,7 +484,8 @@ const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
 size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// Primary rays exactly; shadow rays at most (every sample hits and faces every light that casts shadows), without those
-/// that mirrored and refracted rays and transparent objects call for; mirror and refraction: 0 or the first generation.
+/// that mirrored, refracted and indirect rays and transparent objects call for; mirror, refraction and indirect: 0 or the
+/// first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 
 // ---- Render -------------------------------------------------------------------------------------------------------

@@ -6,9 +6,10 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",  "glow",    "surface", "view",
-                                                           "light",  "facet", "occlude", "vertex",  "shade",
-                                                           "bounce", "cue",   "resolve", "tone",    "outline" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",    "glow",     "surface",
+                                                           "view",   "light",   "facet",    "occlude",
+                                                           "vertex", "shade",   "indirect", "bounce",
+                                                           "cue",    "resolve", "tone",     "outline" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -63,12 +64,13 @@ static void choose_stages(glint_plan *plan)
 {
     const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
     plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
+    plan->runs[GLINT_STAGE_INDIRECT] = plan->indirect.samples > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
     plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
     plan->accumulate = plan->cue.on || plan->desc.samples > 1 || plan->glow_count > 0 ||
-                       plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || plan->light_count > GLINT_LIGHT_CHUNK ||
-                       (lit && plan->geometry->table.site_count > 0);
+                       plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
+                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
@@ -91,6 +93,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
         status = glint_plan_shading(plan, scene, error);
     if (!status)
         status = glint_plan_glows(plan, scene, error);
+    if (!status)
+        status = glint_plan_find_indirect(plan, &scene->desc, error);
     if (!status)
         status = glint_plan_bounce(plan, error);
     if (status)
@@ -138,6 +142,8 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->glow_edges);
     free(plan->materials);
     free(plan->bouncing);
+    free(plan->indirect.rest);
+    free(plan->indirect.light_rows);
     free(plan->material_keys);
     free(plan->lines);
     free(plan->effects);
@@ -171,6 +177,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
         rays.mirror = samples;
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)
         rays.refraction = samples;
+    rays.indirect = samples * plan->indirect.samples;
     return rays;
 }
 

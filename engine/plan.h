@@ -7,6 +7,7 @@
 ///   plan_shading.c    materials and lights
 ///   plan_bounce.c     mirrors and transparent materials
 ///   plan_glow.c       lights that are seen
+///   plan_indirect.c   light that surfaces get from other surfaces and the background
 ///   plan_explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
@@ -25,6 +26,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_OCCLUDE,
     GLINT_STAGE_VERTEX,
     GLINT_STAGE_SHADE,
+    GLINT_STAGE_INDIRECT,
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_CUE,
     GLINT_STAGE_RESOLVE,
@@ -80,6 +82,15 @@ typedef struct glint_bounce_material {
     bool fresnel, mirrors, transmits; ///< the latter: some channel
 } glint_bounce_material;
 
+/// Indirect light; all 0: there is none.
+typedef struct glint_plan_indirect {
+    uint32_t samples, bounces;
+    uint32_t *light_rows; ///< the first of plan->lights that belongs to each light, and one beyond
+    uint32_t light_count;
+    double (*rest)[3]; ///< beside materials: what `ambient` adds where light is followed no further
+    double least; ///< the share of its first weight below which a way of light ends
+} glint_plan_indirect;
+
 #define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile_bounce.c
 #define GLINT_BOUNCE_LOSS 0x1p-20 ///< of linear light: what weak rays that are not followed may hold together, a sample
 
@@ -112,6 +123,7 @@ struct glint_plan {
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits; ///< some material
+    glint_plan_indirect indirect;
     bool tints; ///< some light casts shadows, and something transmits
     double brightest; ///< bound of what any ray can bring; may be infinite
 
@@ -130,10 +142,11 @@ struct glint_plan {
     size_t effect_count, effect_capacity;
 };
 
-/// Whether sums of this term are made.
+/// Whether anything can add to a term.
 static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
 {
-    return term < GLINT_TERM_LOCAL || plan->runs[GLINT_STAGE_BOUNCE];
+    return term < GLINT_TERM_LOCAL ||
+           plan->runs[term == GLINT_TERM_INDIRECT ? GLINT_STAGE_INDIRECT : GLINT_STAGE_BOUNCE];
 }
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
@@ -145,7 +158,9 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
-/// Fills what mirrors and transparent materials need, after shading.
+/// Fills what indirect light needs, after shading, and takes from the materials' ambient light what it stands for.
+glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
+/// Fills what mirrors and transparent materials need, after that.
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
 
 /// Fills the lights that are seen.

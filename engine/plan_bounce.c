@@ -49,7 +49,7 @@ static double brightest_surface(const glint_plan *plan)
         most = fmax(most, brightest_of(plan->glows[i].shown));
     for (uint32_t i = 0; i < plan->material_count; i++) {
         const glint_shade_material *m = &plan->materials[i];
-        double sum = brightest_of(m->ambient);
+        double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
         for (uint32_t k = 0; k < plan->light_count; k++) {
             const glint_plan_light *light = &plan->lights[k];
             const double c0 = light->coefficients[0];
@@ -71,6 +71,18 @@ static double geometric(double g, double depth)
     return g < 1 ? fmin(depth + 1, 1 / (1 - g)) : (depth + 1) * glint_pow(g, depth);
 }
 
+/// Bounds what a ray can bring, and with it what a way of indirect light must still weigh: two bounds' worth of what all
+/// rays of a sample may lose together is left to mirrored and refracted ones.
+static void bound_light(glint_plan *plan)
+{
+    double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        most = fmax(most, (plan->bouncing ? gain(&plan->bouncing[i]) : 0) +
+                              (plan->indirect.samples ? brightest_of(plan->materials[i].diffuse) : 0));
+    plan->brightest = brightest_surface(plan) * geometric(most, depth);
+    plan->indirect.least = GLINT_BOUNCE_LOSS / (4 * plan->brightest * geometric(most, depth));
+}
+
 /// Below 1 in sum, mirror and transmission share a ray's weight out; above, the number of rays doubles at each surface.
 static glint_status check_depth(const glint_plan *plan, double most, glint_error *error)
 {
@@ -85,14 +97,17 @@ static glint_status check_depth(const glint_plan *plan, double most, glint_error
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
-    double most = 0, splitting = 0;
+    double splitting = 0;
     bool any = false;
     for (size_t i = 0; i < list->count; i++) {
         const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
         any = any || brightest_of(mirror_of(desc)) > 0 || brightest_of(desc->transmission) > 0;
     }
-    if (!any)
+    if (!any) {
+        if (plan->indirect.samples)
+            bound_light(plan);
         return GLINT_OK;
+    }
     plan->bouncing = glint_alloc(list->count, sizeof *plan->bouncing);
     if (!plan->bouncing)
         return glint_fail_nomem(error);
@@ -101,10 +116,9 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
         bounce_material_init(m, &((const glint_material *)list->items[i])->desc);
         plan->mirrors = plan->mirrors || m->mirrors;
         plan->transmits = plan->transmits || m->transmits;
-        most = fmax(most, gain(m));
         if (m->mirrors && m->transmits)
             splitting = fmax(splitting, gain(m));
     }
-    plan->brightest = brightest_surface(plan) * geometric(most, plan->desc.max_depth);
+    bound_light(plan);
     return check_depth(plan, splitting, error);
 }

@@ -225,6 +225,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "light by radiance", radiates);
         lights(e, scene, "hard shadow", casts_hard_shadows);
         lights(e, scene, "soft shadow", casts_soft_shadows);
+        one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
         shapes(e, "triangles", is_mesh);
         shapes(e, "smooth normals", is_smooth);
         if (plan->runs[GLINT_STAGE_VERTEX]) {
@@ -277,6 +278,7 @@ static void list_stages(glint_plan *plan)
         "which points each shadow-casting light reaches",
         "light worked out once for a face or a vertex",
         "ambient, diffuse and specular terms",
+        "light that surfaces get from other surfaces and the background",
         "mirrored and refracted rays, and what they find",
         "light faded towards a colour by distance",
         "mean of samples and lights",

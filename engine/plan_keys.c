@@ -18,6 +18,7 @@ typedef enum input {
     INPUT_MATERIALS, ///< reflectances, exponents
     INPUT_BACKGROUND, ///< and what lights look like
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
+    INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_CUE, ///< how light fades with the distance
     INPUT_PASSES,
@@ -37,6 +38,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
     [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
+    [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_CUE] = READS(CUE),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
@@ -129,6 +131,13 @@ static glint_key bounces_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
+static glint_key indirect_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->indirect.samples);
+    ADD(key, plan->indirect.bounces);
+    return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);
+}
+
 static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key key)
 {
     const glint_tone_desc *tone = &plan->desc.tone;
@@ -170,6 +179,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         key = material_key(&plan->materials[i], key);
     for (uint32_t i = 0; i < plan->material_count && which & READS(TINTS) && plan->tints; i++)
         key = tint_key(&plan->bouncing[i], key);
+    if (which & READS(INDIRECT) && plan->runs[GLINT_STAGE_INDIRECT])
+        key = indirect_key(plan, key);
     if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
         key = bounces_key(plan, key);
     if (which & READS(CUE) && plan->cue.on) {
@@ -220,7 +231,8 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < plan->material_count; i++)
         plan->material_keys[i] = material_key(&plan->materials[i], none);
-    plan->all_materials_key = add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(BOUNCES), none);
+    plan->all_materials_key =
+        add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
     plan->output_key = add_inputs(plan, READS(CUE) | READS(PASSES) | READS(TONE), none);

@@ -87,13 +87,20 @@ static void free_tile(glint_tile *tile)
     glint_vertex_destroy(tile->vertex);
     glint_glow_destroy(tile->glow);
     glint_cue_destroy(tile->cue);
+    glint_indirect_destroy(tile->indirect);
     free(tile->facets);
     free(tile);
 }
 
-/// Memory that only frames with mirrors or transparent objects ask for.
+/// Memory that only frames with mirrors, transparent objects, microfacets or indirect light ask for.
 static bool extend_tile(glint_tile *tile, const glint_plan *plan)
 {
+    if (plan->runs[GLINT_STAGE_INDIRECT]) {
+        glint_indirect_destroy(tile->indirect);
+        tile->indirect = glint_indirect_create(plan);
+        if (!tile->indirect)
+            return false;
+    }
     if (plan->runs[GLINT_STAGE_BOUNCE] && !tile->bounce)
         tile->bounce = glint_bounce_create();
     if (plan->tints && !tile->tint)
@@ -188,15 +195,18 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.work.lights_seen += part->work.lights_seen;
         sum.mirror += part->mirror;
         sum.refraction += part->refraction;
+        sum.indirect += part->indirect;
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
     }
     sum.reuses[GLINT_STAGE_VERTEX] += renderer->sites.ready;
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
-    stats->rays = (glint_ray_counts) {
-        .primary = sum.primary, .shadow = sum.shadow, .mirror = sum.mirror, .refraction = sum.refraction
-    };
+    stats->rays = (glint_ray_counts) { .primary = sum.primary,
+                                       .shadow = sum.shadow,
+                                       .mirror = sum.mirror,
+                                       .refraction = sum.refraction,
+                                       .indirect = sum.indirect };
     stats->work = sum.work;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;

@@ -77,11 +77,11 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
-/// Whether the tile's pixels may show what it does not hit itself: by mirrors, or through what is transparent, or light
-/// that was worked out at points beside it.
+/// Whether the tile's pixels may show what it does not hit itself: by mirrors, through what is transparent, by its
+/// light, or as light that was worked out at points beside it.
 static bool shows_more(const glint_kept_tile *tile, const glint_plan *plan)
 {
-    if (plan->runs[GLINT_STAGE_VERTEX] && tile->sites)
+    if (plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->sites))
         return true;
     if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
         return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;

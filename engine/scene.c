@@ -37,6 +37,10 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, g
         status = glint_check_color("background", desc->background, error);
     if (!status && desc->has_depth_cue)
         status = check_depth_cue(desc, error);
+    if (!status && desc->has_indirect)
+        status = glint_check_whole("indirect.samples", desc->indirect_samples, 1, 65536, error);
+    if (!status && desc->has_indirect)
+        status = glint_check_whole("indirect.bounces", desc->indirect_bounces, 0, 0x1p31, error);
     if (status)
         return status;
     glint_camera_retain(desc->camera);

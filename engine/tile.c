@@ -314,6 +314,14 @@ static void find_tint(glint_tile *tile, const glint_tile_frame *frame, walk *w, 
     glint_tile_tint(tile, frame, index, slot);
 }
 
+/// What other surfaces and the background light.
+static void find_indirect(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    need_points(tile, frame, w);
+    glint_tile_indirect(tile, frame, tile, NULL);
+    glint_tile_book(tile, frame, GLINT_STAGE_INDIRECT, false);
+}
+
 /// What materials send on.
 static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
@@ -369,6 +377,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     } while (from < lights && !glint_tile_cancelled(frame));
     if (sites)
         find_sites(tile, frame, &w);
+    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
+        find_indirect(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
     if (frame->plan->runs[GLINT_STAGE_CUE])
@@ -425,9 +435,9 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const uint64_t clipped = tile->counts.clipped, nonfinite = tile->counts.nonfinite;
     if (tile->kept)
         frame->image->film[tile->index] = (glint_key) { 0 };
-    if (plan->accumulate)
-        memset(tile->sum, 0,
-               (plan->runs[GLINT_STAGE_BOUNCE] ? GLINT_TERM_COUNT : GLINT_TERM_LOCAL) * sizeof *tile->sum);
+    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate; k++)
+        if (glint_plan_has_term(plan, (glint_term)k))
+            memset(tile->sum[k], 0, sizeof tile->sum[k]);
     for (uint32_t k = 0; k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);
         if (glint_tile_cancelled(frame))

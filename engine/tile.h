@@ -12,7 +12,7 @@
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
-    uint64_t primary, shadow, mirror, refraction, clipped, nonfinite;
+    uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
@@ -97,6 +97,7 @@ typedef struct glint_tile {
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
     struct glint_cue *cue; ///< of tile_cue.c; NULL until a frame fades
     struct glint_glow *glow; ///< of tile_glow.c; NULL unless the frame has lights that are seen
+    struct glint_indirect *indirect; ///< memory of tile_indirect.c; likewise
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
@@ -177,6 +178,14 @@ void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *fram
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
 void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile_indirect.c: follows ways of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
+/// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
+struct glint_batch;
+struct glint_indirect *glint_indirect_create(const glint_plan *plan);
+void glint_indirect_destroy(struct glint_indirect *indirect);
+void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
+                         const struct glint_batch *from);
 
 /// tile_tint.c: light through transparent objects.
 struct glint_tint *glint_tint_create(void);

@@ -58,22 +58,6 @@ void glint_batch_load(glint_batch *batch, glint_precision precision)
     }
 }
 
-/// Those of the rays that may see lights.
-static void see_lights(glint_batch *batch, const glint_tile_frame *frame)
-{
-    glint_tile *tile = &batch->tile;
-    uint16_t lanes[GLINT_TILE_GROUPS];
-    if (!glint_tile_glow_in_sight(tile, frame))
-        return;
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        lanes[g] = tile->active[g];
-        for (unsigned left = lanes[g]; left; left &= left - 1)
-            if (batch->ray[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)].blind)
-                lanes[g] = (uint16_t)(lanes[g] & ~(left & -left));
-    }
-    glint_tile_see_lights(tile, frame, lanes);
-}
-
 static bool cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
@@ -91,8 +75,8 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
-    if (frame->plan->runs[GLINT_STAGE_GLOW])
-        see_lights(batch, frame);
+    if (frame->plan->runs[GLINT_STAGE_GLOW] && glint_tile_glow_in_sight(tile, frame))
+        glint_tile_see_lights(tile, frame, tile->active);
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= tile->at.hits[g];

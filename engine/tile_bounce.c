@@ -188,6 +188,8 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     const bool any = glint_batch_cast(&bounce->batch, frame);
     glint_batch_light(&bounce->batch, frame, any);
     collect(&bounce->batch, to);
+    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
+        glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
     if (any)
         spawn(bounce, &bounce->batch.tile, frame, level);
 }

@@ -106,9 +106,10 @@ static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
 {
     store_coverage(tile, frame);
-    if (!frame->plan->runs[GLINT_STAGE_BOUNCE] &&
-        frame->plan->desc.passes & (1u << GLINT_PASS_MIRROR | 1u << GLINT_PASS_TRANSMISSION))
-        memset(tile->film[GLINT_TERM_MIRROR], 0, 2 * sizeof tile->film[0]);
+    for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
+        if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
+            frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
+            memset(tile->film[k], 0, sizeof tile->film[k]);
     store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);

@@ -307,7 +307,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
     glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < GLINT_TERM_COUNT; k++) {
-            args.sum[k][c] = k < GLINT_TERM_LOCAL || plan->runs[GLINT_STAGE_BOUNCE] ? tile->sum[k][c] : NULL;
+            args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->sum[k][c] : NULL;
             args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
         }
         args.beauty[c] = tile->beauty[c];

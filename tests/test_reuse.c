@@ -121,6 +121,9 @@ static const field scene_fields[] = {
     FIELD(glint_scene_desc, depth_cue_color, COLOR, 0, 1),
     FIELD(glint_scene_desc, depth_cue_near, NUMBER, 0, 6),
     FIELD(glint_scene_desc, depth_cue_far, NUMBER, 4, 15),
+    FIELD(glint_scene_desc, has_indirect, FLAG, 0, 1),
+    FIELD(glint_scene_desc, indirect_samples, WHOLE, 1, 3),
+    FIELD(glint_scene_desc, indirect_bounces, WHOLE, 0, 3),
 };
 
 static const field render_fields[] = {
@@ -347,7 +350,10 @@ static void make_world(world *w)
     c.eye[1] = 2;
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 } };
+    glint_scene_desc s = { .camera = w->camera,
+                           .ambient = { 0.1, 0.1, 0.1 },
+                           .indirect_samples = 2,
+                           .indirect_bounces = 2 };
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     for (int i = 0; i < SHAPES; i++) {
         glint_material_desc m = glint_material_desc_default();

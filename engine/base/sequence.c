@@ -10,6 +10,16 @@ int glint_sequence_bits(uint32_t n)
     return bits;
 }
 
+uint64_t glint_sequence_mix(uint64_t a, uint64_t b)
+{
+    uint64_t x = a * UINT64_C(0x9e3779b97f4a7c15) + b;
+    for (int i = 0; i < 2; i++) {
+        x ^= x >> 32;
+        x *= UINT64_C(0xd6e8feb86659fd93);
+    }
+    return x ^ x >> 32;
+}
+
 /// Reverses the lower `bits` bits.
 static uint32_t reverse(uint32_t k, int bits)
 {
@@ -17,6 +27,38 @@ static uint32_t reverse(uint32_t k, int bits)
     for (int i = 0; i < bits; i++)
         r |= (k >> i & 1) << (bits - 1 - i);
     return r;
+}
+
+static uint32_t reverse32(uint32_t x)
+{
+    x = x >> 16 | x << 16;
+    x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;
+    x = (x & 0xf0f0f0f0u) >> 4 | (x & 0x0f0f0f0fu) << 4;
+    x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
+    return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
+}
+
+/// Flips each bit or not, depending on the seed and on the bits below it alone.
+static uint32_t flip_upwards(uint32_t x, uint32_t seed)
+{
+    x ^= x * 0x9e3779b2u;
+    x += seed;
+    x *= (seed >> 16) | 1;
+    x ^= x * 0x7f4a7c16u;
+    x ^= x * 0xb5297a4eu;
+    return x;
+}
+
+void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2])
+{
+    const uint64_t digits = glint_sequence_mix(seed, 1);
+    const uint32_t place = reverse32(flip_upwards(reverse32(k), (uint32_t)(seed ^ seed >> 32)));
+    uint32_t second = 0;
+    for (uint32_t i = place, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
+        if (i & 1)
+            second ^= v;
+    out[0] = (reverse32(flip_upwards(place, (uint32_t)digits)) + 0.5) * 0x1p-32;
+    out[1] = (reverse32(flip_upwards(reverse32(second), (uint32_t)(digits >> 32))) + 0.5) * 0x1p-32;
 }
 
 void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])

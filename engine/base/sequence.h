@@ -8,6 +8,15 @@
 /// in every way; centred in its cells, and shifted around the torus by the seed, a whole number >= 0 (0: not at all).
 void glint_sequence_point(uint32_t k, int bits, double seed, double out[2]);
 
+/// Point k of Sobol's (0,2) sequence, its digits and its order scrambled at random by the seed, so that sequences of
+/// different seeds have nothing in common and each keeps its evenness: that of every 2^m points from a multiple of 2^m on.
+/// (A. Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995; by hashing, as in B. Burley, "Practical Hash-based
+/// Owen Scrambling", JCGT 9(4), 2020.)
+void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2]);
+
+/// A number that has everything of both, mixed.
+uint64_t glint_sequence_mix(uint64_t a, uint64_t b);
+
 /// The least `bits` with 2^bits >= n, for n <= 2^31.
 int glint_sequence_bits(uint32_t n);
 

@@ -17,6 +17,7 @@ static const struct {
     [GLINT_PASS_AMBIENT] = { "ambient", 3 },
     [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
     [GLINT_PASS_SPECULAR] = { "specular", 3 },
+    [GLINT_PASS_INDIRECT] = { "indirect", 3 },
     [GLINT_PASS_MIRROR] = { "mirror", 3 },
     [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
     [GLINT_PASS_DEPTH] = { "depth", 1 },

@@ -30,4 +30,18 @@
 #define GLINT_EXP2_D5 0x1.5f48c0p-10f
 #define GLINT_EXP2_D6 0x1.444000p-13f
 
+// sin(x) = x + x z (S1 + ...) and cos(x) = 1 + z (C1 + ...) with z = x^2, for |x| <= pi/4, by Taylor: off by 2e-9 at most
+#define GLINT_HALF_PI 0x1.921fb54442d18p+0
+#define GLINT_SIN_1 (-1.0 / 6)
+#define GLINT_SIN_2 (1.0 / 120)
+#define GLINT_SIN_3 (-1.0 / 5040)
+#define GLINT_SIN_4 (1.0 / 362880)
+#define GLINT_COS_1 (-1.0 / 2)
+#define GLINT_COS_2 (1.0 / 24)
+#define GLINT_COS_3 (-1.0 / 720)
+#define GLINT_COS_4 (1.0 / 40320)
+#define GLINT_COS_5 (-1.0 / 3628800)
+#define GLINT_ROUNDER_DOUBLE 0x1.8p52 ///< added and taken away again, it leaves a whole number
+#define GLINT_ROUNDER_FLOAT 0x1.8p23
+
 #endif

@@ -32,6 +32,7 @@
 #include "engine/stages/occlude_beam.h"
 #include "engine/stages/soft.h"
 #include "engine/stages/bounce.h"
+#include "engine/stages/scatter.h"
 
 #undef GLINT_REAL
 #define GLINT_REAL 32
@@ -55,6 +56,7 @@
 #include "engine/stages/occlude_beam.h"
 #include "engine/stages/soft.h"
 #include "engine/stages/bounce.h"
+#include "engine/stages/scatter.h"
 
 #include "engine/stages/shade.h"
 #include "engine/stages/resolve.h"
@@ -66,7 +68,7 @@
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, \
     }
 
 const glint_stages GLINT_STAGES_SYMBOL = {

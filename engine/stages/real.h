@@ -26,6 +26,7 @@
 #undef r_put_index
 #undef GLINT_PARALLEL
 #undef GLINT_POINT_SLACK
+#undef GLINT_ROUNDER
 
 #if GLINT_REAL == 64
 #define real double
@@ -54,6 +55,7 @@
 #define r_put_index d_put_index
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
+#define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE
 #else
 #define real float
 #define vr vf
@@ -81,6 +83,7 @@
 #define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
+#define GLINT_ROUNDER GLINT_ROUNDER_FLOAT
 #endif
 
 /// VF lanes of real as floats. What is stored as real and read as float comes by this: a wide load of what narrower

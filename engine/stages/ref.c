@@ -170,17 +170,23 @@ static double square_root_double(double x) { return sqrt(x); }
 #define POINT_SLACK_double GLINT_POINT_SLACK_DOUBLE
 
 #define REAL float
+#define ROUNDER GLINT_ROUNDER_FLOAT
 #define NAME(x) x##_float
 #include "engine/stages/ref_real.h"
 #include "engine/stages/ref_facet.h"
+#include "engine/stages/ref_scatter.h"
 #undef REAL
+#undef ROUNDER
 #undef NAME
 
 #define REAL double
+#define ROUNDER GLINT_ROUNDER_DOUBLE
 #define NAME(x) x##_double
 #include "engine/stages/ref_real.h"
 #include "engine/stages/ref_facet.h"
+#include "engine/stages/ref_scatter.h"
 #undef REAL
+#undef ROUNDER
 #undef NAME
 
 // ---- shade -------------------------------------------------------------------------------------------------------
@@ -404,7 +410,7 @@ static void tone(const glint_tone_args *args)
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, \
     }
 
 const glint_stages glint_stages_ref = {

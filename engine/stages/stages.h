@@ -501,6 +501,26 @@ typedef struct glint_bounce_args {
 // x = r c, y = r s, p = (x - s) / (x + s), q = (c - y) / (c + y)                                (Fresnel)
 // reflectance = r == 1 ? 0 : total ? 1 : 0.5 (p p + q q)
 
+// ---- scatter: directions around normals, as dense as their cosine ----
+
+typedef struct glint_scatter_args {
+    uint32_t group_count;
+    const uint16_t *wanted; ///< a bit a lane
+    const void *normal[3]; ///< real, unit
+    const double
+        *square[2]; ///< u and v in 0 .. 1: equal areas of the unit square get equal shares of an even sky's light
+    void *direction[3]; ///< out, real, unit but for rounding and 2e-9
+} glint_scatter_args;
+// Groups without a wanted lane are not written; in others, lanes that are not wanted hold anything.
+// u and v are first rounded to real; a = 4 v, q = a rounded to a whole number: (a + w) - w with w = 1.5 2^52 (float: 2^23)
+// f = (a - q) (pi/2), z = f f;  s = f + (f z) (S1 + z (S2 + z (S3 + z S4))),  c = 1 + z (C1 + z (C2 + z (C3 + z (C4 + z C5))))
+// (sin, cos) = q = 1: (c, 0 - s); q = 2: (0 - s, 0 - c); q = 3: (0 - c, s); otherwise (s, c)
+// x = sqrt(u) cos, y = sqrt(u) sin, h = sqrt(max(1 - u, 0))                             (the disk, lifted: cosine-weighted)
+// g = n.z >= 0 ? 1 : -1, p = -1 / (g + n.z), q = (n.x n.y) p              (T. Duff et al., JCGT 6(1), 2017: an orthonormal basis)
+// tangent = (1 + g ((n.x n.x) p), g q, 0 - g n.x), bitangent = (q, g + (n.y n.y) p, 0 - n.y)
+// direction = (x tangent + y bitangent) + h n
+// The coefficients stand in coefficients.h.
+
 // ---- shade: the terms of each sample ----
 
 typedef enum glint_term {
@@ -508,11 +528,12 @@ typedef enum glint_term {
     GLINT_TERM_AMBIENT,
     GLINT_TERM_DIFFUSE,
     GLINT_TERM_SPECULAR,
+    GLINT_TERM_INDIRECT, ///< what other surfaces and the background light
     GLINT_TERM_MIRROR, ///< what mirrors show
     GLINT_TERM_TRANSMISSION, ///< what shows through
     GLINT_TERM_COUNT
 } glint_term;
-#define GLINT_TERM_LOCAL GLINT_TERM_MIRROR ///< how many shade makes
+#define GLINT_TERM_LOCAL GLINT_TERM_INDIRECT ///< how many shade makes
 
 typedef struct glint_shade_light {
     bool joined; ///< a further sample of the light before it in this call, with the same colours
@@ -572,7 +593,7 @@ typedef struct glint_resolve_args {
     float *film[GLINT_TERM_COUNT][3]; ///< out, or NULL
     float *beauty[3]; ///< out
 } glint_resolve_args;
-// term = (float)(sum / samples); beauty as in shade, then (beauty + mirror) + transmission of those there are
+// term = (float)(sum / samples); beauty as in shade, then ((beauty + indirect) + mirror) + transmission of those there are
 
 // ---- tone: 8-bit codes, written into the image ----
 
@@ -632,6 +653,7 @@ typedef struct glint_stages {
         void (*occlude)(const glint_occlude_args *args);
         void (*bounce)(const glint_bounce_args *args);
         void (*vertex)(const glint_vertex_args *args);
+        void (*scatter)(const glint_scatter_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
