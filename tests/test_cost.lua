@@ -319,6 +319,18 @@ local float, double = find(ground, "precision", "float"), find(ground, "precisio
 check(float.wrong_object + float.wrong_shadow > 0, "float on a huge ground: no pixel wrong")
 check(double.wrong_object + double.wrong_shadow == 0, "double: %d wrong", double.wrong_object + double.wrong_shadow)
 
+-- ---- Indirect light ----
+
+local sent = study("sent", still("sent.lua", [[indirect = { samples = 2, bounces = 1 },
+  glint.point_light { position = { 0, 6, 3 } }, glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } },
+  glint.sphere { center = { 0, 1, 0 }, radius = 1 }]]) .. " --size 24x18 --knobs indirect_samples,indirect_bounces")
+check(knobs_of(sent) == "indirect_samples indirect_bounces", "indirect light has knobs: %s", knobs_of(sent))
+check(find(sent, "indirect_samples", 2).default and find(sent, "indirect_bounces", 1).default, "its own among the values")
+check(find(sent, "indirect_samples", 64).rmse < find(sent, "indirect_samples", 1).rmse, "error falls with the ways")
+check(find(sent, "indirect_bounces", 0).counters.indirect == 0, "0 bounces: no ways")
+check(find(sent, "indirect_samples", 16).counters.indirect == 8 * find(sent, "indirect_samples", 2).counters.indirect,
+  "16 ways are 8 times 2")
+
 -- ---- For people; the report ----
 
 check(run(film .. " --quick --knobs samples,encode --report " .. work .. "/a/b") == 0, "report: %s", read "err")

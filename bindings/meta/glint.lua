@@ -458,11 +458,17 @@ function glint.group(fields) end
 
 -- ---- Scene ----
 
+--- Read from a scene its fields are only read: assign a whole table.
+---@class glint.indirect
+---@field samples? integer  ways of light followed from each point seen, 1 .. 65536. Default 16
+---@field bounces? integer  matt surfaces on a way that light is followed beyond, 0 .. 2^31; then `ambient` stands for the rest. Default 2
+
 ---@class glint.scene_fields
 ---@field camera? glint.camera  needed for a frame; nil: none
 ---@field ambient? glint.color  light from everywhere, >= 0. Default 0
 ---@field background? glint.color  what a ray sees that hits nothing, >= 0. Default 0
 ---@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background) from distance near (default 0) to far. Default nil: it does not
+---@field indirect? glint.indirect  light from surface to surface instead of `ambient`; what a material's `ambient` has beyond its `diffuse` is its own light and stays. Default nil: off
 
 ---@class glint.scene_table: glint.scene_fields
 ---@field [integer] glint.shape|glint.light  the objects, numbered in this order, without holes
@@ -510,11 +516,12 @@ function glint.scene(fields) end
 -- ---- Frames ----
 
 ---@alias glint.pass
----| "beauty"  # ((((background + ambient) + diffuse) + specular) + mirror) + transmission, exactly
+---| "beauty"  # (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, exactly
 ---| "background"
 ---| "ambient"
 ---| "diffuse"
 ---| "specular"
+---| "indirect"
 ---| "mirror"
 ---| "transmission"
 ---| "depth"  # distance from the eye, one number; inf where nothing is hit
