@@ -5,6 +5,7 @@ package.path = "scripts/lib/?.lua;" .. package.path
 local glint = require "glint"
 local elements, particles, xyz = require "glint.elements", require "glint.particles", require "glint.xyz"
 local pdb, lammps, points = require "glint.pdb", require "glint.lammps", require "glint.points"
+local bonds = require "glint.bonds"
 local nff, helix, sphereflake = require "glint.nff", require "glint.helix", require "glint.sphereflake"
 
 local passed, failed = 0, 0
@@ -298,6 +299,48 @@ function tests.helix()
   near(atoms[5][2], place["CB1/1"][1], 0.0005, "x of CB 1")
 end
 
+function tests.bonds()
+  local set = particles.new()
+  set:add_frame(xyz.frame "scripts/data/caffeine.xyz")
+  local found = {}
+  local group, count = bonds.new(set)
+  local x, y, z, place = set:places_of_all()
+  check(count == 25 and group.count == 50, "caffeine has 25 bonds, got %d", count)
+  local reach = {}
+  for i = 1, #x do
+    reach[i] = elements[set.materials[place[i]].name].covalent + 0.225
+    found[i] = {}
+  end
+  bonds.each(x, y, z, reach, 0.4, function(i, j) found[i][j] = (found[i][j] or 0) + 1 end)
+  for i = 1, #x do
+    for j = 1, i - 1 do
+      local d = math.sqrt((x[i] - x[j]) ^ 2 + (y[i] - y[j]) ^ 2 + (z[i] - z[j]) ^ 2)
+      check((found[i][j] or 0) == ((d <= reach[i] + reach[j] and d > 0.4) and 1 or 0), "pair %d, %d at %g", i, j, d)
+    end
+  end
+  set = particles.new { format = "f32" } -- a grid of 13 x 13 x 13, in another order
+  for n = 0, 13 ^ 3 - 1 do
+    local i = n * 1000 % 2197
+    set:add("point", i % 13 - 50, i // 13 % 13 + 1e3, i // 169)
+  end
+  local _, joined = bonds.new(set, { distance = 1.1 })
+  check(joined == 3 * 12 * 13 * 13, "bonds of a grid: %d", joined)
+  local ok, message = pcall(bonds.new, set)
+  check(not ok and message:find('"point" is no element and has no covalent radius', 1, true), "%s", message)
+  ok, message = pcall(bonds.new, set, { raduis = 1 })
+  check(not ok and message:find("bonds.raduis: no such option", 1, true), "%s", message)
+  check(not pcall(bonds.new, set, { radius = 0 }) and not pcall(bonds.new, set, { radius = "1" }), "wrong radius")
+  local alone = particles.new()
+  alone:add("He", 0, 0, 0)
+  local none, zero = bonds.new(alone)
+  check(none == nil and zero == 0, "no bonds, no group")
+  check(elements.C.covalent == 0.76 and elements.Cm.covalent == 1.69 and elements.Hs.covalent == 1.7, "covalent radii")
+  local cue = set:depth_cue(set:camera { from = { 0, 0, 1 } }, 0.5)
+  near(cue.far - cue.near, 2 * 13, 1e-9, "a depth cue over the depth of all spheres")
+  set:spheres()
+  check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
+end
+
 function tests.sphereflake()
   local list = {}
   sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)
@@ -339,8 +382,14 @@ function tests.nff()
   refuses(head .. f .. "s 0 0 0\n", 13, 's (a sphere, x y z radius) expected, got " 0 0 0"', nff.load)
   refuses(head .. f .. "s 0 0 0 0\n", 13, 'a radius > 0 expected, got "0"', nff.load)
   refuses(head .. f .. "s 0 0 z 1\n", 13, 'z (a finite number) expected, got "z"', nff.load)
-  refuses(head .. "f 1 1 1 1 0 0 0.5 1.5\n", 12,
-    'T = 0 (glint does not read transparent surfaces yet) expected, got " 1 1 1 1 0 0 0.5 1.5"', nff.load)
+  refuses(head .. "f 1 1 1 1 0 0 0.5 0\n", 12,
+    'an index of refraction > 0 where T is above 0 expected, got " 1 1 1 1 0 0 0.5 0"', nff.load)
+  refuses(head .. "f 1 1 1 1 0 0 -0.5 1\n", 12, 'no negative number in f expected, got " 1 1 1 1 0 0 -0.5 1"', nff.load)
+  local glass = write("glass.nff", head .. "f 1 1 1 0.5 0.25 9 0.5 1.5\ns 0 0 0 1\n")
+  local look = nff.load(glass).scene:cast({ 0, 0, -5 }, { 0, 0, 1 }).object.materials[1]
+  check(look.mirror.r == 0.25 and look.transmission.r == 0.5 and look.ior == 1.5, "mirror and transmission of f")
+  look = nff.load(glass, { mirrors = false }).scene:cast({ 0, 0, -5 }, { 0, 0, 1 }).object.materials[1]
+  check(look.mirror.r == 0 and look.transmission.r == 0, "left out on request")
   refuses(head .. "f 1 1 1\n", 12, 'f (r g b Kd Ks Shine T index), 8 numbers, expected, got " 1 1 1"', nff.load)
   local patch = write("patch.nff", head .. f .. "pp 3\n0 0 0 0 0.6 0.8\n1 0 0 0 0.6 0.8\n0 1 0 0 0.6 0.8\n")
   hit = nff.load(patch).scene:cast({ 0.2, 0.2, 1 }, { 0, 0, -1 })
@@ -353,10 +402,21 @@ function tests.nff()
   refuses(head .. f .. "pp 3\n0 0 0\n", 14, 'corner 1 of 3, 6 numbers, expected, got "0 0 0"', nff.load)
   refuses(head .. f .. "p 3\n0 0 0\n1 0 0\n0 1 0\np 3\n0 0 0\n1 0 0\n2 0 0\n", 17,
     "a face with an area expected: its vertices 4, 5, 6 are on one line", nff.load)
-  refuses(head .. f .. "c\n0 0 0 1\n0 0 1 1\n", 13, 'a primitive that glint reads (cones and cylinders are none; ' ..
-    'skip = { c = true } passes over them) expected, got "c"', nff.load)
-  picture = nff.load(write("cone.nff", head .. f .. "c\n0 0 0 1\n0 0 1 1\ns 0 0 0 1\n"), { skip = { c = true } })
-  check(picture.skipped.c == 1 and picture.set.count == 1, "skipped on request")
+  refuses(head .. "c\n0 0 0 1\n0 0 1 1\n", 12, 'f (a material) before the first primitive expected, got "c"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 1\n", 15, "the apex of c, x y z radius expected, got the end of the file", nff.load)
+  refuses(head .. f .. "c\n0 0 0\n0 0 1 1\n", 14, 'the base of c, x y z radius, 4 numbers, expected, got "0 0 0"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 -1\n0 0 1 1\n", 14, 'a radius >= 0 expected, got "0 0 0 -1"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 0\n0 0 1 0\n", 15, 'a radius > 0 at one of the ends of c expected, got "0"', nff.load)
+  refuses(head .. f .. "c\n0 0 1 1\n0 0 1 2\n", 15, 'another place for the apex of c than for its base expected, got "the same"', nff.load)
+  picture = nff.load(write("cone.nff", head .. f .. "c\n0 0 0 1\n0 0 2 1\nc\n5 0 2 0\n5 0 0 1\nc\n9 0 0 2\n9 0 2 1\n"))
+  check(#picture.cones == 3, "cones")
+  local scene = picture.scene
+  near(scene:cast({ 0, -9, 1 }, { 0, 1, 0 }).t, 8, 1e-12, "a cylinder")
+  check(not scene:cast({ 0, 0, 9 }, { 0, 0, -1 }), "is open")
+  near(scene:cast({ 5, -9, 1 }, { 0, 1, 0 }).t, 8.5, 1e-12, "a cone, its point first")
+  near(scene:cast({ 9, -9, 1 }, { 0, 1, 0 }).t, 7.5, 1e-3, "a cut cone")
+  near(scene:cast({ 9, -9, 1 }, { 0, 1, 0 }).point.z, 1, 1e-12, "at its middle")
+  check(not scene:cast({ 9, 0, 9 }, { 0, 0, -1 }), "is open, too")
   refuses(head .. "torus 1 2\n", 12, 'v, b, l, f, s, p, pp, c or # expected, got "torus 1 2"', nff.load)
 end
 
@@ -399,7 +459,7 @@ end
 
 function tests.pictures()
   for _, case in ipairs { "molecule", "protein --set residues=20", "sphereflake --set size=2 --set nff=balls.nff",
-    "particle_box --set count=4000", "nff --set file=balls.nff" } do
+    "particle_box --set count=4000", "nff --set file=balls.nff --set mirrors=false" } do
     local name = case:match "^%S+"
     local ok, text = run(("%s/scripts/%s.lua %s --size 96x72 --samples 1 -o %s.pfm --quiet"):format(root, name,
       case:sub(#name + 1), name))

@@ -1,9 +1,11 @@
--- The elements: number, colour and van der Waals radius.
+-- The elements: number, colour, van der Waals and covalent radius.
 --     local elements = require "glint.elements"
 --     elements.O.color, elements.O.radius, elements.symbol "CL"  -->  "#ff0d0d"  1.52  "Cl"
 -- Colours: the CPK-derived scheme of Jmol (Jmol's documentation, "Jmol colors"), sRGB; without one from 110 on.
 -- Radii, angstroms: A. Bondi, J. Phys. Chem. 68 (1964) 441, and for the main-group elements that Bondi does not give,
 -- M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806. Elements in neither have `radius` = 2 and `guessed` = true.
+-- Covalent radii, angstroms: B. Cordero et al., Dalton Trans. (2008) 2832; C as sp3, Mn, Fe and Co of low spin. From Bk on
+-- there are none: `covalent` is 1.7.
 local elements = {}
 
 local SYMBOLS = [[
@@ -35,15 +37,25 @@ local MANTINA = {
   Bi = 2.07, Po = 1.97, At = 2.02, Rn = 2.20, Fr = 3.48, Ra = 2.83,
 }
 
-local GUESSED_RADIUS = 2
+-- By atomic number.
+local CORDERO = [[
+0.31 0.28 1.28 0.96 0.84 0.76 0.71 0.66 0.57 0.58 1.66 1.41 1.21 1.11 1.07 1.05 1.02 1.06
+2.03 1.76 1.70 1.60 1.53 1.39 1.39 1.32 1.26 1.24 1.32 1.22 1.22 1.20 1.19 1.20 1.20 1.16
+2.20 1.95 1.90 1.75 1.64 1.54 1.47 1.46 1.42 1.39 1.45 1.44 1.42 1.39 1.39 1.38 1.39 1.40 2.44 2.15
+2.07 2.04 2.03 2.01 1.99 1.98 1.98 1.96 1.94 1.92 1.92 1.89 1.90 1.87 1.87
+1.75 1.70 1.62 1.51 1.44 1.41 1.36 1.36 1.32 1.45 1.46 1.48 1.40 1.50 1.50
+2.60 2.21 2.15 2.06 2.00 1.96 1.90 1.87 1.80 1.69]]
+
+local GUESSED_RADIUS, GUESSED_COVALENT = 2, 1.7
 
 local by_number = {}
-local next_color = COLORS:gmatch "%x+"
+local next_color, next_covalent = COLORS:gmatch "%x+", CORDERO:gmatch "%S+"
 for symbol in SYMBOLS:gmatch "%a+" do
   local radius = BONDI[symbol] or MANTINA[symbol]
   by_number[#by_number + 1] = symbol
   elements[symbol] = {
     number = #by_number, color = "#" .. next_color(), radius = radius or GUESSED_RADIUS, guessed = not radius,
+    covalent = tonumber(next_covalent() or GUESSED_COVALENT),
   }
 end
 

@@ -1,17 +1,19 @@
--- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s, p, pp.
+-- NFF, the Neutral File Format of Eric Haines' Standard Procedural Databases (SPD): v, b, l, f, s, p, pp, c.
 --     local picture = nff.load "balls.nff"
 --     return glint.animation { scene = picture.scene, width = picture.width, height = picture.height, ... }
 -- What becomes of it: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is
--- diffuse, Ks the strength of a white highlight and Shine its exponent (no mirror); a light without a colour has the
--- intensity 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one
--- glint.mesh, its patches (polygons with a normal a corner) another.
--- Refused with their line: cones and cylinders `c`, and T > 0 in `f`. With options.skip = { c = true } they are passed
--- over instead, and counted in picture.skipped.
+-- diffuse, Ks the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of refraction, is
+-- transmission; options.mirrors = false leaves mirror and transmission out. A light without a colour has the intensity
+-- 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one glint.mesh, its
+-- patches (polygons with a normal a corner) another. Cones and cylinders are open at their ends; one whose radii differ and
+-- are both above 0 is a mesh of 128 sides with smooth normals.
 local glint = require "glint"
 local lines = require "glint.lines"
 local particles = require "glint.particles"
 
 local nff = {}
+
+local SIDES = 128 -- of a cut cone
 
 local VIEW = { { "from", 3 }, { "at", 3 }, { "up", 3 }, { "angle", 1 }, { "hither", 1 }, { "resolution", 2 } }
 
@@ -60,14 +62,16 @@ function read.l(picture, source, rest)
 end
 
 function read.f(picture, source, rest)
-  local r, g, b, kd, ks, shine, t = table.unpack(numbers(source, rest, "f (r g b Kd Ks Shine T index)", 8))
-  if t ~= 0 then source:fail("T = 0 (glint does not read transparent surfaces yet)", rest) end
-  if math.min(r, g, b, kd, ks, shine) < 0 then source:fail("no negative number in f", rest) end
+  local r, g, b, kd, ks, shine, t, ior = table.unpack(numbers(source, rest, "f (r g b Kd Ks Shine T index)", 8))
+  if math.min(r, g, b, kd, ks, shine, t) < 0 then source:fail("no negative number in f", rest) end
+  if t > 0 and ior <= 0 then source:fail("an index of refraction > 0 where T is above 0", rest) end
   local label = "f" .. picture.material_count + 1
   picture.material_count = picture.material_count + 1
-  picture.kinds[label] = {
-    radius = 1, material = glint.material { diffuse = { r * kd, g * kd, b * kd }, specular = ks, shininess = shine },
-  }
+  local fields = { diffuse = { r * kd, g * kd, b * kd }, specular = ks, shininess = shine }
+  if picture.mirrors then
+    fields.mirror, fields.transmission, fields.ior = ks, t, t > 0 and ior or nil
+  end
+  picture.kinds[label] = { radius = 1, material = glint.material(fields) }
   picture.material = label
 end
 
@@ -116,15 +120,65 @@ end
 function read.p(picture, source, rest) read_polygon(picture, source, "p", rest) end
 function read.pp(picture, source, rest) read_polygon(picture, source, "pp", rest) end
 
+local function unit(x, y, z)
+  local length = math.sqrt(x * x + y * y + z * z)
+  return { x / length, y / length, z / length }, length
+end
+
+local function cross(a, b)
+  return unit(a[2] * b[3] - a[3] * b[2], a[3] * b[1] - a[1] * b[3], a[1] * b[2] - a[2] * b[1])
+end
+
+-- The side of a cut cone, from ring a to ring b, each { x, y, z, radius }: quads with the normals of the cone.
+local function cut_cone(a, b, material)
+  local w, length = unit(b[1] - a[1], b[2] - a[2], b[3] - a[3])
+  local u = cross(w, math.abs(w[1]) < 0.6 and { 1, 0, 0 } or { 0, 1, 0 })
+  local v, slope = cross(w, u), (a[4] - b[4]) / length
+  local vertices, normals, faces = {}, {}, {}
+  for k = 0, SIDES - 1 do
+    local angle, out = 2 * math.pi * k / SIDES, {}
+    for i = 1, 3 do out[i] = u[i] * glint.cos(angle) + v[i] * glint.sin(angle) end
+    for _, ring in ipairs { a, b } do
+      local n = #vertices + 1
+      vertices[n], normals[n] = {}, {}
+      for i = 1, 3 do
+        vertices[n][i] = ring[i] + ring[4] * out[i]
+        normals[n][i] = out[i] + slope * w[i]
+      end
+    end
+    local here, after = 2 * k + 1, 2 * ((k + 1) % SIDES) + 1
+    faces[k + 1] = { here, after, after + 1, here + 1 }
+  end
+  return glint.mesh { vertices = vertices, normals = normals, faces = faces, shading = "phong", material = material }
+end
+
 function read.c(picture, source, rest)
-  if not picture.skip.c then
-    source:fail("a primitive that glint reads (cones and cylinders are none; skip = { c = true } passes over them)",
-      "c" .. rest)
+  if rest:find "%S" then source:fail("nothing after c in its line", rest) end
+  if not picture.material then source:fail("f (a material) before the first primitive", "c") end
+  local ends = {}
+  for i, what in ipairs { "the base of c, x y z radius", "the apex of c, x y z radius" } do
+    local line = next_line(source)
+    if not line then source:fail(what, nil) end
+    ends[i] = numbers(source, line, what, 4)
+    if ends[i][4] < 0 then source:fail("a radius >= 0", line) end
   end
-  for _ = 1, 2 do
-    if not next_line(source) then source:fail("the two ends of c", nil) end
+  local base, apex = ends[1], ends[2]
+  if base[4] == 0 and apex[4] == 0 then source:fail("a radius > 0 at one of the ends of c", "0") end
+  if base[1] == apex[1] and base[2] == apex[2] and base[3] == apex[3] then
+    source:fail("another place for the apex of c than for its base", "the same")
   end
-  picture.skipped.c = (picture.skipped.c or 0) + 1
+  if base[4] < apex[4] then base, apex = apex, base end
+  local material, shape = picture.kinds[picture.material].material, nil
+  local fields = { base = { base[1], base[2], base[3] }, top = { apex[1], apex[2], apex[3] }, radius = base[4],
+    capped = false, material = material }
+  if base[4] == apex[4] then
+    shape = glint.cylinder(fields)
+  elseif apex[4] == 0 then
+    shape = glint.cone(fields)
+  else
+    shape = cut_cone(base, apex, material)
+  end
+  picture.cones[#picture.cones + 1] = shape
 end
 
 -- The engine looks at the shapes of polygons when it has all of them: its message names the face, ours the line.
@@ -161,22 +215,23 @@ local function finish(picture, source)
   picture.width, picture.height = view.resolution[1], view.resolution[2]
   add_lights(picture)
   add_meshes(picture, source)
+  if #picture.cones > 0 then picture.scene:add(glint.group(picture.cones)) end
   if picture.set.count > 0 then picture.scene:add(picture.set:spheres()) end
   return picture
 end
 
 --- Reads a file into a scene. Errors have file and line. Memory: see glint.particles.
 ---@param path string
----@param options? { skip: { c: boolean }, format: string }  format: of the spheres, "f64" (default) or "f32"
----@return table picture  scene, width, height, skipped, material_count, polygon_count, set (of
+---@param options? { mirrors: boolean, format: string }  mirrors: also what f tells of them, default true; format: of the
+--- spheres, "f64" (default) or "f32"
+---@return table picture  scene, width, height, material_count, polygon_count, cones (a list of shapes), set (of
 --- glint.particles, with its count)
 function nff.load(path, options)
   local source = lines.open(path)
   local kinds = {}
   local picture = {
     view = {}, lights = {}, kinds = kinds, material_count = 0, polygon_count = 0, bunches = {},
-    background = { 0, 0, 0 }, skipped = {},
-    skip = options and options.skip or {},
+    background = { 0, 0, 0 }, cones = {}, mirrors = not (options and options.mirrors == false),
     set = particles.new { kinds = kinds, format = options and options.format },
   }
   for line in next_line, source do

@@ -127,6 +127,23 @@ function set:add_frame(frame)
   return self
 end
 
+--- Where all spheres are, and which of set.materials each has: four lists, in the order they were added. Not after spheres().
+function set:places_of_all()
+  if not self.data then error("particles: the spheres of this set have been taken", 2) end
+  pack(self)
+  local x, y, z, place = {}, {}, {}, {}
+  for n, chunk in ipairs(self.data) do
+    local at, index, next_index = 1, self.index[n], 1
+    while at <= #chunk do
+      local i = #x + 1
+      x[i], y[i], z[i], at = (self.code:rep(3)):unpack(chunk, at)
+      place[i], next_index = ("I4"):unpack(index, next_index)
+      at = at + self.code:packsize() -- the radius
+    end
+  end
+  return x, y, z, place
+end
+
 --- The spheres, as one shape. The set's own copy of them goes: to be called once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
@@ -163,6 +180,22 @@ function set:camera(fields)
   local eye = {}
   for i = 1, 3 do eye[i] = center[i] + distance * from[i] end
   return glint.camera { eye = eye, at = center, fov = fov, up = fields.up, name = fields.name }
+end
+
+--- A depth cue for a camera that looks at the spheres: full light at the nearest, `lost` (0 .. 1, default 0.7) of it gone at
+--- the farthest.
+---@param camera table
+---@param lost? number
+function set:depth_cue(camera, lost)
+  local center, eye, way, square, deep = self:extent(), camera.eye, {}, 0, 0
+  for i, axis in ipairs { "x", "y", "z" } do
+    way[i] = center[i] - eye[axis]
+    square = square + way[i] ^ 2
+  end
+  local distance = math.sqrt(square)
+  for i = 1, 3 do deep = deep + math.abs(way[i]) / distance * (self.high[i] - self.low[i]) / 2 end -- half the box's depth
+  local near = math.max(distance - deep, 0)
+  return { near = near, far = near + 2 * deep / (lost or 0.7) }
 end
 
 return particles

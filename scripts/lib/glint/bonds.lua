@@ -1,0 +1,101 @@
+-- Bonds by distance, as cylinders: two atoms closer than the sum of their covalent radii and a tolerance are joined.
+--     local set = particles.new { scale = 0.25 }
+--     set:add_frame(xyz.frame "caffeine.xyz")
+--     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
+-- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each looks at
+-- its neighbours alone: the time grows with the number of atoms. Periodic images are not looked at.
+local glint = require "glint"
+local elements = require "glint.elements"
+
+local bonds = {}
+
+local CLOSEST = 0.4 -- angstroms: what is nearer is the same atom in another place
+local SIDE = 1 << 20 -- cells across, at most
+
+-- The options with their defaults; unknown ones are refused.
+local function settings(options)
+  local known = { radius = 0.15, tolerance = 0.45, distance = false }
+  for name, value in pairs(options or {}) do
+    if known[name] == nil then error(("bonds.%s: no such option; radius, tolerance, distance are"):format(name), 3) end
+    if type(value) ~= "number" or value ~= value or value <= (name == "tolerance" and -1 or 0) then
+      error(("bonds.%s: a number above %d expected, got %s"):format(name, name == "tolerance" and -1 or 0, value), 3)
+    end
+    known[name] = value
+  end
+  return known
+end
+
+-- Half of the longest bond a kind makes.
+local function reach_of(name, set)
+  if set.distance then return set.distance / 2 end
+  local element = elements[elements.symbol(name) or ""]
+  if not element then
+    error(("bonds: %q is no element and has no covalent radius; give distance, the longest bond"):format(name), 0)
+  end
+  return element.covalent + set.tolerance / 2
+end
+
+--- Every bond once: calls found(i, j) with the numbers of two atoms, i > j.
+---@param x number[]  places
+---@param y number[]
+---@param z number[]
+---@param reach number[]  of each atom; a bond is at most as long as the sum of two
+---@param closest number  and longer than that
+---@param found function
+function bonds.each(x, y, z, reach, closest, found)
+  local low, width = { math.huge, math.huge, math.huge }, 0
+  for i = 1, #x do
+    low = { math.min(low[1], x[i]), math.min(low[2], y[i]), math.min(low[3], z[i]) }
+    width = math.max(width, 2 * reach[i])
+  end
+  local first, after = {}, {} -- of the atoms in a cell; the one after each
+  for i = 1, #x do
+    local xi, yi, zi, ri = x[i], y[i], z[i], reach[i]
+    local cx, cy, cz = (xi - low[1]) // width | 0, (yi - low[2]) // width | 0, (zi - low[3]) // width | 0
+    for u = cx - 1, cx + 1 do
+      for v = cy - 1, cy + 1 do
+        for w = cz - 1, cz + 1 do
+          local j = first[(u * SIDE + v) * SIDE + w]
+          while j do
+            local dx, dy, dz, most = x[j] - xi, y[j] - yi, z[j] - zi, ri + reach[j]
+            local square = dx * dx + dy * dy + dz * dz
+            if square <= most * most and square > closest * closest then found(i, j) end
+            j = after[j]
+          end
+        end
+      end
+    end
+    local cell = (cx * SIDE + cy) * SIDE + cz
+    first[cell], after[i] = i, first[cell]
+  end
+end
+
+--- The bonds of a set of glint.particles, as one group; nil when there are none.
+---@param set table
+---@param options? { radius: number, tolerance: number, distance: number }  radius of the cylinders (default 0.15);
+--- tolerance in angstroms (default 0.45); distance, the longest bond of any two in place of covalent radii
+---@return table? group
+---@return integer count  of bonds
+function bonds.new(set, options)
+  options = settings(options)
+  local x, y, z, place = set:places_of_all()
+  local by_kind, reach = {}, {}
+  for name, kind in pairs(set.kinds) do
+    by_kind[kind.place] = by_kind[kind.place] or (name == kind.name and reach_of(name, options)) or nil
+  end
+  for i = 1, #x do reach[i] = by_kind[place[i]] end
+  local parts, count = {}, 0
+  local function half(i, mx, my, mz)
+    parts[#parts + 1] = glint.cylinder { base = { x[i], y[i], z[i] }, top = { mx, my, mz }, radius = options.radius,
+      capped = false, material = set.materials[place[i]] }
+  end
+  bonds.each(x, y, z, reach, options.distance and 0 or CLOSEST, function(i, j)
+    local mx, my, mz = (x[i] + x[j]) / 2, (y[i] + y[j]) / 2, (z[i] + z[j]) / 2
+    half(i, mx, my, mz)
+    half(j, mx, my, mz)
+    count = count + 1
+  end)
+  return count > 0 and glint.group(parts) or nil, count
+end
+
+return bonds
