@@ -80,7 +80,7 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .PHONY: all need deps check check-run asan tsan hard hard-run soak soak-run bench demo demo-run install uninstall \
-        install-rock golden-update check-layers check-symbols check-headers lint clean help tests FORCE
+        install-rock golden-update gallery check-layers check-symbols check-headers lint clean help tests FORCE
 
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
@@ -142,7 +142,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli completion films golden install povray readme untrusted warnings watch)))
+              $(addprefix tests/,$(addsuffix .sh,cli completion films gallery golden install povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -153,7 +153,7 @@ check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
-SANITIZED := $(filter-out tests/povray.sh tests/install.sh,$(SCRIPTED))
+SANITIZED := $(filter-out tests/povray.sh tests/gallery.sh tests/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
 # popen (test_api.lua, test_cost.lua, test_data.lua, test_gr.lua), and lets through any allocation that ought to fail (test_misuse.lua).
 WATCHED   := $(filter-out tests/cli.sh tests/films.sh $(addprefix tests/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
@@ -214,6 +214,9 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 soak-run: $(HARD_BIN) $(BUILD)/tests/test_reuse
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_reuse
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
+
+gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render
+	@BUILD=$(BUILD) tests/gallery.sh update
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
 	@BUILD=$(BUILD) tests/golden.sh update

@@ -96,7 +96,7 @@ end
 -- Bonds are pairs nearer than a bond of their elements can be long.
 function tests.caffeine()
   local frame = xyz.frame "scripts/data/caffeine.xyz"
-  local atoms, formula, bonds = all(frame), {}, {}
+  local atoms, formula, joins = all(frame), {}, {}
   check(frame.count == 24 and #atoms == 24, "24 atoms, got %d", #atoms)
   for i, a in ipairs(atoms) do
     formula[a[1]] = (formula[a[1]] or 0) + 1
@@ -104,11 +104,11 @@ function tests.caffeine()
       local b = atoms[j]
       local distance = math.sqrt((a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2 + (a[4] - b[4]) ^ 2)
       check(distance > 1, "atoms %d and %d are %g apart", i, j, distance)
-      if distance < ((a[1] == "H" or b[1] == "H") and 1.25 or 1.65) then bonds[#bonds + 1] = { i, j } end
+      if distance < ((a[1] == "H" or b[1] == "H") and 1.25 or 1.65) then joins[#joins + 1] = { i, j } end
     end
   end
   check(formula.C == 8 and formula.H == 10 and formula.N == 4 and formula.O == 2, "C8H10N4O2")
-  check(#bonds == 25, "25 bonds (24 atoms, two rings), got %d", #bonds)
+  check(#joins == 25, "25 bonds (24 atoms, two rings), got %d", #joins)
 end
 
 function tests.xyz()

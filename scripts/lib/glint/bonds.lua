@@ -2,8 +2,8 @@
 --     local set = particles.new { scale = 0.25 }
 --     set:add_frame(xyz.frame "caffeine.xyz")
 --     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
--- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each looks at
--- its neighbours alone: the time grows with the number of atoms. Periodic images are not looked at.
+-- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each
+-- looks at its neighbours alone: the time grows with the number of atoms. Periodic images are not looked at.
 local glint = require "glint"
 local elements = require "glint.elements"
 

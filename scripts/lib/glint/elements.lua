@@ -4,8 +4,8 @@
 -- Colours: the CPK-derived scheme of Jmol (Jmol's documentation, "Jmol colors"), sRGB; without one from 110 on.
 -- Radii, angstroms: A. Bondi, J. Phys. Chem. 68 (1964) 441, and for the main-group elements that Bondi does not give,
 -- M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806. Elements in neither have `radius` = 2 and `guessed` = true.
--- Covalent radii, angstroms: B. Cordero et al., Dalton Trans. (2008) 2832; C as sp3, Mn, Fe and Co of low spin. From Bk on
--- there are none: `covalent` is 1.7.
+-- Covalent radii, angstroms: B. Cordero et al., Dalton Trans. (2008) 2832; C as sp3, Mn, Fe and Co of low spin. From Bk
+-- on there are none: `covalent` is 1.7.
 local elements = {}
 
 local SYMBOLS = [[

@@ -2,11 +2,11 @@
 --     local picture = nff.load "balls.nff"
 --     return glint.animation { scene = picture.scene, width = picture.width, height = picture.height, ... }
 -- What becomes of it: `angle` is the vertical field of view, `hither` is not needed; the colour of `f` times Kd is
--- diffuse, Ks the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of refraction, is
--- transmission; options.mirrors = false leaves mirror and transmission out. A light without a colour has the intensity
--- 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one glint.mesh, its
--- patches (polygons with a normal a corner) another. Cones and cylinders are open at their ends; one whose radii differ and
--- are both above 0 is a mesh of 128 sides with smooth normals.
+-- diffuse, Ks the strength of a white highlight, with the exponent Shine, and of the mirror; T, with the index of
+-- refraction, is transmission; options.mirrors = false leaves mirror and transmission out. A light without a colour has
+-- the intensity 1 / sqrt(number of lights). All spheres become one glint.spheres; the polygons of a material become one
+-- glint.mesh, its patches (polygons with a normal a corner) another. Cones and cylinders are open at their ends; one
+-- whose radii differ and are both above 0 is a mesh of 128 sides with smooth normals.
 local glint = require "glint"
 local lines = require "glint.lines"
 local particles = require "glint.particles"
@@ -168,7 +168,7 @@ function read.c(picture, source, rest)
     source:fail("another place for the apex of c than for its base", "the same")
   end
   if base[4] < apex[4] then base, apex = apex, base end
-  local material, shape = picture.kinds[picture.material].material, nil
+  local material, shape = picture.kinds[picture.material].material
   local fields = { base = { base[1], base[2], base[3] }, top = { apex[1], apex[2], apex[3] }, radius = base[4],
     capped = false, material = material }
   if base[4] == apex[4] then
@@ -222,8 +222,8 @@ end
 
 --- Reads a file into a scene. Errors have file and line. Memory: see glint.particles.
 ---@param path string
----@param options? { mirrors: boolean, format: string }  mirrors: also what f tells of them, default true; format: of the
---- spheres, "f64" (default) or "f32"
+---@param options? { mirrors: boolean, format: string }  mirrors: also what f tells of them, default true; format: of
+--- the spheres, "f64" (default) or "f32"
 ---@return table picture  scene, width, height, material_count, polygon_count, cones (a list of shapes), set (of
 --- glint.particles, with its count)
 function nff.load(path, options)

@@ -127,7 +127,8 @@ function set:add_frame(frame)
   return self
 end
 
---- Where all spheres are, and which of set.materials each has: four lists, in the order they were added. Not after spheres().
+--- Where all spheres are, and which of set.materials each has: four lists, in the order they were added. Not after
+--- spheres().
 function set:places_of_all()
   if not self.data then error("particles: the spheres of this set have been taken", 2) end
   pack(self)
@@ -182,8 +183,8 @@ function set:camera(fields)
   return glint.camera { eye = eye, at = center, fov = fov, up = fields.up, name = fields.name }
 end
 
---- A depth cue for a camera that looks at the spheres: full light at the nearest, `lost` (0 .. 1, default 0.7) of it gone at
---- the farthest.
+--- A depth cue for a camera that looks at the spheres: full light at the nearest, `lost` (0 .. 1, default 0.7) of it
+--- gone at the farthest.
 ---@param camera table
 ---@param lost? number
 function set:depth_cue(camera, lost)
@@ -193,7 +194,9 @@ function set:depth_cue(camera, lost)
     square = square + way[i] ^ 2
   end
   local distance = math.sqrt(square)
-  for i = 1, 3 do deep = deep + math.abs(way[i]) / distance * (self.high[i] - self.low[i]) / 2 end -- half the box's depth
+  for i = 1, 3 do -- half the depth of the box around them
+    deep = deep + math.abs(way[i]) / distance * (self.high[i] - self.low[i]) / 2
+  end
   local near = math.max(distance - deep, 0)
   return { near = near, far = near + 2 * deep / (lost or 0.7) }
 end
