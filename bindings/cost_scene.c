@@ -10,16 +10,24 @@ static int by_address(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
+// The materials of a shape and, of a group, of all within it; how many. NULL: they are only counted.
+static size_t gather_materials(const glint_shape *shape, glint_material **out)
+{
+    glint_material *const *list;
+    size_t count = glint_shape_materials(shape, &list);
+    if (out && count > 0)
+        memcpy(out, list, count * sizeof *list);
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        count += gather_materials(glint_group_child(shape, i), out ? out + count : NULL);
+    return count;
+}
+
 // Each material once: shapes share them.
 static void list_materials(cost_scene *scene, const glint_scene *engine_scene)
 {
-    glint_material *const *list;
     size_t count = 0;
-    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++) {
-        size_t part = glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
-        memcpy(scene->materials + count, list, part * sizeof *list);
-        count += part;
-    }
+    for (size_t i = 0; i < glint_scene_shape_count(engine_scene); i++)
+        count += gather_materials(glint_scene_shape_at(engine_scene, i), scene->materials + count);
     qsort(scene->materials, count, sizeof *scene->materials, by_address);
     for (size_t i = 0; i < count; i++) {
         if (i > 0 && scene->materials[i] == scene->materials[scene->material_count - 1])
@@ -48,11 +56,10 @@ static void list_lights(cost_scene *scene, const glint_scene *engine_scene)
 
 bool cost_scene_open(cost_scene *scene, glint_scene *engine_scene)
 {
-    glint_material *const *list;
     size_t shapes = glint_scene_shape_count(engine_scene), lights = glint_scene_light_count(engine_scene), most = 1;
     size_t corners = 1;
     for (size_t i = 0; i < shapes; i++)
-        most += glint_shape_materials(glint_scene_shape_at(engine_scene, i), &list);
+        most += gather_materials(glint_scene_shape_at(engine_scene, i), NULL);
     for (size_t i = 0; i < lights; i++)
         corners += glint_light_get(glint_scene_light_at(engine_scene, i))->vertex_count;
     *scene = (cost_scene) { .scene = engine_scene, .original = engine_scene, .desc = *glint_scene_get(engine_scene) };

@@ -1,6 +1,7 @@
 // Warnings about where things are: a light inside a closed sphere, an object that no frame can show.
 //
-// Each is given only where it is certain. A sphere is out of a picture when one plane of the view has it outside; its
+// Each is given only where it is certain, of shapes of their own and of those in groups, where their transforms put them. A
+// ball around a shape is out of a picture when one plane of the view has it outside; its
 // shadow, the points whose segment to the light meets the sphere, is convex, so the same test holds for it: nothing of
 // it is inside the plane when the sphere is outside and the light lies no further out than the sphere's near side.
 #include <math.h>
@@ -9,7 +10,7 @@
 
 #include "bindings/run.h"
 
-#define MEMBERS_MAX 1000 // of a scene: above that nobody looks for a single sphere
+#define MEMBERS_MAX 1000 // of a scene, and of its groups: above that nobody looks for a single shape
 #define LIGHTS_MAX 64
 
 static const char OUTSIDE; // its address is the registry's key: userdata -> message, or false when it was in a view
@@ -21,9 +22,16 @@ typedef struct view {
     bool is_perspective;
 } view;
 
+// A shape, or what holds all of it, in the world.
+typedef struct ball {
+    double center[3], radius;
+    bool is_sphere; // it is just that
+} ball;
+
 typedef struct members {
     const glint_light *lights[LIGHTS_MAX];
     int light_count;
+    int shape_count; // in groups
     bool shows_more; // mirrors and the like: what is outside the view may show all the same
 } members;
 
@@ -79,12 +87,12 @@ static bool make_view(const glint_camera_desc *camera, const glint_render_desc *
     return true;
 }
 
-// Whether the whole sphere is outside one plane and, with a light, its whole shadow.
-static bool is_outside(const view *v, const glint_shape_desc *sphere, const glint_light_desc *light)
+// Whether the whole ball is outside one plane and, with a light, its whole shadow.
+static bool is_outside(const view *v, const ball *all, const glint_light_desc *light)
 {
-    double radius = sphere->radius * (1 + 1e-9);
+    double radius = all->radius * (1 + 1e-9);
     for (int i = 0; i < 5; i++) {
-        double near = dot(v->out[i], sphere->center) - radius, spread = 0; // of the shadow: towards the inside if < 0
+        double near = dot(v->out[i], all->center) - radius, spread = 0; // of the shadow: towards the inside if < 0
         if (light && light->kind == GLINT_LIGHT_POINT)
             spread = near - dot(v->out[i], light->position);
         else if (light)
@@ -136,6 +144,65 @@ static void each_member(lua_State *L, int scene, void (*visit)(lua_State *L, voi
     lua_pop(L, 1);
 }
 
+// The ball of a shape before its transform; false: not known.
+static bool find_ball(const glint_shape_desc *desc, ball *out)
+{
+    double half[3], square = 0;
+    bool is_round = desc->kind == GLINT_SHAPE_SPHERE || desc->kind == GLINT_SHAPE_DISK;
+    bool is_long = desc->kind == GLINT_SHAPE_CYLINDER || desc->kind == GLINT_SHAPE_CONE;
+    const double *low = is_long ? desc->base : desc->min, *high = is_long ? desc->top : desc->max;
+    if (!is_round && !is_long && desc->kind != GLINT_SHAPE_BOX)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        half[c] = is_round ? 0 : (high[c] - low[c]) / 2;
+        out->center[c] = is_round ? desc->center[c] : low[c] + half[c];
+        square += half[c] * half[c];
+    }
+    if (is_round || is_long)
+        square += desc->radius * desc->radius;
+    out->radius = sqrt(square);
+    out->is_sphere = desc->kind == GLINT_SHAPE_SPHERE;
+    return true;
+}
+
+// Takes a ball along; by a transform that does not keep angles, a larger one around what becomes of it.
+static void move_ball(const glint_transform *t, ball *b)
+{
+    double from[3], squares[3] = { 0 }, between = 0;
+    memcpy(from, b->center, sizeof from);
+    for (int i = 0; i < 3; i++) {
+        b->center[i] = dot(t->m[i], from) + t->m[i][3];
+        for (int j = 0; j < 3; j++)
+            squares[j] += t->m[i][j] * t->m[i][j];
+    }
+    for (int j = 0; j < 3; j++) {
+        double product = 0; // of two columns
+        for (int i = 0; i < 3; i++)
+            product += t->m[i][j] * t->m[i][(j + 1) % 3];
+        between = fmax(between, fabs(product));
+    }
+    bool keeps_angles = between <= 1e-9 * squares[0] && fabs(squares[1] - squares[0]) <= 1e-9 * squares[0] &&
+                        fabs(squares[2] - squares[0]) <= 1e-9 * squares[0];
+    b->radius *= sqrt(keeps_angles ? squares[0] : squares[0] + squares[1] + squares[2]);
+    b->is_sphere = b->is_sphere && keeps_angles;
+}
+
+// Whether a mirror or something transparent is among a shape's materials, or those of a group; counts what it looks at.
+static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
+{
+    glint_material *const *list;
+    const size_t materials = glint_shape_materials(shape, &list);
+    if (++*count > MEMBERS_MAX)
+        return true;
+    for (size_t i = 0; i < materials; i++)
+        if (shows_through(L, list[i]))
+            return true;
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        if (any_shows_through(L, glint_group_child(shape, i), count))
+            return true;
+    return false;
+}
+
 static void gather(lua_State *L, void *context)
 {
     members *all = context;
@@ -143,7 +210,7 @@ static void gather(lua_State *L, void *context)
     const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
     const glint_light_desc *desc = light ? glint_light_get(light) : NULL;
     if (shape)
-        all->shows_more = all->shows_more || shows_through(L, glint_shape_get(shape)->material);
+        all->shows_more = all->shows_more || any_shows_through(L, shape, &all->shape_count);
     if (!desc || !desc->shadows)
         return;
     // Other kinds have a surface, or shine in a cone: their shadows are not looked at here.
@@ -154,7 +221,7 @@ static void gather(lua_State *L, void *context)
         all->shows_more = true;
 }
 
-// ---- Spheres ----
+// ---- Shapes ----
 
 typedef struct look {
     glintL_run *run;
@@ -165,12 +232,17 @@ typedef struct look {
     bool whole; // every frame is rendered
 } look;
 
-static void describe(const glint_shape_desc *sphere, char out[160])
+static void describe(const glint_shape_desc *shape, const ball *b, char out[160])
 {
-    if (*sphere->name)
-        snprintf(out, 160, "sphere '%s'", sphere->name);
+    static const char *const names[] = { [GLINT_SHAPE_SPHERE] = "sphere",
+                                         [GLINT_SHAPE_BOX] = "box",
+                                         [GLINT_SHAPE_DISK] = "disk",
+                                         [GLINT_SHAPE_CYLINDER] = "cylinder",
+                                         [GLINT_SHAPE_CONE] = "cone" };
+    if (*shape->name)
+        snprintf(out, 160, "%s '%s'", names[shape->kind], shape->name);
     else
-        snprintf(out, 160, "the sphere at {%g, %g, %g}", sphere->center[0], sphere->center[1], sphere->center[2]);
+        snprintf(out, 160, "the %s at {%g, %g, %g}", names[shape->kind], b->center[0], b->center[1], b->center[2]);
 }
 
 static bool is_dark(const glint_light_desc *light)
@@ -179,7 +251,7 @@ static bool is_dark(const glint_light_desc *light)
 }
 
 // A sphere lets no light out; seen from outside it hides all that its light could show.
-static void look_for_inner_light(const look *l, const glint_shape_desc *sphere)
+static void look_for_inner_light(const look *l, const glint_shape_desc *shape, const ball *sphere)
 {
     char name[160];
     double to_eye[3], distance = 0;
@@ -193,7 +265,7 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *sphere)
             off[c] = light->position[c] - sphere->center[c];
         if (light->kind != GLINT_LIGHT_POINT || is_dark(light) || dot(off, off) >= sphere->radius * sphere->radius)
             continue;
-        describe(sphere, name);
+        describe(shape, sphere, name);
         glintL_run_warn(
             l->run,
             "frame %lld: a point_light%s%s%s is inside %s, which lets none of its light out; move it, or set "
@@ -202,48 +274,65 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *sphere)
     }
 }
 
-static bool is_unseen(const look *l, const glint_shape_desc *sphere)
+static bool is_unseen(const look *l, const ball *b)
 {
-    bool unseen = is_outside(l->view, sphere, NULL);
+    bool unseen = is_outside(l->view, b, NULL);
     for (int i = 0; i < l->all->light_count && unseen; i++)
-        unseen = is_outside(l->view, sphere, glint_light_get(l->all->lights[i]));
+        unseen = is_outside(l->view, b, glint_light_get(l->all->lights[i]));
     return unseen;
 }
 
-// Remembers of the sphere on top whether any frame has shown it.
-static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *sphere)
+// Remembers of the shape whose key is on top whether any frame has shown it.
+static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
 {
     char name[160];
     lua_pushvalue(L, -1);
     int before = lua_rawget(L, l->noted);
     lua_pop(L, 1);
-    bool seen = !l->view || l->all->shows_more || !is_unseen(l, sphere);
+    bool seen = !l->view || l->all->shows_more || !is_unseen(l, b);
     if (before == LUA_TBOOLEAN || (before == LUA_TSTRING && !seen))
         return;
     lua_pushvalue(L, -1);
     if (seen) {
         lua_pushboolean(L, false);
     } else {
-        describe(sphere, name);
+        describe(shape, b, name);
         lua_pushstring(L, name);
     }
     lua_rawset(L, l->noted);
+}
+
+// One shape, or all of a group, under the transforms around it; the key of the shape is on top.
+static void look_into(lua_State *L, const look *l, const glint_shape *shape, const glint_transform *outer, int *count)
+{
+    ball b;
+    const glint_shape_desc *desc = glint_shape_get(shape);
+    const glint_transform placed = glint_transform_product(outer, &desc->transform);
+    if (++*count > MEMBERS_MAX)
+        return;
+    for (size_t i = 0; i < glint_group_count(shape); i++) {
+        const glint_shape *child = glint_group_child(shape, i);
+        lua_pushlightuserdata(L, glint_group_child(shape, i));
+        look_into(L, l, child, &placed, count);
+        lua_pop(L, 1);
+    }
+    if (!find_ball(desc, &b))
+        return;
+    move_ball(&placed, &b);
+    if (l->view && b.is_sphere && !shows_through(L, desc->material))
+        look_for_inner_light(l, desc, &b);
+    if (l->whole)
+        look_for_unseen(L, l, desc, &b);
 }
 
 static void look_at(lua_State *L, void *context)
 {
     const look *l = context;
     const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
-    const glint_shape_desc *desc = shape ? glint_shape_get(shape) : NULL;
-    if (!desc || desc->kind != GLINT_SHAPE_SPHERE)
-        return;
     const glint_transform here = glint_transform_identity();
-    if (memcmp(&desc->transform, &here, sizeof here) != 0) // it is elsewhere
-        return;
-    if (l->view && !shows_through(L, desc->material))
-        look_for_inner_light(l, desc);
-    if (l->whole)
-        look_for_unseen(L, l, desc);
+    int count = 0;
+    if (shape)
+        look_into(L, l, shape, &here, &count);
 }
 
 void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc, int64_t number)
@@ -256,7 +345,7 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
     if (!camera || !observes || run->asked.warnings == GLINTL_WARNINGS_NONE ||
         glint_scene_shape_count(scene) + glint_scene_light_count(scene) > MEMBERS_MAX)
         return;
-    luaL_checkstack(L, 16, "scene");
+    luaL_checkstack(L, 16 + GLINT_GROUP_DEPTH, "scene");
     scene_index = lua_absindex(L, scene_index);
     glintL_push_table(L, &OUTSIDE);
     look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) };

@@ -319,6 +319,15 @@ local float, double = find(ground, "precision", "float"), find(ground, "precisio
 check(float.wrong_object + float.wrong_shadow > 0, "float on a huge ground: no pixel wrong")
 check(double.wrong_object + double.wrong_shadow == 0, "double: %d wrong", double.wrong_object + double.wrong_shadow)
 
+-- ---- Within groups ----
+
+local grouped = study("grouped", still("grouped.lua", [[glint.point_light { position = { 0, 6, 3 } },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } }, glint.group { glint.group { glint.sphere {
+  center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 1, shininess = 9 } } } }]])
+  .. " --size 24x18 --knobs model")
+check(find(grouped, "model", "phong").default and find(grouped, "model", "blinn_phong").rmse > 0,
+  "materials of a group are among what changes")
+
 -- ---- Indirect light ----
 
 local sent = study("sent", still("sent.lua", [[indirect = { samples = 2, bounces = 1 },

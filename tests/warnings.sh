@@ -86,6 +86,28 @@ silent "not one that comes in"
 scene 'objects = { glint.sphere { center = { 0, 6, 2 }, radius = 0.5 } }'
 silent "not one whose shadow falls into the view"
 
+scene 'objects = { glint.box { min = { 30, 0, 0 }, max = { 31, 1, 1 } } }'
+warns "a box" "the box at {30.5, 0.5, 0.5} is outside the view"
+scene 'objects = { glint.group { glint.cylinder { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1, name = "post" },
+  transform = glint.translate(0, 0, 40) } }'
+warns "in a group that is moved" "cylinder 'post' is outside the view"
+scene 'local post = glint.cone { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 }
+  objects = { glint.group { post, transform = glint.translate(0, 0, 40) }, glint.group { post } }'
+silent "not one that another group shows"
+scene 'objects = { glint.sphere { center = { 0, 0, 20 }, radius = 1, transform = glint.translate(0, 0, -20) } }'
+silent "nor one that its transform brings in"
+scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = glint.translate(0, 0, 20), name = "ball" } }'
+warns "but one that it takes out" "sphere 'ball' is outside the view"
+scene 'objects = { glint.group { glint.sphere { center = { 0, 0, 20 }, radius = 1 }, glint.sphere { center = { 0, 0, 0 },
+  radius = 1, material = glint.material { mirror = 0.5 } } } }'
+silent "a mirror in a group may show it"
+scene 'objects = { glint.group { glint.sphere { center = { 0, 0, 0 }, radius = 1, name = "ball" },
+  transform = glint.rotate("y", 30) * glint.scale(2) } }' 'lamp.position = { 0, 1.5, 0 }'
+warns "a light inside a sphere that a group makes larger" "frame 1: a point_light 'lamp' is inside sphere 'ball'" -f 1
+scene 'objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = glint.scale(3, 1, 1) } }' \
+    'lamp.position = { 2, 1.5, 0 }'
+silent "of an ellipsoid nothing is said"
+
 # Of random scenes, perspective and parallel: where a sphere is said to be unseen, taking it away changes no pixel.
 cat >random.lua <<'END'
 local glint = require "glint"
@@ -96,7 +118,12 @@ local function random(low, high)
   return low + (high - low) * state / 65537
 end
 for _ = 1, 5 do random(0, 1) end
-local ball = glint.sphere { center = { random(-9, 9), random(-9, 9), random(-9, 9) }, radius = random(0.2, 2) }
+local at, radius = { random(-9, 9), random(-9, 9), random(-9, 9) }, random(0.2, 2)
+local ball = glint.sphere { center = at, radius = radius }
+if P.seed % 4 == 1 then ball = glint.box { min = at, max = { at[1] + radius, at[2] + 2 * radius, at[3] + 1 } } end
+if P.seed % 4 == 2 then ball = glint.cylinder { base = at, top = { at[1] + 1, at[2] - 2, at[3] + 1 }, radius = radius } end
+if P.seed % 8 == 3 then ball.transform = glint.translate(1, 2, 3) * glint.rotate("z", 40) * glint.scale(1, 0.5, 0.7) end
+if P.seed % 8 > 5 then ball = glint.group { ball, transform = glint.rotate("x", 70) * glint.scale(0.8) } end
 local light = P.seed % 3 == 0 and glint.directional_light { direction = { random(-1, 1), random(-1, 1), random(-1, 1) } }
   or glint.point_light { position = { random(-9, 9), random(-9, 9), random(-9, 9) } }
 local scene = glint.scene {
