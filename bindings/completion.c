@@ -29,6 +29,7 @@ static const struct hint {
     { "size", "WxH: pixels across and down", "640x360 1280x720 1920x1080 3840x2160", false },
     { "samples", "samples a pixel", NULL, false },
     { "precision", "what decides hits and shadows", NULL, false },
+    { "visibility", "how it is found what the eye sees", NULL, false },
     { "bits", "of a channel", "8 16", false },
     { "transfer", "from light to codes", NULL, false },
     { "rounding", "of codes", NULL, false },

@@ -308,6 +308,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "size", 0, true, SHOWN, read_size },
     { "samples", 0, true, SHOWN, read_render },
     { "precision", 0, true, SHOWN, read_render },
+    { "visibility", 0, true, SHOWN, read_render },
     { "bits", 0, true, SHOWN, read_render },
     { "transfer", 0, true, SHOWN, read_render },
     { "rounding", 0, true, SHOWN, read_render },

@@ -32,6 +32,7 @@ void cli_print_usage(FILE *out)
           "sheets     --columns N  --label TEXT  --title TEXT  --difference N  --gain X\n"
           "picture    -D, --set NAME=VALUE               a parameter of the script\n"
           "           --size WxH  --samples N  --seed N  --precision double|float\n"
+          "           --visibility auto|cast|scan        how it is found what the eye sees: the same pictures\n"
           "           --transfer srgb|linear|none  --rounding nearest|truncate\n"
           "           --tone clamp|reinhard|filmic  --exposure STOPS\n"
           "           --alpha                            transparent background\n"

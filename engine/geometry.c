@@ -201,18 +201,30 @@ static void order_by_tree(glint_index *index)
     }
 }
 
-static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+static glint_status make_order(glint_index *index, glint_error *error)
 {
     index->order = malloc((index->box_count + 1) * sizeof *index->order);
     if (!index->order)
         return glint_fail_nomem(error);
-    glint_status status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
+    memcpy(index->order, index->bounded, index->box_count * sizeof *index->order);
+    return GLINT_OK;
+}
+
+/// The order is the tree's, unless there has been need of one before.
+static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+{
+    const bool free_order = !index->order;
+    glint_status status = free_order ? make_order(index, error) : GLINT_OK;
+    if (!status)
+        status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
     if (status) {
-        free(index->order);
-        index->order = NULL;
+        if (free_order)
+            free(index->order);
+        index->order = free_order ? NULL : index->order;
         return status;
     }
-    order_by_tree(index);
+    if (free_order)
+        order_by_tree(index);
     free(index->boxes);
     free(index->bounded);
     index->boxes = NULL;
@@ -273,7 +285,6 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     free(geometry->prims);
     geometry->table.prims = geometry->prims = a.to;
     geometry->table.prim_count = bounded + geometry->table.unbounded_count;
-    geometry->table.nodes = geometry->index->bvh.nodes;
     geometry->arranged = true;
     return GLINT_OK;
 }
@@ -286,8 +297,70 @@ glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, gl
     glint_status status = index->built ? GLINT_OK : index_build(index, pool, error);
     if (!status && !geometry->arranged)
         status = arrange(geometry, pool, error);
-    pthread_mutex_unlock(&index->lock);
     *table = geometry->table;
+    table->nodes = index->bvh.nodes;
+    pthread_mutex_unlock(&index->lock);
+    return status;
+}
+
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                    glint_error *error)
+{
+    glint_index *index = geometry->index;
+    pthread_mutex_lock(&index->lock);
+    glint_status status = GLINT_OK;
+    if (!index->order) {
+        status = make_order(index, error);
+        index->plain = !status;
+    }
+    if (!status && !geometry->arranged)
+        status = arrange(geometry, pool, error);
+    *table = geometry->table;
+    table->nodes = index->bvh.nodes;
+    pthread_mutex_unlock(&index->lock);
+    return status;
+}
+
+/// A tree of what is neither triangle nor plane. `list`, `boxes`: room for all of it.
+static glint_status build_others(glint_geometry *geometry, uint32_t *list, glint_box *boxes, glint_pool *pool,
+                                 glint_error *error)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < geometry->index->box_count; i++) {
+        glint_prim prim = geometry->prims[i];
+        if (prim.kind == GLINT_PRIM_TRIANGLE)
+            continue;
+        place_in_frame(&geometry->table, &prim, &boxes[count]);
+        list[count++] = i;
+    }
+    glint_status status = count ? glint_bvh_build(boxes, count, pool, &geometry->others, error) : GLINT_OK;
+    for (uint32_t n = 0; n < geometry->others.node_count && !status; n++)
+        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
+            glint_node *node = &geometry->others.nodes[n];
+            if (node->lower[0][i] <= node->upper[0][i] && node->child[i] & GLINT_NODE_PRIM)
+                node->child[i] = GLINT_NODE_PRIM | list[node->child[i] & ~GLINT_NODE_PRIM];
+        }
+    geometry->has_others = !status;
+    return status;
+}
+
+glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
+                                   glint_error *error)
+{
+    pthread_mutex_lock(&geometry->index->lock);
+    glint_status status = GLINT_OK;
+    if (!geometry->has_others) {
+        const uint32_t most = geometry->table.prim_count - geometry->triangle_count;
+        uint32_t *list = malloc((most + 1) * sizeof *list);
+        glint_box *boxes = malloc((most + 1) * sizeof *boxes);
+        status = list && boxes ? build_others(geometry, list, boxes, pool, error) : glint_fail_nomem(error);
+        free(list);
+        free(boxes);
+    }
+    *table = geometry->table;
+    table->nodes = geometry->others.nodes;
+    *any = table->nodes || table->unbounded_count > 0;
+    pthread_mutex_unlock(&geometry->index->lock);
     return status;
 }
 
@@ -304,6 +377,7 @@ void glint_geometry_release(glint_geometry *geometry)
     if (!geometry || atomic_fetch_sub(&geometry->references, 1) > 1)
         return;
     index_release(geometry->index);
+    glint_bvh_free(&geometry->others);
     glint_list_free(&geometry->materials);
     free(geometry->prims);
     free(geometry->prim_part);

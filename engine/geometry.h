@@ -18,7 +18,9 @@ typedef struct glint_index {
     glint_box *boxes; ///< of the bounded primitives, until the index is built
     uint32_t *bounded; ///< the primitive of each box, likewise
     uint32_t box_count;
-    uint32_t *order; ///< the primitive in each place of the tree's order, once built
+    uint32_t *order; ///< the primitive in each place, once arranged: the tree's order
+    bool plain; ///< that of definition: the tree was not there yet
+    atomic_uint frames_without; ///< that were scanned while there was no tree
     glint_bvh bvh;
 } glint_index;
 
@@ -45,6 +47,9 @@ struct glint_geometry {
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
+    glint_bvh others; ///< of what is neither triangle nor plane, once asked for
+    bool has_others; ///< it has been asked for
+    uint32_t triangle_count;
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
     glint_key where, look; ///< of the places; of materials and sides
 };
@@ -57,6 +62,13 @@ void glint_geometry_release(glint_geometry *geometry);
 /// Builds the index unless it is there. Any thread; `pool` may be NULL. *table: with the index.
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error);
+/// The same for who does not ask the index: it is not built, and *table is without it unless it is there. The order of the
+/// primitives is that of the first of these two calls, and stays.
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                    glint_error *error);
+/// An arranged geometry without its triangles: *table, with an index of the rest alone. *any: there is something.
+glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
+                                   glint_error *error);
 
 /// The number of a primitive's object in order of definition, from 0: a mesh is one object, a sphere of many is one.
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);

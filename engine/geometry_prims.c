@@ -348,6 +348,7 @@ static glint_status add_prims(filler *f, glint_shape *shape, const placing *plac
         add_prim(f, shape, i, part, place);
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
     geometry->table.triangles = geometry->table.triangles || shape->mesh;
+    geometry->triangle_count += shape->mesh ? (uint32_t)shape->count : 0;
     geometry->table.site_count += (uint32_t)count_sites(shape);
     return GLINT_OK;
 }

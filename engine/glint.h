@@ -379,6 +379,13 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
+/// How it is found what the eye sees; the pictures are the same in every bit.
+typedef enum glint_visibility {
+    GLINT_VISIBILITY_AUTO, ///< what is likely to be faster
+    GLINT_VISIBILITY_CAST, ///< a ray through each sample
+    GLINT_VISIBILITY_SCAN ///< triangles are projected; what is none is cast
+} glint_visibility;
+
 typedef enum glint_pass {
     GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
     GLINT_PASS_BACKGROUND,
@@ -438,6 +445,7 @@ typedef struct glint_render_desc {
         height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double samples; ///< a pixel; whole number, 1 .. 65536; default 1
     glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
+    glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
     double max_depth; ///< longest chain of mirrors and refractions; whole number, 0 .. 2^31; default 5. At most 31
         ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface

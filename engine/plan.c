@@ -1,4 +1,4 @@
-#include "engine/plan.h"
+#include "engine/scan.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/image/tone.h"
@@ -50,6 +50,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_check_whole("seed", desc->seed, 0, 0x1p53, error);
     if (!status && desc->precision > GLINT_FLOAT)
         status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");
+    if (!status && desc->visibility > GLINT_VISIBILITY_SCAN)
+        status = glint_fail(error, GLINT_ERR_INVALID, "visibility: auto, cast or scan expected");
     if (!status && desc->passes >> GLINT_PASS_COUNT)
         status = glint_fail(error, GLINT_ERR_INVALID, "passes: no such pass");
     if (!status && desc->outline > GLINT_OUTLINE_WHITE)
@@ -57,6 +59,24 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
     if (!status)
         status = glint_tone_check(&desc->tone, error);
     return status;
+}
+
+/// Stages that never walk the index, but for the cast.
+static const uint32_t without_index = 1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_GLOW |
+                                      1u << GLINT_STAGE_SURFACE | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT |
+                                      1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE |
+                                      1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
+
+/// Whether triangles are to be scanned.
+static void choose_visibility(glint_plan *plan)
+{
+    const glint_visibility asked = plan->desc.visibility;
+    bool needs_index = false;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
+    plan->scan = plan->geometry->triangle_count > 0 && asked != GLINT_VISIBILITY_CAST &&
+                 (asked == GLINT_VISIBILITY_SCAN || glint_scan_pays(plan, needs_index));
+    plan->asks_index = !plan->scan || needs_index;
 }
 
 /// Lists the stages this frame needs.
@@ -100,6 +120,7 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     if (status)
         return status;
     choose_stages(plan);
+    choose_visibility(plan);
     status = glint_plan_keys(plan, error);
     return status ? status : glint_plan_explain(plan, scene, error);
 }

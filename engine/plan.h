@@ -133,6 +133,8 @@ struct glint_plan {
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
     glint_key output_key; ///< of what pictures are made of pixels
+    bool scan; ///< triangles are found by projecting them, not by casting
+    bool asks_index; ///< some stage walks it
     bool accumulate; ///< sums over samples or over chunks of lights
 
     glint_stage_info stage_list[GLINT_STAGE_COUNT];

@@ -227,6 +227,9 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "soft shadow", casts_soft_shadows);
         one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
         shapes(e, "triangles", is_mesh);
+        one(e, plan->scan, "scan conversion", "%s: %u triangles",
+            plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "cheaper here than casting",
+            plan->geometry->triangle_count);
         shapes(e, "smooth normals", is_smooth);
         if (plan->runs[GLINT_STAGE_VERTEX]) {
             shapes(e, "flat shading", is_flat);

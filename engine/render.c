@@ -26,6 +26,7 @@ struct glint_renderer {
     glint_tile **tiles; ///< a tile's working memory for each worker
     glint_reuse reuse;
     glint_sites_kept sites;
+    glint_scan scan;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     glint_image
         *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
@@ -85,6 +86,7 @@ static void free_tile(glint_tile *tile)
     glint_bounce_destroy(tile->bounce);
     glint_tint_destroy(tile->tint);
     glint_vertex_destroy(tile->vertex);
+    glint_beside_destroy(tile->beside);
     glint_glow_destroy(tile->glow);
     glint_cue_destroy(tile->cue);
     glint_indirect_destroy(tile->indirect);
@@ -103,6 +105,8 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
     }
     if (plan->runs[GLINT_STAGE_BOUNCE] && !tile->bounce)
         tile->bounce = glint_bounce_create();
+    if (plan->scan && !tile->beside)
+        tile->beside = glint_beside_create();
     if (plan->tints && !tile->tint)
         tile->tint = glint_tint_create();
     if (plan->facets && !tile->facets)
@@ -115,9 +119,9 @@ static bool extend_tile(glint_tile *tile, const glint_plan *plan)
         return false;
     if (plan->runs[GLINT_STAGE_CUE] && !tile->cue)
         tile->cue = glint_cue_create();
-    return (tile->cue || !plan->runs[GLINT_STAGE_CUE]) && (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) &&
-           (tile->facets || !plan->facets) && (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) &&
-           (tile->tint || !plan->tints);
+    return (tile->beside || !plan->scan) && (tile->cue || !plan->runs[GLINT_STAGE_CUE]) &&
+           (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) && (tile->facets || !plan->facets) &&
+           (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
 }
 
 void glint_renderer_destroy(glint_renderer *renderer)
@@ -129,6 +133,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     free(renderer->tiles);
     drop_spares(renderer);
     glint_sites_clear(&renderer->sites, &renderer->reuse);
+    glint_scan_clear(&renderer->scan);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
     glint_pool_destroy(renderer->pool);
@@ -200,6 +205,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.nonfinite += part->nonfinite;
     }
     sum.reuses[GLINT_STAGE_VERTEX] += renderer->sites.ready;
+    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->scan.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
     stats->rays = (glint_ray_counts) { .primary = sum.primary,
@@ -234,6 +240,39 @@ static void finish(glint_renderer *renderer, const glint_plan *plan, glint_image
     counts->runs[GLINT_STAGE_OUTLINE]++;
 }
 
+/// Whether some tile's hits are not there from an earlier frame.
+static bool casts(const glint_reuse *reuse, const glint_plan *plan)
+{
+    for (size_t i = 0; i < reuse->tile_count; i++)
+        if (!glint_key_equal(reuse->tiles[i].cast, plan->keys[GLINT_STAGE_CAST]))
+            return true;
+    return reuse->tile_count == 0;
+}
+
+/// What the frame's rays meet, and by which way what the eye sees is found.
+static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, glint_tile_frame *shared,
+                            size_t tile_count, glint_error *error)
+{
+    glint_geometry *geometry = plan->geometry;
+    glint_status status = plan->asks_index ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
+                                           : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
+    if (status)
+        return status;
+    glint_reuse_begin(&renderer->reuse, plan, tile_count);
+    renderer->scan.ms = 0;
+    if (!plan->scan || !casts(&renderer->reuse, plan))
+        return GLINT_OK;
+    const double begin = now_ms();
+    status = glint_scan_begin(&renderer->scan, plan, &shared->geometry, renderer->pool, error);
+    renderer->scan.ms = now_ms() - begin;
+    if (!shared->geometry.nodes)
+        atomic_fetch_add(&geometry->index->frames_without, 1);
+    shared->scan = !status && renderer->scan.on ? &renderer->scan : NULL;
+    if (!status && !shared->scan)
+        status = glint_geometry_index(geometry, renderer->pool, &shared->geometry, error);
+    return status;
+}
+
 static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
                         const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
@@ -250,13 +289,11 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .time_stages = renderer->time_stages,
                             .count_work = renderer->count_work } };
     const double begin = now_ms();
-    glint_status status = glint_geometry_index(plan->geometry, renderer->pool, &f.shared.geometry, error);
-    if (status)
-        return status;
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
-    glint_reuse_begin(&renderer->reuse, plan, (size_t)f.across * down);
-    status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
+    glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
+    if (!status)
+        status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
     if (status)
         return status;
     if (renderer->reuse.tile_count && !image->film &&
@@ -274,8 +311,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     const double start = now_ms();
     glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
     finish(renderer, plan, image);
-    collect_stats(renderer, plan, now_ms() - start, stats);
-    stats->build_ms = start - begin;
+    collect_stats(renderer, plan, now_ms() - start + renderer->scan.ms, stats);
+    stats->build_ms = start - begin - renderer->scan.ms;
     if (atomic_load(&renderer->cancelled))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)

@@ -40,6 +40,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->height = (uint32_t)plan->desc.height;
     reuse->samples = (uint32_t)plan->desc.samples;
     reuse->real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
+    reuse->plain = plan->geometry->index->plain;
     const size_t bytes = tile_count * (sizeof *reuse->tiles + light_count * sizeof *reuse->tiles->lights);
     if (bytes > reuse->budget - reuse->pictures || !(reuse->tiles = calloc(tile_count, sizeof *reuse->tiles)))
         return;
@@ -62,7 +63,8 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     const uint32_t lights = plan->light_count < GLINT_KEPT_LIGHTS ? plan->light_count : GLINT_KEPT_LIGHTS;
     const size_t real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     if (reuse->tile_count != tile_count || reuse->width != plan->desc.width || reuse->height != plan->desc.height ||
-        reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights) {
+        reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights ||
+        reuse->plain != plan->geometry->index->plain) {
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }

@@ -52,6 +52,7 @@ typedef struct glint_reuse {
     atomic_size_t used;
     uint32_t width, height, samples; ///< the layout of what is kept
     size_t real_size;
+    bool plain; ///< order of the primitives, whose places are kept
     glint_kept_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile

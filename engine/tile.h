@@ -7,6 +7,7 @@
 #include "engine/media.h"
 #include "engine/plan.h"
 #include "engine/reuse.h"
+#include "engine/scan.h"
 #include "engine/sites.h"
 
 /// What one worker counted in one frame.
@@ -31,6 +32,7 @@ typedef struct glint_tile_frame {
     bool time_stages, count_work;
     glint_media eye_media; ///< what the eye is in
     glint_sites_kept *sites; ///< for the stage vertex
+    const glint_scan *scan; ///< NULL: everything is cast
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -96,6 +98,7 @@ typedef struct glint_tile {
     struct glint_tint *tint;
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
     struct glint_cue *cue; ///< of tile_cue.c; NULL until a frame fades
+    struct glint_beside *beside; ///< likewise, of tile_scan.c
     struct glint_glow *glow; ///< of tile_glow.c; NULL unless the frame has lights that are seen
     struct glint_indirect *indirect; ///< memory of tile_indirect.c; likewise
     uint64_t clock; ///< end of the last timed stage, ns
@@ -243,6 +246,13 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_has_sites(const glint_tile *tile);
 /// Adds the light of sites to the sums of these others, whose points are found; after `shade`.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile_scan.c: scan conversion.
+struct glint_beside *glint_beside_create(void);
+void glint_beside_destroy(struct glint_beside *beside);
+bool glint_tile_scan_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
+/// `args`: as for a cast of everything.
+void glint_tile_scan(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
 /// tile_output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);

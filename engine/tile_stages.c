@@ -93,6 +93,8 @@ static glint_cast_args cast_args(glint_tile *tile, const glint_tile_frame *frame
 bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_cast_args args = cast_args(tile, frame);
+    if (frame->scan)
+        return glint_tile_scan_in_sight(tile, frame);
     return frame->plan->camera.orthographic || frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
 }
 
@@ -114,6 +116,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_si
     const glint_cast_args args = cast_args(tile, frame);
     if (!in_sight)
         hit_nothing(tile, frame->plan->desc.precision);
+    else if (frame->scan)
+        glint_tile_scan(tile, frame, &args);
     else if (frame->plan->camera.orthographic)
         stages->cast_rays(&args);
     else

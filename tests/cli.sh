@@ -319,7 +319,7 @@ options() {
     exits 2 "wrong field" fields.lua
     says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
     for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'precision=true' 'rounding="up"' \
-        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'encode="x"' 'output="x.jpg"' 'output=3' '[1]=2'; do
+        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'encode="x"' 'output="x.jpg"' 'output=3' '[1]=2'; do
         script fields "local S = require 'scene' S.scene:render { $wrong }"
         exits 2 "wrong field $wrong" fields.lua
     done

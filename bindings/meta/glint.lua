@@ -538,6 +538,7 @@ function glint.scene(fields) end
 ---@field seed? integer  0 .. 2^53: another seed, another sample pattern as good. Default 0
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 where mirror + transmission is above 1. Default 5
 ---@field precision? "double"|"float"  what decides hits and shadows. Default "double"
+---@field visibility? "auto"|"cast"|"scan"  how it is found what the eye sees: by a ray through each sample, or by projecting triangles; the same pictures. Default "auto"
 ---@field bits? 8|16  a channel of a .png. Default 8
 ---@field transfer? "srgb"|"linear"|"none"  how light becomes codes; "none": linear, but not marked so: viewers take the codes for sRGB. Default "srgb"
 ---@field rounding? "nearest"|"truncate"  Default "nearest"

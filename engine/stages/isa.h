@@ -20,6 +20,7 @@
 #include "engine/stages/candidate.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
+#include "engine/stages/scan.h"
 #include "engine/stages/surface.h"
 #include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
@@ -44,6 +45,7 @@
 #include "engine/stages/candidate.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
+#include "engine/stages/scan.h"
 #include "engine/stages/surface.h"
 #include "engine/stages/vertex.h"
 #include "engine/stages/lamp.h"
@@ -68,7 +70,7 @@
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .scan = scan_##real, \
     }
 
 const glint_stages GLINT_STAGES_SYMBOL = {

@@ -231,6 +231,21 @@ typedef struct glint_cast_args {
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
+// ---- scan: the nearest triangle of each ray, from a list of those that a tile may show ----
+
+typedef struct glint_scan_entry {
+    uint32_t prim; ///< a triangle
+    uint8_t x0, y0, x1, y1; ///< the pixels of the tile that it may show in, both ends included
+    float depth; ///< not above any t * scale of a hit
+} glint_scan_entry;
+
+typedef struct glint_scan_args {
+    glint_cast_args cast; ///< as of cast_bundle, or with an orthographic camera as of cast_rays; `camera` in both
+    const glint_scan_entry *entries; ///< in any order; the nearer first, the faster
+    uint32_t entry_count;
+} glint_scan_args;
+// As cast, with the triangles of the entries in place of all primitives.
+
 // ---- surface: point, normal and material of each hit ----
 
 /// A box around points, in the world, and what they are on.
@@ -654,6 +669,7 @@ typedef struct glint_stages {
         void (*bounce)(const glint_bounce_args *args);
         void (*vertex)(const glint_vertex_args *args);
         void (*scatter)(const glint_scatter_args *args);
+        void (*scan)(const glint_scan_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
