@@ -13,22 +13,22 @@ typedef struct R(beam_batch) {
 
 typedef struct R(beam) {
     const R(shadow_tile) * tile;
-    beam_view view;
+    screen_view view;
     uint32_t count, open; ///< points; of them, those that nothing blocks so far
     // the points, a cell's in a row, the cells row by row
     _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< of blocked ones: -inf
     uint32_t prim[GLINT_TILE_SAMPLES + GLINT_GROUP];
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
-    uint16_t begin[BEAM_DOWN * BEAM_ACROSS + 1]; ///< where each cell's begin
-    _Alignas(64) float far[BEAM_DOWN][BEAM_ACROSS]; ///< largest w of each cell's open points
+    uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where each cell's begin
+    _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points
     R(beam_batch) batch;
 } R(beam);
 
 // ---- The points ----
 
 /// Sets the beam's frame. False: the light is in the middle of the points.
-static bool R(aim_beam)(const R(shadow_tile) * tile, beam_view *view)
+static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
@@ -52,6 +52,10 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, beam_view *view)
             along[k] = k == next;
     }
     view->inverse = args->directional ? 0 : (float)(1 / sqrt(DOT(away, away)));
+    view->base = view->unit[0] = view->unit[1] = 1;
+    view->count[0] = SCREEN_ACROSS;
+    view->count[1] = BEAM_DOWN;
+    view->margin = 0;
     view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
     return true;
 }
@@ -62,19 +66,8 @@ typedef struct R(beam_places) {
     _Alignas(64) uint32_t cell[GLINT_TILE_SAMPLES];
 } R(beam_places);
 
-/// The interval of lanes that are lit.
-static inline void R(extent)(const float *x, const uint16_t *lit, uint32_t groups, float *least, float *most)
-{
-    vf low = f_set(HUGE_VALF), high = f_set(-HUGE_VALF);
-    for (uint32_t g = 0; g < groups; g++)
-        if (lit[g])
-            widen(x + (size_t)g * GLINT_GROUP, lit[g], &low, &high);
-    *least = f_min_all(low);
-    *most = f_max_all(high);
-}
-
 /// Projects the points and bounds their places. Returns whether a beam can be made of them. NaN: no.
-static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, beam_view *view,
+static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, screen_view *view,
                               R(beam_places) * places)
 {
     _Alignas(64) float local[3][GLINT_GROUP];
@@ -112,7 +105,7 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
         const float wide = largest_of(view->first[j], view->last[j]) * view->inverse;
         if (!(width < 0x1p100f))
             return false;
-        view->cells[j] = width > 0x1p-100f ? (float)(j ? BEAM_DOWN : BEAM_ACROSS) / width : 0;
+        view->cells[j] = width > 0x1p-100f ? (float)view->count[j] / width : 0;
         wide2 += wide * wide;
     }
     view->far = f_max_all(most[2]);
@@ -124,31 +117,31 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
 static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) * places)
 {
     const glint_occlude_args *args = beam->tile->args;
-    uint16_t next[BEAM_DOWN * BEAM_ACROSS] = { 0 };
+    uint16_t next[BEAM_DOWN * SCREEN_ACROSS] = { 0 };
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         if (!lit[g])
             continue;
         for (size_t i = at; i < at + GLINT_GROUP; i += VF)
-            i_store(places->cell + i, i_add(beam_cells(&beam->view, 0, f_load(places->place[0] + i)),
-                                            i_shl(beam_cells(&beam->view, 1, f_load(places->place[1] + i)), 4)));
+            i_store(places->cell + i, i_add(screen_cells(&beam->view, 0, f_load(places->place[0] + i)),
+                                            i_shl(screen_cells(&beam->view, 1, f_load(places->place[1] + i)), 4)));
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1)
             next[places->cell[at + (unsigned)__builtin_ctz(lanes)]]++;
     }
     beam->count = 0;
-    for (int c = 0; c < BEAM_DOWN * BEAM_ACROSS; c++) {
+    for (int c = 0; c < BEAM_DOWN * SCREEN_ACROSS; c++) {
         beam->begin[c] = (uint16_t)beam->count;
         beam->count += next[c];
         next[c] = beam->begin[c];
-        beam->far[c / BEAM_ACROSS][c % BEAM_ACROSS] = -HUGE_VALF;
+        beam->far[c / SCREEN_ACROSS][c % SCREEN_ACROSS] = -HUGE_VALF;
     }
-    beam->begin[BEAM_DOWN * BEAM_ACROSS] = (uint16_t)beam->count;
+    beam->begin[BEAM_DOWN * SCREEN_ACROSS] = (uint16_t)beam->count;
     beam->open = beam->count;
     for (uint32_t g = 0; g < args->group_count; g++)
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1) {
             const size_t from = (size_t)g * GLINT_GROUP + (unsigned)__builtin_ctz(lanes);
             const uint32_t cell = places->cell[from], to = next[cell]++;
-            float *far = &beam->far[cell / BEAM_ACROSS][cell % BEAM_ACROSS];
+            float *far = &beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS];
             beam->place[0][to] = places->place[0][from];
             beam->place[1][to] = places->place[1][from];
             beam->w[to] = places->w[from];
@@ -157,15 +150,4 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
             beam->cell[to] = (uint16_t)cell;
             *far = larger(*far, places->w[from]);
         }
-}
-
-/// Whether any open point in a rectangle of cells is as far away as `near`.
-static inline bool R(any_behind)(const R(beam) * beam, float near, int first, int last, int top, int bottom)
-{
-    const unsigned columns = bit_range(first, last);
-    for (int row = top; row <= bottom; row++)
-        for (int i = 0; i < BEAM_ACROSS; i += VF)
-            if (fm_bits(f_le(f_set(near), f_load(beam->far[row] + i))) & columns >> i)
-                return true;
-    return false;
 }

@@ -6,16 +6,16 @@
 /// The tile's pixels as the filter sees them, and what is hit so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
-    tile_view view;
+    screen_view view; ///< its cells are the groups
     int across, down;
     bool scaled; ///< the arrays below are filled
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
     _Alignas(64) float s[GLINT_TILE_WIDTH / 4][GLINT_GROUP], t[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     _Alignas(64) float ss[GLINT_TILE_WIDTH / 4][GLINT_GROUP], tt[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     ///< |direction|^2 = ss + tt
-    _Alignas(64) float far[GLINT_TILE_GROUPS]; ///< depth of the farthest hit of each group, in the index's units
-    uint64_t stale; ///< groups whose `far` is not up to date, a bit each
-    float far_of_all;
+    // deep: depth of the hits, in the index's units and rounded up; infinite where there is none so far
+    _Alignas(64) float depth[GLINT_TILE_GROUPS][GLINT_GROUP];
+    _Alignas(64) float far[GLINT_TILE_HEIGHT / 4][SCREEN_ACROSS]; ///< of each group the farthest
 } R(tile_cast);
 
 /// A primitive that some of the tile's rays may hit, and what it is to all of them.
@@ -31,8 +31,40 @@ typedef struct R(candidate) {
     _Alignas(64) float row[3][GLINT_GROUP]; ///< base and along_t for the row of groups at hand
 } R(candidate);
 
+/// The tile's rays.
+static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry, screen_view *view)
+{
+    const uint32_t rows = (camera->group_count + camera->groups_across - 1) / camera->groups_across;
+    const double rr = DOT(camera->right, camera->right), uu = DOT(camera->up, camera->up);
+    for (int k = 0; k < 3; k++) {
+        view->origin[k] = (float)((camera->eye[k] - geometry->reference[k]) * geometry->scale);
+        view->axis[0][k] = (float)(camera->right[k] / rr);
+        view->axis[1][k] = (float)(-camera->up[k] / uu);
+        view->axis[2][k] = (float)camera->forward[k];
+    }
+    const double first[2] = { 2 * camera->x0 - camera->width, 2 * camera->y0 - camera->height };
+    const double last[2] = { first[0] + 8 * camera->groups_across, first[1] + 8 * rows };
+    double wide[2];
+    for (int j = 0; j < 2; j++) {
+        view->first[j] = (float)first[j];
+        view->last[j] = (float)last[j];
+        view->cells[j] = 0.125f;
+        wide[j] = fmax(fabs(first[j]), fabs(last[j]));
+    }
+    view->count[0] = (int)camera->groups_across;
+    view->count[1] = (int)rows;
+    view->unit[0] = (float)sqrt(rr);
+    view->unit[1] = (float)sqrt(uu);
+    view->base = 0;
+    view->inverse = 1;
+    view->slack = R(walk_slack)(geometry);
+    view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // of half a pixel; far above the rounding
+    view->far = HUGE_VALF;
+    view->stretch = (float)(1.00001 * (1 + rr * wide[0] * wide[0] + uu * wide[1] * wide[1]));
+}
+
 /// Which way the planes' corner rays run decides whether a ray between them can meet it.
-static inline bool R(plane_ahead)(const glint_camera_args *camera, const tile_view *view, const glint_prim *prim)
+static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_view *view, const glint_prim *prim)
 {
     double e[3], away = 0;
     for (int k = 0; k < 3; k++) {
@@ -43,7 +75,8 @@ static inline bool R(plane_ahead)(const glint_camera_args *camera, const tile_vi
     if (!(fabs(height) > (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
         return true;
     for (int corner = 0; corner < 4; corner++) {
-        const double s = view->s[corner & 1], t = view->t[corner >> 1];
+        const double s = corner & 1 ? view->last[0] : view->first[0];
+        const double t = -(corner & 2 ? view->last[1] : view->first[1]);
         double d[3], size = 0;
         for (int k = 0; k < 3; k++) {
             d[k] = (camera->forward[k] + s * camera->right[k]) + t * camera->up[k];
@@ -98,8 +131,8 @@ static void R(make_triangle_filter)(const R(tile_cast) * tile, R(candidate) * ca
 {
     const glint_camera_args *camera = tile->args->camera;
     const double *axis[3] = { camera->forward, camera->right, camera->up };
-    const double s = fmax(fabs(tile->view.s[0]), fabs(tile->view.s[1])) + 2;
-    const double t = fmax(fabs(tile->view.t[0]), fabs(tile->view.t[1])) + 2;
+    const double s = fmax(fabs(tile->view.first[0]), fabs(tile->view.last[0])) + 2;
+    const double t = fmax(fabs(tile->view.first[1]), fabs(tile->view.last[1])) + 2;
     double p[3][3], n[3][3], size[3], limit = 0, rays = 0;
     for (int j = 0; j < 3; j++) {
         for (int k = 0; k < 3; k++)
@@ -139,22 +172,19 @@ static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate
         candidate->limit = HUGE_VALF;
 }
 
-static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
+/// What the decision needs.
+static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
-    const glint_cast_args *args = tile->args;
     const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
     const double *eye = args->camera->eye;
     const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     _Alignas(64) real lanes[VR];
     vr f[3];
     candidate->id = id;
-    if (prim->kind != GLINT_PRIM_PLANE && !tile->scaled)
-        R(scale_tile)(tile);
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 candidate->corner[j][k] = ((real)prim->corner[j][k] - (real)eye[k]) * (real)args->geometry->scale;
-        R(make_triangle_filter)(tile, candidate);
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID)
@@ -165,13 +195,27 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
         r_store(lanes, f[k]);
         candidate->f[k] = lanes[0];
     }
-    if (prim->kind == GLINT_PRIM_SOLID) {
-        R(make_solid_filter)(args, candidate);
+    if (prim->kind == GLINT_PRIM_SOLID)
         return;
-    }
     r_store(lanes, R(offset_constant)(f, prim));
     candidate->c = lanes[0];
-    if (prim->kind == GLINT_PRIM_SPHERE) {
+}
+
+/// That, and the filter.
+static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
+{
+    const glint_cast_args *args = tile->args;
+    R(place_candidate)(args, id, candidate);
+    const glint_prim *prim = candidate->prim;
+    if (prim->kind == GLINT_PRIM_PLANE)
+        return;
+    if (!tile->scaled)
+        R(scale_tile)(tile);
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        R(make_triangle_filter)(tile, candidate);
+    } else if (prim->kind == GLINT_PRIM_SOLID) {
+        R(make_solid_filter)(args, candidate);
+    } else {
         const double from[3] = { candidate->f[0], candidate->f[1], candidate->f[2] };
         R(make_filter)(args->camera, from, prim->radius * prim->scale, candidate);
     }
@@ -236,24 +280,18 @@ static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate
     return any;
 }
 
-static inline float R(far_of_group)(R(tile_cast) * tile, int g)
+/// Notes how deep the hits of group (x, y) are.
+static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
 {
-    if (tile->stale >> g & 1)
-        tile->far[g] = R(farthest)(tile->args, (size_t)g * GLINT_GROUP);
-    tile->stale &= ~((uint64_t)1 << g);
-    return tile->far[g];
-}
-
-static inline float R(far_of_tile)(R(tile_cast) * tile)
-{
-    if (!tile->stale)
-        return tile->far_of_all;
-    while (tile->stale)
-        R(far_of_group)(tile, __builtin_ctzll(tile->stale));
-    vf far = f_set(0);
-    for (int g = 0; g < GLINT_TILE_GROUPS; g += VF)
-        far = f_max(far, f_load(tile->far + g));
-    return tile->far_of_all = f_max_all(far);
+    const int g = y * tile->across + x;
+    const real scale = (real)tile->args->geometry->scale;
+    _Alignas(64) real t[GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        r_store(t + i, r_load((const real *)tile->args->t + (size_t)g * GLINT_GROUP + i) * r_set(scale));
+    R(narrow)(t, tile->depth[g]);
+    for (int i = 0; i < GLINT_GROUP; i += VF)
+        f_store(tile->depth[g] + i, f_load(tile->depth[g] + i) * f_set(1 + 0x1p-22f));
+    tile->far[y][x] = group_highest(tile->depth[g]);
 }
 
 static inline void R(begin_row)(const R(tile_cast) * tile, R(candidate) * candidates, int count, int y)
@@ -277,15 +315,14 @@ static void R(cast_candidates)(R(tile_cast) * tile, R(candidate) * candidates, i
         const int y = __builtin_ctz(rows);
         R(begin_row)(tile, candidates, count, y);
         for (unsigned left = columns; left; left &= left - 1) {
-            const int x = __builtin_ctz(left), g = y * tile->across + x;
+            const int x = __builtin_ctz(left);
             for (int k = 0; k < count; k++) {
                 const R(candidate) *candidate = &candidates[k];
-                if (!(candidate->columns >> x & candidate->rows >> y & 1) ||
-                    R(far_of_group)(tile, g) < candidate->depth)
+                if (!(candidate->columns >> x & candidate->rows >> y & 1) || tile->far[y][x] < candidate->depth)
                     continue;
                 const unsigned near = R(near_pixels)(tile, candidate, x, y);
                 if (near && R(decide_pixels)(tile, candidate, x, y, near))
-                    tile->stale |= (uint64_t)1 << g;
+                    R(note_depth)(tile, x, y);
             }
         }
     }
@@ -295,24 +332,23 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
     tile->scaled = false;
-    tile->stale = 0;
-    tile->far_of_all = HUGE_VALF;
-    for (uint32_t g = 0; g < GLINT_TILE_GROUPS; g++)
-        tile->far[g] = g < args->group_count ? HUGE_VALF : 0;
     tile->deep = false;
-    tile->across = (int)args->camera->groups_across;
-    tile->down = (int)args->group_count / tile->across;
-    make_tile_view(args->camera, args->geometry, R(walk_slack)(args->geometry), &tile->view);
+    R(aim_screen)(args->camera, args->geometry, &tile->view);
+    tile->across = tile->view.count[0];
+    tile->down = tile->view.count[1];
+    for (int y = 0; y < tile->down; y++)
+        for (int x = 0; x < SCREEN_ACROSS; x++)
+            tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
 }
 
 static bool R(in_sight)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;
-    _Alignas(64) float depth[GLINT_NODE_WIDTH];
-    tile_view view;
-    make_tile_view(args->camera, geometry, R(walk_slack)(geometry), &view);
+    screen_view view;
+    node_on_screen seen;
+    R(aim_screen)(args->camera, geometry, &view);
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))
             return true;
-    return geometry->nodes && boxes_in_tile(geometry->nodes, &view, HUGE_VALF, depth);
+    return geometry->nodes && boxes_on_screen(geometry->nodes, &view, &seen);
 }

@@ -49,54 +49,98 @@ static inline void R(begin_group_cast)(R(tile_cast) * tile, const R(candidate) *
     }
     R(start_group)(tile->args, g);
     for (int k = 0; k < found; k++)
-        if (R(decide_pixels)(tile, &candidates[order[k]], x, y, near[k]))
-            tile->stale |= (uint64_t)1 << g;
-    if (!tile->deep)
+        R(decide_pixels)(tile, &candidates[order[k]], x, y, near[k]);
+    if (tile->deep)
+        R(note_depth)(tile, x, y);
+    else
         R(finish_group)(tile->args, g);
 }
 
-/// Whether every group that the candidate may show in has hits in front of its box.
-static bool R(hidden)(R(tile_cast) * tile, const R(candidate) * candidate)
+/// Looks into the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns how many
+/// candidates.
+static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, screen_entry *stack, int *height)
 {
-    for (unsigned rows = candidate->rows; tile->deep && rows; rows &= rows - 1)
-        for (unsigned columns = candidate->columns; columns; columns &= columns - 1) {
-            const int g = __builtin_ctz(rows) * tile->across + __builtin_ctz(columns);
-            if (!(R(far_of_group)(tile, g) < candidate->depth))
-                return false;
-        }
-    return tile->deep;
-}
-
-/// Looks into one node: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns how
-/// many candidates.
-static int R(open_node)(R(tile_cast) * tile, const glint_node *node, float far, R(candidate) * candidates,
-                        walk_entry *stack, int *height)
-{
-    _Alignas(64) float depth[GLINT_NODE_WIDTH];
+    const glint_node *root = tile->args->geometry->nodes;
+    node_on_screen seen;
     int order[GLINT_NODE_WIDTH], found = 0;
-    node_on_screen screen;
-    const int count = sort_slots(boxes_in_tile(node, &tile->view, far, depth), depth, order);
-    bool known = false;
+    const int count = sort_slots(boxes_on_screen(root, &tile->view, &seen), seen.near, order);
     for (int i = 0; i < count; i++) {
-        const uint32_t child = node->child[order[i]];
-        if (!(child & GLINT_NODE_PRIM))
+        if (!(root->child[order[i]] & GLINT_NODE_PRIM))
             continue;
-        if (!known)
-            boxes_on_screen(node, &tile->view, tile->across, tile->down, &screen);
-        known = true;
-        R(candidate) *candidate = &candidates[found];
-        candidate->columns = bit_range((int)screen.first[0][order[i]], (int)screen.last[0][order[i]]);
-        candidate->rows = bit_range((int)screen.first[1][order[i]], (int)screen.last[1][order[i]]);
-        candidate->depth = depth[order[i]];
-        if (!candidate->columns || !candidate->rows || R(hidden)(tile, candidate))
-            continue;
-        R(make_candidate)(tile, child & ~GLINT_NODE_PRIM, candidate);
-        found++;
+        const screen_entry cells = entry_of(root, &seen, order[i]);
+        R(candidate) *candidate = &candidates[found++];
+        candidate->columns = bit_range(cells.first[0], cells.last[0]);
+        candidate->rows = bit_range(cells.first[1], cells.last[1]);
+        candidate->depth = cells.near;
+        R(make_candidate)(tile, root->child[order[i]] & ~GLINT_NODE_PRIM, candidate);
     }
     for (int i = count; i-- > 0;)
-        if (!(node->child[order[i]] & GLINT_NODE_PRIM))
-            stack[(*height)++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
+        if (!(root->child[order[i]] & GLINT_NODE_PRIM))
+            stack[(*height)++] = entry_of(root, &seen, order[i]);
     return found;
+}
+
+/// Lanes of a group that may meet the shape before what they have met, from its box on, whose depth is `near`.
+static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shape_on_screen *shape, float near, int x,
+                                           int y)
+{
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+        if (open)
+            lanes |= near_shape(shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i), open, 0) << i;
+    }
+    return lanes;
+}
+
+/// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
+/// them needs it.
+static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    const screen_entry cells = entry_of(node, seen, slot);
+    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    bool shaped = false, placed = false;
+    shape_on_screen shape;
+    R(candidate) candidate;
+    for (int y = cells.first[1]; y <= cells.last[1]; y++)
+        for (int x = cells.first[0]; x <= cells.last[0]; x++) {
+            if (tile->far[y][x] < cells.near)
+                continue;
+            if (!shaped)
+                shape = shape_of(node, seen, slot, &geometry->prims[id], geometry, &tile->view);
+            shaped = true;
+            const unsigned near = R(lanes_near_shape)(tile, &shape, cells.near, x, y);
+            if (!near)
+                continue;
+            if (!placed)
+                R(place_candidate)(tile->args, id, &candidate);
+            placed = true;
+            if (R(decide_pixels)(tile, &candidate, x, y, near))
+                R(note_depth)(tile, x, y);
+        }
+}
+
+static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    if (!tile->scaled)
+        R(scale_tile)(tile);
+    while (height > 0 && !is_stopped(tile->args->stop)) {
+        const screen_entry top = stack[--height];
+        const glint_node *node = &geometry->nodes[top.node];
+        int order[GLINT_NODE_WIDTH];
+        node_on_screen seen;
+        if (!any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, &top))
+            continue;
+        const int count = sort_slots(boxes_on_screen(node, &tile->view, &seen), seen.near, order);
+        for (int i = 0; i < count; i++)
+            if (node->child[order[i]] & GLINT_NODE_PRIM)
+                R(cast_slot)(tile, node, &seen, order[i]);
+        for (int i = count; i-- > 0;)
+            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
+                stack[height++] = entry_of(node, &seen, order[i]);
+    }
 }
 
 /// Makes candidates of the planes from number *next on that are ahead, as many as there is room for.
@@ -121,12 +165,12 @@ static void R(cast_bundle)(const glint_cast_args *args)
     const glint_geometry_table *geometry = args->geometry;
     R(tile_cast) tile;
     R(candidate) candidates[GLINT_FIRST_CANDIDATES];
-    walk_entry stack[WALK_STACK];
+    screen_entry stack[WALK_STACK];
     int height = 0, count = 0;
     uint32_t planes = 0;
     R(begin_tile)(args, &tile);
     if (geometry->nodes)
-        count = R(open_node)(&tile, geometry->nodes, HUGE_VALF, candidates, stack, &height);
+        count = R(open_root)(&tile, candidates, stack, &height);
     count += R(open_planes)(&tile, &planes, candidates + count, GLINT_FIRST_CANDIDATES - count);
     tile.deep = height > 0 || planes < geometry->unbounded_count;
     for (int y = 0; y < tile.down; y++) {
@@ -138,14 +182,7 @@ static void R(cast_bundle)(const glint_cast_args *args)
         return;
     while ((count = R(open_planes)(&tile, &planes, candidates, GLINT_FIRST_CANDIDATES)) > 0)
         R(cast_candidates)(&tile, candidates, count);
-    while (height > 0 && !is_stopped(args->stop)) {
-        const walk_entry top = stack[--height];
-        const float far = R(far_of_tile)(&tile);
-        if (far < top.depth)
-            continue;
-        count = R(open_node)(&tile, &geometry->nodes[top.node], far, candidates, stack, &height);
-        R(cast_candidates)(&tile, candidates, count);
-    }
+    R(walk_tile)(&tile, stack, height);
     for (uint32_t g = 0; g < args->group_count; g++)
         R(finish_group)(args, g);
 }

@@ -9,6 +9,7 @@
 #include "engine/stages/stages.h"
 
 #include "engine/stages/walk.h"
+#include "engine/stages/screen.h"
 #include "engine/stages/beam.h"
 
 #define GLINT_REAL 64

@@ -13,7 +13,7 @@ static inline void R(close_point)(R(beam) * beam, uint32_t i)
     beam->open--;
     for (uint32_t j = beam->begin[cell]; j < beam->begin[cell + 1]; j++)
         far = larger(far, beam->w[j]);
-    beam->far[cell / BEAM_ACROSS][cell % BEAM_ACROSS] = far;
+    beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = far;
 }
 
 static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, unsigned wanted)
@@ -77,37 +77,19 @@ static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint3
 
 // ---- The filter ----
 
-/// A surface as the filter sees it.
+/// What stands between points and light, perhaps.
 typedef struct R(beam_blocker) {
     const glint_prim *prim;
     uint32_t id;
     float near; ///< least w of its box
-    float middle[2], k; ///< of its box
-    float reach2; ///< square of how far from there a segment may pass
-    bool is_triangle;
-    beam_triangle triangle;
-    float doubt; ///< how far on the wrong side of an edge a segment may pass
+    shape_on_screen shape;
+    int light; ///< of a triangle: side_of_light
 } R(beam_blocker);
-
-/// Lanes whose segments may pass the triangle: the corners from the segment, where each of them is.
-static inline unsigned R(near_triangle)(const R(beam_blocker) * b, vf u, vf v, vf across, vf down)
-{
-    vf x[3], y[3], e[3];
-    for (int j = 0; j < 3; j++) {
-        x[j] = f_set(b->triangle.across[j]) - (across + f_set(b->triangle.lean[j]) * u);
-        y[j] = f_set(b->triangle.down[j]) - (down + f_set(b->triangle.lean[j]) * v);
-    }
-    for (int j = 0; j < 3; j++)
-        e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
-    const vf doubt = f_set(b->doubt);
-    const fm out = fm_and(f_lt(f_min(f_min(e[0], e[1]), e[2]), -doubt), f_lt(doubt, f_max(f_max(e[0], e[1]), e[2])));
-    return ~fm_bits(out);
-}
 
 /// Whether a point on the surface itself may be dark for that: what it is decided by in blocked.h, where float can tell.
 static inline bool R(own_matters)(const R(beam_blocker) * b, bool back)
 {
-    return b->is_triangle ? b->triangle.light != (back ? -1 : 1) : back;
+    return b->shape.is_triangle ? b->light != (back ? -1 : 1) : back;
 }
 
 /// Tests the points from `i` on and before `end`.
@@ -116,15 +98,12 @@ static void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, 
     const uint16_t *backs = beam->tile->args->back;
     for (; i < end; i += VF) {
         const vf u = f_load_any(beam->place[0] + i), v = f_load_any(beam->place[1] + i), w = f_load_any(beam->w + i);
-        const vf across = u * f_set(b->k) - f_set(b->middle[0]), down = v * f_set(b->k) - f_set(b->middle[1]);
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(b->near), w)) & in_run;
-        unsigned near = behind & ~fm_bits(f_lt(f_set(b->reach2), across * across + down * down));
-        if (!near)
+        if (!behind)
             continue;
-        const unsigned own = near & fm_bits(i_eq(f_bits(f_load_any((const float *)(beam->prim + i))), i_set(b->id)));
-        if (b->is_triangle && near != own)
-            near &= own | R(near_triangle)(b, u, v, across, down);
+        const unsigned own = behind & fm_bits(i_eq(f_bits(f_load_any((const float *)(beam->prim + i))), i_set(b->id)));
+        unsigned near = near_shape(&b->shape, u, v, behind, own);
         for (; near; near &= near - 1) {
             const unsigned lane = (unsigned)__builtin_ctz(near);
             const uint32_t at = beam->at[i + lane];
@@ -135,70 +114,47 @@ static void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, 
     }
 }
 
-static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_in_beam *seen, int slot, uint32_t id)
+static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, int slot)
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
-    const beam_view *view = &beam->view;
-    const uint32_t first = seen->first[0][slot], last = seen->last[0][slot];
-    const uint32_t top = seen->first[1][slot], bottom = seen->last[1][slot];
-    R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
-    if (!R(any_behind)(beam, b.near, (int)first, (int)last, (int)top, (int)bottom))
+    const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    const screen_entry cells = entry_of(node, seen, slot);
+    const uint32_t first = cells.first[0], last = cells.last[0], top = cells.first[1], bottom = cells.last[1];
+    R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = cells.near };
+    if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, b.near, &cells))
         return;
-    float middle[3], place[3], size = 0;
-    for (int k = 0; k < 3; k++) {
-        middle[k] = 0.5f * (node->lower[k][slot] + node->upper[k][slot]);
-        place[k] = seen->middle[k][slot];
-        size += fabsf(middle[k]);
-    }
-    const float slack = view->slack + 2 * GLINT_FILTER_SLACK * size, reach = b.prim->filter_bound + slack;
-    b.middle[0] = place[0];
-    b.middle[1] = place[1];
-    b.k = 1 + place[2] * view->inverse;
-    b.reach2 = reach * reach * view->stretch;
-    b.is_triangle = b.prim->kind == GLINT_PRIM_TRIANGLE;
-    if (b.is_triangle) {
-        b.triangle = make_beam_triangle(b.prim, geometry, view, middle, place, slack);
-        b.doubt = 16 * reach * (slack + 0x1p-20f * reach);
-    }
-    if (last - first == BEAM_ACROSS - 1)
-        R(block_run)(beam, &b, beam->begin[top * BEAM_ACROSS], beam->begin[(bottom + 1) * BEAM_ACROSS]);
+    b.shape = shape_of(node, seen, slot, b.prim, geometry, &beam->view);
+    if (b.shape.is_triangle)
+        b.light = side_of_light(
+            &b.shape, (const float[3]) { b.shape.middle[0], b.shape.middle[1], seen->middle[2][slot] }, &beam->view);
+    if (last - first == SCREEN_ACROSS - 1)
+        R(block_run)(beam, &b, beam->begin[top * SCREEN_ACROSS], beam->begin[(bottom + 1) * SCREEN_ACROSS]);
     else
-        for (uint32_t row = top * BEAM_ACROSS; row <= bottom * BEAM_ACROSS; row += BEAM_ACROSS)
+        for (uint32_t row = top * SCREEN_ACROSS; row <= bottom * SCREEN_ACROSS; row += SCREEN_ACROSS)
             R(block_run)(beam, &b, beam->begin[row + first], beam->begin[row + last + 1]);
     R(decide_batch)(beam, b.prim);
 }
 
 // ---- The walk ----
 
-/// A node to be looked into, and what the light sees of it.
-typedef struct R(beam_entry) {
-    uint32_t node;
-    float near;
-    uint8_t first[2], last[2];
-} R(beam_entry);
-
 static void R(walk_beam)(R(beam) * beam)
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
-    R(beam_entry) stack[WALK_STACK];
-    node_in_beam seen;
+    screen_entry stack[WALK_STACK];
+    node_on_screen seen;
     int height = 0;
-    stack[height++] = (R(beam_entry)) { 0, -HUGE_VALF, { 0, 0 }, { BEAM_ACROSS - 1, BEAM_DOWN - 1 } };
+    stack[height++] = entry_of_root(&beam->view);
     while (height > 0 && beam->open && !is_stopped(beam->tile->args->stop)) {
-        const R(beam_entry) top = stack[--height];
-        if (!R(any_behind)(beam, top.near, top.first[0], top.last[0], top.first[1], top.last[1]))
+        const screen_entry top = stack[--height];
+        if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, &top))
             continue;
         const glint_node *node = &geometry->nodes[top.node];
-        for (unsigned mask = boxes_in_beam(node, &beam->view, &seen); mask; mask &= mask - 1) {
+        for (unsigned mask = boxes_on_screen(node, &beam->view, &seen); mask; mask &= mask - 1) {
             const int slot = __builtin_ctz(mask);
-            const uint32_t child = node->child[slot];
-            if (child & GLINT_NODE_PRIM)
-                R(block_cells)(beam, node, &seen, slot, child & ~GLINT_NODE_PRIM);
+            if (node->child[slot] & GLINT_NODE_PRIM)
+                R(block_cells)(beam, node, &seen, slot);
             else
-                stack[height++] = (R(beam_entry)) { child,
-                                                    seen.near[slot],
-                                                    { (uint8_t)seen.first[0][slot], (uint8_t)seen.first[1][slot] },
-                                                    { (uint8_t)seen.last[0][slot], (uint8_t)seen.last[1][slot] } };
+                stack[height++] = entry_of(node, &seen, slot);
         }
     }
 }

@@ -1,0 +1,195 @@
+// screen: what one eye sees, or one light: boxes and surfaces of the index in front of a screen that is divided into cells.
+// Rays from one eye are a bundle, and so are segments to one light: what may meet them is asked about the cells of its place
+// on the screen alone. Float and conservative, as all of walk.h is.
+//
+// The frame: two axes across the way of the bundle, and one, w, along it. What is at (a, b, w) has its place at a / k and b / k,
+// with k = base + inverse w: of a camera's pixels k is w, so that places are s and -t; of segments k is 1 + w / distance, w
+// running away from the light from 0 in the middle of the points; of parallel light k is 1.
+
+#define SCREEN_ACROSS 16 ///< most columns
+
+typedef struct screen_view {
+    float origin[3], axis[3][3]; ///< of the frame, in the index's; at right angles but for rounding
+    float unit[2]; ///< length of a unit of place where k is 1; the third axis is unit
+    float base, inverse; ///< of k
+    float slack; ///< what rounding may have moved a ray by, besides what the numbers of a box give
+    float first[2], last[2]; ///< places between which there are rays
+    float margin; ///< rounding of these
+    float cells[2]; ///< cells in a unit of place
+    int count[2]; ///< columns and rows
+    float far; ///< largest w that matters
+    float stretch; ///< at most how much longer a ray is than it is along w, squared
+} screen_view;
+
+/// The cells of places: monotonic, so that what is between two places is between their cells.
+static inline vi screen_cells(const screen_view *view, int axis, vf place)
+{
+    const vf cell = (place - f_set(view->first[axis])) * f_set(view->cells[axis]);
+    return i_from_f(f_min(f_max(cell, f_set(0)), f_set((float)(view->count[axis] - 1))));
+}
+
+/// What the screen shows of a node's boxes.
+typedef struct node_on_screen {
+    _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< in the frame
+    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
+    _Alignas(64) uint32_t first[2][GLINT_NODE_WIDTH], last[2][GLINT_NODE_WIDTH]; ///< cells
+} node_on_screen;
+
+/// Places between which boxes are whose k is between nearest and farthest: anywhere where they reach the eye.
+static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf *least, vf *most)
+{
+    const fm ahead = f_lt(f_set(0), nearest);
+    const vf near = f_set(1) / nearest, far = f_set(1) / farthest;
+    *least = f_select(ahead, f_min(low * near, low * far), f_set(-HUGE_VALF));
+    *most = f_select(ahead, f_max(high * near, high * far), f_set(HUGE_VALF));
+}
+
+/// Which boxes may be met before `far`. NaN, of boxes as wide as float reaches, gives every cell.
+static unsigned boxes_on_screen(const glint_node *node, const screen_view *view, node_on_screen *out)
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf middle[3], half[3], low[3], high[3], least, most;
+        for (int k = 0; k < 3; k++)
+            box_axis(node, k, i, view->origin[k], view->slack, &middle[k], &half[k]);
+        for (int j = 0; j < 3; j++) {
+            box_along(middle, half, view->axis[j], &low[j], &high[j]);
+            f_store(out->middle[j] + i, f_set(0.5f) * low[j] + f_set(0.5f) * high[j]);
+        }
+        const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
+        const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
+        fm away = fm_or(f_lt(f_set(view->far), low[2]), f_lt(farthest, f_set(0)));
+        f_store(out->near + i, f_max(low[2], f_set(-FLT_MAX)));
+        for (int j = 0; j < 2; j++) {
+            const vf start = f_set(view->first[j]), end = f_set(view->last[j]), margin = f_set(view->margin);
+            places_of_boxes(low[j], high[j], nearest, farthest, &least, &most);
+            least = least - margin;
+            most = most + margin;
+            away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
+            i_store(out->first[j] + i, screen_cells(view, j, f_max(least, start)));
+            i_store(out->last[j] + i, screen_cells(view, j, f_min(most, end)));
+        }
+        inside |= fm_bits(fm_andnot(box_exists(node, i), away)) << i;
+    }
+    return inside;
+}
+
+/// A node to be looked into, and where it is.
+typedef struct screen_entry {
+    uint32_t node;
+    float near;
+    uint8_t first[2], last[2];
+} screen_entry;
+
+static inline screen_entry entry_of(const glint_node *node, const node_on_screen *seen, int slot)
+{
+    screen_entry entry = { .node = node->child[slot], .near = seen->near[slot] };
+    for (int j = 0; j < 2; j++) {
+        entry.first[j] = (uint8_t)seen->first[j][slot];
+        entry.last[j] = (uint8_t)seen->last[j][slot];
+    }
+    return entry;
+}
+
+static inline screen_entry entry_of_root(const screen_view *view)
+{
+    return (screen_entry) { .near = -FLT_MAX,
+                            .last = { (uint8_t)(view->count[0] - 1), (uint8_t)(view->count[1] - 1) } };
+}
+
+/// Bits first .. last.
+static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
+
+/// Whether in some of the cells something as far away as `near` still matters; far: largest such w of each cell.
+static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, const screen_entry *cells)
+{
+    const unsigned columns = bit_range(cells->first[0], cells->last[0]);
+    for (int row = cells->first[1]; row <= cells->last[1]; row++)
+        for (int i = 0; i < SCREEN_ACROSS; i += VF)
+            if (fm_bits(f_le(f_set(near), f_load(far[row] + i))) & columns >> i)
+                return true;
+    return false;
+}
+
+// ---- Surfaces ----
+
+/// A surface as the filter sees it: a ball around it, and of a triangle its edges too, from the middle of its box.
+typedef struct shape_on_screen {
+    float middle[2], k; ///< places of rays times k are where they pass the middle
+    float weight[2], reach2; ///< square of how far from it they may pass, and what makes lengths of places
+    bool is_triangle;
+    float across[3], down[3], w[3],
+        lean[3]; ///< of the corners; lean: how far a ray at place 1 moves on its way to there
+    float doubt; ///< how far on the wrong side of an edge a ray may pass
+    float size, slack; ///< of a triangle: bound of its corners; what they may be off by
+} shape_on_screen;
+
+/// Corners from the middle of the box, which is `middle` in the index's frame.
+static inline void place_corners(const glint_prim *prim, const glint_geometry_table *geometry, const screen_view *view,
+                                 const float middle[3], shape_on_screen *out)
+{
+    for (int j = 0; j < 3; j++) {
+        float x[3];
+        for (int k = 0; k < 3; k++)
+            x[k] = (float)((prim->corner[j][k] - geometry->reference[k]) * geometry->scale - (double)middle[k]);
+        out->across[j] = DOT(view->axis[0], x);
+        out->down[j] = DOT(view->axis[1], x);
+        out->w[j] = DOT(view->axis[2], x);
+        out->lean[j] = out->w[j] * view->inverse;
+        out->size = larger(out->size, (fabsf(x[0]) + fabsf(x[1])) + fabsf(x[2]));
+    }
+}
+
+static inline shape_on_screen shape_of(const glint_node *node, const node_on_screen *seen, int slot,
+                                       const glint_prim *prim, const glint_geometry_table *geometry,
+                                       const screen_view *view)
+{
+    shape_on_screen out = { .is_triangle = prim->kind == GLINT_PRIM_TRIANGLE };
+    float middle[3], numbers = 0;
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5f * (node->lower[k][slot] + node->upper[k][slot]);
+        numbers += fabsf(middle[k]) + fabsf(view->origin[k]);
+    }
+    const float stretch = sqrtf(view->stretch);
+    out.slack = (view->slack + 2 * GLINT_FILTER_SLACK * numbers) * stretch;
+    const float reach = prim->filter_bound + out.slack;
+    out.k = view->base + seen->middle[2][slot] * view->inverse;
+    for (int j = 0; j < 2; j++) {
+        out.middle[j] = seen->middle[j][slot];
+        out.weight[j] = view->unit[j] * view->unit[j];
+    }
+    out.reach2 = reach * reach * view->stretch;
+    if (out.is_triangle) {
+        // lengths from a ray within reach to a corner are below `wide`; a product of two is off by what each is off by
+        const float wide = 3 * reach * stretch;
+        out.doubt = wide * (6 * out.slack + 0x1p-20f * wide) / (view->unit[0] * view->unit[1]);
+        place_corners(prim, geometry, view, middle, &out);
+    }
+    return out;
+}
+
+/// Lanes whose rays may pass between the edges: the corners, from the ray where each of them is.
+static inline unsigned near_edges(const shape_on_screen *shape, vf u, vf v, vf across, vf down)
+{
+    vf x[3], y[3], e[3];
+    for (int j = 0; j < 3; j++) {
+        x[j] = f_set(shape->across[j]) - (across + f_set(shape->lean[j]) * u);
+        y[j] = f_set(shape->down[j]) - (down + f_set(shape->lean[j]) * v);
+    }
+    for (int j = 0; j < 3; j++)
+        e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
+    const vf doubt = f_set(shape->doubt);
+    return ~fm_bits(fm_and(f_lt(f_min(f_min(e[0], e[1]), e[2]), -doubt), f_lt(doubt, f_max(f_max(e[0], e[1]), e[2]))));
+}
+
+/// Lanes of `wanted` whose rays, at places u, v, may meet the shape; those of `sure` are not asked about edges.
+static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v, unsigned wanted, unsigned sure)
+{
+    const vf across = u * f_set(shape->k) - f_set(shape->middle[0]),
+             down = v * f_set(shape->k) - f_set(shape->middle[1]);
+    const vf distance2 = f_set(shape->weight[0]) * (across * across) + f_set(shape->weight[1]) * (down * down);
+    wanted &= ~fm_bits(f_lt(f_set(shape->reach2), distance2));
+    if (shape->is_triangle && wanted & ~sure)
+        wanted &= sure | near_edges(shape, u, v, across, down);
+    return wanted;
+}
