@@ -133,13 +133,17 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         node_on_screen seen;
         if (!any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, &top))
             continue;
-        const int count = sort_slots(boxes_on_screen(node, &tile->view, &seen), seen.near, order);
-        for (int i = 0; i < count; i++)
-            if (node->child[order[i]] & GLINT_NODE_PRIM)
-                R(cast_slot)(tile, node, &seen, order[i]);
+        const unsigned mask = boxes_on_screen(node, &tile->view, &seen);
+        prefetch_slots(geometry, node, mask);
+        const int count = sort_slots(mask, seen.near, order);
         for (int i = count; i-- > 0;)
             if (!(node->child[order[i]] & GLINT_NODE_PRIM))
                 stack[height++] = entry_of(node, &seen, order[i]);
+        if (height > 0)
+            prefetch_node(&geometry->nodes[stack[height - 1].node]);
+        for (int i = 0; i < count; i++)
+            if (node->child[order[i]] & GLINT_NODE_PRIM)
+                R(cast_slot)(tile, node, &seen, order[i]);
     }
 }
 

@@ -149,13 +149,16 @@ static void R(walk_beam)(R(beam) * beam)
         if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, &top))
             continue;
         const glint_node *node = &geometry->nodes[top.node];
-        for (unsigned mask = boxes_on_screen(node, &beam->view, &seen); mask; mask &= mask - 1) {
-            const int slot = __builtin_ctz(mask);
-            if (node->child[slot] & GLINT_NODE_PRIM)
-                R(block_cells)(beam, node, &seen, slot);
-            else
-                stack[height++] = entry_of(node, &seen, slot);
-        }
+        const unsigned mask = boxes_on_screen(node, &beam->view, &seen);
+        prefetch_slots(geometry, node, mask);
+        for (unsigned left = mask; left; left &= left - 1)
+            if (!(node->child[__builtin_ctz(left)] & GLINT_NODE_PRIM))
+                stack[height++] = entry_of(node, &seen, __builtin_ctz(left));
+        if (height > 0)
+            prefetch_node(&geometry->nodes[stack[height - 1].node]);
+        for (unsigned left = mask; left; left &= left - 1)
+            if (node->child[__builtin_ctz(left)] & GLINT_NODE_PRIM)
+                R(block_cells)(beam, node, &seen, __builtin_ctz(left));
     }
 }
 

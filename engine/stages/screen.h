@@ -111,6 +111,25 @@ static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, con
     return false;
 }
 
+/// Has the memory of a node's primitives, and of the node to be looked into next, on its way.
+static inline void prefetch_slots(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
+{
+    for (; mask; mask &= mask - 1) {
+        const uint32_t child = node->child[__builtin_ctz(mask)];
+        if (child & GLINT_NODE_PRIM) {
+            const char *prim = (const char *)&geometry->prims[child & ~GLINT_NODE_PRIM];
+            __builtin_prefetch(prim);
+            __builtin_prefetch(prim + 64);
+        }
+    }
+}
+
+static inline void prefetch_node(const glint_node *node)
+{
+    for (size_t i = 0; i < sizeof *node; i += 64)
+        __builtin_prefetch((const char *)node + i);
+}
+
 // ---- Surfaces ----
 
 /// A surface as the filter sees it: a ball around it, and of a triangle its edges too, from the middle of its box.
