@@ -110,6 +110,7 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
     }
     view->far = f_max_all(most[2]);
     view->stretch = 1.00001f * (1 + wide2);
+    finish_screen(view);
     return 1 + f_min_all(least[2]) * view->inverse > BEAM_NEAREST && wide2 < BEAM_WIDEST * BEAM_WIDEST;
 }
 
@@ -123,8 +124,8 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
         if (!lit[g])
             continue;
         for (size_t i = at; i < at + GLINT_GROUP; i += VF)
-            i_store(places->cell + i, i_add(screen_cells(&beam->view, 0, f_load(places->place[0] + i)),
-                                            i_shl(screen_cells(&beam->view, 1, f_load(places->place[1] + i)), 4)));
+            i_store(places->cell + i, i_add(cell_of_place(&beam->view, 0, f_load(places->place[0] + i)),
+                                            i_shl(cell_of_place(&beam->view, 1, f_load(places->place[1] + i)), 4)));
         for (unsigned lanes = lit[g]; lanes; lanes &= lanes - 1)
             next[places->cell[at + (unsigned)__builtin_ctz(lanes)]]++;
     }

@@ -61,6 +61,7 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // of half a pixel; far above the rounding
     view->far = HUGE_VALF;
     view->stretch = (float)(1.00001 * (1 + rr * wide[0] * wide[0] + uu * wide[1] * wide[1]));
+    finish_screen(view);
 }
 
 /// Which way the planes' corner rays run decides whether a ray between them can meet it.

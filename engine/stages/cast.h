@@ -67,11 +67,11 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, screen_e
     for (int i = 0; i < count; i++) {
         if (!(root->child[order[i]] & GLINT_NODE_PRIM))
             continue;
-        const screen_entry cells = entry_of(root, &seen, order[i]);
+        const screen_cells cells = seen.cells[order[i]];
         R(candidate) *candidate = &candidates[found++];
-        candidate->columns = bit_range(cells.first[0], cells.last[0]);
-        candidate->rows = bit_range(cells.first[1], cells.last[1]);
-        candidate->depth = cells.near;
+        candidate->columns = bit_range(first_column(cells), last_column(cells));
+        candidate->rows = bit_range(first_row(cells), last_row(cells));
+        candidate->depth = seen.near[order[i]];
         R(make_candidate)(tile, root->child[order[i]] & ~GLINT_NODE_PRIM, candidate);
     }
     for (int i = count; i-- > 0;)
@@ -98,19 +98,20 @@ static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shap
 static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const screen_entry cells = entry_of(node, seen, slot);
+    const screen_cells cells = seen->cells[slot];
+    const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     bool shaped = false, placed = false;
     shape_on_screen shape;
     R(candidate) candidate;
-    for (int y = cells.first[1]; y <= cells.last[1]; y++)
-        for (int x = cells.first[0]; x <= cells.last[0]; x++) {
-            if (tile->far[y][x] < cells.near)
+    for (int y = first_row(cells); y <= last_row(cells); y++)
+        for (int x = first_column(cells); x <= last_column(cells); x++) {
+            if (tile->far[y][x] < depth)
                 continue;
             if (!shaped)
                 shape = shape_of(node, seen, slot, &geometry->prims[id], geometry, &tile->view);
             shaped = true;
-            const unsigned near = R(lanes_near_shape)(tile, &shape, cells.near, x, y);
+            const unsigned near = R(lanes_near_shape)(tile, &shape, depth, x, y);
             if (!near)
                 continue;
             if (!placed)
@@ -131,7 +132,7 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         const glint_node *node = &geometry->nodes[top.node];
         int order[GLINT_NODE_WIDTH];
         node_on_screen seen;
-        if (!any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, &top))
+        if (!any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, top.cells))
             continue;
         const unsigned mask = boxes_on_screen(node, &tile->view, &seen);
         prefetch_slots(geometry, node, mask);

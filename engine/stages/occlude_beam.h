@@ -118,20 +118,22 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
-    const screen_entry cells = entry_of(node, seen, slot);
-    const uint32_t first = cells.first[0], last = cells.last[0], top = cells.first[1], bottom = cells.last[1];
-    R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = cells.near };
-    if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, b.near, &cells))
+    const screen_cells cells = seen->cells[slot];
+    R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
+    if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, b.near, cells))
         return;
     b.shape = shape_of(node, seen, slot, b.prim, geometry, &beam->view);
     if (b.shape.is_triangle)
         b.light = side_of_light(
             &b.shape, (const float[3]) { b.shape.middle[0], b.shape.middle[1], seen->middle[2][slot] }, &beam->view);
-    if (last - first == SCREEN_ACROSS - 1)
-        R(block_run)(beam, &b, beam->begin[top * SCREEN_ACROSS], beam->begin[(bottom + 1) * SCREEN_ACROSS]);
+    const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
+    const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
+    const int first = first_column(cells), end = last_column(cells) + 1;
+    if (end - first == SCREEN_ACROSS)
+        R(block_run)(beam, &b, *top, bottom[SCREEN_ACROSS]);
     else
-        for (uint32_t row = top * SCREEN_ACROSS; row <= bottom * SCREEN_ACROSS; row += SCREEN_ACROSS)
-            R(block_run)(beam, &b, beam->begin[row + first], beam->begin[row + last + 1]);
+        for (; top <= bottom; top += SCREEN_ACROSS)
+            R(block_run)(beam, &b, top[first], top[end]);
     R(decide_batch)(beam, b.prim);
 }
 
@@ -146,7 +148,7 @@ static void R(walk_beam)(R(beam) * beam)
     stack[height++] = entry_of_root(&beam->view);
     while (height > 0 && beam->open && !is_stopped(beam->tile->args->stop)) {
         const screen_entry top = stack[--height];
-        if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, &top))
+        if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, top.cells))
             continue;
         const glint_node *node = &geometry->nodes[top.node];
         const unsigned mask = boxes_on_screen(node, &beam->view, &seen);

@@ -19,20 +19,43 @@ typedef struct screen_view {
     int count[2]; ///< columns and rows
     float far; ///< largest w that matters
     float stretch; ///< at most how much longer a ray is than it is along w, squared
+    float reach,
+        reach_of_numbers; ///< what a ray may be off by at a surface: the first, and the second times its numbers
+    float weight[2], area; ///< squares of `unit`, and their product's root
 } screen_view;
 
-/// The cells of places: monotonic, so that what is between two places is between their cells.
-static inline vi screen_cells(const screen_view *view, int axis, vf place)
+/// Fills what follows from the rest.
+static void finish_screen(screen_view *view)
+{
+    const float stretch = sqrtf(view->stretch), numbers = 2 * GLINT_FILTER_SLACK * stretch;
+    view->reach_of_numbers = numbers;
+    view->reach =
+        view->slack * stretch + numbers * ((fabsf(view->origin[0]) + fabsf(view->origin[1])) + fabsf(view->origin[2]));
+    for (int j = 0; j < 2; j++)
+        view->weight[j] = view->unit[j] * view->unit[j];
+    view->area = view->unit[0] * view->unit[1];
+}
+
+/// The cell of a place along an axis: monotonic, so that what is between two places is between their cells.
+static inline vi cell_of_place(const screen_view *view, int axis, vf place)
 {
     const vf cell = (place - f_set(view->first[axis])) * f_set(view->cells[axis]);
     return i_from_f(f_min(f_max(cell, f_set(0)), f_set((float)(view->count[axis] - 1))));
 }
 
+/// A rectangle of cells: first and last column, first and last row, a byte each from the lowest.
+typedef uint32_t screen_cells;
+
+static inline int first_column(screen_cells cells) { return cells & 255; }
+static inline int last_column(screen_cells cells) { return cells >> 8 & 255; }
+static inline int first_row(screen_cells cells) { return cells >> 16 & 255; }
+static inline int last_row(screen_cells cells) { return (int)(cells >> 24); }
+
 /// What the screen shows of a node's boxes.
 typedef struct node_on_screen {
     _Alignas(64) float middle[3][GLINT_NODE_WIDTH]; ///< in the frame
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
-    _Alignas(64) uint32_t first[2][GLINT_NODE_WIDTH], last[2][GLINT_NODE_WIDTH]; ///< cells
+    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
 } node_on_screen;
 
 /// Places between which boxes are whose k is between nearest and farthest: anywhere where they reach the eye.
@@ -58,17 +81,19 @@ static unsigned boxes_on_screen(const glint_node *node, const screen_view *view,
         }
         const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
         const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
+        vi cells = i_set(0);
         fm away = fm_or(f_lt(f_set(view->far), low[2]), f_lt(farthest, f_set(0)));
         f_store(out->near + i, f_max(low[2], f_set(-FLT_MAX)));
-        for (int j = 0; j < 2; j++) {
+        for (int j = 1; j >= 0; j--) {
             const vf start = f_set(view->first[j]), end = f_set(view->last[j]), margin = f_set(view->margin);
             places_of_boxes(low[j], high[j], nearest, farthest, &least, &most);
             least = least - margin;
             most = most + margin;
             away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
-            i_store(out->first[j] + i, screen_cells(view, j, f_max(least, start)));
-            i_store(out->last[j] + i, screen_cells(view, j, f_min(most, end)));
+            cells = i_or(i_shl(cells, 16), i_or(cell_of_place(view, j, f_max(least, start)),
+                                                i_shl(cell_of_place(view, j, f_min(most, end)), 8)));
         }
+        i_store(out->cells + i, cells);
         inside |= fm_bits(fm_andnot(box_exists(node, i), away)) << i;
     }
     return inside;
@@ -78,33 +103,28 @@ static unsigned boxes_on_screen(const glint_node *node, const screen_view *view,
 typedef struct screen_entry {
     uint32_t node;
     float near;
-    uint8_t first[2], last[2];
+    screen_cells cells;
 } screen_entry;
 
 static inline screen_entry entry_of(const glint_node *node, const node_on_screen *seen, int slot)
 {
-    screen_entry entry = { .node = node->child[slot], .near = seen->near[slot] };
-    for (int j = 0; j < 2; j++) {
-        entry.first[j] = (uint8_t)seen->first[j][slot];
-        entry.last[j] = (uint8_t)seen->last[j][slot];
-    }
-    return entry;
+    return (screen_entry) { node->child[slot], seen->near[slot], seen->cells[slot] };
 }
 
 static inline screen_entry entry_of_root(const screen_view *view)
 {
-    return (screen_entry) { .near = -FLT_MAX,
-                            .last = { (uint8_t)(view->count[0] - 1), (uint8_t)(view->count[1] - 1) } };
+    const uint32_t columns = (uint32_t)view->count[0] - 1, rows = (uint32_t)view->count[1] - 1;
+    return (screen_entry) { 0, -FLT_MAX, columns << 8 | rows << 24 };
 }
 
 /// Bits first .. last.
 static inline unsigned bit_range(int first, int last) { return last < first ? 0 : (2u << last) - (1u << first); }
 
 /// Whether in some of the cells something as far away as `near` still matters; far: largest such w of each cell.
-static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, const screen_entry *cells)
+static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, screen_cells cells)
 {
-    const unsigned columns = bit_range(cells->first[0], cells->last[0]);
-    for (int row = cells->first[1]; row <= cells->last[1]; row++)
+    const unsigned columns = bit_range(first_column(cells), last_column(cells));
+    for (int row = first_row(cells), last = last_row(cells); row <= last; row++)
         for (int i = 0; i < SCREEN_ACROSS; i += VF)
             if (fm_bits(f_le(f_set(near), f_load(far[row] + i))) & columns >> i)
                 return true;
@@ -167,21 +187,20 @@ static inline shape_on_screen shape_of(const glint_node *node, const node_on_scr
     float middle[3], numbers = 0;
     for (int k = 0; k < 3; k++) {
         middle[k] = 0.5f * (node->lower[k][slot] + node->upper[k][slot]);
-        numbers += fabsf(middle[k]) + fabsf(view->origin[k]);
+        numbers += fabsf(middle[k]);
     }
-    const float stretch = sqrtf(view->stretch);
-    out.slack = (view->slack + 2 * GLINT_FILTER_SLACK * numbers) * stretch;
+    out.slack = view->reach + view->reach_of_numbers * numbers;
     const float reach = prim->filter_bound + out.slack;
     out.k = view->base + seen->middle[2][slot] * view->inverse;
     for (int j = 0; j < 2; j++) {
         out.middle[j] = seen->middle[j][slot];
-        out.weight[j] = view->unit[j] * view->unit[j];
+        out.weight[j] = view->weight[j];
     }
     out.reach2 = reach * reach * view->stretch;
     if (out.is_triangle) {
         // lengths from a ray within reach to a corner are below `wide`; a product of two is off by what each is off by
-        const float wide = 3 * reach * stretch;
-        out.doubt = wide * (6 * out.slack + 0x1p-20f * wide) / (view->unit[0] * view->unit[1]);
+        const float wide = 3 * sqrtf(out.reach2);
+        out.doubt = wide * (6 * out.slack + 0x1p-20f * wide) / view->area;
         place_corners(prim, geometry, view, middle, &out);
     }
     return out;
