@@ -58,8 +58,10 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
         NAME(passage)) { .hit = disc >= 0, .in = { .t = b >= 0 ? other : far }, .out = { .t = b >= 0 ? far : other } };
 }
 
-static NAME(passage) NAME(pass_cone)(NAME(vec3) f, NAME(vec3) e)
+static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e)
 {
+    REAL move = NAME(dot)(from, from) > 16 ? -NAME(dot)(from, e) / NAME(dot)(e, e) : 0;
+    NAME(vec3) f = NAME(add)(from, NAME(times)(e, move));
     REAL a = (e.x * e.x + e.y * e.y) - e.z * e.z, c = (f.x * f.x + f.y * f.y) - f.z * f.z;
     REAL b = f.z * e.z - (f.x * e.x + f.y * e.y);
     NAME(vec3) across = NAME(cross)(f, e);
@@ -70,10 +72,10 @@ static NAME(passage) NAME(pass_cone)(NAME(vec3) f, NAME(vec3) e)
     if (a < 0 || a == 0) {
         REAL end = a == 0 ? c / (2 * b) : e.z > 0 ? high : low;
         return (NAME(passage)) { .hit = true,
-                                 .in = { .t = e.z > 0 ? end : -INFINITY },
-                                 .out = { .t = e.z > 0 ? INFINITY : end } };
+                                 .in = { .t = (e.z > 0 ? end : -INFINITY) + move },
+                                 .out = { .t = (e.z > 0 ? INFINITY : end) + move } };
     }
-    return (NAME(passage)) { .hit = disc >= 0, .in = { .t = low }, .out = { .t = high } };
+    return (NAME(passage)) { .hit = disc >= 0, .in = { .t = low + move }, .out = { .t = high + move } };
 }
 
 static NAME(passage) NAME(pass_disk)(NAME(vec3) f, NAME(vec3) e)

@@ -75,10 +75,13 @@ static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bo
     span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
 }
 
-/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
-static inline void R(cut_cone)(R(span) * span, const vr f[3], const vr e[3])
+/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin. Rays from far away are begun anew next to the apex: what
+/// follows takes differences of squares.
+static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
 {
     const vr zero = r_set(0);
+    const vr move = r_select(r_lt(r_set(16), DOT(from, from)), -DOT(from, e) / DOT(e, e), zero);
+    const vr f[3] = { from[0] + move * e[0], from[1] + move * e[1], from[2] + move * e[2] };
     const vr a = (e[0] * e[0] + e[1] * e[1]) - e[2] * e[2], c = (f[0] * f[0] + f[1] * f[1]) - f[2] * f[2];
     const vr b = f[2] * e[2] - (f[0] * e[0] + f[1] * e[1]);
     const vr x = f[1] * e[2] - f[2] * e[1], y = f[2] * e[0] - f[0] * e[2], z = f[0] * e[1] - f[1] * e[0];
@@ -92,8 +95,8 @@ static inline void R(cut_cone)(R(span) * span, const vr f[3], const vr e[3])
     // steeper than the side: one end is within the other half of the double cone
     const vr end = r_select(level, single, r_select(up, high, low));
     const rm open = rm_or(steep, level);
-    span->t[0] = r_select(open, r_select(up, end, r_set(-HUGE_VAL)), low);
-    span->t[1] = r_select(open, r_select(up, r_set(HUGE_VAL), end), high);
+    span->t[0] = r_select(open, r_select(up, end, r_set(-HUGE_VAL)), low) + move;
+    span->t[1] = r_select(open, r_select(up, r_set(HUGE_VAL), end), high) + move;
     span->hit = rm_or(open, r_le(zero, disc));
 }
 
