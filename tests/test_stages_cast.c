@@ -126,8 +126,8 @@ static void leaving_case(int precision, bool odd)
         const glint_prim *prim = &c.scene->prims[index];
         double direction[3], point[3];
         leaving[i] = one_in(8) ? GLINT_MISS : index;
-        if (prim->kind == GLINT_PRIM_TRIANGLE || one_in(8))
-            continue;
+        if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_PLANE)
+            continue; // which take no heed of where the ray starts
         random_unit(direction);
         along3(prim->center, prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0, direction, point);
         put3(c.origin, precision, i, point);

@@ -1,29 +1,60 @@
 // cast_rays: the nearest hit of rays that start anywhere. A lone ray walks the index; parallel ones walk it a group at a
 // time. Contract: stages.h.
 
-/// Decides the lanes of `own`, which start on this very primitive: only the inside of a sphere is met again.
-static inline rm R(meet_own)(const glint_cast_args *args, unsigned own, size_t at, const vr f[3], const vr d[3],
-                             const glint_prim *prim, rm hit, vr *t)
+/// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
+/// inside, perhaps by the other side.
+static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim *prim, const vr o[3], const vr d[3],
+                            vr *t)
 {
-    const rm mask = rm_from_bits(own);
-    const unsigned inward = args->inward[at / GLINT_GROUP] >> at % GLINT_GROUP & own;
+    const rm all = rm_from_bits((1u << VR) - 1);
+    vr f[3], e[3];
     if (prim->kind == GLINT_PRIM_SOLID) {
-        const glint_solid *solid = &args->geometry->solids[prim->item];
-        vr e[3];
+        const glint_solid *solid = &table->solids[prim->item];
+        R(unit_offset)(solid, prim, o, f);
         R(to_unit)(solid, d, e);
         const R(span) span = R(span_of)(solid, f, e);
-        const rm leaves = rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), span.t[1]));
-        *t = r_select(mask, span.t[1], *t);
-        return rm_or(rm_andnot(hit, mask), rm_and(rm_from_bits(solid->form == GLINT_FORM_DISK ? 0 : inward), leaves));
+        *t = span.t[1];
+        if (is_open(solid))
+            return rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), *t));
+        *t = r_max(*t, r_set(GLINT_LEAST_WAY));
+        return all;
     }
-    if (prim->kind != GLINT_PRIM_SPHERE)
-        return rm_andnot(hit, mask);
-    const vr zero = r_set(0), a = DOT(d, d), b = -DOT(f, d), across = (b + b) / (a * r_set(prim->scale));
-    const rm meets = r_le(zero, R(discriminant)(f, d, a, b, R(exact_c)(f, prim), r_set(prim->r2)));
-    const rm ahead = rm_and(r_lt(zero, b), r_lt(zero, across));
-    const rm again = rm_and(rm_from_bits(inward), rm_and(meets, ahead));
-    *t = r_select(mask, across, *t);
-    return rm_or(rm_andnot(hit, mask), again);
+    R(offset)(o, prim, f);
+    const vr b = -DOT(f, d);
+    *t = r_max((b + b) / (DOT(d, d) * r_set(prim->scale)), r_set(GLINT_LEAST_WAY));
+    return all;
+}
+
+/// Whether a ray that goes through the surface may meet it again.
+static inline bool R(has_inside)(const glint_geometry_table *table, const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_SPHERE ||
+           (prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form != GLINT_FORM_DISK);
+}
+
+/// The rays of a group that begin inside of what they start on.
+static inline void R(cast_inward)(const glint_cast_args *args, uint32_t g)
+{
+    const glint_geometry_table *table = args->geometry;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    unsigned lanes = args->active[g] & args->inward[g];
+    while (lanes) {
+        const uint32_t id = args->leaving[at + (size_t)__builtin_ctz(lanes)];
+        const unsigned same = lanes & lanes_equal(args->leaving + at, id);
+        lanes &= ~same;
+        if (id == GLINT_MISS || !R(has_inside)(table, &table->prims[id]))
+            continue;
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            vr o[3], d[3], t;
+            const unsigned own = same >> i & ((1u << VR) - 1);
+            if (!own)
+                continue;
+            R(load3)(args->origin, at + (size_t)i, o);
+            R(load3)(args->direction, at + (size_t)i, d);
+            const rm hit = R(way_out)(table, &table->prims[id], o, d, &t);
+            R(keep_nearest)(args, at + (size_t)i, id, rm_and(rm_from_bits(own), hit), t);
+        }
+    }
 }
 
 /// Tests one primitive against all rays of a group.
@@ -44,6 +75,8 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
             hit = R(meet_triangle)(p, d, r_set(args->geometry->scale), &t);
+            if (args->leaving)
+                hit = R(meet_beside)(args, at + (size_t)i, o, prim, hit, &t);
         } else if (prim->kind == GLINT_PRIM_SOLID) {
             const glint_solid *solid = &args->geometry->solids[prim->item];
             R(unit_offset)(solid, prim, o, f);
@@ -52,8 +85,7 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
             R(offset)(o, prim, f);
             hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
         }
-        if (own)
-            hit = R(meet_own)(args, own, at + (size_t)i, f, d, prim, hit, &t);
+        hit = rm_andnot(hit, rm_from_bits(own)); // see cast_inward
         if (rm_bits(hit))
             R(keep_nearest)(args, at + i, id, hit, t);
     }
@@ -133,6 +165,8 @@ static void R(cast_rays)(const glint_cast_args *args)
         R(set_origins)((const void *const *)args->origin, at, (const float(*)[GLINT_GROUP])local, &rays);
         for (int k = 0; k < 3; k++)
             R(narrow)((const real *)args->direction[k] + at, rays.direction[k]);
+        if (args->leaving)
+            R(cast_inward)(args, g);
         for (uint32_t i = 0; i < geometry->unbounded_count; i++)
             R(cast_on_group)(args, g, &rays, geometry->unbounded[i]);
         if (geometry->nodes && args->parallel)

@@ -155,27 +155,31 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
-/// Whether ray i starts on the primitive; then *t is where it meets it again, or 0.
+/// Whether ray i starts on the primitive, or on a triangle in whose plane this one is; then *t is where it meets it, or 0.
 static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                          uint32_t i, REAL *t)
 {
     const glint_prim *prim = &args->geometry->prims[index];
-    if (!args->leaving || args->leaving[i] != index)
+    if (!args->leaving || args->leaving[i] == GLINT_MISS)
         return false;
+    if (args->leaving[i] != index)
+        return NAME(starts_beside)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction,
+                                   t);
     *t = 0;
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_SOLID && inward) {
         const glint_solid *solid = &args->geometry->solids[prim->item];
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
-        *t = p.hit && !p.ends && p.out.t > 0 && solid->form != GLINT_FORM_DISK ? p.out.t : 0;
+        const bool open = solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
+        *t = solid->form != GLINT_FORM_DISK ? NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) : 0;
+        if (open)
+            *t = p.hit && !p.ends && p.out.t > 0 ? p.out.t : 0;
     }
     if (prim->kind != GLINT_PRIM_SPHERE || !inward)
         return true;
     NAME(vec3) f = NAME(from_center)(origin, prim);
-    REAL a = NAME(length2)(direction), b = -NAME(dot)(f, direction);
-    REAL c = NAME(exact_c)(f.x, f.y, f.z, prim);
-    if (b > 0 && NAME(discriminant)(f, direction, a, b, c, (REAL)prim->r2) >= 0)
-        *t = (b + b) / (a * (REAL)prim->scale);
+    REAL b = -NAME(dot)(f, direction);
+    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)prim->scale), (REAL)GLINT_LEAST_WAY);
     return true;
 }
 

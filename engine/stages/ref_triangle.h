@@ -157,6 +157,61 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
     return crosses && NAME(all_on_one_side)(seen, 0) && (det < 0 || det > 0);
 }
 
+// ---- cast, of rays that leave a triangle ----
+
+/// The height of a place over a triangle's plane, and what rounding may make of it.
+static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) at, REAL *rounding)
+{
+    NAME(vec3) q = NAME(sub)(at, NAME(rounded)(prim->corner[0]));
+    NAME(vec3) sizes = NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z));
+    *rounding = NAME(POINT_SLACK) * NAME(dot)(plane.sizes, sizes);
+    return NAME(dot)(plane.m, q);
+}
+
+/// Whether a corner of `other` is for certain on that side of the plane to which `way` points.
+static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL way, const glint_prim *other)
+{
+    for (int j = 0; j < 3; j++) {
+        NAME(vec3) corner = NAME(rounded)(other->corner[j]);
+        REAL rounding, h = NAME(height)(plane, prim, corner, &rounding);
+        REAL spread = (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
+        if (NAME(abs)(h) > rounding + spread * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
+            ((h > 0 && way > 0) || (h < 0 && way < 0)))
+            return true;
+    }
+    return false;
+}
+
+/// Whether the ray starts on triangle `from` in the plane of triangle `prim`, as far as rounding lets us know; then *t is
+/// least_way where it goes through `prim`, else 0.
+static bool NAME(starts_beside)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
+                                NAME(vec3) origin, NAME(vec3) direction, REAL *t)
+{
+    if (from->kind != GLINT_PRIM_TRIANGLE || prim->kind != GLINT_PRIM_TRIANGLE)
+        return false;
+    const glint_occlude_args plane_of = { .geometry = table, .directional = true };
+    NAME(parted) here = NAME(part)(&plane_of, prim, direction), there = NAME(part)(&plane_of, from, direction);
+    NAME(vec3) v0 = NAME(rounded)(from->corner[0]), corner[3];
+    REAL slack = NAME(POINT_SLACK) * ((NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[1]), v0)) +
+                                       NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[2]), v0))) +
+                                      NAME(largest)(origin));
+    REAL rounding, h = NAME(height)(here, prim, origin, &rounding);
+    REAL spread = (NAME(abs)(here.m.x) + NAME(abs)(here.m.y)) + NAME(abs)(here.m.z);
+    if (NAME(abs)(h) > spread * slack + rounding)
+        return false;
+    NAME(corners_seen)(prim, origin, table->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL r = 0;
+    for (int j = 0; j < 3; j++)
+        r = NAME(max)(r, NAME(largest)(corner[j]));
+    REAL move = NAME(abs)(seen.dz) * (2 * (slack * (REAL)table->scale) + NAME(POINT_SLACK) * r);
+    REAL reach = move * (seen.sum_of_sizes + 2 * move);
+    bool through = NAME(has_corner)(there, from, there.light, prim) &&
+                   NAME(has_corner)(here, prim, -here.light, from) && NAME(all_on_one_side)(seen, reach);
+    *t = through ? (REAL)GLINT_LEAST_WAY : 0;
+    return true;
+}
+
 // ---- vertex ----
 
 static void NAME(vertex)(const glint_vertex_args *args)

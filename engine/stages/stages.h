@@ -177,6 +177,7 @@ typedef struct glint_cast_args {
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
 } glint_cast_args;
+#define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
 // in_sight reads active, geometry and camera alone: false: no ray of the camera's tile can hit anything.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
 // id is lower). Index and filter are free to reject what the decision below would miss, and no more.
@@ -226,9 +227,17 @@ typedef struct glint_cast_args {
 //                 and in <= out
 //                 tube, funnel: as cylinder and cone, without the faces: where `in` is by a face, in = out, and where `out` is,
 //                 out = in; both: no hit
-// A ray meets the primitive that it leaves by a rule of its own: a sphere is hit where the lane is inward, b > 0 and
-//                 disc >= 0, at t = (b + b) / (a * scale), t > 0; a solid other than a disk where the lane is inward and its
-//                 span hits, at t = out, t > 0 (tube, funnel: where `out` is not by a face); nothing else is.
+// A ray meets the primitive that it leaves by a rule of its own: not, but for spheres and solids other than disks where the
+// lane is inward (and starts on them or within): these surely, at t = max((b + b) / (a scale), least_way) and max(out, least_way) (tube, funnel: where the span
+// hits, `out` is not by a face and 0 < out, there).
+// A ray that leaves triangle A meets another, B, as above unless it starts in B's plane as far as rounding lets us know:
+//                 m_P and M_P of triangle P as m and M in occlude; over_P(x) = dot(m_P, x - corner_0 of P), give or take
+//                 off_P(x) = point_slack dot(M_P, |x - corner_0 of P|); slack as in surface, of A and with the origin as point:
+//                 |over_B(origin)| <= ((|m_B.x| + |m_B.y|) + |m_B.z|) slack + off_B(origin)
+// Then it meets B at least_way where a corner of B is over A on the side of dot(m_A, direction), a corner of A over B on that of
+// -dot(m_B, direction), and the ray is within `reach` of B as in occlude, with `on`. A corner c is over P by over_P(c), if that is
+// more than off_P(c) + ((|m_P.x| + |m_P.y|) + |m_P.z|) (point_slack |c|_max). So of two faces that share an edge the other is met
+// where the ray goes between them, and only there.
 // two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
 // two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
 
