@@ -170,6 +170,8 @@ void cli_progress_destroy(cli_progress *progress);
 void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering);
 /// What one step of a study does, how long the steps before it took and those after it will, as far as is known.
 void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms);
+/// A film is being made, `done` of `count` frames are in it; NULL: it is made, frames are counted again.
+void cli_progress_film(cli_progress *progress, const char *film, size_t done, size_t count);
 /// Whose progress is that of the step; it lives as long as the bar is drawn, or until another is named.
 void cli_progress_watch(cli_progress *progress, glint_renderer *renderer);
 /// Wipes the bar, so that a line can be printed; it comes back with the next update.

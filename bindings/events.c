@@ -174,7 +174,7 @@ static void report_figure(void *context, const char *kind, const char *path, int
 {
     cli_output *output = context;
     if (output->progress)
-        cli_progress_clear(output->progress);
+        cli_progress_film(output->progress, NULL, 0, 0);
     if (output->json) {
         fprintf(output->data, "{\"event\":\"%s\",\"file\":", kind);
         glintL_json_string(output->data, path);
@@ -186,13 +186,21 @@ static void report_figure(void *context, const char *kind, const char *path, int
     }
 }
 
+static void report_making(void *context, const char *path, size_t done, size_t count)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_film(output->progress, cli_base_name(path), done, count);
+}
+
 glintL_reporter cli_reporter(cli_output *output)
 {
     return (glintL_reporter) { .context = output,
                                .rendering = report_rendering,
                                .frame = report_frame,
                                .warn = report_warning,
-                               .figure = report_figure };
+                               .figure = report_figure,
+                               .making = report_making };
 }
 
 // ---- The end ----

@@ -62,6 +62,8 @@ int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
     const char *wrong = check_film(options, &film);
     if (wrong)
         return refuse(output, code, "assemble", wrong);
+    if (!output->quiet)
+        output->progress = cli_progress_create(output->color);
     if (cli_list_files(options, &run->asked.selection, &list, message)) {
         film.files = list.files;
         film.count = list.count;
@@ -74,6 +76,8 @@ int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
         refuse(output, code, "assemble", message);
     else
         run->reporter.figure(run->reporter.context, "film", path, (int64_t)film.count);
+    cli_progress_destroy(output->progress);
+    output->progress = NULL;
     cli_free_list(&list);
     return code;
 }

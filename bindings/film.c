@@ -224,11 +224,18 @@ bool glintL_film_check_files(const glintL_film *film, bool strict, char message[
     return good;
 }
 
+void glintL_film_tell(const glintL_run *run, const glintL_film *film, size_t done)
+{
+    if (run->reporter.making)
+        run->reporter.making(run->reporter.context, film->path, done, film->count);
+}
+
 static glint_status add_frames(const glintL_run *run, const glintL_film *film, glint_apng *apng, glint_error *error)
 {
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < film->count && !status; i++) {
         glint_picture *picture = NULL;
+        glintL_film_tell(run, film, i);
         if (run->interrupted)
             return GLINT_ERR_CANCELLED;
         status = glint_picture_read(film->files[i], true, &picture, error);

@@ -46,6 +46,9 @@ bool glintL_film_check_files(const glintL_film *film, bool strict, char message[
 /// Makes a film of its files. Returns the exit code; the message says what failed. What was not finished is gone.
 int glintL_film_make(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE]);
 
+/// Reports that `done` frames are in the film.
+void glintL_film_tell(const glintL_run *run, const glintL_film *film, size_t done);
+
 // ---- film_pipe.c ----
 
 bool glintL_has_ffmpeg(void);

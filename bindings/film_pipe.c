@@ -177,6 +177,7 @@ static int feed(const encoder *e, char *message)
     }
     for (size_t i = 0; i < e->film->count && good && !code; i++) {
         glint_picture *picture = NULL;
+        glintL_film_tell(e->run, e->film, i);
         glint_status status = glint_picture_read(e->film->files[i], true, &picture, &error);
         if (status) {
             snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
@@ -254,6 +255,7 @@ static int encode(encoder *e, const char *target, char *message)
     }
     int code = feed(e, message);
     close(e->socket);
+    glintL_film_tell(e->run, e->film, e->film->count); // ffmpeg works off what it holds
     int status = wait_for(e, code != 0);
     if (e->run->interrupted) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "interrupted");

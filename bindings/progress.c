@@ -19,8 +19,9 @@ struct cli_progress {
     bool stops, is_drawn, color;
     double start_ms;
     int64_t done, kept, todo; // todo 0: nobody knows
-    char what[32]; // of a step of a study; "": it is frames that are counted
+    char what[80]; // of a step of a study, or of a film; "": it is frames that are counted
     double done_ms, step_ms, left_ms;
+    double film_ms; // when the film was begun
     glint_renderer *renderer; // while it renders, else NULL
 };
 
@@ -49,9 +50,11 @@ static void draw_step(cli_progress *progress)
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double done_ms = progress->done_ms + now * progress->step_ms;
     double left_ms = progress->left_ms + (1 - now) * progress->step_ms;
-    draw_bar(progress, done_ms / (done_ms + left_ms));
+    draw_bar(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0);
     format_time(left, left_ms * 1e-3);
-    fprintf(stderr, " %s, %s left", progress->what, left);
+    fprintf(stderr, " %s", progress->what);
+    if (left_ms > 0)
+        fprintf(stderr, ", %s left", left);
     fflush(stderr);
     progress->is_drawn = true;
 }
@@ -171,6 +174,23 @@ void cli_progress_step(cli_progress *progress, const char *what, double done_ms,
     progress->done_ms = done_ms;
     progress->step_ms = step_ms;
     progress->left_ms = left_ms > 0 ? left_ms : 0;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_film(cli_progress *progress, const char *film, size_t done, size_t count)
+{
+    pthread_mutex_lock(&progress->lock);
+    if (!film)
+        clear(progress);
+    if (!film || done == 0)
+        progress->film_ms = glintL_now_ms();
+    progress->renderer = NULL;
+    progress->step_ms = 0;
+    progress->done_ms = glintL_now_ms() - progress->film_ms;
+    progress->left_ms = done ? progress->done_ms / (double)done * (double)(count - done) : 0;
+    progress->what[0] = '\0';
+    if (film)
+        snprintf(progress->what, sizeof progress->what, "%s %.60s", done < count ? "making" : "finishing", film);
     pthread_mutex_unlock(&progress->lock);
 }
 

@@ -173,6 +173,8 @@ typedef struct glintL_reporter {
     void (*warn)(void *context, const char *message);
     /// A sheet or film was made of `count` frames.
     void (*figure)(void *context, const char *kind, const char *path, int64_t count);
+    /// A film is being made: `done` of its `count` frames are in it. NULL: nobody asks.
+    void (*making)(void *context, const char *path, size_t done, size_t count);
     /// A picture is rendered, with its linear beauty pass when the run keeps images. NULL: nobody looks.
     void (*image)(void *context, const glintL_run *run, const glintL_work *work);
     /// The script is about to run in `L`, whose libraries are open. May raise. NULL: nothing to do.

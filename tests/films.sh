@@ -87,6 +87,7 @@ cat >bin/ffmpeg <<'SH'
 for last; do :; done
 file=${last#file:}
 [ -z "${FFMPEG_FAILS:-}" ] || { echo "Unknown encoder 'libx264'" >&2; exit 8; }
+[ -z "${FFMPEG_SLOW:-}" ] || sleep 1
 [ -z "${FFMPEG_HANGS:-}" ] || { touch started; exec sleep 60; }
 { echo "$*"; wc -c; } >"$file"
 SH
@@ -219,6 +220,10 @@ with "$path_with" 0 "a film" turn.lua -o film.mp4
 check "fed with every pixel" grep -qx $((40 * 24 * 3 * 6)) film.mp4
 check "at the animation's rate" grep -q -- '-video_size 40x24 -framerate 12 ' film.mp4
 absent "its frames are gone" film.mp4.frames
+if command -v script >/dev/null; then
+    PATH=$path_with:$PATH TERM=xterm FFMPEG_SLOW=1 timeout 20 script -qec "$GLINT turn.lua -o slow.mp4" typescript >/dev/null </dev/null
+    check "a terminal shows that the film is made" grep -qaE "(making|finishing) slow.mp4" typescript
+fi
 with "$path_with" 0 "another rate" turn.lua -o film.webm --fps 30
 check "beats the script's" grep -q -- '-framerate 30 .*libvpx-vp9' film.webm
 with "$path_with" 0 "odd sides" turn.lua -o odd.mp4 --size 41x25 -f 1-2
