@@ -73,6 +73,7 @@ static void print_counters(const cost_case *c, FILE *out)
     print_number(out, "light_samples", c->is_counted ? (double)c->work.light_samples : unknown);
     print_number(out, "powers", c->is_counted ? (double)c->work.powers : unknown);
     print_number(out, "sites", c->is_counted ? (double)c->work.sites : unknown);
+    print_number(out, "overlaps", c->is_counted ? (double)c->work.overlaps : unknown);
     print_number(out, "lights_seen", c->is_counted ? (double)c->work.lights_seen : unknown);
     fputc('}', out);
 }

@@ -80,24 +80,87 @@ static bool is_soft(const glint_light_desc *light)
     return light->shadows && (light->kind == GLINT_LIGHT_POLYGON || (has_radius && light->radius > 0));
 }
 
-// What the script has is soft where one of its lights has a surface.
+// Whether caps are what lights would have: of spheres and planes alone, and opaque ones.
+static bool takes_caps(const cost_scene *scene)
+{
+    bool takes = true;
+    for (size_t i = 0; i < scene->material_count; i++)
+        for (int c = 0; c < 3; c++)
+            takes = takes && scene->material_descs[i].transmission[c] == 0;
+    for (size_t i = 0; i < glint_scene_shape_count(scene->scene); i++)
+        takes = takes && glint_shape_get(glint_scene_shape_at(scene->scene, i))->kind <= GLINT_SHAPE_SPHERES;
+    return takes;
+}
+
+static const char *const SHADOWS[] = { "off", "hard", "soft", "caps" };
+
+// Lights with a surface have soft ones; balls, where the scene is one for them, also by caps. The script's own are of the
+// sort of its first light with a surface.
 static void list_shadows(const cost_subject *subject, cost_values *out)
 {
-    const char *words[] = { "off", "hard" };
-    for (size_t i = 0; i < subject->scene->light_count; i++)
-        if (is_soft(&subject->scene->light_descs[i]))
-            words[1] = "soft";
+    const cost_scene *scene = subject->scene;
+    static const int own[] = { [GLINT_SHADOW_RAYS] = 2, [GLINT_SHADOW_HARD] = 1, [GLINT_SHADOW_CAPS] = 3 };
+    const glint_light_desc *first = NULL;
+    bool caps = false;
+    for (size_t i = 0; i < scene->light_count; i++) {
+        const glint_light_desc *light = &scene->light_descs[i];
+        first = first || !is_soft(light) ? first : light;
+        caps = caps || (is_soft(light) && light->kind == GLINT_LIGHT_SPHERE);
+    }
+    caps = caps && takes_caps(scene);
+    const int count = caps ? 4 : first ? 3 : 2, at = first ? own[first->shadow] : 1;
     if (has_stage(subject->plan, "occlude"))
-        list_words(words, COUNT(words), 1, out);
+        list_words(SHADOWS, count, at < count ? at : 2, out);
+    out->truth = 2;
+    out->has_truth = out->count > 0 && first;
 }
 
 static glint_status apply_shadows(cost_draft *draft, cost_value value, glint_error *error)
 {
     cost_scene *scene = draft->scene;
+    const int sort = find_word(value, SHADOWS, COUNT(SHADOWS));
     glint_status status = GLINT_OK;
-    for (size_t i = 0; i < scene->light_count && strcmp(value.text, "off") == 0 && !status; i++) {
-        glint_light_desc desc = scene->light_descs[i];
-        desc.shadows = false;
+    for (size_t i = 0; i < scene->light_count && !status; i++) {
+        glint_light_desc desc = *glint_light_get(scene->lights[i]);
+        desc.shadows = desc.shadows && sort > 0;
+        if (is_soft(&desc) && sort == 1)
+            desc.shadow = GLINT_SHADOW_HARD;
+        else if (is_soft(&desc) && sort >= 2)
+            desc.shadow = sort == 3 && desc.kind == GLINT_LIGHT_SPHERE ? GLINT_SHADOW_CAPS : GLINT_SHADOW_RAYS;
+        status = cost_scene_set_light(scene, i, &desc, error);
+    }
+    return status;
+}
+
+// ---- light_samples: rays to each light with a surface ----
+
+// The script's own is the largest of its lights'; its row leaves each light its own.
+static double most_light_samples(const cost_scene *scene)
+{
+    double most = 0;
+    for (size_t i = 0; i < scene->light_count; i++)
+        if (is_soft(&scene->light_descs[i]) && scene->light_descs[i].samples > most)
+            most = scene->light_descs[i].samples;
+    return most;
+}
+
+static void list_light_samples(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 1, 4, 16, 64, 256 };
+    if (has_effect(subject->plan, "soft shadow"))
+        list_numbers(counts, COUNT(counts), most_light_samples(subject->scene), out);
+}
+
+static glint_status apply_light_samples(cost_draft *draft, cost_value value, glint_error *error)
+{
+    cost_scene *scene = draft->scene;
+    const bool own = value.number == most_light_samples(scene);
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < scene->light_count && !own && !status; i++) {
+        glint_light_desc desc = *glint_light_get(scene->lights[i]);
+        if (!is_soft(&scene->light_descs[i]))
+            continue;
+        desc.samples = value.number;
         status = cost_scene_set_light(scene, i, &desc, error);
     }
     return status;
@@ -310,6 +373,8 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 const cost_knob cost_knobs[] = {
     { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, apply_samples },
     { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
+    { "light_samples", "a light with a surface and soft shadows", COST_ERROR_FILM, true, false, list_light_samples,
+      apply_light_samples },
     { "precision", SURFACES, COST_ERROR_FILM, true, false, list_precision, apply_precision },
     { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
     { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, apply_segments },

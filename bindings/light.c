@@ -8,6 +8,8 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
 #define AT(member) offsetof(desc_type, member)
 
+static const char *const SHADOWS[] = { "rays", "hard", "caps", NULL };
+
 // clang-format off
 #define EVERY_LIGHT \
     {.name = "color", .kind = GLINTL_COLOR, .offset = AT(color)}, \
@@ -23,6 +25,7 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 #define EVERY_AREA_LIGHT \
     EVERY_LIGHT, \
     {.name = "samples", .kind = GLINTL_NUMBER, .offset = AT(samples)}, \
+    {.name = "shadow", .kind = GLINTL_ENUM, .offset = AT(shadow), .names = SHADOWS}, \
     {.name = "radiance", .kind = GLINTL_NUMBER, .offset = AT(radiance), .set_offset = AT(has_radiance)}
 
 #define PLACE {.name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true}
@@ -67,9 +70,7 @@ static const glintL_field POLYGON_FIELDS[] = {
 };
 
 static const glintL_field SPHERE_FIELDS[] = {
-    EVERY_AREA_LIGHT,
-    PLACE,
-    RADIUS,
+    EVERY_AREA_LIGHT, { .name = "shadow", .kind = GLINTL_ENUM, .offset = AT(shadow), .names = SHADOWS }, PLACE, RADIUS,
     { .name = NULL },
 };
 

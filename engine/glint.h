@@ -118,6 +118,13 @@ typedef enum glint_light_kind {
 
 #define GLINT_CORNERS_MAX 4096 ///< of a polygon light
 
+/// How a light's shadows are found.
+typedef enum glint_shadow {
+    GLINT_SHADOW_RAYS, ///< by a ray to each sample of the light
+    GLINT_SHADOW_HARD, ///< area lights: by one ray to the middle of the light, for all of its samples
+    GLINT_SHADOW_CAPS ///< sphere lights: by how much of the light's disk in the sky those of spheres cover, in closed form
+} glint_shadow;
+
 typedef struct glint_light_desc {
     glint_light_kind kind;
     double color[3]; ///< default 1; finite, >= 0
@@ -127,6 +134,13 @@ typedef struct glint_light_desc {
     double diffuse[3], specular[3];
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
+    /// Area lights; default GLINT_SHADOW_RAYS. Caps: without noise; the light's terms are those of a point at its centre
+    /// (of `radiance` L, of irradiance pi L r^2/d^2 (n.l), which is exact above the horizon), times the share of it that
+    /// is seen. Of one sphere in the way the share is exact; of several it is the product of theirs, where the truth is
+    /// between 1 - the sum of what each covers and the least of the shares. Planes, and spheres that cut the light, take
+    /// their share of its diameter. Scenes with other shapes, or with transparent ones, have rays all the same: see
+    /// the effects of the plan
+    glint_shadow shadow;
     bool
         visible; ///< rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default
     ///< false. It shows pi L color by `radiance` L, as the background does: pixels are pi times radiance. By
@@ -530,6 +544,7 @@ typedef struct glint_work {
     uint64_t powers; ///< highlights raised to their exponent
     uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
+    uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
 } glint_work;
 
 typedef struct glint_frame_stats {

@@ -285,6 +285,16 @@ static void enclose(const glint_light_desc *desc, glint_lamp *lamps, size_t coun
     }
 }
 
+void glint_lamp_whole(const glint_light_desc *desc, glint_lamp *out)
+{
+    *out = (glint_lamp) { .radius = desc->radius };
+    vec_copy(out->center, desc->position);
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = desc->position[k] - desc->radius;
+        out->upper[k] = desc->position[k] + desc->radius;
+    }
+}
+
 void glint_lamp_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_lamp *out)
 {
     const uint32_t samples = (uint32_t)desc->samples;

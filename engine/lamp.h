@@ -17,6 +17,9 @@ double glint_lamp_area(const glint_light_desc *desc);
 /// How far it reaches from its middle or a corner of it, about.
 double glint_lamp_size(const glint_light_desc *desc);
 
+/// The whole light alone: its ball and box. For caps.
+void glint_lamp_whole(const glint_light_desc *desc, glint_lamp *out);
+
 /// How many patterns samples of a pixel take turns in: a power of two.
 uint32_t glint_lamp_turns(const glint_light_desc *desc, double pixel_samples);
 

@@ -65,6 +65,15 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
     if (!status && desc->has_radiance && desc->intensity != 1)
         status =
             glint_fail(error, GLINT_ERR_INVALID, "intensity: 1 expected beside a radiance, got %.15g", desc->intensity);
+    if (!status &&
+        (desc->shadow > GLINT_SHADOW_CAPS || (desc->shadow == GLINT_SHADOW_CAPS && desc->kind != GLINT_LIGHT_SPHERE)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "shadow: rays or hard expected, caps of a sphere light alone");
+    const double *a = desc->attenuation;
+    if (!status && desc->shadow == GLINT_SHADOW_CAPS && desc->has_radiance && (a[0] != 1 || a[1] != 0 || a[2] != 0))
+        status =
+            glint_fail(error, GLINT_ERR_INVALID,
+                       "attenuation: {1, 0, 0} expected beside a radiance and shadow = caps, got {%.9g, %.9g, %.9g}",
+                       a[0], a[1], a[2]);
     if (!status && desc->kind != GLINT_LIGHT_POLYGON)
         status = glint_check_range("radius", desc->radius, 0, DBL_MAX, "number >= 0", error);
     if (!status && desc->kind == GLINT_LIGHT_DISK)

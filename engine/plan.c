@@ -193,7 +193,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
     if (plan->runs[GLINT_STAGE_CAMERA])
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
-        rays.shadow = (samples + sides) * plan->shadow_count;
+        rays.shadow = (samples + sides) * (plan->shadow_count - plan->spared_count);
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
         rays.mirror = samples;
     if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)

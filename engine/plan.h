@@ -51,8 +51,11 @@ typedef struct glint_plan_light {
     bool is_spot;
     glint_spot spot;
     const glint_lamp *lamps; ///< of an area light: the pattern of each turn, turn after turn; else NULL
+    const glint_lamp *cap; ///< shadows by caps: the whole light; else NULL
+    bool hard; ///< area: one ray to `position`, its middle, decides for all samples
+    bool radiant_cap; ///< within its radius the light is no stronger than at it
     uint32_t turn_count; ///< samples of a pixel take the turns one after the other
-    double position[3]; ///< directional: the unit vector towards the light; area: not used
+    double position[3]; ///< directional: the unit vector towards the light; area: read where `hard`
     double scale; ///< see glint_light_args
     double coefficients[3];
     double diffuse[3], specular[3]; ///< colour times intensity
@@ -110,7 +113,9 @@ struct glint_plan {
     bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
     glint_plan_light *lights;
     glint_lamp *lamps; ///< of all area lights
-    uint32_t light_count, shadow_count;
+    bool caps; ///< shapes and materials allow shadows by caps
+    uint32_t light_count, shadow_count; ///< of these, rows that cast shadows, and
+    uint32_t spared_count; ///< among those, rows that need no rays of their own
     double ambient[3], background[3];
     struct {
         bool on;

@@ -82,8 +82,16 @@ static bool has_size(const glint_light_desc *d)
 {
     return is_polygon(d) || ((is_disk(d) || is_sphere(d)) && d->radius > 0);
 }
-static bool casts_hard_shadows(const glint_light_desc *d) { return gives(d) && d->shadows && !has_size(d); }
-static bool casts_soft_shadows(const glint_light_desc *d) { return d->shadows && has_size(d); }
+static bool casts_hard_shadows(const glint_light_desc *d)
+{
+    return gives(d) && d->shadows && (!has_size(d) || d->shadow == GLINT_SHADOW_HARD);
+}
+static bool casts_soft_shadows(const glint_light_desc *d)
+{
+    return d->shadows && has_size(d) && d->shadow != GLINT_SHADOW_HARD;
+}
+static bool casts_caps(const glint_light_desc *d) { return casts_soft_shadows(d) && d->shadow == GLINT_SHADOW_CAPS; }
+static bool casts_sampled(const glint_light_desc *d) { return casts_soft_shadows(d) && !casts_caps(d); }
 static bool radiates(const glint_light_desc *d) { return gives(d) && d->has_radiance; }
 static bool is_seen(const glint_light_desc *d)
 {
@@ -224,7 +232,9 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "sphere light", is_sphere);
         lights(e, scene, "light by radiance", radiates);
         lights(e, scene, "hard shadow", casts_hard_shadows);
-        lights(e, scene, "soft shadow", casts_soft_shadows);
+        lights(e, scene, "soft shadow", plan->caps ? casts_sampled : casts_soft_shadows);
+        if (plan->caps)
+            lights(e, scene, "soft shadow by caps", casts_caps);
         one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
         shapes(e, "triangles", is_mesh);
         one(e, plan->scan, "scan conversion", "%s: %u triangles",

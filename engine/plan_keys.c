@@ -72,6 +72,10 @@ static glint_key light_place_key(const glint_plan_light *l, glint_key key)
                                 l->spot.outer,   l->spot.inverse, l->spot.exponent };
         ADD(key, cone);
     }
+    if (l->cap || l->hard) {
+        const double shadow[] = { l->cap ? l->cap->radius : 0, l->radiant_cap, l->hard };
+        ADD(key, shadow);
+    }
     return l->lamps ? glint_key_add(key, l->lamps, l->turn_count * sizeof *l->lamps) : key;
 }
 

@@ -6,6 +6,7 @@
 
 #include <float.h>
 
+#define PI 0x1.921fb54442d18p+1
 #define SAMPLES_MAX 0x1p27 ///< of all lights, for all turns
 
 /// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
@@ -61,9 +62,17 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
         power_init(out, &d);
 }
 
-/// Whether the light is taken for many points of its surface.
-static bool is_area(const glint_light_desc *desc)
+/// Whether its shadows are by caps.
+static bool is_cap(const glint_plan *plan, const glint_light_desc *desc)
 {
+    return plan->caps && desc->shadow == GLINT_SHADOW_CAPS && desc->shadows && desc->radius > 0;
+}
+
+/// Whether the light is taken for many points of its surface.
+static bool is_area(const glint_plan *plan, const glint_light_desc *desc)
+{
+    if (is_cap(plan, desc))
+        return false;
     switch (desc->kind) {
     case GLINT_LIGHT_DISK:
     case GLINT_LIGHT_POLYGON:
@@ -76,9 +85,9 @@ static bool is_area(const glint_light_desc *desc)
 }
 
 /// How many points are taken: of a point-like disk, one.
-static uint32_t sample_count(const glint_light_desc *desc)
+static uint32_t sample_count(const glint_plan *plan, const glint_light_desc *desc)
 {
-    return !is_area(desc) || (desc->kind == GLINT_LIGHT_DISK && desc->radius == 0) ? 1 : (uint32_t)desc->samples;
+    return !is_area(plan, desc) || (desc->kind == GLINT_LIGHT_DISK && desc->radius == 0) ? 1 : (uint32_t)desc->samples;
 }
 
 static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
@@ -104,13 +113,25 @@ static double distance_scale(const double position[3], const glint_geometry_tabl
     return distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
 }
 
-/// A light, or what all samples of one have in common.
-static void light_init(glint_plan_light *out, const glint_light_desc *desc, const glint_geometry_table *geometry)
+/// The mean of a polygon's corners, which is within it.
+static void middle_of_corners(const glint_light_desc *desc, double out[3])
 {
-    *out = (glint_plan_light) { .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (size_t i = 0; i < desc->vertex_count; i++)
+            out[c] += desc->vertices[i][c] / (double)desc->vertex_count;
+    }
+}
+
+/// A light, or what all samples of one have in common.
+static void light_init(const glint_plan *plan, glint_plan_light *out, const glint_light_desc *desc)
+{
+    const glint_geometry_table *geometry = &plan->geometry->table;
+    *out = (glint_plan_light) { .hard = desc->shadow == GLINT_SHADOW_HARD && is_area(plan, desc),
+                                .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
                                 .shadows = desc->shadows,
                                 .scale = 1 };
-    double strength = desc->intensity / sample_count(desc);
+    double strength = desc->intensity / sample_count(plan, desc);
     if (out->directional) {
         vec_normalize(out->position, desc->direction);
         vec_scale(out->position, out->position, -1);
@@ -118,14 +139,21 @@ static void light_init(glint_plan_light *out, const glint_light_desc *desc, cons
     } else {
         const double *a = desc->attenuation;
         const double *place = desc->kind == GLINT_LIGHT_POLYGON ? desc->vertices[0] : desc->position;
-        vec_copy(out->position, place);
+        vec_copy(out->position, desc->position);
+        if (desc->kind == GLINT_LIGHT_POLYGON)
+            middle_of_corners(desc, out->position);
         vec_copy(out->coefficients, a);
         out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
         out->scale = distance_scale(place, geometry);
     }
     if (desc->kind == GLINT_LIGHT_SPOT)
         spot_init(out, desc);
-    if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
+    if (desc->has_radiance && is_cap(plan, desc)) {
+        out->attenuated = out->radiant_cap = true;
+        out->coefficients[0] = 0;
+        out->coefficients[2] = 1;
+        strength = desc->radiance * (PI * (desc->radius * desc->radius));
+    } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
         const double size = glint_lamp_size(desc);
         out->attenuated = true;
         out->scale = size > 0 ? power_of_two_scale(size) : 1;
@@ -175,9 +203,11 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
     double rows = 0, lamps = 0;
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
-        rows += sample_count(desc);
-        if (is_area(desc))
-            lamps += (double)sample_count(desc) * glint_lamp_turns(desc, plan->desc.samples);
+        rows += sample_count(plan, desc);
+        if (is_area(plan, desc))
+            lamps += (double)sample_count(plan, desc) * glint_lamp_turns(desc, plan->desc.samples);
+        else if (is_cap(plan, desc))
+            lamps++;
     }
     if (fmax(rows, lamps) > SAMPLES_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "lights: at most %.0f samples of all together expected, got %.0f",
@@ -191,28 +221,44 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_lamp *lamps)
 {
-    const uint32_t samples = sample_count(desc), turns = glint_lamp_turns(desc, plan->desc.samples);
-    const bool area = is_area(desc);
+    const uint32_t samples = sample_count(plan, desc), turns = glint_lamp_turns(desc, plan->desc.samples);
+    const bool area = is_area(plan, desc);
     if (area) {
         glint_light_desc taken = *desc;
         taken.samples = samples;
         glint_lamp_fill(&taken, turns, plan->desc.seed, lamps);
     }
+    if (is_cap(plan, desc))
+        glint_lamp_whole(desc, lamps);
     for (uint32_t i = 0; i < samples; i++) {
         glint_plan_light *light = &plan->lights[plan->light_count++];
         *light = *common;
         light->joined = i > 0;
         light->lamps = area ? lamps + (size_t)i * turns : NULL;
         light->turn_count = area ? turns : 0;
+        light->cap = is_cap(plan, desc) ? lamps : NULL;
         plan->shadow_count += light->shadows;
+        plan->spared_count += light->cap || (light->shadows && light->hard && i % GLINT_LIGHT_CHUNK > 0);
     }
-    return area ? (size_t)samples * turns : 0;
+    return area ? (size_t)samples * turns : is_cap(plan, desc);
+}
+
+/// Caps are of spheres and planes, which let no light through.
+static bool allows_caps(const glint_plan *plan)
+{
+    const glint_geometry_table *table = &plan->geometry->table;
+    const glint_list *list = &plan->geometry->materials;
+    bool opaque = true;
+    for (size_t i = 0; i < list->count; i++)
+        opaque = opaque && is_black(((const glint_material *)list->items[i])->desc.transmission);
+    return opaque && !table->triangles && !table->solids;
 }
 
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     bool powers = false, facets = false, glossy_light = false;
     size_t lamps = 0;
+    plan->caps = allows_caps(plan);
     total_ambient(plan, scene);
     glint_status status = make_materials(plan, &powers, &facets, error);
     if (!status)
@@ -222,7 +268,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         glint_plan_light light;
-        light_init(&light, desc, &plan->geometry->table);
+        light_init(plan, &light, desc);
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
         glossy_light = glossy_light || !is_black(light.specular);

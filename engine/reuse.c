@@ -20,6 +20,7 @@ void glint_reuse_clear(glint_reuse *reuse)
         for (uint32_t k = 0; k < reuse->light_count; k++) {
             free(tile->lights[k].cosine);
             free(tile->lights[k].open);
+            free(tile->lights[k].visible);
             free(tile->lights[k].sine2);
         }
         free(tile->lights);
@@ -184,11 +185,14 @@ bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light)
     return true;
 }
 
-bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light)
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light, bool caps)
 {
+    const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
     if (!light->open)
-        light->open = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES / 8);
-    return light->open != NULL;
+        light->open = hold(reuse, samples / 8);
+    if (light->open && caps && !light->visible)
+        light->visible = hold(reuse, samples * sizeof *light->visible);
+    return light->open != NULL && (light->visible || !caps);
 }
 
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile)

@@ -21,6 +21,7 @@ typedef struct glint_kept_light {
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
     uint16_t *open; ///< its own block: lit lanes that the light reaches
+    float *visible; ///< its own block: by caps, how far, with the attenuation
     glint_key facet; ///< of what is in the next
     float *sine2, *schlick; ///< a block of their own, sine2 first
     glint_key place; ///< the light's place and shadows when `reaches` was found; all zero: never
@@ -77,7 +78,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
 /// Blocks for a tile, made at first use within the budget. False: do without. Any worker, one at a time for a tile.
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
-bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light);
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light, bool caps);
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile);
 bool glint_reuse_hold_facet(glint_reuse *reuse, glint_kept_light *light);
 

@@ -44,6 +44,11 @@ static bool find_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uin
     return known;
 }
 
+static bool has_occlude(const glint_kept_light *kept, const glint_plan_light *light)
+{
+    return kept->open && (kept->visible || !light->cap);
+}
+
 static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
                               uint32_t slot, bool *light_known, bool *occlude_known)
 {
@@ -59,6 +64,7 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
     tile->at.light[slot].log2_specular = own->log2_specular;
     tile->at.light[slot].lit = own->lit;
     tile->at.light[slot].open = own->open;
+    tile->at.light[slot].visible = own->visible;
     if (*light_known ||
         (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
         tile->at.light[slot].cosine = kept->cosine + first;
@@ -67,8 +73,11 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
         tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
     }
     if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
-                           (k ? kept->open != NULL : glint_reuse_hold_occlude(reuse, kept))))
+                           (k ? has_occlude(kept, l) : glint_reuse_hold_occlude(reuse, kept, l->cap)))) {
         tile->at.light[slot].open = kept->open + first / GLINT_GROUP;
+        if (l->cap)
+            tile->at.light[slot].visible = kept->visible + first;
+    }
 }
 
 /// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
@@ -84,7 +93,7 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         if (reuse->keep_light[i] && kept->lights[i].cosine)
             kept->lights[i].light = plan->lights[i].key;
-        if (reuse->keep_light[i] && plan->lights[i].shadows && kept->lights[i].open)
+        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&kept->lights[i], &plan->lights[i]))
             kept->lights[i].occlude = plan->lights[i].key;
     }
     if (plan->runs[GLINT_STAGE_FACET])

@@ -40,6 +40,7 @@ typedef struct glint_tile_light {
     _Alignas(64) float cosine[GLINT_TILE_SAMPLES];
     _Alignas(64) float attenuation[GLINT_TILE_SAMPLES];
     _Alignas(64) float log2_specular[GLINT_TILE_SAMPLES];
+    _Alignas(64) float visible[GLINT_TILE_SAMPLES];
     uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
 } glint_tile_light;
 
@@ -60,6 +61,7 @@ typedef struct glint_tile_sample {
         float *cosine, *attenuation, *log2_specular;
         float *sine2, *schlick; ///< only in frames with microfacets, as `facing`
         uint16_t *lit, *open;
+        float *visible; ///< of lights with caps
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
 } glint_tile_sample;

@@ -25,6 +25,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
         tile->at.light[i].log2_specular = own->log2_specular;
         tile->at.light[i].lit = own->lit;
         tile->at.light[i].open = own->open;
+        tile->at.light[i].visible = own->visible;
     }
     if (frame->plan->facets)
         glint_tile_lend_facets(tile, to);
@@ -38,6 +39,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.work.sites += batch->tile.counts.work.sites;
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
     to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
+    to->counts.work.overlaps += batch->tile.counts.work.overlaps;
 }
 
 // ---- What the rays find ----

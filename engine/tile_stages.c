@@ -228,6 +228,41 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
 }
 
+/// What is seen of a light, times its attenuation; within its radius a radiant one is as strong as at it.
+static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.light[slot].open[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            double way[3], most = HUGE_VAL;
+            for (int c = 0; c < 3 && light->radiant_cap; c++)
+                way[c] = light->position[c] - glint_real_at(tile->point[c], precision, i);
+            if (light->radiant_cap && vec_dot(way, way) < light->cap->radius * light->cap->radius)
+                most = 1 / (light->cap->radius * light->cap->radius);
+            if (light->attenuated)
+                tile->at.light[slot].visible[i] *= (float)fmin(tile->at.light[slot].attenuation[i], most);
+        }
+}
+
+/// One ray to the middle of an area light decides for all samples of the call.
+static void occlude_middle(const glint_tile_frame *frame, const glint_occlude_args *samples)
+{
+    uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
+    glint_occlude_args args = *samples;
+    args.sample_count = 1;
+    args.lamp[0] = NULL;
+    args.lit[0] = lit;
+    args.open[0] = open;
+    for (uint32_t s = 0; s < samples->sample_count; s++)
+        for (uint32_t g = 0; g < args.group_count; g++)
+            lit[g] |= samples->lit[s][g];
+    frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
+    for (uint32_t s = 0; s < samples->sample_count; s++)
+        for (uint32_t g = 0; g < args.group_count; g++)
+            samples->open[s][g] = samples->lit[s][g] & open[g];
+}
+
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                         uint32_t count)
 {
@@ -255,7 +290,17 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         args.point[c] = tile->point[c];
         args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->direction[c];
     }
-    frame->stages->geometry[plan->desc.precision].occlude(&args);
+    if (light->cap) {
+        args.lamp[0] = light->cap;
+        args.visible = tile->at.light[slot[0]].visible;
+        args.overlaps = &tile->counts.work.overlaps;
+    }
+    if (light->hard)
+        occlude_middle(frame, &args);
+    else
+        frame->stages->geometry[plan->desc.precision].occlude(&args);
+    if (light->cap)
+        weaken(tile, frame, light, slot[0]);
     glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
     tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
 }
@@ -269,7 +314,9 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         lights[i] = (glint_shade_light) { .joined = light->joined && i > 0,
                                           .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
                                           .cosine = tile->at.light[i].cosine,
-                                          .attenuation = light->attenuated ? tile->at.light[i].attenuation : NULL,
+                                          .attenuation = light->cap          ? tile->at.light[i].visible
+                                                         : light->attenuated ? tile->at.light[i].attenuation
+                                                                             : NULL,
                                           .log2_specular = tile->at.light[i].log2_specular,
                                           .sine2 = tile->at.light[i].sine2,
                                           .schlick = tile->at.light[i].schlick };

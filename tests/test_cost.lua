@@ -277,7 +277,7 @@ local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { ver
   radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },
   glint.spot_light { position = { -3, 6, 4 }, direction = { 3, -6, -4 }, inner = 10, outer = 40, intensity = 0.3 },
   glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } } ]]))
-check(knobs_of(soft) == "samples shadows precision bits encode", "soft shadows: %s", knobs_of(soft))
+check(knobs_of(soft) == "samples shadows light_samples precision bits encode", "soft shadows: %s", knobs_of(soft))
 local soft_own, soft_off = find(soft, "shadows", "soft"), find(soft, "shadows", "off")
 check(soft_own and soft_own.default, "shadows of lights with a surface are called soft")
 check(soft_off.wrong_shadow > 20 and soft_off.rmse > soft_own.rmse, "without them: %d wrong", soft_off.wrong_shadow)
@@ -285,6 +285,19 @@ check(soft_own.counters.light_samples > 8 * 100 and soft_own.counters.light_samp
   "each sample of a light is looked at: %d", soft_own.counters.light_samples)
 check(find(soft, "encode", "small").rmse == soft_own.rmse, "another encoder after other lights: the same picture")
 check(find(soft, "samples", 64).rmse < soft_own.rmse / 4, "soft shadows converge")
+local hard = find(soft, "shadows", "hard")
+check(hard.rmse > soft_own.rmse and hard.rmse < soft_off.rmse,
+  "hard ones are between: %g of %g and %g", hard.rmse, soft_own.rmse, soft_off.rmse)
+local ones, many = find(soft, "light_samples", 1), find(soft, "light_samples", 256)
+check(ones.counters.light_samples * 171 == many.counters.light_samples and ones.rmse > 1.5 * many.rmse,
+  "samples of a light: %g with 1, %g with 256", ones.rmse, many.rmse)
+check(find(soft, "light_samples", 4).default, "its own among them")
+local caps = study("caps", still("caps.lua", matt .. [[glint.sphere_light { position = { 2, 5, 3 }, radius = 0.8, samples = 4,
+  radiance = 12, shadow = "caps" }, glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } } ]], "samples = 4,") .. " --knobs shadows,light_samples")
+local closed, sampled = find(caps, "shadows", "caps"), find(caps, "shadows", "soft")
+check(knobs_of(caps) == "shadows" and closed.default and sampled and find(caps, "shadows", "hard"), "caps: %s", knobs_of(caps))
+check(closed.counters.shadow == 0 and closed.counters.overlaps > 0 and sampled.counters.overlaps == 0, "caps cast no rays")
+check(closed.rmse < find(caps, "shadows", "hard").rmse, "and are nearer to samples than a ray to the middle")
 
 local mixed = study("mixed", still("mixed.lua", [[glint.directional_light { direction = { 0, -1, -1 } },
   glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 1 } },
@@ -366,7 +379,7 @@ refuses("nothing", write("nothing.lua", "local x = 1"), "rendered nothing")
 refuses("an empty list", write("empty.lua", "return {}"), "renders nothing")
 refuses("a frame beyond the end", film .. " --frame 4", "1 .. 3, expected, got '4'")
 refuses("no such knob", film .. " --knobs sample", "did you mean 'samples'")
-refuses("no knob", film .. " --knobs ''", "samples, shadows, precision")
+refuses("no knob", film .. " --knobs ''", "samples, shadows, light_samples, precision")
 refuses("no knob that the scene has", still("bare.lua", "") .. " --knobs shadows,model",
   "responds to %(bits, encode%) expected, got 'shadows,model'")
 refuses("a file for a folder", film .. " --report " .. film .. "/x", "a folder to write to expected")

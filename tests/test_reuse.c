@@ -85,13 +85,13 @@ static const field material_fields[] = {
 
 static const field light_fields[] = {
 #define L(...) FIELD(glint_light_desc, __VA_ARGS__)
-    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),    L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
-    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1),  L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
-    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),   L(visible, FLAG, 0, 1),     L(position, VECTOR, -6, 6),
-    L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),     L(inner_rad, NUMBER, 0, 1), L(outer_rad, NUMBER, 0.5, 3),
-    L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1), L(radius, NUMBER, 0, 2),    L(vertices, FIXED, 0, 0),
-    L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1), L(samples, WHOLE, 1, 20),   L(has_radiance, FLAG, 0, 1),
-    L(radiance, NUMBER, 0, 9),
+    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),        L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
+    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1),      L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
+    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),       L(shadow, CHOICE, 0, 3),    L(visible, FLAG, 0, 1),
+    L(position, VECTOR, -6, 6),   L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),       L(inner_rad, NUMBER, 0, 1),
+    L(outer_rad, NUMBER, 0.5, 3), L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1),   L(radius, NUMBER, 0, 2),
+    L(vertices, FIXED, 0, 0),     L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1),   L(samples, WHOLE, 1, 20),
+    L(has_radiance, FLAG, 0, 1),  L(radiance, NUMBER, 0, 9),
 #undef L
 };
 

@@ -160,6 +160,11 @@ function glint.spot_light(fields) end
 ---@field samples? integer  points of the surface a sample of a pixel, 1 .. 65536; other ones for each pixel of a 4 x 4
 --- block, so that 16 samples look like 256 from afar. Default 16
 ---@field radiance? number  >= 0, beside an intensity of 1. nil: `intensity` counts. Default nil
+---@field shadow? "rays"|"hard"|"caps"  rays: by one to each sample. hard: by one to the light's middle, for all samples.
+--- caps: sphere lights, in closed form, without noise: the terms of a point at its centre (of `radiance` L, of irradiance
+--- pi L r^2/d^2 (n.l)) times the share of the light that is seen, exact past one sphere, past several the product of what
+--- each leaves. Scenes with other shapes than spheres and planes, or with transparent ones, have rays all the same;
+--- `glint explain` says which. Default "rays"
 
 ---@class glint.disk_light_fields: glint.area_light_fields
 ---@field position glint.vec3  its centre, world units

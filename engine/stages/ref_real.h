@@ -595,8 +595,14 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uin
 }
 
 /// The reference tests every lit lane, and counts it, where a whole light might have been settled at once.
+#include "engine/stages/ref_caps.h"
+
 static void NAME(occlude)(const glint_occlude_args *args)
 {
+    if (args->visible) {
+        NAME(occlude_caps)(args);
+        return;
+    }
     for (uint32_t s = 0; s < args->sample_count; s++) {
         for (uint32_t g = 0; g < args->group_count; g++)
             args->open[s][g] = 0;

@@ -449,6 +449,11 @@ typedef struct glint_occlude_args {
     const glint_point_box *box; ///< of surface, around all lit points and maybe others; NULL: not known
     uint16_t *open[GLINT_LIGHT_CHUNK]; ///< out: the lit lanes that nothing blocks
     uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled
+    float
+        *visible; ///< out, caps: the share of the light that lit lanes see, 0 in others; `open` then has the lanes that
+        ///< see any. There are spheres and planes alone, and lamp[0] is the light, whose samples mean nothing, around
+        ///< `position`. NULL: no caps
+    uint64_t *overlaps; ///< caps: added to: pairs of a point and a primitive that were looked at
 } glint_occlude_args;
 // `position` stands for each lane's own in what follows.
 // light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1
@@ -505,6 +510,25 @@ typedef struct glint_vertex_args {
 } glint_vertex_args;
 // w_j as in surface, x_j the light of the triangle's sites on the lane's side:
 // sum += at[0] = at[1] = at[2] ? x_0 : (w_0 x_0 + w_1 x_1) + w_2 x_2                                          in double
+
+// caps: the share left is 1, times that of each primitive, in the table's order; s of the light, a of a sphere:
+//         l = (position - point) scale, r = radius scale, d = sqrt(length2(l)); where not r < d: 1
+//         power_s = (d - r)(d + r); full = sqrt(max(power, 0)) / d, cosine = sqrt(0.5 + 0.5 full), sine = min(r / d, 1) / (2 cosine):
+//         of half the angle that the light is seen at; of a sphere likewise, of -f, radius scale_of_prim and power_a = c = exact_c(f)
+//         sphere: its own, seen from outside: 1; its own or c < 0: within; (c m) m < power_s, m = scale / scale_of_prim: 1 - part,
+//                 else 1: of two balls that do not meet, the one with the shorter tangent is before the other
+//         plane: its own: 1; h = dot(normal, point - center): h > 0: within, h < 0: behind, else 1
+//         within, behind = min(max((r +- depth) / (2 r), 0), 1) in double and world units, depth = dot(normal, position - center),
+//                 of a sphere radius - length(position - center)
+// part:   of one cap in another, G. Oat and P. Sander, "Ambient aperture lighting", I3D 2007, here by halves of all angles
+//         (so that caps of 1e-8 keep their digits): u, v = l / d, -f / |f|; sg, cg = 0.5 length(u - v), 0.5 length(u + v)
+//         x0, x1, x2, x3 = sines of half of s + a + g, a + g - s, s + g - a, s + a - g, by way of a + g and g - a
+//         x3 <= 0: 0; else x2 <= 0: 1; else x1 <= 0: min((sa / ss)^2, 1); else by Gauss and Bonnet, sectors less triangles:
+//         B = 2 angle(sqrt(x1 x3), sqrt(x0 x2)), A = 2 angle(sqrt(x2 x3), sqrt(x0 x1)): the triangle's angles at s and a
+//         E = 2 angle(k sin C, 1 + k cos C), its excess, k = (ss / cs) (sa / ca), C its angle where the edges cross:
+//                 sin C = 2 sqrt(x0 x3) sqrt(x1 x2) / e, cos C = (x0 x3 - x1 x2) / e, e = x0 x3 + x1 x2
+//         min(max((B + (A (2 sa^2) - E) / ss / (2 ss)) / pi, 0), 1)
+// angle(y, x): t = y / (sqrt(x x + y y) + x); twice t = t / (1 + sqrt(1 + t t)); 8 t (1 - t^2/3 + ... - t^22/23)
 
 // ---- bounce: where rays go on from a surface ----
 

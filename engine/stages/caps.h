@@ -1,0 +1,218 @@
+// caps: how much of a sphere light each point sees past spheres and planes, in closed form. Contract: stages.h, occlude.
+//
+// Products of shares are taken in the order of the table, whatever order the index finds the spheres in.
+
+#define GLINT_CAPS 16 ///< primitives that a group looks up at once
+
+/// The light as the points of a group see it.
+typedef struct R(light_cap) {
+    _Alignas(64) real way[3][GLINT_GROUP]; ///< unit, to its centre
+    _Alignas(64) real sine[GLINT_GROUP], cosine[GLINT_GROUP]; ///< of half the cap's radius
+    _Alignas(64) real power[GLINT_GROUP]; ///< squared length of a tangent, in the light's units
+    _Alignas(64) real left[GLINT_GROUP]; ///< share seen so far
+    unsigned around; ///< lanes within the light
+} R(light_cap);
+
+/// atan2(y, x) of two numbers that are not negative: an eighth of the angle by its series.
+static inline vr R(angle_of)(vr y, vr x)
+{
+    const vr one = r_set(1);
+    vr t = y / (r_sqrt(x * x + y * y) + x);
+    for (int i = 0; i < 2; i++)
+        t = t / (one + r_sqrt(one + t * t));
+    const vr q = -(t * t);
+    vr sum = r_set(1.0 / 23);
+    for (int k = 10; k >= 0; k--)
+        sum = sum * q + r_set(1.0 / (2 * k + 1));
+    return r_set(8) * (t * sum);
+}
+
+/// The cosine of half the angle whose cosine is k.
+static inline vr R(half_cosine)(vr k) { return r_sqrt(r_set(0.5) + r_set(0.5) * k); }
+
+static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light_cap) * cap)
+{
+    const vr zero = r_set(0), one = r_set(1), radius = r_set(args->lamp[0]->radius * args->scale);
+    cap->around = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr p[3], l[3];
+        R(load3)(args->point, at + i, p);
+        for (int k = 0; k < 3; k++)
+            l[k] = (r_set(args->position[k]) - p[k]) * r_set(args->scale);
+        const vr d = r_sqrt(DOT(l, l)), power = (d - radius) * (d + radius);
+        const vr cosine = R(half_cosine)(r_sqrt(r_max(power, zero)) / d);
+        for (int k = 0; k < 3; k++)
+            r_store(cap->way[k] + i, l[k] / d);
+        r_store(cap->cosine + i, cosine);
+        r_store(cap->sine + i, r_min(radius / d, one) / (r_set(2) * cosine));
+        r_store(cap->power + i, power);
+        r_store(cap->left + i, one);
+        cap->around |= (rm_bits(r_lt(radius, d)) ^ ((1u << VR) - 1)) << i;
+    }
+}
+
+/// What part of a cap of half sine `ss` and half cosine `cs` lies in one of `sa`, `ca`; `sg`, `cg` are of the angle between
+/// their middles.
+static inline vr R(covered_part)(vr ss, vr cs, vr sa, vr ca, vr sg, vr cg)
+{
+    const vr zero = r_set(0), one = r_set(1), two = r_set(2);
+    const vr sum_s = sa * cg + ca * sg, sum_c = ca * cg - sa * sg;
+    const vr less_s = sg * ca - cg * sa, less_c = cg * ca + sg * sa;
+    const vr x0 = ss * sum_c + cs * sum_s, x1 = cs * sum_s - ss * sum_c;
+    const vr x2 = ss * less_c + cs * less_s, x3 = ss * less_c - cs * less_s;
+    const rm apart = r_le(x3, zero), whole = r_le(x2, zero), within = r_le(x1, zero);
+    const rm settled = rm_or(apart, rm_or(whole, within));
+    vr part = r_select(within, r_min((sa / ss) * (sa / ss), one), zero);
+    part = r_select(apart, zero, r_select(whole, one, part));
+    if (rm_bits(settled) == (1u << VR) - 1)
+        return part;
+    const vr at_light = two * R(angle_of)(r_sqrt(x1 * x3), r_sqrt(x0 * x2));
+    const vr at_other = two * R(angle_of)(r_sqrt(x2 * x3), r_sqrt(x0 * x1));
+    const vr edges = x0 * x3 + x1 * x2, product = (ss / cs) * (sa / ca);
+    const vr sine = two * (r_sqrt(x0 * x3) * r_sqrt(x1 * x2)) / edges, cosine = (x0 * x3 - x1 * x2) / edges;
+    const vr excess = two * R(angle_of)(product * sine, one + product * cosine);
+    const vr lens =
+        (at_light + (at_other * (two * (sa * sa)) - excess) / ss / (two * ss)) / r_set(0x1.921fb54442d18p+1);
+    return r_select(settled, part, r_min(r_max(lens, zero), one));
+}
+
+/// The share of the light's diameter beyond a height over its middle, where the points are on the side it reaches to.
+static inline double R(share_of_diameter)(double radius, double height)
+{
+    const double share = (radius + height) / (2 * radius);
+    return share < 0 ? 0 : share > 1 ? 1 : share;
+}
+
+/// How far the light's middle is within the sphere, or in front of the plane.
+static inline double R(depth_of_light)(const glint_occlude_args *args, const glint_prim *prim)
+{
+    double f[3];
+    for (int k = 0; k < 3; k++)
+        f[k] = args->position[k] - prim->center[k];
+    return prim->kind == GLINT_PRIM_PLANE ? DOT(prim->normal, f) : prim->radius - sqrt(DOT(f, f));
+}
+
+/// Takes what a primitive covers off the group's shares. own: lanes that are on it.
+static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned own, unsigned lit,
+                     R(light_cap) * cap)
+{
+    const bool plane = prim->kind == GLINT_PRIM_PLANE;
+    const unsigned all = (1u << VR) - 1, back = args->back[at / GLINT_GROUP];
+    const double radius = args->lamp[0]->radius, depth = R(depth_of_light)(args, prim);
+    const vr zero = r_set(0), one = r_set(1), within = r_set(R(share_of_diameter)(radius, depth));
+    const vr behind = r_set(R(share_of_diameter)(radius, -depth)), unit = r_set(args->scale / prim->scale);
+    const unsigned wanted = lit & ~(cap->around | (plane ? own : own & ~back));
+    *args->overlaps += (unsigned)__builtin_popcount(wanted);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const rm lanes = rm_from_bits(wanted >> i & all), mine = rm_from_bits(own >> i & all);
+        vr p[3], f[3], share;
+        if (!(wanted >> i & all))
+            continue;
+        R(load3)(args->point, at + i, p);
+        R(offset)(p, prim, f);
+        const vr c = R(offset_constant)(f, prim);
+        if (plane) {
+            share = r_select(r_lt(zero, c), within, r_select(r_lt(c, zero), behind, one));
+        } else {
+            const vr d = r_sqrt(DOT(f, f)), cosine = R(half_cosine)(r_sqrt(r_max(c, zero)) / d);
+            const vr sine = r_min(r_set(prim->radius * prim->scale) / d, one) / (r_set(2) * cosine);
+            vr apart[3], along[3];
+            for (int k = 0; k < 3; k++) {
+                const vr u = r_load(cap->way[k] + i), v = -f[k] / d;
+                apart[k] = u - v;
+                along[k] = u + v;
+            }
+            const vr covered =
+                R(covered_part)(r_load(cap->sine + i), r_load(cap->cosine + i), sine, cosine,
+                                r_set(0.5) * r_sqrt(DOT(apart, apart)), r_set(0.5) * r_sqrt(DOT(along, along)));
+            const rm before = r_lt((c * unit) * unit, r_load(cap->power + i));
+            share = r_select(before, one - covered, one);
+            share = r_select(rm_or(mine, r_lt(c, zero)), within, share);
+        }
+        const vr left = r_load(cap->left + i);
+        r_store(cap->left + i, r_select(lanes, left * share, left));
+    }
+}
+
+/// The first GLINT_CAPS primitives from `from` on that may be before the light, in the table's order. Returns how many.
+static int R(look_up_caps)(const R(shadow_tile) * tile, const light_shaft *shaft, uint32_t from,
+                           uint32_t ids[GLINT_CAPS])
+{
+    const glint_geometry_table *geometry = tile->args->geometry;
+    uint32_t stack[WALK_STACK], found[GLINT_NODE_WIDTH];
+    int count = 0, height = 0;
+    if (geometry->nodes)
+        stack[height++] = 0;
+    for (uint32_t next = 0; height > 0 || next < geometry->unbounded_count;) {
+        int some = 0;
+        if (next < geometry->unbounded_count) {
+            found[some++] = geometry->unbounded[next++];
+        } else {
+            const glint_node *node = &geometry->nodes[stack[--height]];
+            for (unsigned mask = boxes_in_shaft(node, shaft); mask; mask &= mask - 1) {
+                const uint32_t child = node->child[__builtin_ctz(mask)];
+                if (child & GLINT_NODE_PRIM)
+                    found[some++] = child & ~GLINT_NODE_PRIM;
+                else
+                    stack[height++] = child;
+            }
+        }
+        for (int k = 0; k < some; k++) {
+            if (found[k] < from || (count == GLINT_CAPS && found[k] > ids[count - 1]))
+                continue;
+            int at = count < GLINT_CAPS ? count++ : GLINT_CAPS - 1;
+            for (; at > 0 && ids[at - 1] > found[k]; at--)
+                ids[at] = ids[at - 1];
+            ids[at] = found[k];
+        }
+    }
+    return count;
+}
+
+/// The shares of one group, and the lanes that have any.
+static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsigned lit, R(light_cap) * cap)
+{
+    const glint_occlude_args *args = tile->args;
+    R(shadow_group) group = { .last_blocker = GLINT_MISS };
+    float lower[3], upper[3];
+    light_shaft shaft;
+    uint32_t ids[GLINT_CAPS], from = 0;
+    int count;
+    R(begin_group)(g, &group);
+    R(make_light_cap)(args, group.at, cap);
+    R(group_box)(tile, &group, lit, lower, upper);
+    make_shaft(lower, upper, &tile->light, &shaft);
+    do {
+        count = R(look_up_caps)(tile, &shaft, from, ids);
+        for (int k = 0; k < count; k++) {
+            const glint_prim *prim = &args->geometry->prims[ids[k]];
+            const unsigned own = lanes_equal(args->prim + group.at, ids[k]) & lit;
+            R(cover)(args, prim, group.at, own, lit, cap);
+        }
+        from = count ? ids[count - 1] + 1 : 0;
+    } while (count == GLINT_CAPS && !is_stopped(args->stop));
+    unsigned open = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VR)
+        open |= rm_bits(r_lt(r_set(0), r_load(cap->left + i))) << i;
+    return open & lit;
+}
+
+static void R(occlude_caps)(const glint_occlude_args *args)
+{
+    R(shadow_tile) tile;
+    R(light_cap) cap;
+    const uint16_t *lit = args->lit[0];
+    R(begin_shadows)(args, lit, &tile);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t at = (size_t)g * GLINT_GROUP;
+        unsigned open = lit[g];
+        for (int i = 0; i < GLINT_GROUP; i++)
+            args->visible[at + (size_t)i] = (float)(lit[g] >> i & 1);
+        if (lit[g] && tile.count > 0) {
+            open = R(caps_of_group)(&tile, g, lit[g], &cap);
+            for (unsigned left = lit[g]; left; left &= left - 1)
+                args->visible[at + (unsigned)__builtin_ctz(left)] = (float)cap.left[__builtin_ctz(left)];
+        }
+        args->open[0][g] = (uint16_t)open;
+    }
+}
