@@ -47,6 +47,7 @@ picture soft_shadows_0011 scripts/soft_shadows.lua -f 11
 picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
 picture lamps scripts/lamps.lua
 picture lampshade scripts/lampshade.lua
+picture caps_0006 scripts/caps.lua -f 6
 picture indirect_0003 scripts/indirect.lua --set samples=8 -f 3
 picture spotlights scripts/spotlights.lua
 picture lobes scripts/lobes.lua
