@@ -1,11 +1,13 @@
--- Soft shadows without noise. A ball before a ball of light: how much of the light does it hide? To the point that asks,
--- both are disks in the sky, and the part that two disks of a sphere have in common is a formula. `shadow = "caps"`
--- multiplies the light by it, where `shadow = "rays"` (the default) asks `samples` points of the light one by one.
+-- Soft shadows without noise. A ball before a ball of light: how much of the light does it hide? To the point that
+-- asks, both are disks in the sky, and the part that two disks of a sphere have in common is a formula.
+-- `shadow = "caps"` multiplies the light by it, where `shadow = "rays"` (the default) asks `samples` points of the light
+-- one by one.
 --
 -- Six frames: 4 rays a pixel, 64 rays, the formula; then the same with a lamp four times as wide.
--- On the floor the formula differs from 4096 rays by less than they differ among themselves. Where the light sinks below a
--- ball's own horizon it takes the light as a point at its middle: the edge of day on a ball is sharper than it should be.
--- Where several balls stand before the light it multiplies what each leaves: behind two in a row that is too dark.
+-- On the floor the formula is as near to the truth as thousands of rays. Where the light sinks below
+-- a ball's own horizon it takes the light as a point at its middle: the edge of day on a ball is sharper than it should
+-- be. Where several balls stand before the light it multiplies what each leaves: behind two in a row that is too dark
+-- or too bright, never darker than if they hid nothing in common.
 --     glint scripts/caps.lua                               then glint sheet 'caps_%04d.png' --columns 3 -o sheet.png
 --     glint cost scripts/caps.lua --frame 6                what both take, and how far they are off
 local glint = require "glint"
