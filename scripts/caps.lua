@@ -1,6 +1,6 @@
 -- Soft shadows without noise. A ball before a ball of light: how much of the light does it hide? To the point that
 -- asks, both are disks in the sky, and the part that two disks of a sphere have in common is a formula.
--- `shadow = "caps"` multiplies the light by it, where `shadow = "rays"` (the default) asks `samples` points of the light
+-- `shadow = "caps"` multiplies the light by it, where `shadow = "rays"` (the default) asks `samples` of its points
 -- one by one.
 --
 -- Six frames: 4 rays a pixel, 64 rays, the formula; then the same with a lamp four times as wide.
