@@ -277,6 +277,36 @@ function tests.shadows()
   check(gouraud:pixel(3, 3) < gouraud:pixel(1, 1) and gouraud:pixel(1, 1) < 1, "it grows away from the dark one")
 end
 
+-- A corner with a normal of its own is a vertex of its own: a box of eight vertices with a normal for each corner of a
+-- face is that of 24 vertices.
+function tests.corner_normals()
+  local corners, faces, normals, apart, each, own = {}, {}, {}, {}, {}, {}
+  for i = 0, 7 do corners[i + 1] = { i % 2 * 2 - 1, i // 2 % 2 * 2 - 1, i // 4 * 2 - 1 } end
+  for axis = 0, 2 do
+    for side = 0, 1 do
+      local face, n = {}, { 0, 0, 0 }
+      n[axis + 1] = 2 * side - 1
+      for _, step in ipairs { { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } } do
+        local number = 1 + (side << axis) + (step[1] << (axis + 1) % 3) + (step[2] << (axis + 2) % 3)
+        table.insert(face, number)
+        table.insert(normals, n)
+        table.insert(apart, corners[number])
+        table.insert(own, n)
+      end
+      table.insert(faces, face)
+      table.insert(each, { #apart - 3, #apart - 2, #apart - 1, #apart })
+    end
+  end
+  local function picture(mesh)
+    mesh.shading, mesh.material = "gouraud", glint.material { specular = 0.5 }
+    return bits(glint.scene { camera = glint.camera { eye = { 3, 4, 5 }, at = { 0, 0, 0 } }, glint.mesh(mesh),
+      glint.point_light { position = { 2, 5, 3 } } }:render { width = 40, height = 40, output = "none" })
+  end
+  local shared = picture { vertices = corners, faces = faces, normals = normals }
+  check(shared == picture { vertices = apart, faces = each, normals = own }, "a box of shared vertices")
+  check(shared ~= picture { vertices = corners, faces = faces }, "is not one of smooth corners")
+end
+
 -- Passes add up, samples meet in the mean, and one-sided backs have ambient light alone.
 function tests.terms()
   local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 10, shading = "gouraud",
@@ -415,7 +445,7 @@ function tests.bits()
 end
 
 local only = arg[1]
-for _, name in ipairs { "truth", "no_shadow_by_neighbours", "shadows", "terms", "reuse", "called_for", "bits" } do
+for _, name in ipairs { "truth", "no_shadow_by_neighbours", "shadows", "corner_normals", "terms", "reuse", "called_for", "bits" } do
   if not only or only == name then tests[name]() end
 end
 os.execute("rm -rf '" .. scratch .. "'")
