@@ -16,6 +16,10 @@
 --                is totally reflected, t times what the mirrored ray brings. Shadows: t at each surface, and no bending.
 --   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way)
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
+--   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
+--                an ellipsoid is sphere { 0, 1 scale s translate c }
+--   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
+--                float there; a normal that looks away from the eye is turned, here one that looks through its face
 --   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
 local model, light, projection, width, height, surfaces = table.unpack(arg)
@@ -62,8 +66,35 @@ else
 end
 local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0"):format(w.specular, w.shininess)
   or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
+local function list(vectors)
+  local texts = {}
+  for i, v in ipairs(vectors) do texts[i] = vector(v) end
+  return #vectors .. ", " .. table.concat(texts, ", ")
+end
+local function mesh(s)
+  local texts, m = {}, s.mesh
+  for i, f in ipairs(m.faces) do
+    texts[i] = s.smooth and ("<%d, %d, %d>"):format(f[1] - 1, f[2] - 1, f[3] - 1)
+      or ("triangle { %s, %s, %s }"):format(vector(m.vertices[f[1]]), vector(m.vertices[f[2]]), vector(m.vertices[f[3]]))
+  end
+  if not s.smooth then return "mesh { " .. table.concat(texts, " ") end
+  return ("mesh2 { vertex_vectors { %s } normal_vectors { %s } face_indices { %d, %s }"):format(list(m.vertices),
+    list(m.normals), #texts, table.concat(texts, ", "))
+end
+
+-- The shape in a sphere's place, up to its texture.
+local function shape(s, center, radius)
+  if not s then return ("sphere { %s, %.17g"):format(vector(center), radius) end
+  if s.kind == "mesh" then return mesh(s) end
+  if s.kind == "box" then return ("box { %s, %s"):format(vector(s.min), vector(s.max)) end
+  if s.kind == "sphere" then return ("sphere { 0, 1 scale %s translate %s"):format(vector(s.scale), vector(center)) end
+  local open = s.open and "open" or ""
+  if s.kind == "cone" then return ("cone { %s, %.17g, %s, 0 %s"):format(vector(s.base), s.radius, vector(s.top), open) end
+  return ("cylinder { %s, %s, %.17g %s"):format(vector(s.base), vector(s.top), s.radius, open)
+end
+
 for i, sphere in ipairs(w.spheres) do
-  local s = w.surfaces[surfaces][i] or {}
+  local s = (w.surfaces[surfaces] or {})[i] or {}
   local center = { sphere[1][1], sphere[1][2] + (s.lift or 0), sphere[1][3] }
   local ambient, diffuse, pigment, interior = w.ambient, w.diffuse, "rgb " .. vector(sphere[3]), ""
   local finish = highlight .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
@@ -74,6 +105,6 @@ for i, sphere in ipairs(w.spheres) do
     interior = ("interior { ior %.17g %s }"):format(s.ior, a and
       ("fade_power 1001 fade_distance 1 fade_color rgb %.17g"):format(1 - a) or "")
   end
-  line("sphere { %s, %.17g pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }", vector(center), sphere[2],
-    pigment, ambient, diffuse, finish, interior)
+  line("%s pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }",
+    shape((w.shapes[surfaces] or {})[i], center, sphere[2]), pigment, ambient, diffuse, finish, interior)
 end

@@ -3,7 +3,7 @@ local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
-  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "fresnel" } },
+  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "fresnel", "solids", "open", "faceted", "smooth" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -46,18 +46,30 @@ local function material(surface, fields)
   return glint.material(fields)
 end
 
+-- What stands in a sphere's place.
+local function shape(s, sphere, surface, coat)
+  local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
+  if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end
+  if s.kind == "box" then return glint.box { min = s.min, max = s.max, material = coat } end
+  if s.kind == "mesh" then
+    return glint.mesh { vertices = s.mesh.vertices, normals = s.mesh.normals, faces = s.mesh.faces, material = coat,
+      shading = s.smooth and "phong" or "faceted" }
+  end
+  if s.kind == "sphere" then
+    return glint.sphere { center = { 0, 0, 0 }, radius = 1, material = coat,
+      transform = glint.translate(center) * glint.scale(s.scale) }
+  end
+  return glint[s.kind] { base = s.base, top = s.top, radius = s.radius, capped = not s.open, material = coat }
+end
+
 local scene = glint.scene { camera = glint.camera(camera), ambient = 1, background = w.background }
 for _, light in ipairs(lights[P.light]()) do scene:add(light) end
 for i, sphere in ipairs(w.spheres) do
-  local center, radius, c = sphere[1], sphere[2], sphere[3]
-  local surface = w.surfaces[P.surfaces][i] or {}
-  scene:add(glint.sphere {
-    center = { center[1], center[2] + (surface.lift or 0), center[3] }, radius = radius,
-    material = material(surface, {
-      model = P.model, shininess = w.shininess, specular = w.specular,
-      ambient = { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] },
-      diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },
-    }),
-  })
+  local c, surface = sphere[3], (w.surfaces[P.surfaces] or {})[i] or {}
+  scene:add(shape((w.shapes[P.surfaces] or {})[i], sphere, surface, material(surface, {
+    model = P.model, shininess = w.shininess, specular = w.specular,
+    ambient = { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] },
+    diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },
+  })))
 end
 scene:render { width = 1280, height = 720, bits = 16, transfer = "linear", max_depth = w.max_depth }

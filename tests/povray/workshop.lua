@@ -1,5 +1,32 @@
 -- The workshop scene as plain numbers, for both renderers: scene.lua hands it to glint, pov.lua writes it for POV-Ray.
 -- All values stay below 1, since POV-Ray clips.
+
+local function float(x) return (string.unpack("f", string.pack("f", x))) end
+
+-- A wavy sheet that faces eye and light, of 24 x 16 quadrangles: POV-Ray keeps corners and normals of meshes in float,
+-- and turns a normal that looks away from the eye.
+local function sheet()
+  local vertices, normals, faces, across, down = {}, {}, {}, 24, 16
+  for j = 0, down do
+    for i = 0, across do
+      local u, v = i / across, j / down
+      local x, y = -7 + 6 * u, 1 + 5 * (1 - v)
+      local z = float(-2 + 5 * v + 0.35 * math.sin(7 * u) * math.cos(5 * v))
+      local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- of z, by x and by y
+      local dv = -(5 - 0.35 * 5 * math.sin(7 * u) * math.sin(5 * v)) / 5
+      local l = math.sqrt(du * du + dv * dv + 1)
+      vertices[#vertices + 1] = { float(x), float(y), z }
+      normals[#normals + 1] = { float(-du / l), float(-dv / l), float(1 / l) }
+      if i < across and j < down then
+        local a = j * (across + 1) + i + 1
+        faces[#faces + 1] = { a, a + across + 1, a + across + 2 }
+        faces[#faces + 1] = { a, a + across + 2, a + 1 }
+      end
+    end
+  end
+  return { vertices = vertices, normals = normals, faces = faces }
+end
+
 return {
   eye = { 0, 6.2, 20.5 },
   at = { 0, 3.8, 0 },
@@ -12,6 +39,20 @@ return {
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
   ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
   max_depth = 20,
+  shapes = { -- what stands in the place of some of the spheres
+    solids = {
+      [2] = { kind = "box", min = { -4.5, 0, -7 }, max = { 1.5, 6, -2.5 } },
+      [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 7, 5, -2 }, radius = 1.8 },
+      [4] = { kind = "sphere", scale = { 2.5, 1.5, 0.8 } },
+      [5] = { kind = "cone", base = { 0.6, 0.25, 4.2 }, top = { 1.4, 4.5, 3.4 }, radius = 1.9 },
+    },
+    open = {
+      [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 6, 3.5, 2 }, radius = 1.8, open = true },
+      [5] = { kind = "cone", base = { 0.2, 3.9, 5.6 }, top = { 0.9, 0.25, 4.2 }, radius = 1.9, open = true },
+    },
+    faceted = { [4] = { kind = "mesh", mesh = sheet() } },
+    smooth = { [4] = { kind = "mesh", mesh = sheet(), smooth = true } },
+  },
   surfaces = { -- what becomes of some of the spheres, by number; `lift`: POV-Ray sees no hit nearer than 1e-3, and glass that
     -- stands on the ground shows that, enlarged
     plain = {},
