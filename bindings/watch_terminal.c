@@ -63,6 +63,17 @@ static watch_graphics find_graphics(void)
     return strstr(answer, "_Gi=31;OK") ? WATCH_KITTY : has_sixel(answer) ? WATCH_SIXEL : WATCH_BLOCKS;
 }
 
+// Terminals without colours, by what terminfo calls them: DEC's VT52 to VT525, all but VT525 and VT241; and "...-m".
+static bool has_colors(void)
+{
+    const char *term = getenv("TERM");
+    size_t length = term ? strlen(term) : 0;
+    if (length > 2 && strcmp(term + length - 2, "-m") == 0)
+        return false;
+    bool is_vt = length > 3 && strncmp(term, "vt", 2) == 0 && term[2] >= '0' && term[2] <= '9';
+    return !is_vt || strncmp(term, "vt525", 5) == 0 || strncmp(term, "vt241", 5) == 0;
+}
+
 void watch_terminal_open(watch_terminal *terminal, const char *name, bool color)
 {
     static const char *const names[] = { "text", "blocks", "sixel", "kitty" };
@@ -74,6 +85,8 @@ void watch_terminal_open(watch_terminal *terminal, const char *name, bool color)
             terminal->graphics = (watch_graphics)i;
     if (!name && color)
         terminal->graphics = find_graphics();
+    if (!name && terminal->graphics == WATCH_BLOCKS && !has_colors())
+        terminal->graphics = WATCH_TEXT;
 }
 
 void watch_terminal_close(watch_terminal *terminal)

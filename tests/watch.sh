@@ -301,6 +301,11 @@ check "on a real terminal, which does not answer" eval '
     (TERM=xterm COLORTERM=truecolor timeout 3 script -qec "timeout 2 $glint watch still.lua --size 96x54" typescript >/dev/null </dev/null)
     grep -qa "▀" typescript'
 
+check "on a terminal without colours a line" eval '
+    command -v script >/dev/null || { echo "# skip: no script command"; exit 0; }
+    (TERM=vt100 timeout 3 script -qec "timeout 2 $glint watch still.lua --size 96x54" plain >/dev/null </dev/null)
+    grep -qa "still.lua, frame 1: 96 x 54" plain && ! grep -qa "▀" plain'
+
 fails() { # MESSAGE OPTION...: exit 2 with a message
     local message=$1
     shift
