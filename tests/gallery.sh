@@ -34,6 +34,7 @@ picture() {
 }
 
 mkdir -p "$out"
+picture caps --frames 6
 picture furnace
 picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
