@@ -3,7 +3,7 @@
 local build = os.getenv "BUILD" or "build"
 package.cpath = build .. "/?.so;" .. package.cpath
 package.path = "scripts/lib/?.lua;tests/gr/?.lua;" .. package.path
-local witness = require "witness"
+local random_scene, witness = require "random_scene", require "witness"
 local passed, failed = 0, 0
 local function check(ok, format, ...)
   if ok then
@@ -93,14 +93,15 @@ local function compare_pixels(picture, name)
   for kind, number in pairs(count) do total[kind] = total[kind] + number end
 end
 
-local function against_witness(name, order, line, options)
-  local said, code = run(("rm -f *.png; '%s' %s --dialect gr '%s/tests/gr/scenes/%s.lua' --quiet --warnings=none"):format(glint,
-    line or "", here, name))
+local function path_against_witness(path, name, order, line, options)
+  local said, code = run(("rm -f *.png; '%s' %s --dialect gr '%s' --quiet --warnings=none -t 1"):format(glint, line, path))
   check(code == 0, "%s: %s", name, said)
   if code ~= 0 then return end
-  for _, picture in ipairs(witness.run(("tests/gr/scenes/%s.lua"):format(name), order, options or {})) do
-    compare_pixels(picture, name)
-  end
+  for _, picture in ipairs(witness.run(path, order, options)) do compare_pixels(picture, name) end
+end
+
+local function against_witness(name, order, line, options)
+  path_against_witness(("%s/tests/gr/scenes/%s.lua"):format(here, name), name, order, line or "", options or {})
 end
 
 against_witness("spheres", "pre")
@@ -117,9 +118,17 @@ against_witness("behind", "post")
 against_witness("lamps", "pre")
 against_witness("lamps", "pre", "--gr-specular blinn", { specular = "blinn" })
 against_witness("frames", "pre")
-against_witness("frames", "pre", "--no-reuse -t 2")
+against_witness("frames", "pre", "--no-reuse")
+-- Random scenes: GLINT_SEED=N for others, GLINT_SCENES=N for more.
+local seed, scenes = tonumber(os.getenv "GLINT_SEED" or 1), tonumber(os.getenv "GLINT_SCENES" or 30)
+for i = seed * 1000 + 1, seed * 1000 + scenes do
+  local text, order = random_scene(i, here .. "/tests/gr/scenes/models")
+  write("random.lua", text)
+  path_against_witness(folder .. "/random.lua", "random scene " .. i, order, "", {})
+end
+
 print(("# %d pixels the same, %d by one code, %d ties, %d off"):format(total.same, total.near, total.ties, total.off))
-check(total.same > 50000 and total.same > 200 * (total.near + total.ties), "nearly all pixels are the same")
+check(total.same > 100000 and total.same > 200 * (total.near + total.ties), "nearly all pixels are the same")
 
 -- ---- The command ----
 
@@ -160,6 +169,23 @@ end
 write("bare.lua", "local n = gr.node('n')")
 said, code = run(("'%s' bare.lua"):format(glint))
 check(code == 2 and said:find "is it a scene for %-%-dialect gr%?", "a scene without the option: %s", said)
+
+-- Codes are linear and the file does not say so, as the course's; the same codes under --transfer linear, which says so.
+local function bytes_of(name)
+  local file = assert(io.open(folder .. "/" .. name, "rb"))
+  local bytes = file:read "a"
+  file:close()
+  return bytes
+end
+local BALL = [[local s = gr.sphere('s') s:set_material(gr.material({0.6, 0.4, 0.2}, {0, 0, 0}, 0))
+  gr.render(s, 'ball', 16, 16, {0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})]]
+scene(BALL)
+scene(BALL, "--transfer linear -o linear.png")
+check(not bytes_of "ball.png":find "gAMA" and not bytes_of "ball.png":find "sRGB", "the file says nothing of a gamma")
+check(bytes_of "linear.png":find "gAMA", "a linear file says so")
+local _, _, ball = read_codes(folder .. "/ball.png")
+local _, _, linear = read_codes(folder .. "/linear.png")
+check(ball == linear and ball:byte(3 * (16 * 8 + 8) + 1) == 153, "the codes are the same")
 
 -- Names are what they say: nothing in them is a place for a number.
 run "rm -f *.png"

@@ -145,12 +145,18 @@ end
 
 -- ---- Materials, lights, pictures ----
 
+-- The model of the highlight. An exponent of 0 makes it 1 wherever a light reaches, as n.h > 0 has it; r.v is not
+-- above 0 everywhere.
+local function model_of(shininess)
+  return (options.specular == "blinn" or shininess == 0) and "blinn_phong" or "phong"
+end
+
 function gr.material(kd, ks, shininess)
   kd, ks = check.vector("material", "kd", kd, 3, 0), check.vector("material", "ks", ks, 3, 0)
   local fields = { diffuse = kd, model = "lambert" }
   shininess = check.at_least("material", "shininess", shininess, 0)
   if max(ks[1], ks[2], ks[3]) > 0 then
-    fields.model = options.specular == "blinn" and "blinn_phong" or "phong"
+    fields.model = model_of(shininess)
     fields.specular, fields.shininess = ks, shininess
   end
   local material = {}
