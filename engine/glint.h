@@ -393,7 +393,8 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
 
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
-/// How it is found what the eye sees; the pictures are the same in every bit.
+/// How it is found what the eye sees. The pictures are the same in every bit, but where a ray runs in the very plane of a
+/// triangle, whose edges then are nothing but rounding: a pixel in some thousand pictures taken from such planes.
 typedef enum glint_visibility {
     GLINT_VISIBILITY_AUTO, ///< what is likely to be faster
     GLINT_VISIBILITY_CAST, ///< a ray through each sample
