@@ -354,7 +354,7 @@ void glint_scan_clear(glint_scan *scan)
 // Nanoseconds on one core of an EPYC (Zen 4), 1280x720, spheres and terrains of 1,000 to 1,000,000 triangles. A wrong guess
 // costs a few of them a triangle or pixel.
 #define PROJECT_NS 45 ///< a triangle, in view or not
-#define VISIT_NS 90 ///< what casting takes more for a triangle in view ...
+#define VISIT_NS 20 ///< what casting takes more for a triangle in view ...
 #define PIXEL_NS 1 ///< ... and for a sample
 #define PARALLEL_NS 500 ///< the same for a sample of parallel rays, which walk the index in groups
 #define MERGE_NS 4 ///< a sample, where something else is to be cast beside
