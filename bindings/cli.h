@@ -88,7 +88,7 @@ struct cli_option {
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
 };
-#define CLI_OPTION_COUNT 54
+#define CLI_OPTION_COUNT 55
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_asked *asked, const char *name, const char *text);

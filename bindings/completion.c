@@ -28,6 +28,7 @@ static const struct hint {
     { "sweep", "NAME=A:B:N: N values of a parameter", NULL, false },
     { "size", "WxH: pixels across and down", "640x360 1280x720 1920x1080 3840x2160", false },
     { "samples", "samples a pixel", NULL, false },
+    { "adaptive", "all samples only where neighbours differ by more", "0.3 0.1 0.03 0.01", false },
     { "precision", "what decides hits and shadows", NULL, false },
     { "visibility", "how it is found what the eye sees", NULL, false },
     { "bits", "of a channel", "8 16", false },
@@ -38,8 +39,8 @@ static const struct hint {
     { "alpha", "transparent background", NULL, false },
     { "outline", "lines where objects end or have an edge", NULL, false },
     { "passes", "also write these",
-      "background ambient diffuse specular mirror transmission depth normal object_id alpha "
-      "outline",
+      "background ambient diffuse specular indirect mirror transmission depth normal object_id alpha "
+      "outline refined",
       false },
     { "encode", "fast to write or small on disk", NULL, false },
     { "seed", "another sample pattern", NULL, false },

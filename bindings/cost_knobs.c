@@ -72,6 +72,22 @@ static glint_status apply_samples(cost_draft *draft, cost_value value, glint_err
     return GLINT_OK;
 }
 
+// ---- adaptive: how much neighbours differ where all samples are taken ----
+
+static void list_adaptive(const cost_subject *subject, cost_values *out)
+{
+    static const double thresholds[] = { 0, 0.01, 0.03, 0.1, 0.3 };
+    if (has_stage(subject->plan, "cast") && subject->render->desc.samples > 1)
+        list_numbers(thresholds, COUNT(thresholds), subject->render->desc.adaptive, out);
+}
+
+static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.desc.adaptive = value.number;
+    return GLINT_OK;
+}
+
 // ---- shadows ----
 
 static bool is_soft(const glint_light_desc *light)
@@ -372,6 +388,7 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 
 const cost_knob cost_knobs[] = {
     { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, apply_samples },
+    { "adaptive", "several samples a pixel", COST_ERROR_FILM, true, false, list_adaptive, apply_adaptive },
     { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
     { "light_samples", "a light with a surface and soft shadows", COST_ERROR_FILM, true, false, list_light_samples,
       apply_light_samples },

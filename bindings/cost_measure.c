@@ -65,6 +65,7 @@ static glint_status plan_case(cost_study *study, const cost_case *c, const cost_
     desc->codes = how->codes;
     desc->samples = how->samples > 0 ? how->samples : desc->samples;
     desc->seed = how->seed >= 0 ? how->seed : desc->seed;
+    desc->adaptive = how->is_exact ? 0 : desc->adaptive;
     desc->precision = how->is_exact ? GLINT_DOUBLE : desc->precision;
     if (!status && how->is_painted)
         status = cost_scene_show_light(&study->scene, how->light, error);

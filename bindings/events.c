@@ -86,6 +86,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
     print_times(out, record);
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
+    fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
     if (record->kept) { // nobody looked
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {

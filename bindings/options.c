@@ -307,6 +307,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "sweep", 0, true, CLI_RENDER, read_sweep },
     { "size", 0, true, SHOWN, read_size },
     { "samples", 0, true, SHOWN, read_render },
+    { "adaptive", 0, true, SHOWN, read_render },
     { "precision", 0, true, SHOWN, read_render },
     { "visibility", 0, true, SHOWN, read_render },
     { "bits", 0, true, SHOWN, read_render },

@@ -40,15 +40,25 @@ static const char *const encodes[] = { "fast", "small", NULL };
 const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
 
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    { .name = "width", .kind = GLINTL_NUMBER },     { .name = "height", .kind = GLINTL_NUMBER },
-    { .name = "samples", .kind = GLINTL_NUMBER },   { .name = "seed", .kind = GLINTL_NUMBER },
-    { .name = "max_depth", .kind = GLINTL_NUMBER }, { .name = "bits", .kind = GLINTL_NUMBER },
-    { .name = "precision", .kind = GLINTL_ENUM },   { .name = "transfer", .kind = GLINTL_ENUM },
-    { .name = "rounding", .kind = GLINTL_ENUM },    { .name = "tone", .kind = GLINTL_ENUM },
-    { .name = "encode", .kind = GLINTL_ENUM },      { .name = "output", .kind = GLINTL_STRING },
-    { .name = "passes", .kind = GLINTL_STRING },    { .name = "exposure", .kind = GLINTL_NUMBER },
-    { .name = "alpha", .kind = GLINTL_BOOLEAN },    { .name = "outline", .kind = GLINTL_ENUM },
-    { .name = "visibility", .kind = GLINTL_ENUM },  { .name = NULL },
+    { .name = "width", .kind = GLINTL_NUMBER },
+    { .name = "height", .kind = GLINTL_NUMBER },
+    { .name = "samples", .kind = GLINTL_NUMBER },
+    { .name = "seed", .kind = GLINTL_NUMBER },
+    { .name = "max_depth", .kind = GLINTL_NUMBER },
+    { .name = "bits", .kind = GLINTL_NUMBER },
+    { .name = "precision", .kind = GLINTL_ENUM },
+    { .name = "transfer", .kind = GLINTL_ENUM },
+    { .name = "rounding", .kind = GLINTL_ENUM },
+    { .name = "tone", .kind = GLINTL_ENUM },
+    { .name = "encode", .kind = GLINTL_ENUM },
+    { .name = "output", .kind = GLINTL_STRING },
+    { .name = "passes", .kind = GLINTL_STRING },
+    { .name = "exposure", .kind = GLINTL_NUMBER },
+    { .name = "alpha", .kind = GLINTL_BOOLEAN },
+    { .name = "outline", .kind = GLINTL_ENUM },
+    { .name = "visibility", .kind = GLINTL_ENUM },
+    { .name = "adaptive", .kind = GLINTL_NUMBER },
+    { .name = NULL },
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {
@@ -69,6 +79,7 @@ static const detail details[GLINTL_RENDER_FIELDS] = {
     { FLAG, AT(desc.alpha), 0, 0, NULL },
     { CHOICE, AT(desc.outline), 0, 0, outlines },
     { CHOICE, AT(desc.visibility), 0, 0, visibilities },
+    { REAL, AT(desc.adaptive), 0, 3, NULL },
 };
 
 glintL_render glintL_render_default(void)

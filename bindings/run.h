@@ -59,7 +59,7 @@ bool glintL_selection_outside(const glintL_selection *selection, int64_t total, 
 
 // ---- render_options.c ----
 
-#define GLINTL_RENDER_FIELDS 17
+#define GLINTL_RENDER_FIELDS 18
 
 extern const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1]; ///< names, and whether numbers, for listing
 glintL_render glintL_render_default(void);

@@ -415,6 +415,7 @@ typedef enum glint_pass {
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
     GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
     GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
+    GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
     GLINT_PASS_COUNT
 } glint_pass;
 
@@ -459,6 +460,11 @@ typedef struct glint_render_desc {
     double width,
         height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
     double samples; ///< a pixel; whole number, 1 .. 65536; default 1
+    /// 0 (default): every pixel gets all samples. Above, up to 3: first each gets one, in its middle. All are taken only
+    /// where a pixel and one of its eight neighbours show two objects or normals 26 degrees apart, or codes that differ by
+    /// more than this, red, green and blue together, in shares of white; that pixel is then as without `adaptive`, every
+    /// other as with one sample. Depth, normal and object_id are of the first sample. With one sample it does nothing
+    double adaptive;
     glint_precision precision; ///< what decides hits and shadows; default GLINT_DOUBLE
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
@@ -559,6 +565,7 @@ typedef struct glint_frame_stats {
         [GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
     glint_ray_counts rays;
     glint_work work; ///< 0 unless the renderer counts it; what is reused took none
+    uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
 } glint_frame_stats;

@@ -3,13 +3,14 @@
 #include "engine/base/status.h"
 #include "engine/image/tone.h"
 #include "engine/outline.h"
+#include "engine/refine.h"
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera", "cast",    "glow",     "surface",
-                                                           "view",   "light",   "facet",    "occlude",
-                                                           "vertex", "shade",   "indirect", "bounce",
-                                                           "cue",    "resolve", "tone",     "outline" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",   "cast",   "glow",    "surface", "view",
+                                                           "light",    "facet",  "occlude", "vertex",  "shade",
+                                                           "indirect", "bounce", "cue",     "refine",  "resolve",
+                                                           "tone",     "outline" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -44,6 +45,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
                             desc->height);
     if (!status)
         status = glint_check_whole("samples", desc->samples, 1, 65536, error);
+    if (!status)
+        status = glint_check_range("adaptive", desc->adaptive, 0, 3, "number 0 .. 3", error);
     if (!status)
         status = glint_check_whole("max_depth", desc->max_depth, 0, 0x1p31, error);
     if (!status)
@@ -100,6 +103,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.site_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
+    plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
     plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
     plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
@@ -144,6 +148,10 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
     status = fill(plan, scene, error);
+    if (!status && plan->runs[GLINT_STAGE_REFINE]) {
+        const glint_render_desc base = glint_refine_base(&plan->desc);
+        status = glint_plan_create(scene, &base, &plan->base, error);
+    }
     if (status) {
         glint_plan_destroy(plan);
         return status;
@@ -156,6 +164,7 @@ void glint_plan_destroy(glint_plan *plan)
 {
     if (!plan)
         return;
+    glint_plan_destroy(plan->base);
     glint_geometry_release(plan->geometry);
     free(plan->lights);
     free(plan->lamps);
@@ -187,7 +196,8 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
 
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
-    const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * (uint64_t)plan->desc.samples;
+    const uint64_t each = (uint64_t)plan->desc.samples + (plan->base ? 1 : 0);
+    const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * each;
     const uint64_t sides = 2 * (uint64_t)plan->geometry->table.site_count;
     glint_ray_counts rays = { 0 };
     if (plan->runs[GLINT_STAGE_CAMERA])
@@ -206,7 +216,7 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 {
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
-    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_CUE], options, sizeof options);
+    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_REFINE], options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);

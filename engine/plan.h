@@ -29,6 +29,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_INDIRECT,
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_CUE,
+    GLINT_STAGE_REFINE, ///< before all others: which pixels they run for
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
     GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
@@ -104,6 +105,7 @@ typedef struct glint_text_line {
 
 struct glint_plan {
     glint_render_desc desc;
+    struct glint_plan *base; ///< of the picture that adaptive sampling looks at, of one sample a pixel; NULL: it is off
     glint_plan_camera camera;
 
     glint_geometry *geometry;

@@ -269,6 +269,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
+    one(e, plan->runs[GLINT_STAGE_REFINE], "samples only where needed", "adaptive = %g", plan->desc.adaptive);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");
     static const char *const curves[] = { "clamp", "reinhard", "filmic" };
     const glint_tone_desc *tone = &plan->desc.tone;
@@ -294,6 +295,7 @@ static void list_stages(glint_plan *plan)
         "light that surfaces get from other surfaces and the background",
         "mirrored and refracted rays, and what they find",
         "light faded towards a colour by distance",
+        "which pixels get all samples: edges of objects, normals and contrast",
         "mean of samples and lights",
         "light to 8 or 16-bit codes",
         "lines where depth, normal or object changes",

@@ -20,6 +20,7 @@ typedef enum input {
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
     INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
+    INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
     INPUT_CUE, ///< how light fades with the distance
     INPUT_PASSES,
     INPUT_TONE
@@ -41,6 +42,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_CUE] = READS(CUE),
+    [GLINT_STAGE_REFINE] = READS(ADAPTIVE),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
     [GLINT_STAGE_OUTLINE] = 0,
@@ -187,6 +189,10 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         key = indirect_key(plan, key);
     if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
         key = bounces_key(plan, key);
+    if (which & READS(ADAPTIVE) && plan->runs[GLINT_STAGE_REFINE]) {
+        const double seen[] = { plan->desc.adaptive, plan->desc.tone.curve, plan->desc.tone.exposure };
+        ADD(key, seen);
+    }
     if (which & READS(CUE) && plan->cue.on) {
         ADD(key, plan->cue.color);
         ADD(key, plan->cue.near);

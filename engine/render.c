@@ -5,6 +5,7 @@
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
 #include "engine/outline.h"
+#include "engine/refine.h"
 #include "engine/reuse.h"
 #include "engine/tile.h"
 
@@ -21,6 +22,7 @@ struct glint_renderer {
     const glint_stages *stages;
     bool time_stages, count_work;
     atomic_bool cancelled;
+    atomic_bool *stop; ///< that; of a renderer of bases, that of its frames
     atomic_size_t tiles_done;
     atomic_size_t tile_count;
     glint_tile **tiles; ///< a tile's working memory for each worker
@@ -33,6 +35,11 @@ struct glint_renderer {
     ///< them
     glint_key last_key;
     glint_frame_stats last_stats;
+    glint_refine refine;
+    struct glint_renderer
+        *base; ///< makes the pictures that adaptive sampling looks at, with the pool and the tiles of this
+    ///< one; NULL until a frame has it, and again after one that has not
+    bool shares; ///< it is such a one
 };
 
 /// One call of glint_render.
@@ -49,6 +56,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     glint_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer)
         return glint_fail_nomem(error);
+    renderer->stop = &renderer->cancelled;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
     glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
@@ -128,15 +136,19 @@ void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
         return;
-    for (int i = 0; renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
+    glint_renderer_destroy(renderer->base);
+    glint_refine_clear(&renderer->refine);
+    for (int i = 0; !renderer->shares && renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
         free_tile(renderer->tiles[i]);
-    free(renderer->tiles);
+    if (!renderer->shares)
+        free(renderer->tiles);
     drop_spares(renderer);
     glint_sites_clear(&renderer->sites, &renderer->reuse);
     glint_scan_clear(&renderer->scan);
     glint_reuse_clear(&renderer->reuse);
     glint_image_release(renderer->last);
-    glint_pool_destroy(renderer->pool);
+    if (!renderer->shares)
+        glint_pool_destroy(renderer->pool);
     free(renderer);
 }
 
@@ -233,10 +245,10 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
 static void finish(glint_renderer *renderer, const glint_plan *plan, glint_image *image)
 {
     glint_tile_counts *counts = &renderer->tiles[0]->counts;
-    if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(&renderer->cancelled))
+    if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(renderer->stop))
         return;
     const uint64_t start = glint_tile_now_ns();
-    glint_outline(plan, renderer->pool, image);
+    glint_outline(plan->base ? plan->base : plan, renderer->pool, image);
     counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
     counts->runs[GLINT_STAGE_OUTLINE]++;
 }
@@ -259,7 +271,10 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
                                            : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
     if (status)
         return status;
-    glint_reuse_begin(&renderer->reuse, plan, tile_count);
+    if (shared->base) // other pixels in every frame
+        glint_reuse_clear(&renderer->reuse);
+    else
+        glint_reuse_begin(&renderer->reuse, plan, tile_count);
     renderer->scan.ms = 0;
     if (!plan->scan || !casts(&renderer->reuse, plan))
         return GLINT_OK;
@@ -274,7 +289,8 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     return status;
 }
 
-static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+/// `base`: of adaptive sampling, after the choice; else NULL.
+static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                         const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
 {
     frame f = { .renderer = renderer,
@@ -286,13 +302,17 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
                             .sites = &renderer->sites,
-                            .cancelled = &renderer->cancelled,
+                            .base = base,
+                            .refined = renderer->refine.chosen,
+                            .cancelled = renderer->stop,
                             .time_stages = renderer->time_stages,
                             .count_work = renderer->count_work } };
     const double begin = now_ms();
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
+    if (base && image->film)
+        memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
     if (!status)
         status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
     if (status)
@@ -314,7 +334,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     finish(renderer, plan, image);
     collect_stats(renderer, plan, now_ms() - start + renderer->scan.ms, stats);
     stats->build_ms = start - begin - renderer->scan.ms;
-    if (atomic_load(&renderer->cancelled))
+    if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)
         stamp_rows(image, f.across);
@@ -338,6 +358,7 @@ static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_im
         *stats = (glint_frame_stats) { .stage_count = renderer->last_stats.stage_count };
         stats->clipped = renderer->last_stats.clipped;
         stats->nonfinite = renderer->last_stats.nonfinite;
+        stats->refined = renderer->last_stats.refined;
         for (int i = 0; i < stats->stage_count; i++) {
             stats->stage_name[i] = renderer->last_stats.stage_name[i];
             stats->stage_reused[i] = 1;
@@ -392,6 +413,82 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
     return status;
 }
 
+// ---- Adaptive sampling ----
+
+/// A renderer that keeps its own, half of what may be kept, and shares the rest.
+static glint_status open_base(glint_renderer *renderer, glint_error *error)
+{
+    glint_renderer *base = renderer->base;
+    if (base)
+        return GLINT_OK;
+    base = calloc(1, sizeof *base);
+    if (!base)
+        return glint_fail_nomem(error);
+    base->shares = true;
+    base->pool = renderer->pool;
+    base->tiles = renderer->tiles;
+    base->stages = renderer->stages;
+    base->stop = renderer->stop;
+    base->time_stages = renderer->time_stages;
+    base->count_work = renderer->count_work;
+    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1);
+    renderer->base = base;
+    return GLINT_OK;
+}
+
+/// Adds what the base took, and the choice.
+static void add_stats(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
+{
+    const double pixels = plan->desc.width * plan->desc.height;
+    const double all = pixels + (double)to->refined * plan->desc.samples; // samples
+    to->build_ms += base->build_ms;
+    to->render_ms += base->render_ms + base->tone_ms;
+    to->rays.primary += base->rays.primary;
+    to->rays.shadow += base->rays.shadow;
+    to->rays.mirror += base->rays.mirror;
+    to->rays.refraction += base->rays.refraction;
+    to->rays.indirect += base->rays.indirect;
+    to->work.light_samples += base->work.light_samples;
+    to->work.powers += base->work.powers;
+    to->work.sites += base->work.sites;
+    to->work.lights_seen += base->work.lights_seen;
+    for (int i = 0; i < to->stage_count; i++) {
+        if (to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
+            to->stage_ms[i] = choose_ms;
+        for (int k = 0; k < base->stage_count; k++) {
+            if (to->stage_name[i] != base->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
+                continue;
+            to->stage_ms[i] += base->stage_ms[k];
+            to->stage_reused[i] = base->stage_reused[k] * pixels / all;
+        }
+    }
+}
+
+/// The base of a frame, then the pixels that are worth it, then those.
+static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                                 const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
+{
+    glint_image *base = NULL;
+    glint_frame_stats first;
+    glint_status status = open_base(renderer, error);
+    if (!status)
+        status = glint_render(renderer->base, plan->base, &base, &first, error);
+    if (status)
+        return status;
+    const double start = now_ms();
+    status = glint_refine_choose(&renderer->refine, base, plan->desc.adaptive, renderer->pool, error);
+    const double choose_ms = now_ms() - start;
+    if (!status)
+        status = run(renderer, plan, image, base, table, stats, error);
+    glint_image_release(base);
+    if (status)
+        return status;
+    stats->refined = renderer->refine.count;
+    add_stats(stats, &first, plan, renderer->time_stages ? choose_ms : 0);
+    stats->render_ms += choose_ms;
+    return GLINT_OK;
+}
+
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error)
 {
@@ -399,15 +496,21 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
     glint_image *image = NULL;
     const glint_tone_table *table = NULL;
     glint_frame_stats counted;
-    if (atomic_load(&renderer->cancelled))
+    if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (unchanged(renderer, plan, out, stats))
         return GLINT_OK;
     glint_status status = take_image(renderer, desc, &image, error);
     if (!status && desc->codes)
         status = glint_tone_table_shared(&desc->tone, &table, error);
-    if (!status)
-        status = run(renderer, plan, image, table, &counted, error);
+    if (!plan->base) {
+        glint_renderer_destroy(renderer->base);
+        renderer->base = NULL;
+    }
+    if (!status && plan->base)
+        status = run_adaptive(renderer, plan, image, table, &counted, error);
+    else if (!status)
+        status = run(renderer, plan, image, NULL, table, &counted, error);
     if (status) {
         glint_image_release(image);
         return status;

@@ -222,7 +222,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     }
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
-    if (w->sample == 0 && glint_tile_wants_geometry(plan)) {
+    if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
         if (any)
             need_points(tile, frame, w);
         glint_tile_store_geometry(tile, frame);
@@ -447,16 +447,19 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);
-    for (uint32_t k = 0; k < (uint32_t)plan->desc.samples; k++) {
+    const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
+    for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);
         if (glint_tile_cancelled(frame))
             return;
     }
     sign_kept(tile, frame);
-    if (plan->runs[GLINT_STAGE_CUE])
+    if (plan->runs[GLINT_STAGE_CUE] && refined)
         glint_tile_take_cued(tile, plan);
-    if (plan->accumulate)
+    if (plan->accumulate && refined)
         glint_tile_resolve(tile, frame);
+    if (frame->base)
+        glint_tile_take_base(tile, frame);
     glint_tile_store_light(tile, frame);
     const uint64_t rendered = glint_tile_now_ns();
     if (plan->runs[GLINT_STAGE_TONE]) {

@@ -21,6 +21,8 @@ typedef struct glint_tile_counts {
 /// What all tiles of a frame share.
 typedef struct glint_tile_frame {
     const glint_plan *plan;
+    const glint_image *base; ///< adaptive sampling: the picture of one sample a pixel; else NULL
+    const uint8_t *refined; ///< of it, a byte a pixel: whether all samples are taken
     const glint_image *last; ///< the last picture, of the same format, or NULL
     glint_geometry_table geometry; ///< the plan's, with its index
     const glint_stages *stages;
@@ -183,6 +185,11 @@ void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *fram
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
 void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile_refine.c: leaves the pixels active that get all samples; returns whether there are any.
+bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
+/// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
+void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_indirect.c: follows ways of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
 /// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.

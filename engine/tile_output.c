@@ -103,9 +103,21 @@ static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame
 
 // ---- Light --------------------------------------------------------------------------------------------------------
 
+/// Without adaptive sampling every pixel has all samples.
+static void store_refined(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float all[GLINT_TILE_SAMPLES];
+    if (frame->base || !(frame->plan->desc.passes >> GLINT_PASS_REFINED & 1))
+        return;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        all[i] = 1;
+    store_pass(tile, frame, GLINT_PASS_REFINED, all);
+}
+
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
 {
     store_coverage(tile, frame);
+    store_refined(tile, frame);
     for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
         if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
             frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)

@@ -122,7 +122,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_si
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);
-    tile->counts.primary += (uint64_t)tile->width * tile->height;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        tile->counts.primary += (unsigned)__builtin_popcount(tile->active[g]);
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 

@@ -300,7 +300,7 @@ options() {
     for wrong in '-f x' '-f 3-1' '-f 1,' '-f -3' '-f 1-5:0' '-s 0' '-e x' '-j 0' '-s 5 -e 4' '-f 1 -s 1' '--shard 0/2' \
         '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \
         '--size 65536x1' '--samples 0' '--samples 1.5' '--samples nan' '--precision half' '--bits 9' '--transfer foo' \
-        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--passes foo' '--passes depth,' '--encode foo' '-t 0' '-t x' '-t 1025' '--seed -1' \
+        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--adaptive x' '--adaptive -1' '--adaptive 3.5' '--adaptive nan' '--passes foo' '--passes depth,' '--encode foo' '-t 0' '-t x' '-t 1025' '--seed -1' \
         '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--alpha=true' '--samples' '--fail 1'; do
         # shellcheck disable=SC2086
         exits 2 "wrong: $wrong" ten.lua $wrong
@@ -318,7 +318,7 @@ options() {
     script fields 'local S = require "scene" S.scene:render { width = -1 }'
     exits 2 "wrong field" fields.lua
     says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
-    for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'precision=true' 'rounding="up"' \
+    for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'adaptive=-0.1' 'adaptive=4' 'adaptive=true' 'precision=true' 'rounding="up"' \
         'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'encode="x"' 'output="x.jpg"' 'output=3' '[1]=2'; do
         script fields "local S = require 'scene' S.scene:render { $wrong }"
         exits 2 "wrong field $wrong" fields.lua
@@ -382,7 +382,7 @@ events() {
     check "frames in order" test "$(sed -n 's/^\.index=//p' values | tr '\n' ' ')" = "2 3 4 "
     for want in 'event=frame' 'file=ten_0003.png' 'status=rendered' 'ms.build=[0-9.]+' 'ms.render=[0-9.]+' 'ms.tone=[0-9.]+' \
         'ms.encode=[0-9.]+' 'ms.stages.cast=[0-9.]+' 'stages.cast=(run|reused)' 'rays.primary=[0-9]+' 'rays.shadow=[0-9]+' \
-        'rays.mirror=0' 'rays.refraction=0' 'rays.indirect=0' 'clipped=[0-9.e-]+' 'nonfinite=0' 'event=end' 'frames=3' \
+        'rays.mirror=0' 'rays.refraction=0' 'rays.indirect=0' 'refined=0' 'clipped=[0-9.e-]+' 'nonfinite=0' 'event=end' 'frames=3' \
         'kept=0' 'seconds=[0-9.]+'; do
         valued "event has $want" "^\.$want\$"
     done

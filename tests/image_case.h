@@ -86,6 +86,7 @@ static inline glint_image *make_image(int width, int height, const glint_tone_de
         }
         image->plane[GLINT_PASS_DEPTH][0][i] = hit ? (float)(5 + x) : INFINITY;
         image->plane[GLINT_PASS_OBJECT_ID][0][i] = hit ? (float)(1 + i % 7) : 0;
+        image->plane[GLINT_PASS_REFINED][0][i] = i % 3 == 0;
         image->plane[GLINT_PASS_OUTLINE][0][i] = hit && i % 5 == 0;
         image->plane[GLINT_PASS_ALPHA][0][i] = hit ? (float)(1 + i % 4) / 4 : 0;
     }

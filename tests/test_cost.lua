@@ -194,7 +194,7 @@ end
 
 local rows, advice = study("film", film .. " --frame 2")
 check_rows("film", rows, advice.reference)
-check(knobs_of(rows) == "samples shadows precision model bits encode reuse", "film responds to: %s", knobs_of(rows))
+check(knobs_of(rows) == "samples adaptive shadows precision model bits encode reuse", "film responds to: %s", knobs_of(rows))
 check(says "frame 2 of 3 %(%-%-frame N takes another%)", "which frame is taken: %s", read "err")
 check(#advice.left_out == 0 and advice.complete and advice.machine:find "thread", "advice: what was measured where")
 
@@ -379,7 +379,7 @@ refuses("nothing", write("nothing.lua", "local x = 1"), "rendered nothing")
 refuses("an empty list", write("empty.lua", "return {}"), "renders nothing")
 refuses("a frame beyond the end", film .. " --frame 4", "1 .. 3, expected, got '4'")
 refuses("no such knob", film .. " --knobs sample", "did you mean 'samples'")
-refuses("no knob", film .. " --knobs ''", "samples, shadows, light_samples, precision")
+refuses("no knob", film .. " --knobs ''", "samples, adaptive, shadows, light_samples, precision")
 refuses("no knob that the scene has", still("bare.lua", "") .. " --knobs shadows,model",
   "responds to %(bits, encode%) expected, got 'shadows,model'")
 refuses("a file for a folder", film .. " --report " .. film .. "/x", "a folder to write to expected")

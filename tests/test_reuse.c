@@ -131,6 +131,7 @@ static const field render_fields[] = {
     R(width, WHOLE, 60, 75),
     R(height, WHOLE, 40, 55),
     R(samples, WHOLE, 1, 4),
+    R(adaptive, NUMBER, 0, 0.5),
     R(max_depth, WHOLE, 0, 4),
     R(precision, CHOICE, 0, 2),
     R(seed, WHOLE, 0, 2),

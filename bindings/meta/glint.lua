@@ -533,6 +533,7 @@ function glint.scene(fields) end
 ---| "normal"  # shading normal turned to the eye; 0 where nothing is hit
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
 ---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
+---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
 ---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
 
 --- What a frame and its file are to be. What the command line says beats it.
@@ -540,6 +541,7 @@ function glint.scene(fields) end
 ---@field width? integer  pixels, 1 .. 65535. Default 1280
 ---@field height? integer  pixels, 1 .. 65535. Default 720
 ---@field samples? integer  a pixel, 1 .. 65536. Default 1
+---@field adaptive? number  0 .. 3: all samples only where neighbours differ by more, red, green and blue together, in shares of the code for white, or show an edge; elsewhere one. Default 0: off
 ---@field seed? integer  0 .. 2^53: another seed, another sample pattern as good. Default 0
 ---@field max_depth? integer  longest chain of mirrors and refractions, 0 .. 2^31; at most 31 where mirror + transmission is above 1. Default 5
 ---@field precision? "double"|"float"  what decides hits and shadows. Default "double"

@@ -12,19 +12,13 @@ static const struct {
     const char *name;
     int channels;
 } pass_table[GLINT_PASS_COUNT] = {
-    [GLINT_PASS_BEAUTY] = { "beauty", 3 },
-    [GLINT_PASS_BACKGROUND] = { "background", 3 },
-    [GLINT_PASS_AMBIENT] = { "ambient", 3 },
-    [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
-    [GLINT_PASS_SPECULAR] = { "specular", 3 },
-    [GLINT_PASS_INDIRECT] = { "indirect", 3 },
-    [GLINT_PASS_MIRROR] = { "mirror", 3 },
-    [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
-    [GLINT_PASS_DEPTH] = { "depth", 1 },
-    [GLINT_PASS_NORMAL] = { "normal", 3 },
-    [GLINT_PASS_OBJECT_ID] = { "object_id", 1 },
-    [GLINT_PASS_ALPHA] = { "alpha", 1 },
-    [GLINT_PASS_OUTLINE] = { "outline", 1 },
+    [GLINT_PASS_BEAUTY] = { "beauty", 3 },       [GLINT_PASS_BACKGROUND] = { "background", 3 },
+    [GLINT_PASS_AMBIENT] = { "ambient", 3 },     [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
+    [GLINT_PASS_SPECULAR] = { "specular", 3 },   [GLINT_PASS_INDIRECT] = { "indirect", 3 },
+    [GLINT_PASS_MIRROR] = { "mirror", 3 },       [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
+    [GLINT_PASS_DEPTH] = { "depth", 1 },         [GLINT_PASS_NORMAL] = { "normal", 3 },
+    [GLINT_PASS_OBJECT_ID] = { "object_id", 1 }, [GLINT_PASS_ALPHA] = { "alpha", 1 },
+    [GLINT_PASS_OUTLINE] = { "outline", 1 },     [GLINT_PASS_REFINED] = { "refined", 1 },
 };
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }

@@ -186,7 +186,7 @@ static void find_nearest(picture *p)
 static bool is_color(glint_pass pass)
 {
     return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
-           pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE;
+           pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE && pass != GLINT_PASS_REFINED;
 }
 
 static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
@@ -220,7 +220,7 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
     } else if (desc->pass == GLINT_PASS_DEPTH) {
         find_nearest(&p);
         source.row = row_of_depth;
-    } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE) {
+    } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE || desc->pass == GLINT_PASS_REFINED) {
         source.row = row_of_shares;
     } else {
         source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
