@@ -1,0 +1,37 @@
+-- Many samples only where they are needed: `adaptive` first takes one sample a pixel, and then all samples of those
+-- pixels that show another object, an edge or another colour than one of their neighbours.
+--
+--     glint scripts/adaptive.lua                          5 pictures: all samples everywhere, then thresholds 0.3 .. 0.01
+--     glint scripts/adaptive.lua --passes refined         and which pixels got all samples, white
+--     glint scripts/adaptive.lua --json | grep refined    how many these are, and the rays they took
+--     glint scripts/adaptive.lua -f 4 --set samples=64    what is smooth costs no more
+-- Look at: outlines and edges of shadows, which every threshold finds; the checkered floor far away and in the mirror;
+-- the soft shadow, whose dither of single samples 0.03 still smooths and 0.3 leaves.
+local glint = require "glint"
+
+local P = glint.params {
+  samples = { 16, min = 1, max = 65536, doc = "samples of a pixel that gets all" },
+}
+
+local scene = glint.scene {
+  camera = glint.camera { eye = { 0, 3, 9 }, at = { 0, 0.9, 0 }, fov = 34 },
+  ambient = 0.12, background = { 0.5, 0.62, 0.78 },
+  glint.point_light { position = { 6, 9, 6 }, intensity = 0.7 },
+  glint.sphere_light { position = { -5, 6, 3 }, radius = 1.2, samples = 4, intensity = 0.5 },
+  glint.sphere { center = { -1.5, 1.1, 0 }, radius = 1.1,
+    material = glint.material { diffuse = { 0.7, 0.16, 0.12 }, specular = 0.6, shininess = 120 } },
+  glint.sphere { center = { 1.2, 1.2, -0.6 }, radius = 1.2, material = glint.material { diffuse = 0.05, mirror = 0.85 } },
+  glint.box { min = { -0.5, 0, -0.5 }, max = { 0.5, 1, 0.5 }, transform = glint.translate(0.3, 0, 1.8) * glint.rotate("y", 35),
+    material = glint.material { diffuse = { 0.2, 0.35, 0.7 } } },
+}
+local dark, light = glint.material { diffuse = 0.25 }, glint.material { diffuse = 0.75 }
+for i = -9, 8 do
+  for k = -16, 5 do
+    scene:add(glint.box { min = { i, -1, k }, max = { i + 1, 0, k + 1 }, material = (i + k) % 2 == 0 and dark or light })
+  end
+end
+
+for i, threshold in ipairs { 0, 0.3, 0.1, 0.03, 0.01 } do
+  scene:render { width = 640, height = 360, samples = P.samples, adaptive = threshold,
+    output = ("adaptive_%d.png"):format(i) }
+end
