@@ -34,6 +34,7 @@ picture() {
 }
 
 mkdir -p "$out"
+picture adaptive --frames 3
 picture caps --frames 6
 picture furnace
 picture gr_scene --dialect gr
