@@ -1,7 +1,7 @@
 -- Many samples only where they are needed: `adaptive` first takes one sample a pixel, and then all samples of those
 -- pixels that show another object, an edge or another colour than one of their neighbours.
 --
---     glint scripts/adaptive.lua                          5 pictures: all samples everywhere, then thresholds 0.3 .. 0.01
+--     glint scripts/adaptive.lua                          5 pictures: all samples everywhere, then 0.3 .. 0.01
 --     glint scripts/adaptive.lua --passes refined         and which pixels got all samples, white
 --     glint scripts/adaptive.lua --json | grep refined    how many these are, and the rays they took
 --     glint scripts/adaptive.lua -f 4 --set samples=64    what is smooth costs no more
@@ -20,14 +20,17 @@ local scene = glint.scene {
   glint.sphere_light { position = { -5, 6, 3 }, radius = 1.2, samples = 4, intensity = 0.5 },
   glint.sphere { center = { -1.5, 1.1, 0 }, radius = 1.1,
     material = glint.material { diffuse = { 0.7, 0.16, 0.12 }, specular = 0.6, shininess = 120 } },
-  glint.sphere { center = { 1.2, 1.2, -0.6 }, radius = 1.2, material = glint.material { diffuse = 0.05, mirror = 0.85 } },
-  glint.box { min = { -0.5, 0, -0.5 }, max = { 0.5, 1, 0.5 }, transform = glint.translate(0.3, 0, 1.8) * glint.rotate("y", 35),
-    material = glint.material { diffuse = { 0.2, 0.35, 0.7 } } },
+  glint.sphere { center = { 1.2, 1.2, -0.6 }, radius = 1.2,
+    material = glint.material { diffuse = 0.05, mirror = 0.85 } },
+  glint.box { min = { -0.5, 0, -0.5 }, max = { 0.5, 1, 0.5 },
+    material = glint.material { diffuse = { 0.2, 0.35, 0.7 } },
+    transform = glint.translate(0.3, 0, 1.8) * glint.rotate("y", 35) },
 }
 local dark, light = glint.material { diffuse = 0.25 }, glint.material { diffuse = 0.75 }
 for i = -9, 8 do
   for k = -16, 5 do
-    scene:add(glint.box { min = { i, -1, k }, max = { i + 1, 0, k + 1 }, material = (i + k) % 2 == 0 and dark or light })
+    local tile = (i + k) % 2 == 0 and dark or light
+    scene:add(glint.box { min = { i, -1, k }, max = { i + 1, 0, k + 1 }, material = tile })
   end
 end
 
