@@ -102,6 +102,19 @@ bool glintL_work_is_kept(glintL_run *run, const glintL_work *work)
     return work->file_count > 0;
 }
 
+// Once for each light of the run.
+static void warn_of_caps(glintL_run *run, const glint_plan *plan)
+{
+    const glint_effect *effects;
+    const size_t count = glint_plan_effects(plan, &effects);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(effects[i].effect, "rays in place of caps") == 0)
+            glintL_run_warn(run,
+                            "%s.shadow: caps are for scenes of opaque spheres and planes alone, and its shadows have "
+                            "rays here; set shadow = \"rays\"",
+                            effects[i].caller);
+}
+
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
@@ -109,6 +122,7 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
         return error->status;
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, true);
+    warn_of_caps(run, work->plan);
     glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);

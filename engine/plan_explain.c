@@ -233,8 +233,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "light by radiance", radiates);
         lights(e, scene, "hard shadow", casts_hard_shadows);
         lights(e, scene, "soft shadow", plan->caps ? casts_sampled : casts_soft_shadows);
-        if (plan->caps)
-            lights(e, scene, "soft shadow by caps", casts_caps);
+        lights(e, scene, plan->caps ? "soft shadow by caps" : "rays in place of caps", casts_caps);
         one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
         shapes(e, "triangles", is_mesh);
         one(e, plan->scan, "scan conversion", "%s: %u triangles",

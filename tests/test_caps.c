@@ -366,6 +366,7 @@ static void other_shapes_have_rays(void **unused)
             assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
             assert_false(has_effect(scene, "soft shadow by caps"));
             assert_true(has_effect(scene, "soft shadow"));
+            assert_int_equal(has_effect(scene, "rays in place of caps"), shadow);
             image[shadow] = render(scene, NULL, 1, SIDE, GLINT_DOUBLE, NULL);
             glint_shape_release(shape);
             glint_material_release(material);

@@ -211,6 +211,17 @@ run scene.lua --warnings=loud
 test $? -eq 2 && grep -q "show, error or none expected, got 'loud'" err
 result $? "wrong use"
 
+cat >caps.lua <<'END'
+local glint = require "glint"
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 } },
+  glint.sphere_light { position = { 0, 5, 5 }, radius = 1, shadow = "caps", name = "bulb" } }
+scene:render { width = 8, height = 8, output = "caps.png" }
+scene:render { width = 8, height = 8, output = "again.png", seed = 1 }
+END
+"$glint" caps.lua --quiet 2>err
+test "$(grep -c "sphere_light 'bulb'.shadow: caps are for scenes of opaque spheres and planes alone" err)" -eq 1
+result $? "caps that are rays, once"
+
 # ---- The scripts of the project give no cause ----
 
 run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff # the file that nff.lua reads
