@@ -243,8 +243,8 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
 }
 
 /// The lanes of `wanted` that the primitive blocks.
-static __attribute__((always_inline)) inline unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder,
-                                                                    R(shadow_group) * group, unsigned wanted)
+INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, R(shadow_group) * group,
+                             unsigned wanted)
 {
     const glint_occlude_args *args = tile->args;
     const glint_prim *prim = &args->geometry->prims[occluder.id];

@@ -65,7 +65,7 @@ static void R(camera)(const glint_camera_args *args)
         R(camera_perspective)(args);
 }
 
-static inline void R(load3)(const void *const v[3], size_t at, vr out[3])
+INNER void R(load3)(const void *const v[3], size_t at, vr out[3])
 {
     for (int k = 0; k < 3; k++)
         out[k] = r_load((const real *)v[k] + at);
@@ -76,7 +76,7 @@ typedef struct R(group_place) {
     uint32_t g, x, y;
 } R(group_place);
 
-static inline void R(next_group)(const glint_camera_args *camera, R(group_place) * place)
+INNER void R(next_group)(const glint_camera_args *camera, R(group_place) * place)
 {
     place->g++;
     if (camera && ++place->x == camera->groups_across) {
@@ -90,7 +90,7 @@ typedef struct R(group_directions) {
     const real *across, *down;
 } R(group_directions);
 
-static inline R(group_directions) R(directions_of)(const glint_camera_args *camera, uint32_t x, uint32_t y)
+INNER R(group_directions) R(directions_of)(const glint_camera_args *camera, uint32_t x, uint32_t y)
 {
     if (!camera)
         return (R(group_directions)) { NULL, NULL };
@@ -99,8 +99,7 @@ static inline R(group_directions) R(directions_of)(const glint_camera_args *came
 }
 
 /// Lanes i .. of the group; `direction`, `at`: the arrays and the group's place in them, where they are needed.
-static inline void R(load_direction)(R(group_directions) from, const void *const direction[3], size_t at, int i,
-                                     vr out[3])
+INNER void R(load_direction)(R(group_directions) from, const void *const direction[3], size_t at, int i, vr out[3])
 {
     for (int k = 0; k < 3; k++) {
         if (from.across)

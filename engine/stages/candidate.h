@@ -223,7 +223,7 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
 }
 
 /// Lanes of group (x, y) that pass near the candidate.
-static inline unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
+INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
     if (candidate->prim->kind == GLINT_PRIM_PLANE)
         return 0xffff;
@@ -245,8 +245,8 @@ static inline unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candida
 }
 
 /// f: the candidate's, in every lane.
-static inline rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3],
-                                   const vr d[3], vr *t)
+INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
+                           vr *t)
 {
     vr corner[3][3];
     if (candidate->prim->kind == GLINT_PRIM_SOLID)
@@ -259,8 +259,7 @@ static inline rm R(meet_candidate)(const glint_cast_args *args, const R(candidat
 }
 
 /// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.
-static inline bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y,
-                                    unsigned near)
+INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
 {
     const glint_cast_args *args = tile->args;
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;

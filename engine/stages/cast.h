@@ -1,8 +1,9 @@
 // cast: the nearest hit of each ray from the eye. The tile walks the index once, nearest boxes first, and tests what it
 // finds group by group. Contract: stages.h.
 
-/// The only candidate of a group: what it does not hit, nothing does.
-static inline void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
+/// The only candidate of a group: what it does not hit, nothing does. `sphere` is a constant.
+INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candidate, const bool sphere, int x, int y,
+                         unsigned near)
 {
     const glint_cast_args *args = tile->args;
     const uint32_t g = (uint32_t)(y * tile->across + x);
@@ -17,7 +18,11 @@ static inline void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) *
         rm hit = rm_from_bits(0);
         if (lanes) {
             R(load_direction)(directions, args->direction, 0, i, d);
-            hit = rm_and(rm_from_bits(lanes), R(meet_candidate)(args, candidate, f, d, &t));
+            if (sphere)
+                hit = R(meet_sphere)(f, d, DOT(d, d), r_set(candidate->c), candidate->prim, &t);
+            else
+                hit = R(meet_candidate)(args, candidate, f, d, &t);
+            hit = rm_and(rm_from_bits(lanes), hit);
             hit = rm_and(hit, r_lt(t, r_set(HUGE_VAL)));
         }
         r_store((real *)args->t + at + i, r_select(hit, t, r_set(HUGE_VAL)));
@@ -44,7 +49,10 @@ static inline void R(begin_group_cast)(R(tile_cast) * tile, const R(candidate) *
         found += near[found] != 0;
     }
     if (found == 1 && !tile->deep) {
-        R(cast_alone)(tile, &candidates[order[0]], x, y, near[0]);
+        if (candidates[order[0]].prim->kind == GLINT_PRIM_SPHERE)
+            R(cast_alone)(tile, &candidates[order[0]], true, x, y, near[0]);
+        else
+            R(cast_alone)(tile, &candidates[order[0]], false, x, y, near[0]);
         return;
     }
     R(start_group)(tile->args, g);

@@ -5,6 +5,9 @@
 #include "engine/stages/coefficients.h"
 #include "engine/stages/stages.h"
 
+/// In the innermost loops: inlined, however large the file has grown.
+#define INNER static __attribute__((always_inline)) inline
+
 static inline vf f_exponent(vf x)
 {
     return f_from_bits(i_or(i_shr(f_bits(x), 23), i_set(0x4b000000))) - f_set(0x1p23f + 127);

@@ -10,14 +10,14 @@ typedef struct R(lit_group) {
     unsigned lit, shiny;
 } R(lit_group);
 
-static __attribute__((always_inline)) inline rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
+INNER rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
 {
     vr rv = (r_set(2) * nl) * nv - lv;
     *x = r_min((rv * rv) / l2a, r_set(1));
     return r_lt(r_set(0), rv);
 }
 
-static inline rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
+INNER rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
 {
     vr w = r_sqrt(l2 * a);
     vr num = ((nl * nl) * a + (nv * nv) * l2) + ((r_set(2) * nl) * nv) * w;
@@ -37,8 +37,7 @@ typedef struct R(lit_point) {
     vr a, nv; ///< a = length2(direction)
 } R(lit_point);
 
-static __attribute__((always_inline)) inline void R(view_lanes)(const glint_light_args *args, size_t at, int i,
-                                                                R(lit_point) * surface)
+INNER void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_point) * surface)
 {
     if (surface->viewed)
         return;
@@ -50,7 +49,7 @@ static __attribute__((always_inline)) inline void R(view_lanes)(const glint_ligh
 }
 
 /// 1 / (c0 + (c1 d + c2 d^2))
-static inline vr R(fall_off)(const glint_light_args *args, vr l2)
+INNER vr R(fall_off)(const glint_light_args *args, vr l2)
 {
     const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
     vr distance = r_sqrt(l2) / r_set(args->scale);
@@ -58,10 +57,8 @@ static inline vr R(fall_off)(const glint_light_args *args, vr l2)
 }
 
 /// The real part of one vector of lanes, for sample s. `kind` is a constant.
-static __attribute__((always_inline)) inline void R(light_lanes)(const glint_light_args *args, const int kind,
-                                                                 uint32_t s, const R(lamp_lanes) * lanes, size_t at,
-                                                                 int i, unsigned open, R(lit_point) * surface,
-                                                                 R(lit_group) * group)
+INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(lamp_lanes) * lanes,
+                          size_t at, int i, unsigned open, R(lit_point) * surface, R(lit_group) * group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr l[3], m = zero;
@@ -109,8 +106,8 @@ static __attribute__((always_inline)) inline void R(light_lanes)(const glint_lig
 }
 
 /// The float part of one group.
-static inline void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at,
-                                   const R(lit_group) * group)
+INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at,
+                           const R(lit_group) * group)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
@@ -139,7 +136,7 @@ static inline void R(finish_light)(const glint_light_args *args, const int kind,
 }
 
 /// Lanes by the highlight of their material.
-static inline void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
+INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned left, R(lit_point) * surface)
 {
     surface->phong = surface->blinn = 0;
     while (args->highlights && left) {
@@ -154,9 +151,9 @@ static inline void R(sort_highlights)(const glint_light_args *args, size_t at, u
 }
 
 /// The real part of a group for each sample, after its surfaces.
-static inline void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
-                                  const R(lamp_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
-                                  R(lit_group) * groups)
+INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
+                          const R(lamp_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
+                          R(lit_group) * groups)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     const unsigned open = args->hits[place.g] & ~(unsigned)args->dark[place.g];

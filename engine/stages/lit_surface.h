@@ -3,10 +3,8 @@
 
 /// A group that shows one primitive in every lane, and that from where it is not dark: the common case. Returns whether
 /// it is one.
-static __attribute__((always_inline)) inline bool R(lit_whole)(const glint_surface_args *surface,
-                                                               const glint_light_args *light, R(surface_walk) * walk,
-                                                               R(group_place) place, R(lit_point) * point,
-                                                               R(lit_group) * group)
+INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
+                        R(group_place) place, R(lit_point) * point, R(lit_group) * group)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     const uint32_t id = surface->prim[at];

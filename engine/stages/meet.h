@@ -1,7 +1,7 @@
 // meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
 
 /// |f|^2 - (radius scale)^2 without cancellation.
-static inline vr R(exact_c)(const vr f[3], const glint_prim *prim)
+INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
 {
 #if GLINT_REAL == 64
     vd e0, e1, e2;
@@ -16,7 +16,7 @@ static inline vr R(exact_c)(const vr f[3], const glint_prim *prim)
 
 /// The better of two discriminants: from within the sphere's width b^2 - a c, from afar a r^2 - |f x d|^2 (Haines,
 /// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
-static inline vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
+INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
 {
     vr bb = b * b, ar2 = a * r2, inner = bb - a * c;
     const rm near = r_lt(bb, ar2);
@@ -26,7 +26,7 @@ static inline vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c,
     return r_select(near, inner, ar2 - ((x * x + y * y) + z * z));
 }
 
-static inline rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
+INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
 {
     const vr zero = r_set(0), r2 = r_set(prim->r2), scale = r_set(prim->scale);
     vr b = -DOT(f, d);
@@ -39,7 +39,7 @@ static inline rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const 
     return rm_and(r_le(zero, disc), r_lt(zero, *t));
 }
 
-static inline rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
+INNER rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
 {
     const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
     vr nd = DOT(n, d);
@@ -139,7 +139,7 @@ static unsigned R(wins_tie)(const glint_prim *prims, uint32_t id, const uint32_t
 }
 
 /// Keeps the nearest of what was and `t` in the lanes of `hit`.
-static inline void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
+INNER void R(keep_nearest)(const glint_cast_args *args, size_t at, uint32_t id, rm hit, vr t)
 {
     real *best_t = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
@@ -171,7 +171,7 @@ static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
     return DOT(n, f);
 }
 
-static inline rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
+INNER rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
 {
     const vr a = DOT(d, d);
     if (prim->kind == GLINT_PRIM_SPHERE)

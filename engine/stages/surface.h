@@ -19,9 +19,8 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
 }
 
 /// `near`: the origin is known to be within 2^20 radii in every lane.
-static __attribute__((always_inline)) inline void R(sphere_surface)(const vr f[3], const vr d[3], vr t,
-                                                                    const glint_prim *prim, real inverse_radius,
-                                                                    bool near, vr n[3], vr p[3])
+INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius, bool near,
+                             vr n[3], vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
     vr ts = t * scale;
@@ -42,7 +41,7 @@ static __attribute__((always_inline)) inline void R(sphere_surface)(const vr f[3
 }
 
 /// Writes `x` in the lanes of `mask`; `whole` says that these are all.
-static inline void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
+INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 {
     real *to = (real *)array + at;
     if (!whole)
@@ -87,10 +86,8 @@ typedef struct R(found) {
     rm back;
 } R(found);
 
-static __attribute__((always_inline)) inline void R(find_lanes)(const glint_surface_args *args,
-                                                                const R(seen_prim) * seen,
-                                                                R(group_directions) directions, size_t at, int i,
-                                                                bool mixed, R(found) * found)
+INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
+                         size_t at, int i, bool mixed, R(found) * found)
 {
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
@@ -131,7 +128,7 @@ typedef struct R(point_box) {
     vr least[3], most[3];
 } R(point_box);
 
-static __attribute__((always_inline)) inline void R(empty_box)(R(point_box) * box)
+INNER void R(empty_box)(R(point_box) * box)
 {
     for (int k = 0; k < 3; k++) {
         box->least[k] = r_set(HUGE_VAL);
@@ -139,7 +136,7 @@ static __attribute__((always_inline)) inline void R(empty_box)(R(point_box) * bo
     }
 }
 
-static __attribute__((always_inline)) inline void R(enclose)(R(point_box) * box, const vr point[3], bool whole, rm mask)
+INNER void R(enclose)(R(point_box) * box, const vr point[3], bool whole, rm mask)
 {
     for (int k = 0; k < 3; k++) {
         const vr least = r_min(point[k], box->least[k]), most = r_max(point[k], box->most[k]);
@@ -165,10 +162,9 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
 
 /// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
 /// is seen from behind.
-static __attribute__((always_inline)) inline unsigned R(surface_lanes)(const glint_surface_args *args,
-                                                                       const R(seen_prim) * seen,
-                                                                       R(group_directions) directions, size_t at, int i,
-                                                                       unsigned lanes, bool mixed, R(point_box) * box)
+INNER unsigned R(surface_lanes)(const glint_surface_args *args, const R(seen_prim) * seen,
+                                R(group_directions) directions, size_t at, int i, unsigned lanes, bool mixed,
+                                R(point_box) * box)
 {
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
@@ -205,7 +201,7 @@ typedef struct R(surface_walk) {
     bool several, turned; ///< there are others; some lane is seen from behind
 } R(surface_walk);
 
-static __attribute__((always_inline)) inline void R(begin_walk)(R(surface_walk) * walk)
+INNER void R(begin_walk)(R(surface_walk) * walk)
 {
     walk->seen = (R(seen_prim)) { .id = GLINT_MISS };
     walk->only = GLINT_MISS;
@@ -213,8 +209,7 @@ static __attribute__((always_inline)) inline void R(begin_walk)(R(surface_walk) 
     R(empty_box)(&walk->box);
 }
 
-static __attribute__((always_inline)) inline void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk,
-                                                             uint32_t id)
+INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, uint32_t id)
 {
     if (walk->seen.id == id)
         return;
@@ -223,8 +218,7 @@ static __attribute__((always_inline)) inline void R(look_at)(const glint_surface
     walk->only = id;
 }
 
-static __attribute__((always_inline)) inline void R(end_walk)(const glint_surface_args *args,
-                                                              const R(surface_walk) * walk)
+INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * walk)
 {
     if (!args->box)
         return;
@@ -233,8 +227,7 @@ static __attribute__((always_inline)) inline void R(end_walk)(const glint_surfac
 }
 
 /// One group that is hit, primitive by primitive.
-static __attribute__((always_inline)) inline void
-R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(group_place) place, bool mixed)
+INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(group_place) place, bool mixed)
 {
     const uint32_t g = place.g;
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -263,7 +256,7 @@ R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(group
     walk->turned = walk->turned || back;
 }
 
-static __attribute__((always_inline)) inline void R(surface_groups)(const glint_surface_args *args, bool mixed)
+INNER void R(surface_groups)(const glint_surface_args *args, bool mixed)
 {
     R(surface_walk) walk;
     R(begin_walk)(&walk);
