@@ -41,6 +41,9 @@ ifeq ($(call have,libseccomp),yes)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
 
+# WITHOUT=MESH leaves a part of the kernels out, see engine/stages/with.h.
+DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
+
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
 ifdef SANITIZE
   SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -142,7 +145,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli completion films gallery golden install povray readme untrusted warnings watch)))
+              $(addprefix tests/,$(addsuffix .sh,cli completion effects films gallery golden install povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -271,6 +274,23 @@ bench-run: all
 	@$(MAKE) --no-print-directory bench-programs PROGRAMS='$(addprefix $(BUILD)/tests/bench/,glint_side peers $(PACKETS))'
 	@$(LUA) tests/bench/bench.lua $(BUILD) '$(CC) $(shell $(CC) -dumpfullversion 2>/dev/null), $(filter-out $(UNWANTED),$(CFLAGS))' \
 	    '$(BENCH)' '$(RUNS)'
+
+EFFECT_PARTS  = $(shell $(LUA) tests/effects/table.lua parts)
+
+.PHONY: bench-effects bench-effects-run
+bench-effects: ## each effect's cost to a scene that does not call for it: rays, calls, instructions beside a build without it
+	@tests/deps.sh build test
+	@$(MAKE) --no-print-directory bench-effects-run
+
+bench-effects-run: all
+	@$(MAKE) --no-print-directory $(EFFECT_PARTS:%=$(BUILD)/without/%/glint)
+	@$(LUA) tests/effects/table.lua bench $(BUILD)
+
+# The bindings know nothing of what the engine leaves out.
+$(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
+	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a
+	$(call say,LINK)
+	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
 
 # ---- Use ----
 

@@ -69,19 +69,22 @@
 #include "engine/stages/resolve.h"
 #include "engine/stages/tone.h"
 
-// Of one precision, a line each.
+// Of one precision.
 #define GEOMETRY_STAGES(real) \
     { \
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
-        .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .scan = scan_##real, \
+        .view = GLINT_WITH_FACET ? view_##real : NULL, .light = light_##real, \
+        .facet = GLINT_WITH_FACET ? facet_##real : NULL, .occlude = GLINT_WITH_SHADOW ? occlude_##real : NULL, \
+        .scan = GLINT_WITH_SCAN ? scan_##real : NULL, \
+        .bounce = GLINT_WITH_BOUNCE ? bounce_##real : NULL, .vertex = GLINT_WITH_VERTEX ? vertex_##real : NULL, \
+        .scatter = GLINT_WITH_INDIRECT ? scatter_##real : NULL, \
     }
 
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
     .shade = shade,
-    .resolve = resolve,
+    .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .tone = tone,
 };

@@ -87,7 +87,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
             attenuation = attenuation * (m / (l2 * r_sqrt(l2)));
         r_store_f(args->attenuation[s] + at + i, attenuation);
     }
-    const unsigned phong = surface->phong >> i & lit, blinn = surface->blinn >> i & lit;
+    const unsigned phong = surface->phong >> i & lit, blinn = GLINT_WITH_BLINN ? surface->blinn >> i & lit : 0;
     if (!(phong | blinn))
         return;
     R(view_lanes)(args, at, i, surface);
@@ -144,7 +144,7 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
         const unsigned lanes = lanes_equal(args->material + at, material);
         if (args->materials[material].highlight == GLINT_HIGHLIGHT_PHONG)
             surface->phong |= lanes;
-        else if (args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
+        else if (GLINT_WITH_BLINN && args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
             surface->blinn |= lanes;
         left &= ~lanes;
     }
@@ -204,9 +204,9 @@ static void R(light_spot)(const glint_light_args *args)
 static void R(light)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
-    if (args->lamp[0])
+    if (GLINT_WITH_LAMP && args->lamp[0])
         R(light_lamp)(args);
-    else if (args->spot)
+    else if (GLINT_WITH_SPOT && args->spot)
         R(light_spot)(args);
     else
         R(light_groups)(args, LIGHT_PLAIN, 1, NULL, &group);

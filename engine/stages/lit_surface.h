@@ -8,7 +8,7 @@ INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_arg
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
     const uint32_t id = surface->prim[at];
-    if (surface->hits[place.g] != 0xffff || lanes_equal(surface->prim + at, id) != 0xffff)
+    if ((surface->hits[place.g] & light->hits[place.g]) != 0xffff || lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
     R(look_at)(surface, walk, id);
     const glint_prim *prim = walk->seen.prim;

@@ -10,6 +10,11 @@ typedef struct light_factors {
     uint32_t count;
 } light_factors;
 
+static inline bool has_facets(const glint_shade_material *material)
+{
+    return GLINT_WITH_FACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
+}
+
 /// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to.
 static inline void put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
                                size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
@@ -77,7 +82,7 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
                                                float highlight[GLINT_GROUP], float grazing[GLINT_GROUP])
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
-    const bool facets = material->highlight == GLINT_HIGHLIGHT_FACETS;
+    const bool facets = has_facets(material);
     const vf most = f_set(GLINT_ATTENUATION_MAX), zero = f_set(0);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         vf w = f_set(1), share;
@@ -143,7 +148,7 @@ static inline void light_share(const light_factors *factors, const glint_shade_m
     const float *factor = term ? factors->specular[k] : factors->diffuse[k];
     for (int i = 0; i < GLINT_GROUP; i += VF)
         f_store(share + i, f_load(factor + i) * f_set(color));
-    if (!term || material->highlight != GLINT_HIGHLIGHT_FACETS)
+    if (!term || !has_facets(material))
         return;
     const float rise = share_color(material->grazing[c], light->specular[c]);
     for (int i = 0; i < GLINT_GROUP; i += VF)
@@ -314,7 +319,7 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
             const bool specular = args->highlights && material->highlight;
             const unsigned lanes = lanes_equal(args->material + at, index) & left;
             find_factors(args, material, specular, g, &factors);
-            if (simple && lanes == 0xffff && factors.count <= 1 && material->highlight != GLINT_HIGHLIGHT_FACETS) {
+            if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
                 shade_whole(args, material, specular, &factors, at);
                 done = true;
                 break;
@@ -335,7 +340,7 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
 /// Each way is compiled for its constant.
 static void shade(const glint_shade_args *args)
 {
-    if (args->sum[0][0])
+    if (GLINT_WITH_SAMPLES && args->sum[0][0])
         shade_groups(args, false);
     else
         shade_groups(args, true);

@@ -233,9 +233,9 @@ static void R(occlude_lamp)(const glint_occlude_args *args)
 
 static void R(occlude)(const glint_occlude_args *args)
 {
-    if (args->visible)
+    if (GLINT_WITH_CAPS && args->visible)
         R(occlude_caps)(args);
-    else if (args->lamp[0])
+    else if (GLINT_WITH_LAMP && args->lamp[0])
         R(occlude_lamp)(args);
     else
         R(occlude_point)(args);

@@ -15,6 +15,8 @@
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
+#include "engine/stages/with.h"
+
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,8 +36,8 @@
 typedef enum glint_prim_kind {
     GLINT_PRIM_SPHERE,
     GLINT_PRIM_PLANE,
-    GLINT_PRIM_TRIANGLE,
-    GLINT_PRIM_SOLID
+    GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH_MESH, 2),
+    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3)
 } glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.

@@ -1,0 +1,47 @@
+/// The parts of the kernels that `make bench-effects` leaves out, one a build (-DGLINT_WITH_MESH=0), to see that they
+/// cost nothing where no scene calls for them. Any other build has them all. A part is left out where its kernel goes into
+/// the table (isa.h), where its kind is told apart from others, or where its name below is asked.
+#ifndef GLINT_WITH_H
+#define GLINT_WITH_H
+
+#ifndef GLINT_WITH_MESH
+#define GLINT_WITH_MESH 1
+#endif
+#ifndef GLINT_WITH_SOLID
+#define GLINT_WITH_SOLID 1
+#endif
+#ifndef GLINT_WITH_VERTEX
+#define GLINT_WITH_VERTEX 1
+#endif
+#ifndef GLINT_WITH_BOUNCE
+#define GLINT_WITH_BOUNCE 1
+#endif
+#ifndef GLINT_WITH_INDIRECT
+#define GLINT_WITH_INDIRECT 1
+#endif
+#ifndef GLINT_WITH_FACET
+#define GLINT_WITH_FACET 1
+#endif
+#ifndef GLINT_WITH_BLINN
+#define GLINT_WITH_BLINN 1
+#endif
+#ifndef GLINT_WITH_SPOT
+#define GLINT_WITH_SPOT 1
+#endif
+#ifndef GLINT_WITH_LAMP
+#define GLINT_WITH_LAMP 1
+#endif
+#ifndef GLINT_WITH_CAPS
+#define GLINT_WITH_CAPS 1
+#endif
+#ifndef GLINT_WITH_SHADOW
+#define GLINT_WITH_SHADOW 1
+#endif
+#ifndef GLINT_WITH_SAMPLES
+#define GLINT_WITH_SAMPLES 1
+#endif
+
+/// The number of a kind: one that no 16-bit field holds where the kind is left out, so that no test for it is compiled.
+#define GLINT_KIND(with, number) ((with) ? (number) : 0x10000 + (number))
+
+#endif

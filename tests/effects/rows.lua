@@ -1,0 +1,53 @@
+--- The effects that a scene may call for, a row each:
+---   name       of the parameter `effect` in scene.lua
+---   part       of engine/stages/with.h: what a build without the effect leaves out; nil: it has no kernel of its own
+---   stage, rays    its counter: the stage's name or the kind of ray in the events of --json; nil: it has none
+---   functions  Lua patterns of the names of its functions; with the effect at least one is called. {}: what it does is
+---              compiled into functions of all
+---   call       makes the scene call for it: gets glint, the scene's parts, and the scene
+return {
+  { name = "shadows", part = "SHADOW", stage = "occlude", rays = "shadow", functions = { "^occlude" },
+    call = function(_, parts) parts.lamp.shadows = true end },
+  { name = "mirrors", part = "BOUNCE", stage = "bounce", rays = "mirror", functions = { "bounce" },
+    call = function(_, parts) parts.ball.mirror = 0.5 end },
+  { name = "glass", part = "BOUNCE", stage = "bounce", rays = "refraction", functions = { "bounce", "glint_batch" },
+    call = function(_, parts) parts.ball.transmission = 0.5 end },
+  { name = "microfacets", part = "FACET", stage = "facet", functions = { "facet", "^view_f" },
+    call = function(_, parts) parts.ball.model = "cook_torrance" end },
+  { name = "blinn_phong", part = "BLINN", functions = {},
+    call = function(_, parts) parts.ball.model = "blinn_phong" end },
+  { name = "spot_light", part = "SPOT", functions = {},
+    call = function(glint, parts, scene)
+      scene:remove(parts.lamp)
+      scene:add(glint.spot_light { position = { 0, 20, 0 }, direction = { 0, -1, 0 }, inner = 20, outer = 40,
+        shadows = false })
+    end },
+  { name = "area_light", part = "LAMP", functions = { "light_lamp" },
+    call = function(glint, parts, scene)
+      scene:remove(parts.lamp)
+      scene:add(glint.sphere_light { position = { 0, 20, 0 }, radius = 1, samples = 4, shadows = false })
+    end },
+  { name = "mesh", part = "MESH", functions = { "triangle", "see_edges" },
+    call = function(glint, parts, scene)
+      scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
+    end },
+  { name = "gouraud", part = "VERTEX", stage = "vertex", functions = { "vertex" },
+    call = function(glint, parts, scene)
+      scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, shading = "gouraud",
+        material = parts.ball })
+    end },
+  { name = "solids", part = "SOLID", functions = { "solid", "span_of" },
+    call = function(glint, parts, scene)
+      scene:add(glint.box { min = { -1, 4, -1 }, max = { 1, 6, 1 }, material = parts.ball })
+    end },
+  { name = "indirect", part = "INDIRECT", stage = "scatter", rays = "indirect", functions = { "scatter" },
+    call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
+  { name = "visible_light", stage = "glow", functions = { "glow" },
+    call = function(glint, parts, scene)
+      scene:remove(parts.lamp)
+      scene:add(glint.sphere_light { position = { 0, 6, 0 }, radius = 1, samples = 4, visible = true })
+    end },
+  { name = "depth_cue", stage = "cue", functions = { "_cue" },
+    call = function(_, _, scene) scene.depth_cue = { color = 0, near = 10, far = 30 } end },
+  { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
+}

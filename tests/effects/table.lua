@@ -1,0 +1,97 @@
+--- Only what is called for: what every effect costs a scene that does not call for it.
+---   table.lua check BUILD    its counters show 0 and none of its functions is called; with the effect, both show some
+---   table.lua bench BUILD    that as a table, and instructions beside BUILD/without/PART/glint, which lacks the effect
+---   table.lua parts          the parts that there are such builds of
+--- Instructions and calls are valgrind's, of all that happens within tiles, on AVX2, which valgrind knows.
+local here = arg[0]:gsub("[^/]*$", "")
+local rows = dofile(here .. "rows.lua")
+local LIMIT = 0.01 -- of the instructions
+local mode, build = arg[1], arg[2]
+
+local function output(command)
+  local pipe = assert(io.popen(command .. " 2>&1"))
+  local text = pipe:read "a"
+  return text, pipe:close()
+end
+
+local function arguments(row, more)
+  return ("%sscene.lua -D effect=%s -o none -t 1 --size 320x180 %s %s"):format(here, row and row.name or "none",
+    row and row.options or "", more)
+end
+
+--- The counter of an effect in the events of a frame with `called` (a row, or nil) called for.
+local function counted(row, called)
+  local text = output(("%s/glint %s"):format(build, arguments(called, "--json")))
+  local stages = assert(text:match '},"stages":(%b{})', text)
+  local found = row.stage and stages:find(('"%s":'):format(row.stage), 1, true) and 1 or 0
+  return row.rays and tonumber(text:match(('"%s":(%%d+)'):format(row.rays))) + found or found
+end
+
+--- Instructions within tiles, by function, and all together.
+local function traced(folder, row)
+  local file = os.tmpname()
+  local log, ok = output(("GLINT_ISA=avx2 valgrind --tool=callgrind --callgrind-out-file=%s --compress-strings=no "
+    .. "--toggle-collect=glint_tile_render %s/glint %s"):format(file, folder, arguments(row, "--quiet")))
+  assert(ok, log)
+  local functions, total, name, skip = {}, 0, nil, false
+  for line in io.lines(file) do
+    local cost = line:match "^[%d+*-]%S* (%d+)$"
+    if line:match "^fn=" then
+      name = line:match "^fn=(.*)$"
+    elseif line:match "^calls=" then
+      skip = true
+    elseif cost and skip then
+      skip = false
+    elseif cost then
+      functions[name] = (functions[name] or 0) + tonumber(cost)
+      total = total + tonumber(cost)
+    end
+  end
+  os.remove(file)
+  return functions, total
+end
+
+local function calls(row, functions)
+  local count = 0
+  for name in pairs(functions) do
+    for _, pattern in ipairs(row.functions) do
+      if name:match(pattern) then count = count + 1 break end
+    end
+  end
+  return count
+end
+
+local function parts()
+  local seen, list = {}, {}
+  for _, row in ipairs(rows) do
+    if row.part and not seen[row.part] then list[#list + 1] = row.part end
+    if row.part then seen[row.part] = true end
+  end
+  return list
+end
+
+if mode == "parts" then
+  print(table.concat(parts(), " "))
+  return
+end
+
+local functions, total = traced(build, nil)
+local without = {}
+for _, part in ipairs(mode == "bench" and parts() or {}) do
+  local _, less = traced(build .. "/without/" .. part, nil)
+  without[part] = total / less - 1
+end
+local passed, failed = 0, 0
+print(("# %-12s %8s %8s %10s %10s %14s"):format("effect", "counter", "with it", "functions", "with it", "instructions"))
+for _, row in ipairs(rows) do
+  local none, some = counted(row, nil), counted(row, row)
+  local called, called_with = calls(row, functions), calls(row, (traced(build, row)))
+  local more = row.part and without[row.part]
+  local good = none == 0 and called == 0 and (some > 0 or not (row.stage or row.rays)) and
+    (called_with > 0 or #row.functions == 0) and (not more or more <= LIMIT)
+  if good then passed = passed + 1 else failed = failed + 1 end
+  print(("%s %-12s %8d %8d %10d %10d %14s"):format(good and "ok" or "not ok", row.name, none, some, called, called_with,
+    more and ("%+.3f %%"):format(100 * more) or "-"))
+end
+print(("%d passed, %d failed, 0 skipped"):format(passed, failed))
+os.exit(failed == 0)
