@@ -429,6 +429,12 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
                                   .attenuated = one_in(2),
                                   .coefficients = { between(0, 2), between(0, 1), between(0, 1) },
                                   .highlights = !one_in(4) };
+    if (one_in(2)) { // what a visible lamp covers is not lit
+        uint16_t *hits = masks(light->group_count);
+        for (uint32_t g = 0; g < light->group_count; g++)
+            hits[g] = one_in(2) ? c->cast.hits[g] : hits[g] & c->cast.hits[g];
+        light->hits = hits;
+    }
     const glint_prim *prim = &c->scene->prims[below(c->scene->table.prim_count)];
     const double away = c->plan.size * power_of_ten(-2, 2);
     random_unit(light->position);
