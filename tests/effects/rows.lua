@@ -40,7 +40,7 @@ return {
     call = function(glint, parts, scene)
       scene:add(glint.box { min = { -1, 4, -1 }, max = { 1, 6, 1 }, material = parts.ball })
     end },
-  { name = "indirect", part = "INDIRECT", stage = "scatter", rays = "indirect", functions = { "scatter" },
+  { name = "indirect", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter" },
     call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
   { name = "visible_light", stage = "glow", functions = { "glow" },
     call = function(glint, parts, scene)
