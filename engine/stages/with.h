@@ -10,6 +10,9 @@
 #ifndef GLINT_WITH_SOLID
 #define GLINT_WITH_SOLID 1
 #endif
+#ifndef GLINT_WITH_SCAN
+#define GLINT_WITH_SCAN 1
+#endif
 #ifndef GLINT_WITH_VERTEX
 #define GLINT_WITH_VERTEX 1
 #endif
