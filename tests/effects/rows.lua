@@ -31,7 +31,7 @@ return {
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },
-  { name = "scan", part = "SCAN", stage = "scan", functions = { "scan" }, options = "--visibility scan",
+  { name = "scan", part = "SCAN", functions = { "scan" }, options = "--visibility scan",
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },
