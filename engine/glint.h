@@ -469,7 +469,8 @@ typedef struct glint_render_desc {
     glint_visibility visibility; ///< default GLINT_VISIBILITY_AUTO
     double seed; ///< whole number, 0 .. 2^53; another seed, another (equally good) sample pattern; 0 = unshifted
     double max_depth; ///< longest chain of mirrors and refractions; whole number, 0 .. 2^31; default 5. At most 31
-        ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface
+        ///< where the mirror + transmission of a material that has both is above 1: rays double at each surface. From
+        ///< the 17th surface of a chain on one of two rays, drawn by lot, stands for both
     uint32_t passes; ///< bits 1u << GLINT_PASS_...; kept in the image as linear float planes. Beauty may be left out.
         ///< With `outline` those that it is made of, depth, normal and object_id, are kept too
     bool codes; ///< make integer codes of the beauty pass while rendering, by `tone`

@@ -96,6 +96,7 @@ typedef struct glint_plan_indirect {
 } glint_plan_indirect;
 
 #define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile_bounce.c
+#define GLINT_BOUNCE_SPLITS 16 ///< surfaces of a chain at which both rays are followed
 #define GLINT_BOUNCE_LOSS 0x1p-20 ///< of linear light: what weak rays that are not followed may hold together, a sample
 
 typedef struct glint_text_line {

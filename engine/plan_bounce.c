@@ -41,28 +41,44 @@ static double gain(const glint_bounce_material *m)
     return most;
 }
 
-/// A bound of the light that surfaces themselves give to any ray, of the background and of lights that are seen.
+/// A bound of the light that surfaces of a material themselves give to any ray.
+static double surface_light(const glint_plan *plan, uint32_t i)
+{
+    const glint_shade_material *m = &plan->materials[i];
+    double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
+    for (uint32_t k = 0; k < plan->light_count; k++) {
+        const glint_plan_light *light = &plan->lights[k];
+        const double c0 = light->coefficients[0];
+        const bool radiant = light->lamps && light->lamps->emission >= GLINT_EMIT_RADIANT_FRONT;
+        const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
+        const double far = brightest_of(m->diffuse) * brightest_of(light->diffuse) +
+                           brightest_of(m->specular) * brightest_of(light->specular);
+        if (far > 0)
+            sum += near * far;
+    }
+    return sum;
+}
+
+/// The same of all surfaces, of lights that are seen, and of the background.
 static double brightest_surface(const glint_plan *plan)
 {
     double most = brightest_of(plan->background);
     for (uint32_t i = 0; i < plan->glow_count; i++)
         most = fmax(most, brightest_of(plan->glows[i].shown));
-    for (uint32_t i = 0; i < plan->material_count; i++) {
-        const glint_shade_material *m = &plan->materials[i];
-        double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
-        for (uint32_t k = 0; k < plan->light_count; k++) {
-            const glint_plan_light *light = &plan->lights[k];
-            const double c0 = light->coefficients[0];
-            const bool radiant = light->lamps && light->lamps->emission >= GLINT_EMIT_RADIANT_FRONT;
-            const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
-            const double far = brightest_of(m->diffuse) * brightest_of(light->diffuse) +
-                               brightest_of(m->specular) * brightest_of(light->specular);
-            if (far > 0)
-                sum += near * far;
-        }
-        most = fmax(most, sum);
-    }
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        most = fmax(most, surface_light(plan, i));
     return most;
+}
+
+/// The most that a chain without indirect light, whose materials send on no more than they get, can bring: at each surface
+/// what a material that sends on gives itself, at its end anything.
+static double brightest_chain(const glint_plan *plan, double depth)
+{
+    double each = 0;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        if (plan->bouncing[i].mirrors || plan->bouncing[i].transmits)
+            each = fmax(each, surface_light(plan, i));
+    return brightest_surface(plan) + (each > 0 ? each * depth : 0);
 }
 
 /// A bound of 1 + g + g^2 + ... + g^depth.
@@ -80,6 +96,8 @@ static void bound_light(glint_plan *plan)
         most = fmax(most, (plan->bouncing ? gain(&plan->bouncing[i]) : 0) +
                               (plan->indirect.samples ? brightest_of(plan->materials[i].diffuse) : 0));
     plan->brightest = brightest_surface(plan) * geometric(most, depth);
+    if (plan->bouncing && !plan->indirect.samples && most <= 1)
+        plan->brightest = fmin(plan->brightest, brightest_chain(plan, depth));
     plan->indirect.least = GLINT_BOUNCE_LOSS / (4 * plan->brightest * geometric(most, depth));
 }
 

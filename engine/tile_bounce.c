@@ -6,6 +6,10 @@
 /// That bounds the memory, however long the chains are. The order of a pixel's rays, and so of its sums, depends on
 /// nothing but that pixel.
 ///
+/// Where both rays of a surface were followed for ever, their number would double with each. Beyond GLINT_BOUNCE_SPLITS
+/// surfaces one, drawn by lot as they weigh, stands for both with the weight of the two: no light is lost, and work no longer
+/// doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+///
 /// A ray too weak to be seen is not followed: all that a sample loses so is at most GLINT_BOUNCE_LOSS of linear light, by
 /// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
 #include "engine/base/alloc.h"
@@ -118,6 +122,31 @@ static void push(struct glint_bounce *bounce, uint32_t level, const glint_batch_
         bounce->levels[level][bounce->counts[level]++] = *ray;
 }
 
+/// A number in 0 .. 1 that is the ray's own: made of its direction's bits (the finish of splitmix64).
+static double lot_of(const glint_batch_ray *ray)
+{
+    uint64_t z = ray->depth;
+    for (int c = 0; c < 3; c++) {
+        uint64_t bits;
+        memcpy(&bits, &ray->direction[c], sizeof bits);
+        z = (z ^ bits) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        z ^= z >> 31;
+    }
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+/// One of two rays, by lot as they weigh, gets the weight of both, the other none.
+static void stand_for_both(glint_batch_ray *a, glint_batch_ray *b)
+{
+    const bool first = lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a);
+    glint_batch_ray *one = first ? a : b, *other = first ? b : a;
+    for (int c = 0; c < 3; c++) {
+        one->weight[c] = fmin(one->weight[c] + other->weight[c], GLINT_WEIGHT_MAX);
+        other->weight[c] = 0;
+    }
+}
+
 /// The mirrored and the refracted ray of one sample, the stronger one staying in `level`.
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                     uint32_t level)
@@ -131,6 +160,8 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
         for (int c = 0; c < 3; c++)
             mirror.weight[c] = fmin(mirror.weight[c] + through.weight[c], GLINT_WEIGHT_MAX);
         through.weight[0] = through.weight[1] = through.weight[2] = 0;
+    } else if (mirror.depth > GLINT_BOUNCE_SPLITS) {
+        stand_for_both(&mirror, &through);
     }
     const bool mirrors = matters(bounce, frame->plan, &mirror), transmits = matters(bounce, frame->plan, &through);
     const bool weaker_mirror = mirrors && transmits && total_weight(&mirror) < total_weight(&through);

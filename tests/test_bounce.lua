@@ -155,6 +155,20 @@ do -- absorption by the way inside, and the same in the shadow: twice the transm
   near(directional, 0.8 * 0.0625, ROUNDING, "two balls, four surfaces")
 end
 
+do -- chains without an end: beyond 16 surfaces one ray stands for both, so that work stays bounded and no light is lost
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 30 }, background = 1,
+    ball(1, glass(1.5, { fresnel = true })), ball(0.7, glass(1.1, { fresnel = true })), ball(0.4, glass(2, { fresnel = true })) }
+  local image = scene:render { width = 8, height = 8, output = "none", max_depth = 1000000 }
+  local least, most = math.huge, 0
+  for y = 0, 7 do
+    for x = 0, 7 do
+      local r = image:pixel(x, y)
+      least, most = math.min(least, r), math.max(most, r)
+    end
+  end
+  check(least >= 1 - LOSS - ROUNDING and most <= 1 + 2 * ROUNDING, "glass in glass, depth 1e6: %.9g .. %.9g", least, most)
+end
+
 -- ---- Depth, passes, bad input --------------------------------------------------------------------------------------------
 
 do
