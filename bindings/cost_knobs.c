@@ -299,6 +299,40 @@ static glint_status apply_shading(cost_draft *draft, cost_value value, glint_err
     return shading < COUNT(SHADING) ? cost_scene_set_shading(draft->scene, SHADING[shading], error) : GLINT_OK;
 }
 
+// ---- max_depth: chains of mirrors and refractions ----
+
+// By its materials alone: a script whose own depth is 0 has no stage for them.
+static bool has_bounce(const cost_scene *scene)
+{
+    bool has = false;
+    for (size_t i = 0; i < scene->material_count; i++) {
+        const glint_material_desc *m = &scene->material_descs[i];
+        for (int c = 0; c < 3; c++)
+            has = has || m->transmission[c] > 0 || (m->has_mirror ? m->mirror[c] > 0 : m->fresnel);
+    }
+    return has;
+}
+
+// The truth is the deepest: what the others lack is light.
+static void list_max_depth(const cost_subject *subject, cost_values *out)
+{
+    static const double depths[] = { 0, 1, 2, 5, 10 };
+    const double own = subject->render->desc.max_depth;
+    if (!has_stage(subject->plan, "bounce") &&
+        !(own == 0 && has_stage(subject->plan, "cast") && has_bounce(subject->scene)))
+        return;
+    list_numbers(depths, COUNT(depths), own, out);
+    out->has_truth = true;
+    out->truth = out->count - 1;
+}
+
+static glint_status apply_max_depth(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->render.desc.max_depth = value.number;
+    return GLINT_OK;
+}
+
 // ---- indirect_samples, indirect_bounces: ways of light from surface to surface ----
 
 static void list_indirect_samples(const cost_subject *subject, cost_values *out)
@@ -396,6 +430,7 @@ const cost_knob cost_knobs[] = {
     { "model", "a highlight", COST_ERROR_FILM, true, false, list_model, apply_model },
     { "segments", "a sphere_mesh", COST_ERROR_FILM, true, false, list_segments, apply_segments },
     { "shading", "a mesh and a light", COST_ERROR_FILM, true, false, list_shading, apply_shading },
+    { "max_depth", "a mirror or glass", COST_ERROR_FILM, true, false, list_max_depth, apply_max_depth },
     { "indirect_samples", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_samples, apply_indirect_samples },
     { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, apply_indirect_bounces },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },

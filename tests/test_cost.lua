@@ -341,6 +341,29 @@ local grouped = study("grouped", still("grouped.lua", [[glint.point_light { posi
 check(find(grouped, "model", "phong").default and find(grouped, "model", "blinn_phong").rmse > 0,
   "materials of a group are among what changes")
 
+-- ---- Mirrors and glass ----
+
+local hall = [[glint.directional_light { direction = { -1, -1, -2 } }, glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } },
+  glint.sphere { center = { -1, 1, 0 }, radius = 1, material = glint.material { diffuse = 0.1, mirror = 0.85 } },
+  glint.sphere { center = { 1, 1, 0 }, radius = 1, material = glint.material { diffuse = 0.1, %s } } ]]
+local mirrors, mirrors_advice = study("mirrors", still("mirrors.lua", hall:format "mirror = 0.85", "max_depth = 3,") .. " --size 32x24 --knobs max_depth")
+check(find(mirrors, "max_depth", 3).default and #mirrors == 6, "the script's own depth among the others: %d", #mirrors)
+local nearer = math.huge
+for _, depth in ipairs { 0, 1, 2, 3 } do
+  local row = find(mirrors, "max_depth", depth)
+  check(row.rmse < nearer, "error falls with the depth: %d: %g, before %g", depth, row.rmse, nearer)
+  nearer = row.rmse
+end
+check(find(mirrors, "max_depth", 10).rmse <= nearer + mirrors_advice.reference.rmse, "the deepest is nearest")
+local first, second = find(mirrors, "max_depth", 1).counters, find(mirrors, "max_depth", 2).counters
+check(find(mirrors, "max_depth", 0).counters.mirror == 0 and first.mirror > 50 and second.mirror > first.mirror,
+  "mirrored rays: %d at depth 1, %d at 2", first.mirror, second.mirror)
+local shut = study("shut", still("shut.lua", hall:format "transmission = 0.8", "max_depth = 0,") .. " --size 32x24 --knobs max_depth")
+check(find(shut, "max_depth", 0).default and find(shut, "max_depth", 10).counters.refraction > 50,
+  "a script that follows no ray is told what that costs it")
+local _, dull = study("dull", still("dull.lua", matt .. "glint.point_light { position = { 0, 9, 9 } }") .. " --size 32x24 --knobs max_depth,bits")
+check(#dull.left_out == 1 and dull.left_out[1]:find "max_depth: .* a mirror or glass", "matt: %s", dull.left_out[1])
+
 -- ---- Indirect light ----
 
 local sent = study("sent", still("sent.lua", [[indirect = { samples = 2, bounces = 1 },
