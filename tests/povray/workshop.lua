@@ -38,7 +38,7 @@ return {
   fade = 15, -- distance at which the light is as strong as without fall-off
   grid = { side = 5, width = 4 }, -- an area light: side x side point lights
   ambient = 0.1, diffuse = 0.7, specular = 0.35, shininess = 128, -- of every sphere
-  max_depth = 20,
+  max_depth = 16, -- as deep as both rays of a surface are followed
   shapes = { -- what stands in the place of some of the spheres
     solids = {
       [2] = { kind = "box", min = { -4.5, 0, -7 }, max = { 1.5, 6, -2.5 } },
