@@ -91,13 +91,13 @@ static void choose_stages(glint_plan *plan)
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
     plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
-    plan->accumulate = plan->cue.on || plan->desc.samples > 1 || plan->glow_count > 0 ||
+    plan->runs[GLINT_STAGE_CUE] = plan->cue.on || plan->veil.on;
+    plan->accumulate = plan->runs[GLINT_STAGE_CUE] || plan->desc.samples > 1 || plan->glow_count > 0 ||
                        plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
                        plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
-    plan->runs[GLINT_STAGE_CUE] = plan->cue.on;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;

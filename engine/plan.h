@@ -13,6 +13,7 @@
 #define GLINT_PLAN_H
 
 #include "engine/geometry.h"
+#include "engine/media.h"
 
 /// In the order a frame runs them.
 typedef enum glint_stage_id {
@@ -124,6 +125,10 @@ struct glint_plan {
         bool on;
         double color[3], near, far; ///< see glint_scene_desc
     } cue;
+    struct {
+        bool on;
+        double absorption[3]; ///< of the innermost medium
+    } veil; ///< the eye is inside what absorbs
     glint_plan_glow *glows; ///< NULL: no light is seen
     glint_plan_edge *glow_edges; ///< of all of them
     uint32_t glow_count;
@@ -132,6 +137,7 @@ struct glint_plan {
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits; ///< some material
     glint_plan_indirect indirect;
+    glint_media eye_media; ///< what the eye of a perspective camera is inside of
     bool tints; ///< some light casts shadows, and something transmits
     double brightest; ///< bound of what any ray can bring; may be infinite
 

@@ -213,6 +213,17 @@ static void one(explainer *e, bool called, const char *effect, const char *forma
     add_line(e, effect, caller);
 }
 
+static void veil(explainer *e)
+{
+    const glint_plan *plan = e->plan;
+    char caller[2 * GLINT_NAME_SIZE];
+    if (!plan->veil.on)
+        return;
+    const glint_material *material = plan->geometry->materials.items[glint_media_top(&plan->eye_media)];
+    glint_describe_material(&material->desc, "glass around the eye", caller, sizeof caller);
+    add_line(e, "absorption before the eye", caller);
+}
+
 static void list_effects(explainer *e, const glint_scene *scene)
 {
     const glint_plan *plan = e->plan;
@@ -264,6 +275,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     if (plan->tints)
         materials(e, "tinted shadow", is_transparent);
     one(e, plan->cue.on, "depth cue", "scene.depth_cue");
+    veil(e);
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
@@ -293,7 +305,7 @@ static void list_stages(glint_plan *plan)
         "ambient, diffuse and specular terms",
         "light that surfaces get from other surfaces and the background",
         "mirrored and refracted rays, and what they find",
-        "light faded towards a colour by distance",
+        "light faded by the way from the eye",
         "which pixels get all samples: edges of objects, normals and contrast",
         "mean of samples and lights",
         "light to 8 or 16-bit codes",

@@ -21,7 +21,7 @@ typedef enum input {
     INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
-    INPUT_CUE, ///< how light fades with the distance
+    INPUT_CUE, ///< how light fades with the way from the eye
     INPUT_PASSES,
     INPUT_TONE
 } input;
@@ -198,6 +198,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, plan->cue.near);
         ADD(key, plan->cue.far);
     }
+    if (which & READS(CUE) && plan->veil.on)
+        ADD(key, plan->veil.absorption);
     if (which & READS(BACKGROUND))
         ADD(key, plan->background);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)

@@ -325,8 +325,6 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
         if (!extend_tile(renderer->tiles[i], plan))
             return glint_fail_nomem(error);
     }
-    if (plan->transmits)
-        glint_find_eye_media(plan, &f.shared.geometry, &f.shared.eye_media);
     atomic_store(&renderer->tiles_done, 0);
     atomic_store(&renderer->tile_count, (size_t)f.across * down);
     const double start = now_ms();

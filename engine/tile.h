@@ -4,7 +4,6 @@
 
 #include "engine/image/image.h"
 #include "engine/image/tone.h"
-#include "engine/media.h"
 #include "engine/plan.h"
 #include "engine/reuse.h"
 #include "engine/scan.h"
@@ -32,7 +31,6 @@ typedef struct glint_tile_frame {
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages, count_work;
-    glint_media eye_media; ///< what the eye is in
     glint_sites_kept *sites; ///< for the stage vertex
     const glint_scan *scan; ///< NULL: everything is cast
 } glint_tile_frame;
@@ -156,10 +154,8 @@ void glint_bounce_destroy(struct glint_bounce *bounce);
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
-/// What the eye of a perspective camera is inside of.
-void glint_find_eye_media(const glint_plan *plan, const glint_geometry_table *geometry, glint_media *media);
 
-/// tile_cue.c: light that fades with the distance.
+/// tile_cue.c: light that fades with the way from the eye.
 struct glint_cue *glint_cue_create(void);
 void glint_cue_destroy(struct glint_cue *cue);
 /// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.

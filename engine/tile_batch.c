@@ -196,7 +196,7 @@ static double index_ratio(const glint_plan *plan, const glint_media *media, uint
 static const glint_media *media_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                                    uint32_t i)
 {
-    return tile == &batch->tile ? &batch->ray[i].media : &frame->eye_media;
+    return tile == &batch->tile ? &batch->ray[i].media : &frame->plan->eye_media;
 }
 
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)

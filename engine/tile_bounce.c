@@ -41,44 +41,6 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
     return false;
 }
 
-// ---- What the eye is in ----
-
-static bool holds(const glint_prim *prim, const double point[3])
-{
-    double e[3];
-    if (prim->kind != GLINT_PRIM_SPHERE && prim->kind != GLINT_PRIM_PLANE)
-        return false;
-    vec_sub(e, point, prim->center);
-    if (prim->kind == GLINT_PRIM_PLANE)
-        return vec_dot(prim->normal, e) < 0;
-    return sqrt(vec_dot(e, e)) < prim->radius;
-}
-
-void glint_find_eye_media(const glint_plan *plan, const glint_geometry_table *geometry, glint_media *media)
-{
-    double sizes[GLINT_MEDIA_MAX]; // falling: what is smaller is inside
-    *media = (glint_media) { 0 };
-    for (uint32_t i = 0; i < geometry->prim_count && !plan->camera.orthographic; i++) {
-        const glint_prim *prim = &geometry->prims[i];
-        if (!plan->bouncing[prim->material].transmits || !holds(prim, plan->camera.eye))
-            continue;
-        const double size = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : HUGE_VAL;
-        if (media->count == GLINT_MEDIA_MAX && size >= sizes[0])
-            continue;
-        if (media->count == GLINT_MEDIA_MAX)
-            for (uint32_t k = 1; k < media->count; k++)
-                sizes[k - 1] = sizes[k];
-        glint_media_enter(media, prim->material);
-        uint32_t at = media->count - 1;
-        for (; at > 0 && sizes[at - 1] < size; at--) {
-            sizes[at] = sizes[at - 1];
-            media->material[at] = media->material[at - 1];
-        }
-        sizes[at] = size;
-        media->material[at] = prim->material;
-    }
-}
-
 // ---- From a surface on ----
 
 /// The hits of `tile` whose materials send rays on, and whose chain is not at its end.

@@ -155,6 +155,83 @@ do -- absorption by the way inside, and the same in the shadow: twice the transm
   near(directional, 0.8 * 0.0625, ROUNDING, "two balls, four surfaces")
 end
 
+-- The way from an eye inside glass: the clear picture times exp(-absorption x depth), in every term.
+local TERMS = { "background", "ambient", "diffuse", "specular", "indirect", "mirror", "transmission" }
+
+do
+  local a, r = { 0.5, 0, 2 }, 1.5
+  local function wall(more)
+    more.transmission, more.ior, more.absorption, more.ambient = 0.25, 1, a, 0.5
+    return material(more)
+  end
+  local function channels(name, want, ...)
+    local got = { select(2, look(...)):pixel(0, 0) }
+    for c = 1, 3 do near(got[c], want[c], ROUNDING, name .. (" %d"):format(c)) end
+  end
+  local function left(of, way)
+    local out = {}
+    for c = 1, 3 do out[c] = of * math.exp(-a[c] * way) end
+    return out
+  end
+  channels("from the centre", left(0.5, r), { 0, 0, 0 }, { 1, 2, 3 }, { ball(r, wall {}) }, { max_depth = 0 })
+  channels("and what is behind the wall", left(0.5 + 0.25 * 0.8, r), { 0, 0, 0 }, { 1, 2, 3 }, { ball(r, wall {}) }, { background = 0.8 })
+  channels("from beside it", left(0.5, r + 1), { 0, 0, 1 }, { 0, 0, -1 }, { ball(r, wall {}) }, {})
+  channels("from inside all of a ball's clear glass", left(0.5 + 0.25 * 0.5, 0), { 0, 0, 0 }, { 0, 0, -1 },
+    { ball(0.5, material { transmission = 0.25, ior = 1, ambient = 0.5 }), ball(r, material { transmission = 0.25, absorption = 0, ambient = 0.5, ior = 1 }) },
+    { max_depth = 1 })
+  local clear = { ball(0.5, material { transmission = 1, ior = 1 }), ball(r, wall {}) }
+  channels("only what is around the eye", left(0.5, r - 0.5), { 0, 0, 0 }, { 0, 0, -1 }, clear, {})
+  channels("nothing to be hit", { 0, 0.7, 0 }, { 0, -1, 0 }, { 0, -1, -1 }, { floor(wall {}) }, { background = 0.7 })
+  channels("an eye outside", { 0.5, 0.5, 0.5 }, { 0, 0, 9 }, { 0, 0, -1 }, { ball(r, wall {}) }, { max_depth = 0 })
+end
+
+local function pool(absorption, more)
+  local scene = glint.scene {
+    camera = glint.camera { eye = { 0, 0.3, 2 }, at = { 0, 0, 0 }, fov = 70 }, ambient = 0.3, background = { 0.2, 0.4, 0.6 },
+    indirect = { samples = 2, bounces = 1 },
+    ball(3, glass(1.2, { fresnel = true, absorption = absorption, ambient = 0.1 })),
+    ball(0.6, glint.material { diffuse = { 0.8, 0.5, 0.3 }, specular = 0.4 }),
+    ball(0.4, material { mirror = 0.7, ambient = 0.05 }, { 0.9, 0.2, 0.3 }),
+    glint.sphere_light { position = { -0.8, 1, 0 }, radius = 0.2, samples = 2, visible = true, intensity = 0.5 },
+  }
+  for name, value in pairs(more or {}) do scene[name] = value end
+  return scene
+end
+local A = { 0.2, 0.05, 0.7 }
+
+do -- the eye's own way alone: what mirrors and glass bring is absorbed further on, too
+  local fields = { width = 40, height = 30, output = "none", passes = "depth,beauty," .. table.concat(TERMS, ",") }
+  local clear, dense = pool(0):render(fields), pool(A):render(fields)
+  local worst, sums = 0, 0
+  for y = 0, 29 do
+    for x = 0, 39 do
+      local way = dense:pixel(x, y, "depth")
+      local sum = 0
+      for _, term in ipairs(TERMS) do
+        local bright, dark = { clear:pixel(x, y, term) }, { dense:pixel(x, y, term) }
+        local mine = term ~= "indirect" and term ~= "mirror" and term ~= "transmission"
+        for c = 1, mine and 3 or 0 do
+          worst = math.max(worst, math.abs(dark[c] - bright[c] * math.exp(-A[c] * way)))
+        end
+        sum = string.unpack("f", string.pack("f", sum + dark[1]))
+      end
+      sums = sums + (sum == dense:pixel(x, y) and 1 or 0)
+    end
+  end
+  check(worst < 4 * ROUNDING, "every term of the first surface: %.3g off", worst)
+  check(sums == 1200, "passes sum to the picture in glass")
+  local cued = pool(A, { depth_cue = { near = 1, far = 4, color = { 0.1, 0.2, 0.3 } } }):render(fields)
+  worst = 0
+  for y = 0, 29 do
+    for x = 0, 39 do
+      local share = math.min(math.max((dense:pixel(x, y, "depth") - 1) / 3, 0), 1)
+      local before, after = { dense:pixel(x, y) }, { cued:pixel(x, y) }
+      for c = 1, 3 do worst = math.max(worst, math.abs(after[c] - (before[c] * (1 - share) + share * c / 10))) end
+    end
+  end
+  check(worst < 4 * ROUNDING, "a depth cue fades what is left: %.3g off", worst)
+end
+
 do -- chains without an end: beyond 16 surfaces one ray stands for both, so that work stays bounded and no light is lost
   local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, 4 }, at = { 0, 0, 0 }, fov = 30 }, background = 1,
     ball(1, glass(1.5, { fresnel = true })), ball(0.7, glass(1.1, { fresnel = true })), ball(0.4, glass(2, { fresnel = true })) }
@@ -247,6 +324,44 @@ for _, precision in ipairs { "double", "float" } do
     check(picture("", options .. " " .. way) == want, "%s in %s", way, precision)
   end
 end
+
+-- ---- From inside absorbing glass: called for by the eye, and the same with and without reuse -------------------------------
+
+local POOL = [[
+local glint = require "glint"
+local P = glint.params { absorption = 0.3, out = 2 }
+local water = glint.material { transmission = 0.8, ior = 1.2, absorption = P.absorption, diffuse = 0, ambient = 0.1, name = "water" }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0.3, P.out }, at = { 0, 0, 0 }, fov = 70 }, background = 0.5,
+  glint.sphere { center = { 0, 0, 0 }, radius = 3, material = water },
+  glint.sphere { center = { 0, 0, 0 }, radius = 0.8, material = glint.material { diffuse = 0.7 } },
+  glint.point_light { position = { 2, 2, 1 } } }
+return glint.animation { scene = scene, frames = 6, width = 96, height = 64,
+  frame = function(_, n) if P.absorption > 0 and n > 3 then water.absorption = { 0.1 * n, 0, 0.4 } end end }
+]]
+local path = os.tmpname()
+io.open(path, "w"):write(POOL):close()
+local function said(options)
+  local pipe <close> = io.popen(("%s %s 2>&1"):format(command, options:gsub("POOL", path)))
+  return pipe:read "a"
+end
+local explained = said "explain POOL"
+check(explained:find("absorption before the eye", 1, true) and explained:find "water" and explained:find "\n%s*cue", "explained: %s", explained)
+for _, outside in ipairs { "-D absorption=0", "-D out=9" } do
+  local got = said("explain POOL " .. outside)
+  check(got:find "refraction" and not got:find("before the eye", 1, true) and not got:find "\n%s*cue", "%s: %s", outside, got)
+end
+local function frames(options)
+  local got = said(("POOL --quiet --force --max-depth 0 -o %s%%d.pfm %s"):format(path, options))
+  for n = 1, 6 do
+    local file <close> = io.open(path .. n .. ".pfm", "rb")
+    got = got .. (file and file:read "a" or "nothing")
+    os.remove(path .. n .. ".pfm")
+  end
+  return got
+end
+local fresh = frames "--no-reuse"
+for _, way in ipairs { "", "-t 1", "-t 3 --samples 1" } do check(frames(way) == fresh, "reused as fresh, %s", way) end
+os.remove(path)
 
 print(("%d passed, %d failed"):format(passed, failed))
 os.exit(failed == 0)

@@ -58,5 +58,10 @@ return {
     end },
   { name = "depth_cue", stage = "cue", functions = { "_cue" },
     call = function(_, _, scene) scene.depth_cue = { color = 0, near = 10, far = 30 } end },
+  { name = "eye_in_glass", stage = "cue", functions = { "_cue" },
+    call = function(glint, _, scene)
+      scene:add(glint.plane { point = { 0, 1000, 0 }, normal = { 0, 1, 0 },
+        material = glint.material { transmission = 1, ior = 1, absorption = 0.01 } })
+    end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
 }
