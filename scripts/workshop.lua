@@ -10,6 +10,7 @@
 --     glint scripts/workshop.lua --set step=specular
 --     glint scripts/workshop.lua
 --     glint scripts/workshop.lua --set frames=48
+--     glint scripts/workshop.lua --set radius=2
 -- A term is switched off by black reflectances, and the engine then does not compute it at all: see `glint explain`.
 local glint = require "glint"
 
@@ -17,6 +18,7 @@ local P = glint.params {
   step = { "all", choices = { "ambient", "diffuse", "specular", "all" }, doc = "which term of the lighting to show" },
   shininess = { 128, min = 0, max = 2000, doc = "exponent of the highlight: higher is smaller and sharper" },
   shadows = { true, doc = "does the lamp cast shadows?" },
+  radius = { 0, min = 0, max = 5, doc = "of the lamp: 0 is a point with hard shadows, 2 makes them soft" },
   frames = { 1, min = 1, max = 10000, doc = "1 is a still; in more the lamp swings from side to side" },
 }
 
@@ -41,7 +43,7 @@ local function ball(x, z, radius, material)
   return glint.sphere { center = { x, radius, z }, radius = radius, material = material }
 end
 
-local lamp = glint.point_light { position = { 0, 20, 0 }, intensity = 1, shadows = P.shadows, name = "lamp" }
+local lamp = glint.sphere_light { position = { 0, 20, 0 }, radius = P.radius, shadows = P.shadows, name = "lamp" }
 
 local scene = glint.scene {
   camera = glint.camera { eye = { 0, 6.2, 20.5 }, at = { 0, 3.8, 0 }, fov = 42 },

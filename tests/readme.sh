@@ -43,6 +43,16 @@ for block in [0-9]*.sh; do
     done <"$block"
 done
 
+# The study's plot is drawn as the one in README, by today's hand: the same but for what is measured.
+style() { sed -n '1,/<\/style>/p' "$1"; }
+plot=$root/scripts/pictures/cost.svg
+if [ -s price/plot.svg ] && cmp -s <(style price/plot.svg) <(style "$plot") && grep -q "='samples 64: " price/plot.svg; then
+    echo "ok - the plot of README"
+else
+    echo "not ok - price/plot.svg is not there, or drawn in another way than $plot: copy it there, and its advice to README"
+    bad=1
+fi
+
 # Paths that README names must be there.
 for path in $(grep -oE '`(engine|bindings|scripts|tests)/[a-z_/.0-9]+`' "$root/README.md" | tr -d '`' | sort -u); do
     [ -e "$root/$path" ] || { echo "not ok - README names $path, which is not there"; bad=1; }
