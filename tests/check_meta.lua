@@ -1,16 +1,7 @@
 -- bindings/meta/glint.lua describes exactly what the module registers: functions, objects, fields and methods.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. string.format(...))
-  end
-end
 
 -- Reads the annotations: classes[name] = { parents, fields = {name -> line}, methods = {} }, and functions of `glint`.
 local function read_meta(path)
@@ -120,5 +111,4 @@ for name in pairs(functions) do
   end
 end
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

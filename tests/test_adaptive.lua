@@ -1,17 +1,8 @@
 -- Adaptive sampling: every pixel is that of the picture with all samples or of the picture with one, chosen by the rule,
 -- across the borders of tiles too; and one picture by every way to render it.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
 
 local WIDTH, HEIGHT = 75, 53 -- 3 x 3 tiles of 32 x 24, the last ones narrow
 local PASSES = "beauty,background,ambient,diffuse,specular,mirror,indirect,depth,normal,object_id,alpha,refined"
@@ -214,5 +205,4 @@ for ending, options in pairs { pfm = "", png = "--bits 16 --alpha", ["0.png"] = 
   end
 end
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

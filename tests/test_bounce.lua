@@ -1,20 +1,8 @@
 -- Mirrors and glass against closed forms: one ray and what it must meet, energy, depth, absorption, tinted shadows; and
 -- one picture by every way to render it.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check, near = tally.check, tally.near
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
-local function near(got, want, tolerance, name)
-  check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
-end
 
 local LOSS = 2 ^ -20 -- of light, what weak rays may hold that are not followed
 local ROUNDING = 2 ^ -23 -- of a float32 near 1
@@ -363,5 +351,4 @@ local fresh = frames "--no-reuse"
 for _, way in ipairs { "", "-t 1", "-t 3 --samples 1" } do check(frames(way) == fresh, "reused as fresh, %s", way) end
 os.remove(path)
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

@@ -1,18 +1,10 @@
 -- glint cost from outside: its rows, what they must say of each other, and what it does with bad input.
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local build = os.getenv "BUILD" or "build"
 local glint = os.getenv "GLINT" or build .. "/glint"
 local work = build .. "/tests/cost"
 os.execute(("rm -rf %s && mkdir -p %s"):format(work, work))
-
-local passed, failed = 0, 0
-local function check(ok, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. string.format(...))
-  end
-end
 
 local function write(name, text)
   local file <close> = assert(io.open(work .. "/" .. name, "w"))
@@ -430,5 +422,4 @@ end
 check(#cut > 0 and says "interrupted", "SIGINT: %d rows", #cut)
 for _, row in ipairs(cut) do check(row.partial and row.ms.median > 0, "SIGINT: %s is partial", row.knob) end
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

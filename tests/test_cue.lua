@@ -1,16 +1,8 @@
 -- Depth cue: every term by its formula, of every sample; what it leaves alone; wrong values.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
 
-local passed, failed = 0, 0
-local function check(ok, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. string.format(...))
-  end
-end
 local function raises(want, f, ...)
   local good, message = pcall(f, ...)
   check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
@@ -139,5 +131,4 @@ raises("scene.depth_cue.far: finite number expected, got inf", set, { near = 1, 
 raises("scene.depth_cue.color", set, { near = 1, far = 2, color = { -1, 0, 0 } })
 check(scene.depth_cue == nil, "what is refused changes nothing")
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

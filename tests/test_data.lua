@@ -1,22 +1,13 @@
 -- scripts/lib/glint: the readers on good and bad files, elements, builder; and the scripts that make figures of them.
 local build = os.getenv "BUILD" or "build"
-package.cpath = build .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 package.path = "scripts/lib/?.lua;" .. package.path
 local glint = require "glint"
 local elements, particles, xyz = require "glint.elements", require "glint.particles", require "glint.xyz"
 local pdb, lammps, points = require "glint.pdb", require "glint.lammps", require "glint.points"
 local bonds = require "glint.bonds"
 local nff, helix, sphereflake = require "glint.nff", require "glint.helix", require "glint.sphereflake"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(2, "l").currentline))
-  end
-end
 
 local function near(got, want, tolerance, what)
   check(math.abs(got - want) <= tolerance, "%s: %.17g expected, got %.17g", what, want, got)
@@ -520,5 +511,4 @@ for _, name in ipairs(names) do
   local ok, message = xpcall(tests[name], debug.traceback)
   check(ok, "%s: %s", name, message)
 end
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

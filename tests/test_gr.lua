@@ -1,18 +1,10 @@
 -- The gr dialect: pictures against tests/gr/witness.lua pixel by pixel, both generations and how they are told apart,
 -- what the old Luas had, where files are found, the command's options, wrong input.
 local build = os.getenv "BUILD" or "build"
-package.cpath = build .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 package.path = "scripts/lib/?.lua;tests/gr/?.lua;" .. package.path
 local random_scene, witness = require "random_scene", require "witness"
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(2, "l").currentline))
-  end
-end
 
 local function output_of(command)
   local pipe = assert(io.popen(command))
@@ -425,5 +417,4 @@ said, code = scene([[
 ]], "-o none")
 check(code == 0 and os.time() - start <= 15, "100,000 faces and 10,000 nodes in %d s: %s", os.time() - start, said)
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

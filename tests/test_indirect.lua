@@ -1,20 +1,9 @@
 -- Indirect light against closed forms: even enclosures, planes and balls under an even sky, parallel plates, a glowing ball
 -- above a floor; the rate at which errors fall; and one picture by every way to render it.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check, near = tally.check, tally.near
 local glint = require "glint"
 
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
-local function near(got, want, tolerance, name)
-  check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
-end
 local function near3(r, g, b, want, tolerance, name)
   for c, got in ipairs { r, g, b } do near(got, want[c], tolerance, name .. ", channel " .. c) end
 end
@@ -382,5 +371,4 @@ for _, precision in ipairs { "double", "float" } do
 end
 os.remove(script)
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

@@ -1,19 +1,7 @@
 -- Spot and area lights against closed forms. Every scene is a white matt plane, or a point of one seen from near by.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check, near = tally.check, tally.near
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
-local function near(got, want, tolerance, name)
-  check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
-end
 
 local WHITE = glint.material { diffuse = 1, ambient = 0 }
 local FLOOR = { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = WHITE }
@@ -278,5 +266,4 @@ for _, name in ipairs(names) do
   local ok, message = xpcall(tests[name], debug.traceback)
   check(ok, "%s stopped: %s", name, message)
 end
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

@@ -1,17 +1,8 @@
 -- Every function, method and field of the API with values of every kind: a result or a message, never a crash, and no
 -- object is damaged. The seed is fixed.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
 
 math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
@@ -120,5 +111,4 @@ for _, kind in ipairs(KINDS) do
 end
 collectgarbage()
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

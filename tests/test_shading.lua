@@ -1,17 +1,8 @@
 -- Flat and Gouraud shading against light worked out here, a face and a vertex at a time; what neighbours must not shadow,
 -- and what a camera's move leaves as it is.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
 
 math.randomseed(11)
 local function uniform(a, b) return a + (b - a) * math.random() end
@@ -449,5 +440,4 @@ for _, name in ipairs { "truth", "no_shadow_by_neighbours", "shadows", "corner_n
   if not only or only == name then tests[name]() end
 end
 os.execute("rm -rf '" .. scratch .. "'")
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

@@ -1,19 +1,7 @@
 -- Lights that are seen: where, how bright, what they hide, and what they leave alone.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check, near = tally.check, tally.near
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
-local function near(got, want, tolerance, name)
-  check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
-end
 
 local ALL = "beauty,background,ambient,diffuse,specular,mirror,transmission,depth,normal,object_id"
 local W, H = 96, 72
@@ -259,5 +247,4 @@ for _, name in ipairs(names) do
   local ok, message = xpcall(tests[name], debug.traceback)
   check(ok, "%s stopped: %s", name, message)
 end
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

@@ -1,17 +1,8 @@
 -- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with what lies near them, is in
 -- hard_cases.c and hard_shading.c; here are those that would show a number bent on its way through Lua.
-package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+local tally = dofile "tests/tally.lua"
+local check = tally.check
 local glint = require "glint"
-
-local passed, failed = 0, 0
-local function check(ok, format, ...)
-  if ok then
-    passed = passed + 1
-  else
-    failed = failed + 1
-    print("not ok - " .. format:format(...))
-  end
-end
 
 local function near(name, got, want, tolerance)
   check(math.abs(got - want) <= tolerance, "%s: %.17g expected, got %.17g (off by %g, %g allowed)", name, want, got,
@@ -158,5 +149,4 @@ do
   check(s == 0 and d == 1, "lambert: no highlight, got %g and %g", d, s)
 end
 
-print(("%d passed, %d failed"):format(passed, failed))
-os.exit(failed == 0)
+tally.finish()

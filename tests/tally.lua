@@ -1,0 +1,26 @@
+-- What the Lua tests share: where the module is, checks that are counted, and the line of totals that run.sh reads.
+package.cpath = (os.getenv "BUILD" or "build") .. "/?.so;" .. package.cpath
+
+local tally = { passed = 0, failed = 0 }
+
+-- Counts a check; a failed one is told with the format's text and the line it is on.
+function tally.check(ok, format, ...)
+  if ok then
+    tally.passed = tally.passed + 1
+  else
+    tally.failed = tally.failed + 1
+    print(("not ok - %s (line %d)"):format(format:format(...), debug.getinfo(2, "l").currentline))
+  end
+end
+
+function tally.near(got, want, tolerance, name)
+  tally.check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
+end
+
+-- Prints the totals and ends the process: 0 when nothing failed.
+function tally.finish()
+  print(("%d passed, %d failed"):format(tally.passed, tally.failed))
+  os.exit(tally.failed == 0)
+end
+
+return tally
