@@ -30,15 +30,14 @@ struct glint_renderer {
     glint_sites_kept sites;
     glint_scan scan;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
-    glint_image
-        *spare[GLINT_SPARE_IMAGES]; ///< pictures given before, whose memory is used again once nobody else holds
-    ///< them
+    /// Pictures given before, whose memory is used again once nobody else holds them.
+    glint_image *spare[GLINT_SPARE_IMAGES];
     glint_key last_key;
     glint_frame_stats last_stats;
     glint_refine refine;
-    struct glint_renderer
-        *base; ///< makes the pictures that adaptive sampling looks at, with the pool and the tiles of this
-    ///< one; NULL until a frame has it, and again after one that has not
+    /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
+    /// has it, and again after one that has not.
+    struct glint_renderer *base;
     bool shares; ///< it is such a one
 };
 
@@ -87,51 +86,6 @@ static void drop_spares(glint_renderer *renderer)
     }
 }
 
-static void free_tile(glint_tile *tile)
-{
-    if (!tile)
-        return;
-    glint_bounce_destroy(tile->bounce);
-    glint_tint_destroy(tile->tint);
-    glint_vertex_destroy(tile->vertex);
-    glint_beside_destroy(tile->beside);
-    glint_glow_destroy(tile->glow);
-    glint_cue_destroy(tile->cue);
-    glint_indirect_destroy(tile->indirect);
-    free(tile->facets);
-    free(tile);
-}
-
-/// Memory that only frames with mirrors, transparent objects, microfacets or indirect light ask for.
-static bool extend_tile(glint_tile *tile, const glint_plan *plan)
-{
-    if (plan->runs[GLINT_STAGE_INDIRECT]) {
-        glint_indirect_destroy(tile->indirect);
-        tile->indirect = glint_indirect_create(plan);
-        if (!tile->indirect)
-            return false;
-    }
-    if (plan->runs[GLINT_STAGE_BOUNCE] && !tile->bounce)
-        tile->bounce = glint_bounce_create();
-    if (plan->scan && !tile->beside)
-        tile->beside = glint_beside_create();
-    if (plan->tints && !tile->tint)
-        tile->tint = glint_tint_create();
-    if (plan->facets && !tile->facets)
-        tile->facets = glint_alloc(1, sizeof *tile->facets);
-    if (plan->runs[GLINT_STAGE_VERTEX] && !tile->vertex)
-        tile->vertex = glint_vertex_create();
-    if (plan->glow_count && !tile->glow)
-        tile->glow = glint_glow_create();
-    if (plan->glow_count && !glint_glow_fits(tile->glow, plan))
-        return false;
-    if (plan->runs[GLINT_STAGE_CUE] && !tile->cue)
-        tile->cue = glint_cue_create();
-    return (tile->beside || !plan->scan) && (tile->cue || !plan->runs[GLINT_STAGE_CUE]) &&
-           (tile->vertex || !plan->runs[GLINT_STAGE_VERTEX]) && (tile->facets || !plan->facets) &&
-           (tile->bounce || !plan->runs[GLINT_STAGE_BOUNCE]) && (tile->tint || !plan->tints);
-}
-
 void glint_renderer_destroy(glint_renderer *renderer)
 {
     if (!renderer)
@@ -139,7 +93,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     glint_renderer_destroy(renderer->base);
     glint_refine_clear(&renderer->refine);
     for (int i = 0; !renderer->shares && renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
-        free_tile(renderer->tiles[i]);
+        glint_tile_destroy(renderer->tiles[i]);
     if (!renderer->shares)
         free(renderer->tiles);
     drop_spares(renderer);
@@ -322,7 +276,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
         return glint_fail_nomem(error);
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
         renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
-        if (!extend_tile(renderer->tiles[i], plan))
+        if (!glint_tile_extend(renderer->tiles[i], plan))
             return glint_fail_nomem(error);
     }
     atomic_store(&renderer->tiles_done, 0);

@@ -113,6 +113,10 @@ static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
     return atomic_load_explicit(frame->cancelled, memory_order_relaxed);
 }
 
+/// tile_memory.c: makes what this plan's stages need beside the tile. False: out of memory.
+bool glint_tile_extend(glint_tile *tile, const glint_plan *plan);
+void glint_tile_destroy(glint_tile *tile); ///< NULL: nothing
+
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
