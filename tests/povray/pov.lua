@@ -14,7 +14,9 @@
 --   mirror       finish { reflection m }: m times what the mirrored ray brings is added
 --   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times what the refracted ray brings; where it
 --                is totally reflected, t times what the mirrored ray brings. Shadows: t at each surface, and no bending.
---   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way)
+--   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way). Only what is refracted
+--                is absorbed there: a highlight on the inside of the far surface comes to the eye whole. Here that is absorbed
+--                as all light on that way; so what absorbs has no highlight in the test
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
 --   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
 --                an ellipsoid is sphere { 0, 1 scale s translate c }
@@ -64,8 +66,10 @@ else
   local far = scaled(w.light.direction, -1e6)
   line("light_source { %s rgb %s parallel point_at 0 }", vector(far), vector(w.light.color))
 end
-local highlight = model == "phong" and ("phong %.17g phong_size %.17g specular 0"):format(w.specular, w.shininess)
-  or ("specular %.17g roughness 1/%.17g phong 0"):format(w.specular, w.shininess)
+local function highlight(s)
+  local form = model == "phong" and "phong %.17g phong_size %.17g specular 0" or "specular %.17g roughness 1/%.17g phong 0"
+  return form:format(s.specular or w.specular, w.shininess)
+end
 local function list(vectors)
   local texts = {}
   for i, v in ipairs(vectors) do texts[i] = vector(v) end
@@ -97,7 +101,7 @@ for i, sphere in ipairs(w.spheres) do
   local s = (w.surfaces[surfaces] or {})[i] or {}
   local center = { sphere[1][1], sphere[1][2] + (s.lift or 0), sphere[1][3] }
   local ambient, diffuse, pigment, interior = w.ambient, w.diffuse, "rgb " .. vector(sphere[3]), ""
-  local finish = highlight .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
+  local finish = highlight(s) .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
   if s.fresnel then finish = finish .. " reflection { rgb 0, rgb 1 fresnel on } conserve_energy" end
   if s.transmission then
     ambient, diffuse, pigment = 0, 0, ("rgb 0 transmit %.17g"):format(s.transmission)

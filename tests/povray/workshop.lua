@@ -58,7 +58,7 @@ return {
     plain = {},
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
-    absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2 }, [2] = { mirror = 0.4 } },
+    absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 }, [2] = { mirror = 0.4 } },
     fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
   spheres = { -- center, radius, colour
