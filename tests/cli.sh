@@ -149,6 +149,28 @@ script stubborn 'while true do pcall(function() while true do end end) end'
 script slow 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frames = 400, width = 1600, height = 1200, samples = 64, frame = function(t) S.lamp.x = t end }'
 
+# Every kind of light and surface. Frames depend on what is kept of those before: the first half moves a light, the second
+# a mesh.
+cat >everything.lua <<'END'
+local glint = require "glint"
+local metal = glint.material { model = "cook_torrance", f0 = 0.8, roughness = 0.3, diffuse = 0.1 }
+local clear = glint.material { transmission = 0.9, ior = 1.3, fresnel = true, absorption = 0.2, diffuse = 0 }
+local ball = glint.sphere_mesh { center = { -1, 1, 0 }, radius = 1, segments = 16, shading = "gouraud", material = glint.material { diffuse = 0.7 } }
+local lamp = glint.sphere_light { position = { 3, 6, 3 }, radius = 0.7, samples = 4, visible = true }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 3, 8 }, at = { 0, 1, 0 }, fov = 40 }, background = 0.3,
+  indirect = { samples = 2, bounces = 2 }, lamp, ball,
+  glint.point_light { position = { -4, 5, 4 }, intensity = 0.4 },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.6, mirror = 0.3 } },
+  glint.box { min = { 0.5, 0, -1 }, max = { 1.5, 1, 0 }, material = metal },
+  glint.cylinder { base = { 2, 0, 1 }, top = { 2, 1.5, 1 }, radius = 0.5, material = clear },
+  glint.sphere_mesh { center = { 0.3, 0.6, 1.5 }, radius = 0.6, segments = 16, material = clear } }
+return glint.animation { scene = scene, frames = 7, width = 48, height = 32, samples = 4, adaptive = 0.1,
+  frame = function(_, n)
+    lamp.position = { 3 - math.min(n, 4), 6, 3 }
+    if n >= 4 then ball.transform = glint.translate { 0, 0.1 * (n - 4), 0 } end
+  end }
+END
+
 # ---- Names of files ----
 
 names() {
@@ -625,9 +647,13 @@ same_bits() {
     for shard in 3 1 2; do run ten.lua --shard $shard/3 -o 'other/%04d.png' --passes depth; done
     check "3 shards are the whole" test "$(sums other)" = "$want"
     rm -rf other base
+    run everything.lua -o 'a%d.pfm'
+    for shard in 3 1 2; do run everything.lua --shard $shard/3 -t $shard -o 'b%d.pfm'; done
+    local n
+    for n in 1 2 3 4 5 6 7; do check "shards of every kind of light and surface: $n" cmp a$n.pfm b$n.pfm; done
+    rm -f a*.pfm b*.pfm
     run list.lua -o 'a%d.png'
     for shard in 1 2 3 4; do run list.lua --shard $shard/4 -o 'b%d.png'; done
-    local n
     for n in 1 2 3 4 5 6 7 8 9; do check "shards of a list: $n" cmp a$n.png b$n.png; done
     clean
 }
