@@ -112,3 +112,9 @@ for i, sphere in ipairs(w.spheres) do
   line("%s pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }",
     shape((w.shapes[surfaces] or {})[i], center, sphere[2]), pigment, ambient, diffuse, finish, interior)
 end
+local a = w.around[surfaces]
+if a then
+  line("sphere { %s, %.17g pigment { rgb 0 transmit %.17g } finish { ambient 0 diffuse 0 %s }", vector(a.center), a.radius,
+    a.transmission, highlight(a))
+  line("interior { ior %.17g fade_power 1001 fade_distance 1 fade_color rgb %.17g } }", a.ior, 1 - a.absorption)
+end

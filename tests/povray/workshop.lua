@@ -61,6 +61,7 @@ return {
     absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 }, [2] = { mirror = 0.4 } },
     fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
+  around = { inside = { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- it holds the eye
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
     { { -1.0, 4.0, -4.5 }, 4.0, { 0.70, 0.12, 0.10 } },
