@@ -292,6 +292,7 @@ bool cost_report_check(const char *folder, char message[GLINTL_MESSAGE_SIZE]);
 bool cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE]);
 /// The plot of time against error, an SVG element that is a file of its own, too; nothing when no error is known.
 void cost_plot(const cost_study *study, FILE *out);
+bool cost_has_plot(const cost_study *study); ///< an error is known: there is something to draw
 void cost_machine(const cost_study *study, char out[256]); ///< "AMD EPYC, 2 threads, avx512, gcc 12.2.0"
 void cost_html_text(FILE *out, const char *text);
 

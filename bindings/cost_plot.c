@@ -273,6 +273,12 @@ static const char STYLE[] =
     "{stroke:var(--ink);stroke-width:2}\n"
     "</style>\n";
 
+bool cost_has_plot(const cost_study *study)
+{
+    plot p = { .study = study };
+    return find_ranges(&p);
+}
+
 void cost_plot(const cost_study *study, FILE *out)
 {
     plot p = { .study = study, .out = out };

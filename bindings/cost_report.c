@@ -387,6 +387,16 @@ static bool write_bytes(const char *folder, const char *name, const uint8_t *dat
     return close_file(file, folder, file_name, path, message);
 }
 
+// Without an error there is nothing to draw; the plot of an earlier study in the folder would pass for this one's.
+static bool write_plot(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE])
+{
+    char path[GLINTL_PATH_SIZE];
+    if (cost_has_plot(study))
+        return write_text_file(study, folder, "plot.svg", cost_plot, message);
+    snprintf(path, sizeof path, "%s/plot.svg", folder);
+    return unlink(path) == 0 || errno == ENOENT || complain(path, message);
+}
+
 bool cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE])
 {
     char title[COST_LABEL_SIZE], file[COST_LABEL_SIZE], other[COST_LABEL_SIZE + 8];
@@ -400,6 +410,6 @@ bool cost_report_write(const cost_study *study, const char *folder, char message
         good = write_bytes(folder, file, c->picture, c->picture_size, message) &&
                write_bytes(folder, other, c->difference, c->difference_size, message);
     }
-    return good && write_text_file(study, folder, "plot.svg", cost_plot, message) &&
+    return good && write_plot(study, folder, message) &&
            write_text_file(study, folder, "index.html", write_page, message);
 }

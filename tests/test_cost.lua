@@ -4,7 +4,7 @@ local check = tally.check
 local build = os.getenv "BUILD" or "build"
 local glint = os.getenv "GLINT" or build .. "/glint"
 local work = build .. "/tests/cost"
-os.execute(("rm -rf %s && mkdir -p %s"):format(work, work))
+os.execute(("rm -rf %s && mkdir -p %s/once"):format(work, work))
 
 local function write(name, text)
   local file <close> = assert(io.open(work .. "/" .. name, "w"))
@@ -410,6 +410,16 @@ check(run(film .. " --size 640x480 --json --budget 0.5") == 0, "--budget: %s", r
 local short, short_advice = rows_of "budget"
 check(#short_advice.left_out > 0 and #short > 0 and short_advice.seconds < 10, "a budget leaves out: %d, in %g s",
   #short_advice.left_out, short_advice.seconds)
+
+write("once/plot.svg", "of an earlier study")
+check(run(film .. " --size 640x480 --json --budget 0.001 --report " .. work .. "/once") == 0, "one frame: %s", read "err")
+local once, once_advice = rows_of "one frame"
+check(#once > 0 and once_advice.left_out[1]:find "no room for more", "a frame over the budget: %s", once_advice.left_out[1])
+for _, row in ipairs(once) do
+  check(row.default == (row.knob ~= "reuse") and row.partial and row.runs == 1 and row.counters.primary == 640 * 480 * 4, "%s: the first frame alone", row.knob)
+end
+local alone = io.popen("ls -A " .. work .. "/once"):read "a"
+check(alone == "index.html\n", "without an error there is a page and no plot: %s", alone)
 
 run(film .. " --size 800x600 --json", ("sh -c 'exec \"$@\" & p=$!; sleep 1.5; kill -INT $p; wait $p; echo $? >%s/code' sh")
   :format(work))
