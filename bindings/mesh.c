@@ -348,7 +348,10 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     if (strlen(path) != lua_rawlen(L, OTHER))
         glintL_error(L, "mesh.file: string without a zero byte expected");
     read_material(L, "mesh.material", a);
-    const glintL_reporter *reporter = &glintL_get_run(L)->reporter;
+    const glintL_run *run = glintL_get_run(L);
+    if (run->asked.is_untrusted) // which would learn from the answers what files there are
+        glintL_error(L, "mesh.file: an untrusted script reads no files");
+    const glintL_reporter *reporter = &run->reporter;
     if (reporter->reads)
         reporter->reads(reporter->context, path);
     return glint_mesh_load(path, &a->desc, shape, error);

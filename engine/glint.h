@@ -153,7 +153,7 @@ typedef struct glint_light_desc {
         ///< smoothstep of the cosine between; default 20 and 30 degrees
     double exponent; ///< spot: the light falls off as cos^exponent from the axis; >= 0, default 0
     double normal[3]; ///< disk: the side that shines; not zero, need not be unit; default {0, -1, 0}
-    double radius; ///< disk and sphere: >= 0, 0 is a point; default 1
+    double radius; ///< disk and sphere: >= 0, 0 is a point; by `radiance` 0 or 1e-150 .. 1e150; default 1
     const double (
         *vertices)[3]; ///< polygon: its corners, convex and in one plane; it shines to the side from which they
     size_t vertex_count; ///< run counter-clockwise. 3 .. GLINT_CORNERS_MAX; copied

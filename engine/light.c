@@ -76,6 +76,9 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
                        a[0], a[1], a[2]);
     if (!status && desc->kind != GLINT_LIGHT_POLYGON)
         status = glint_check_range("radius", desc->radius, 0, DBL_MAX, "number >= 0", error);
+    if (!status && desc->kind != GLINT_LIGHT_POLYGON && desc->has_radiance && desc->radius > 0) // which is squared
+        status = glint_check_range("radius", desc->radius, 1e-150, 1e150,
+                                   "0 or a number 1e-150 .. 1e150 beside a radiance", error);
     if (!status && desc->kind == GLINT_LIGHT_DISK)
         status = glint_check_direction("normal", desc->normal, error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)

@@ -242,6 +242,19 @@ function tests.penumbra()
   check(dark > 100 and partial > 1000, "%d pixels of umbra, %d of penumbra", dark, partial)
 end
 
+-- By radiance a radius is squared: the least and the largest give finite light, others are refused.
+function tests.extreme_radii()
+  for _, radius in ipairs { 0, 1e-150, 1e150 } do
+    local r = render(above(glint.sphere_light { position = { 0, 3, 0 }, radius = radius, radiance = 1, samples = 4 }, 8), 8)
+      :pixel(4, 4)
+    check(r >= 0 and r < 10, "radius %g: %g", radius, r)
+  end
+  for _, radius in ipairs { 1e-160, 1e160 } do
+    local ok, message = pcall(glint.sphere_light, { position = { 0, 3, 0 }, radius = radius, radiance = 1 })
+    check(not ok and message:find "radius: 0 or a number 1e%-150 %.%. 1e150 beside a radiance expected", tostring(message))
+  end
+end
+
 -- ---- Same picture whatever renders it ----
 
 function tests.seeds_and_blocks()
