@@ -1,21 +1,42 @@
-// soft: which points the samples of an area light reach. What the whole light's shaft settles costs no rays: groups that
-// no occluder can come between, and groups that one occluder hides from all of it. Elsewhere each occluder is offered
-// all samples of a group at once. Every decision is that of occlude.h.
+// soft: which points the samples of an area light reach. What stands between a point and the whole light, a ball around
+// it, costs no rays: points that an occluder cannot come near, and points that it hides from all of the ball, are settled
+// in float, sixteen at a time. Elsewhere an occluder is offered all samples of a group at once. Every decision is that of
+// occlude.h.
 
 /// What is left to test of a group.
 typedef struct R(soft_group) {
-    uint16_t near; ///< a bit an occluder of the tile's list
-    bool hidden; ///< from the whole light
+    unsigned near[GLINT_OCCLUDERS]; ///< lanes, for each occluder of the tile's list
+    unsigned any_near; ///< lanes that are near one
+    unsigned hidden; ///< lanes that one hides from the whole light
 } R(soft_group);
 
-#define SOFT_APART 0 // between no point of the group and no point of the light
-#define SOFT_NEAR 1
-#define SOFT_HIDES 2 // between all of them
+/// How the whole light stands to an occluder of the tile's list, in the index's frame.
+typedef struct R(soft_occluder) {
+    float away; ///< from its middle to the light's
+    float slack; ///< what rounding may add to a distance
+    bool outside; ///< all of the light is outside
+    int side; ///< of a plane: 1, all of the light is in front; -1, behind; 0, neither
+} R(soft_occluder);
 
-/// Where a box, of the index's frame, lies along a plane's normal, in world units.
-static inline void R(heights)(const glint_geometry_table *geometry, const glint_prim *plane, const float lower[3],
-                              const float upper[3], double *low, double *high)
+/// What the groups of one call share besides the tile.
+typedef struct R(soft_light) {
+    float middle[3], radius; ///< of the ball
+    double scale; ///< of the index's frame
+    R(soft_occluder) occluders[GLINT_OCCLUDERS];
+    bool ready; ///< the rest is made: what samples need
+    const real (*position[GLINT_LIGHT_CHUNK])[GLINT_GROUP];
+    R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
+    unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
+#if GLINT_REAL == 32
+    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
+#endif
+} R(soft_light);
+
+/// 1: the light's box, of the index's frame, is in front of the plane; -1: behind; 0: neither for certain.
+static int R(side_of_box)(const R(shadow_tile) * tile, const glint_prim *plane)
 {
+    const glint_geometry_table *geometry = tile->args->geometry;
+    const float *lower = tile->light.lower, *upper = tile->light.upper;
     double height = 0, reach = 0, size = 0;
     for (int k = 0; k < 3; k++) {
         const double middle = 0.5 * ((double)lower[k] + (double)upper[k]), half = (double)upper[k] - middle;
@@ -25,173 +46,243 @@ static inline void R(heights)(const glint_geometry_table *geometry, const glint_
         size += fabs(x) + fabs(plane->center[k]);
     }
     reach += (GLINT_REAL == 64 ? 1e-12 : 1e-5) * size;
-    *low = height - reach;
-    *high = height + reach;
+    return (height > reach) - (height < -reach);
 }
 
-static int R(classify_plane)(const R(shadow_tile) * tile, const glint_prim *plane, const float lower[3],
-                             const float upper[3])
-{
-    double low, high, light_low, light_high;
-    R(heights)(tile->args->geometry, plane, lower, upper, &low, &high);
-    R(heights)(tile->args->geometry, plane, tile->light.lower, tile->light.upper, &light_low, &light_high);
-    if ((low > 0 && light_low > 0) || (high < 0 && light_high < 0))
-        return SOFT_APART;
-    return (low > 0 && light_high < 0) || (high < 0 && light_low > 0) ? SOFT_HIDES : SOFT_NEAR;
-}
-
-/// Whether every segment from the box to the light passes well within the sphere. At a share `along` of its way a segment
-/// is no further from the middle one than (1 - along) times the points' reach plus along times the light's.
-static bool R(sphere_hides)(const R(shadow_tile) * tile, const glint_prim *prim, const float lower[3],
-                            const float upper[3])
+static void R(place_soft_light)(const R(shadow_tile) * tile, R(soft_light) * light)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const glint_lamp *lamp = tile->args->lamp[0];
-    float middle[3], way[3], e[3], along = 0, length2 = 0, half2 = 0, size = 0, apart2 = 0;
+    const float loose = 2 * R(walk_slack)(geometry);
+    float size = 0;
     for (int k = 0; k < 3; k++) {
-        const float light = (float)((lamp->center[k] - geometry->reference[k]) * geometry->scale);
-        middle[k] = 0.5f * (lower[k] + upper[k]);
-        way[k] = light - middle[k];
-        e[k] = middle[k] - prim->filter_center[k];
-        along -= e[k] * way[k];
-        length2 += way[k] * way[k];
-        half2 += (upper[k] - middle[k]) * (upper[k] - middle[k]);
-        apart2 += (light - prim->filter_center[k]) * (light - prim->filter_center[k]);
-        size += (fabsf(middle[k]) + fabsf(prim->filter_center[k])) + fabsf(light);
+        light->middle[k] = (float)((lamp->center[k] - geometry->reference[k]) * geometry->scale);
+        size += largest_of(tile->lower[k], tile->upper[k]) + fabsf(light->middle[k]);
     }
-    along = smaller(larger(along / length2, 0), 1);
-    for (int k = 0; k < 3; k++)
-        e[k] += along * way[k];
-    const float slack = 4 * GLINT_FILTER_SLACK * size + R(walk_slack)(geometry);
-    const float light_reach = (float)(lamp->radius * geometry->scale) * 1.00001f + slack;
-    const float radius = (float)(prim->radius * geometry->scale);
-    if (!(sqrtf(apart2) > prim->filter_bound + (light_reach + slack))) // the whole light is outside
-        return false;
-    const float reach = (1 - along) * sqrtf(half2) + along * light_reach;
-    return sqrtf(DOT(e, e)) + reach < radius * 0.99999f - slack;
+    light->radius = (float)(lamp->radius * geometry->scale) * 1.00001f + (WALK_SLACK * size + loose);
+    light->scale = geometry->scale;
+    light->ready = false;
+    for (int n = 0; n < tile->count; n++) {
+        const glint_prim *prim = &geometry->prims[tile->occluders[n].id];
+        R(soft_occluder) *out = &light->occluders[n];
+        float away2 = 0, total = size + light->radius;
+        *out = (R(soft_occluder)) { .side = 0 };
+        if (prim->kind == GLINT_PRIM_PLANE) {
+            out->side = R(side_of_box)(tile, prim);
+            continue;
+        }
+        for (int k = 0; k < 3; k++) {
+            const float d = light->middle[k] - prim->filter_center[k];
+            away2 += d * d;
+            total += fabsf(prim->filter_center[k]);
+        }
+        out->away = sqrtf(away2);
+        out->slack = 4 * WALK_SLACK * total + loose;
+        out->outside = out->away > prim->filter_bound + (light->radius + out->slack);
+    }
 }
 
-static int R(classify)(const R(shadow_tile) * tile, const glint_prim *prim, const float lower[3], const float upper[3])
+/// Lanes by what an occluder is to them.
+typedef struct R(soft_lanes) {
+    unsigned apart; ///< it is between the point and no part of the light
+    unsigned hidden; ///< between the point and all of it
+} R(soft_lanes);
+
+static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const glint_prim *plane, int side, size_t at)
 {
-    if (prim->kind == GLINT_PRIM_PLANE)
-        return R(classify_plane)(tile, prim, lower, upper);
-    if (R(sphere_apart)(prim, lower, upper, &tile->light))
-        return SOFT_APART;
-    return prim->kind == GLINT_PRIM_SPHERE && R(sphere_hides)(tile, prim, lower, upper) ? SOFT_HIDES : SOFT_NEAR;
+    R(soft_lanes) out = { 0, 0 };
+    for (int i = 0; side && i < GLINT_GROUP; i += VR) {
+        vr p[3], f[3];
+        R(load3)(tile->args->point, at + (size_t)i, p);
+        R(offset)(p, plane, f);
+        const vr h = R(offset_constant)(f, plane);
+        out.hidden |= rm_bits(side > 0 ? r_lt(h, r_set(0)) : r_lt(r_set(0), h)) << i;
+    }
+    out.apart = side ? 0xffff & ~out.hidden : 0;
+    return out;
 }
 
-/// Which occluders of the tile matter to a group of which some sample lights `lit`.
-static R(soft_group) R(sort_group)(const R(shadow_tile) * tile, R(shadow_group) * group, uint32_t g, unsigned lit)
+/// A ball around the occluder is apart from the point's cone around the light where a plane that touches the ball has
+/// both the point and the light on its other side: one along the cone, one across the way from the point, or one before
+/// the light. A sphere hides all of the light where, at some share of the way, it holds the cone's whole width.
+static inline R(soft_lanes) R(sort_by_ball)(const R(soft_light) * light, const R(soft_occluder) * occluder,
+                                            const glint_prim *prim, const float local[3][GLINT_GROUP])
 {
-    const glint_occlude_args *args = tile->args;
-    R(soft_group) out = { 0 };
-    float lower[3], upper[3];
-    R(group_box)(tile, group, lit, lower, upper);
-    for (int k = 0; k < tile->count && !out.hidden; k++) {
-        const uint32_t id = tile->occluders[k].id;
-        const glint_prim *prim = &args->geometry->prims[id];
-        const unsigned own = lanes_equal(args->prim + group->at, id) & lit;
-        const bool passes_own =
-            prim->kind == GLINT_PRIM_PLANE || (prim->kind != GLINT_PRIM_TRIANGLE && !(own & args->back[g]));
-        if (own == lit && passes_own)
-            continue; // it is what all of them leave
-        const int class = own ? SOFT_NEAR : R(classify)(tile, prim, lower, upper);
-        out.hidden = class == SOFT_HIDES;
-        out.near |= (uint16_t)((class == SOFT_NEAR) << k);
+    R(soft_lanes) out = { 0, 0 };
+    const vf radius = f_set(light->radius), bound = f_set(prim->filter_bound), slack = f_set(occluder->slack);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf way[3], e[3], off[3]; // from the point to the light and to the occluder, and to that at right angles
+        for (int k = 0; k < 3; k++) {
+            const vf x = f_load(local[k] + i);
+            way[k] = f_set(light->middle[k]) - x;
+            e[k] = f_set(prim->filter_center[k]) - x;
+        }
+        const vf length2 = DOT(way, way), ee = DOT(e, e), along = DOT(e, way), inverse = f_set(1) / length2;
+        const vf share = along * inverse, one = f_set(1);
+        // from nearby, and where squares overflow or vanish, nothing is said
+        const fm fit =
+            fm_and(f_lt(f_max(f_set(4) * (radius * radius), f_set(0x1p-80f)), length2), f_lt(length2, f_set(0x1p80f)));
+        for (int k = 0; k < 3; k++)
+            off[k] = e[k] - share * way[k];
+        const vf beside2 = DOT(off, off) * (one - (radius * radius) * inverse);
+        const vf loose = slack * (one + ee * inverse), reach = bound + share * radius;
+        fm apart = fm_and(fit, f_lt(reach + f_set(2) * loose, f_sqrt(beside2)));
+        if (fm_bits(apart) == (1u << VF) - 1) {
+            out.apart |= fm_bits(apart) << i;
+            continue;
+        }
+        const vf far = f_sqrt(ee), length = f_sqrt(length2), before = ee - along;
+        const vf doubt = slack * ((far + length) + f_set(occluder->away));
+        const fm behind = fm_and(f_lt(bound + slack, far), f_lt((radius + bound) * far + doubt, before));
+        apart = fm_or(apart, fm_and(fit, behind));
+        if (occluder->outside)
+            apart = fm_or(apart, fm_and(fit, f_lt(bound * f_set(occluder->away) + doubt, before)));
+        out.apart |= fm_bits(apart) << i;
+        if (prim->kind != GLINT_PRIM_SPHERE || !occluder->outside)
+            continue;
+        const vf part = f_min(f_max(share, f_set(0)), one);
+        for (int k = 0; k < 3; k++)
+            off[k] = e[k] - part * way[k];
+        const vf widest = f_sqrt(DOT(off, off)) + (part * radius + slack);
+        const vf within = f_set((float)(prim->radius * light->scale) * 0.99999f);
+        out.hidden |= fm_bits(fm_and(fit, f_lt(widest, within))) << i;
     }
     return out;
 }
 
-/// What the samples of one call share.
-typedef struct R(soft_samples) {
-    _Alignas(64) real position[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
-    R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
-    unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
-} R(soft_samples);
+/// What the tile's occluders are to the lanes of a group.
+static R(soft_group)
+    R(sort_group)(const R(shadow_tile) * tile, const R(soft_light) * light, R(shadow_group) * group, unsigned lanes)
+{
+    const glint_occlude_args *args = tile->args;
+    const unsigned back = args->back[group->at / GLINT_GROUP];
+    R(soft_group) out;
+    out.any_near = out.hidden = 0;
+    for (int k = 0; k < tile->count; k++) {
+        const uint32_t id = tile->occluders[k].id;
+        const glint_prim *prim = &args->geometry->prims[id];
+        const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
+        unsigned near = own; // what they leave blocks nothing, but from behind and of triangles
+        if (prim->kind == GLINT_PRIM_PLANE)
+            near = 0;
+        else if (prim->kind != GLINT_PRIM_TRIANGLE)
+            near &= back;
+        const unsigned others = lanes & ~(own | out.hidden);
+        if (others) {
+            R(soft_lanes) sorted;
+            if (prim->kind == GLINT_PRIM_PLANE) {
+                sorted = R(sort_by_plane)(tile, prim, light->occluders[k].side, group->at);
+            } else {
+                R(place_group)(tile, group);
+                sorted = R(sort_by_ball)(light, &light->occluders[k], prim, (const float(*)[GLINT_GROUP])group->local);
+            }
+            out.hidden |= sorted.hidden & others;
+            near |= others & ~(sorted.apart | sorted.hidden);
+        }
+        out.near[k] = near;
+        out.any_near |= near;
+    }
+    out.any_near &= ~out.hidden;
+    return out;
+}
 
-static void R(prepare_samples)(const R(shadow_tile) * tile, R(soft_samples) * samples)
+/// Makes what the samples of one call share, as soon as a group asks for them.
+static void R(prepare_samples)(const R(shadow_tile) * tile, R(soft_light) * light)
 {
     const glint_occlude_args *args = tile->args;
     for (uint32_t s = 0; s < args->sample_count; s++) {
+#if GLINT_REAL == 32
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i++)
-                samples->position[s][k][i] = (real)args->lamp[s]->position[k][i];
-        for (int k = 0; k < tile->count; k++)
-            samples->sides[k][s] = R(seen_sides)(tile, args->lamp[s], &args->geometry->prims[tile->occluders[k].id]);
+                light->rounded[s][k][i] = (float)args->lamp[s]->position[k][i];
+        light->position[s] = (const float(*)[GLINT_GROUP])light->rounded[s];
+#else
+        light->position[s] = args->lamp[s]->position;
+#endif
+        for (int k = 0; k < tile->count; k++) {
+            light->sides[k][s] = (R(light_sides)) { 0xffff, 0 };
+            if (!light->occluders[k].outside)
+                light->sides[k][s] = R(sides_of)(args, args->lamp[s], &args->geometry->prims[tile->occluders[k].id]);
+        }
     }
+    light->ready = true;
 }
 
-/// Takes out of every sample's open lanes what the tile's occluder k blocks.
-static inline void R(block_samples)(const R(shadow_tile) * tile, int k, R(shadow_group) * group,
-                                    R(soft_samples) * samples)
+/// Takes out of every sample's open lanes what the tile's occluder k blocks of `near`.
+static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned near, size_t at, R(soft_light) * light)
 {
     const glint_occlude_args *args = tile->args;
     const uint32_t id = tile->occluders[k].id;
     const glint_prim *prim = &args->geometry->prims[id];
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    const unsigned all = (1u << VR) - 1, back = sphere ? args->back[group->at / GLINT_GROUP] : 0;
-    unsigned any = 0;
-    for (uint32_t s = 0; s < args->sample_count; s++)
-        any |= samples->open[s];
-    const unsigned own = lanes_equal(args->prim + group->at, id) & any;
+    const unsigned all = (1u << VR) - 1, own = lanes_equal(args->prim + at, id) & near;
+    const unsigned back = sphere ? args->back[at / GLINT_GROUP] & own : 0, others = near & ~own;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            samples->open[s] &= ~R(blocked_by_triangle)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s],
-                                                        group->at, own & samples->open[s], samples->open[s]);
+            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->position[s], at, own & light->open[s],
+                                                      near & light->open[s]);
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            samples->open[s] &=
-                ~R(blocked_by_solid)(args, prim, (const real(*)[GLINT_GROUP])samples->position[s], group->at,
-                                     own & samples->open[s], samples->open[s], samples->sides[k][s].outside);
+            light->open[s] &= ~R(blocked_by_solid)(args, prim, light->position[s], at, own & light->open[s],
+                                                   near & light->open[s], light->sides[k][s].outside);
         return;
     }
+    for (uint32_t s = 0; back && s < args->sample_count; s++)
+        light->open[s] &= ~(back & light->sides[k][s].outside);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
-        const unsigned others = any & ~own;
-        vr c = r_set(0), p[3], d[3], f[3] = { c, c, c };
-        if (others >> i & all) {
-            R(load3)(args->point, group->at + i, p);
-            R(offset)(p, prim, f);
-            c = R(offset_constant)(f, prim);
-        }
+        vr p[3], d[3], f[3];
+        if (!(others >> i & all))
+            continue;
+        R(load3)(args->point, at + (size_t)i, p);
+        R(offset)(p, prim, f);
+        const vr c = R(offset_constant)(f, prim);
         for (uint32_t s = 0; s < args->sample_count; s++) {
-            const R(light_sides) sides = samples->sides[k][s];
-            const unsigned lanes = samples->open[s] & ~own, outside = sides.outside >> i & all,
-                           inside = sides.inside >> i & all;
-            unsigned blocked = (samples->open[s] & own & back & sides.outside) >> i & all;
-            if (lanes >> i & all) {
-                R(directions_to)(args, (const real(*)[GLINT_GROUP])samples->position[s], group->at, i, d);
-                const rm hit = sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d)
-                                      : R(plane_blocks)(outside, inside, c);
-                blocked |= rm_bits(hit) & lanes >> i & all;
-            }
-            samples->open[s] &= ~(blocked << i);
+            const unsigned lanes = light->open[s] & others;
+            const R(light_sides) sides = light->sides[k][s];
+            const unsigned outside = sides.outside >> i & all, inside = sides.inside >> i & all;
+            if (!(lanes >> i & all))
+                continue;
+            R(directions_to)(args, light->position[s], at, i, d);
+            const rm hit =
+                sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
+            light->open[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
         }
     }
+}
+
+/// Takes out of the open lanes of every sample what blocks them, of a group that has been sorted.
+static void R(block_group)(const R(shadow_tile) * tile, const R(soft_group) * sorted, size_t at, R(soft_light) * light)
+{
+    if (!light->ready)
+        R(prepare_samples)(tile, light);
+    for (int k = 0; k < tile->count; k++)
+        if (sorted->near[k] & sorted->any_near)
+            R(block_samples)(tile, k, sorted->near[k] & sorted->any_near, at, light);
 }
 
 static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
 {
     const glint_occlude_args *args = tile->args;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    R(soft_samples) samples;
-    R(prepare_samples)(tile, &samples);
+    R(soft_light) light;
+    R(place_soft_light)(tile, &light);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        R(soft_group) sorted = { 0 };
-        if (lit[g]) {
+        R(soft_group) sorted;
+        sorted.any_near = sorted.hidden = 0;
+        if (lit[g] && tile->count) {
             R(begin_group)(g, &group);
-            sorted = R(sort_group)(tile, &group, g, lit[g]);
+            sorted = R(sort_group)(tile, &light, &group, lit[g]);
         }
         for (uint32_t s = 0; s < args->sample_count; s++) {
-            samples.open[s] = sorted.hidden ? 0 : args->lit[s][g];
-            if (sorted.near && !sorted.hidden)
-                *args->rays += (unsigned)__builtin_popcount(samples.open[s]);
+            light.open[s] = args->lit[s][g] & ~sorted.hidden;
+            *args->rays += (unsigned)__builtin_popcount(light.open[s] & sorted.any_near);
         }
-        for (unsigned near = sorted.hidden ? 0 : sorted.near; near; near &= near - 1)
-            R(block_samples)(tile, __builtin_ctz(near), &group, &samples);
+        if (sorted.any_near)
+            R(block_group)(tile, &sorted, group.at, &light);
         for (uint32_t s = 0; s < args->sample_count; s++)
-            args->open[s][g] = (uint16_t)samples.open[s];
+            args->open[s][g] = (uint16_t)light.open[s];
     }
 }
 
