@@ -37,7 +37,8 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     const uint32_t rows = (camera->group_count + camera->groups_across - 1) / camera->groups_across;
     const double rr = DOT(camera->right, camera->right), uu = DOT(camera->up, camera->up);
     for (int k = 0; k < 3; k++) {
-        view->origin[k] = (float)((camera->eye[k] - geometry->reference[k]) * geometry->scale);
+        view->exact[k] = (camera->eye[k] - geometry->reference[k]) * geometry->scale;
+        view->origin[k] = (float)view->exact[k];
         view->axis[0][k] = (float)(camera->right[k] / rr);
         view->axis[1][k] = (float)(-camera->up[k] / uu);
         view->axis[2][k] = (float)camera->forward[k];
@@ -58,6 +59,7 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     view->base = 0;
     view->inverse = 1;
     view->slack = R(walk_slack)(geometry);
+    view->drift = 0;
     view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // of half a pixel; far above the rounding
     view->far = HUGE_VALF;
     view->stretch = (float)(1.00001 * (1 + rr * wide[0] * wide[0] + uu * wide[1] * wide[1]));

@@ -130,30 +130,52 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
         }
 }
 
+/// Casts the primitives in the slots of `mask`.
+static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
+                          unsigned mask)
+{
+    const unsigned triangles = triangles_in(tile->args->geometry, node, mask);
+    int order[GLINT_NODE_WIDTH];
+    const int count = sort_slots(mask & ~triangles, seen->near, order);
+    for (int i = 0; i < count; i++)
+        R(cast_slot)(tile, node, seen, order[i]);
+    if (triangles)
+        R(cast_triangles)(tile, leaf, node, seen, triangles);
+}
+
+/// A node's primitives wait until the next node has been looked into: their memory is on its way meanwhile.
 static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
+    const glint_node *waiting = NULL;
+    unsigned waiting_prims = 0;
+    int turn = 0;
+    node_on_screen seen[2];
+    R(cast_leaf) leaf;
+    R(begin_leaf)(&leaf);
     if (!tile->scaled)
         R(scale_tile)(tile);
-    while (height > 0 && !is_stopped(tile->args->stop)) {
+    for (; height > 0 && !is_stopped(tile->args->stop); turn = !turn) {
         const screen_entry top = stack[--height];
         const glint_node *node = &geometry->nodes[top.node];
         int order[GLINT_NODE_WIDTH];
-        node_on_screen seen;
-        if (!any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, top.cells))
-            continue;
-        const unsigned mask = boxes_on_screen(node, &tile->view, &seen);
-        prefetch_slots(geometry, node, mask);
-        const int count = sort_slots(mask, seen.near, order);
-        for (int i = count; i-- > 0;)
-            if (!(node->child[order[i]] & GLINT_NODE_PRIM))
-                stack[height++] = entry_of(node, &seen, order[i]);
+        unsigned mask = 0, prims = 0;
+        if (any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, top.cells)) {
+            mask = boxes_on_screen(node, &tile->view, &seen[turn]);
+            prims = mask & prims_of_node(node);
+            prefetch_prims(geometry, node, prims);
+            for (int i = sort_slots(mask & ~prims, seen[turn].near, order); i-- > 0;)
+                stack[height++] = entry_of(node, &seen[turn], order[i]);
+        }
         if (height > 0)
             prefetch_node(&geometry->nodes[stack[height - 1].node]);
-        for (int i = 0; i < count; i++)
-            if (node->child[order[i]] & GLINT_NODE_PRIM)
-                R(cast_slot)(tile, node, &seen, order[i]);
+        if (waiting_prims)
+            R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
+        waiting = node;
+        waiting_prims = prims;
     }
+    if (waiting_prims)
+        R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
 }
 
 /// Makes candidates of the planes from number *next on that are ahead, as many as there is room for.

@@ -10,6 +10,7 @@
 
 #include "engine/stages/walk.h"
 #include "engine/stages/screen.h"
+#include "engine/stages/leaf.h"
 #include "engine/stages/beam.h"
 
 #define GLINT_REAL 64
@@ -20,6 +21,7 @@
 #include "engine/stages/solid.h"
 #include "engine/stages/meet.h"
 #include "engine/stages/candidate.h"
+#include "engine/stages/cast_leaf.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
 #include "engine/stages/scan.h"
@@ -47,6 +49,7 @@
 #include "engine/stages/solid.h"
 #include "engine/stages/meet.h"
 #include "engine/stages/candidate.h"
+#include "engine/stages/cast_leaf.h"
 #include "engine/stages/cast.h"
 #include "engine/stages/cast_rays.h"
 #include "engine/stages/scan.h"

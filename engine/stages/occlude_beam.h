@@ -152,7 +152,7 @@ static void R(walk_beam)(R(beam) * beam)
             continue;
         const glint_node *node = &geometry->nodes[top.node];
         const unsigned mask = boxes_on_screen(node, &beam->view, &seen);
-        prefetch_slots(geometry, node, mask);
+        prefetch_prims(geometry, node, mask & prims_of_node(node));
         for (unsigned left = mask; left; left &= left - 1)
             if (!(node->child[__builtin_ctz(left)] & GLINT_NODE_PRIM))
                 stack[height++] = entry_of(node, &seen, __builtin_ctz(left));

@@ -24,6 +24,7 @@
 #undef r_exponent
 #undef r_mantissa
 #undef r_put_index
+#undef r_pick
 #undef GLINT_PARALLEL
 #undef GLINT_POINT_SLACK
 #undef GLINT_ROUNDER
@@ -53,6 +54,7 @@
 #define r_exponent d_exponent
 #define r_mantissa d_mantissa
 #define r_put_index d_put_index
+#define r_pick d_pick
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE
@@ -81,6 +83,7 @@
 #define r_exponent f_exponent
 #define r_mantissa f_mantissa
 #define r_put_index(p, mask, i) i_store(p, f_bits(f_select(mask, f_from_bits(i_set(i)), f_from_bits(i_load(p)))))
+#define r_pick(table, index) f_from_bits(i_gather((const uint32_t *)(table), i_load(index)))
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
 #define GLINT_ROUNDER GLINT_ROUNDER_FLOAT

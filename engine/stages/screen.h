@@ -10,6 +10,7 @@
 
 typedef struct screen_view {
     float origin[3], axis[3][3]; ///< of the frame, in the index's; at right angles but for rounding
+    double exact[3]; ///< what origin was rounded from
     float unit[2]; ///< length of a unit of place where k is 1; the third axis is unit
     float base, inverse; ///< of k
     float slack; ///< what rounding may have moved a ray by, besides what the numbers of a box give
@@ -22,17 +23,22 @@ typedef struct screen_view {
     float reach,
         reach_of_numbers; ///< what a ray may be off by at a surface: the first, and the second times its numbers
     float weight[2], area; ///< squares of `unit`, and their product's root
+    float root_stretch, spread; ///< of `stretch`; bound of the lengths of places, where k is 1
+    float drift; ///< what rounding may have moved a place by, times `unit`, besides slack
 } screen_view;
 
 /// Fills what follows from the rest.
 static void finish_screen(screen_view *view)
 {
-    const float stretch = sqrtf(view->stretch), numbers = 2 * GLINT_FILTER_SLACK * stretch;
+    const float stretch = view->root_stretch = sqrtf(view->stretch), numbers = 2 * GLINT_FILTER_SLACK * stretch;
     view->reach_of_numbers = numbers;
     view->reach =
         view->slack * stretch + numbers * ((fabsf(view->origin[0]) + fabsf(view->origin[1])) + fabsf(view->origin[2]));
-    for (int j = 0; j < 2; j++)
+    view->spread = 0;
+    for (int j = 0; j < 2; j++) {
         view->weight[j] = view->unit[j] * view->unit[j];
+        view->spread += larger(fabsf(view->first[j]), fabsf(view->last[j])) * view->unit[j];
+    }
     view->area = view->unit[0] * view->unit[1];
 }
 
@@ -131,16 +137,22 @@ static inline bool any_behind(const float (*far)[SCREEN_ACROSS], float near, scr
     return false;
 }
 
-/// Has the memory of a node's primitives, and of the node to be looked into next, on its way.
-static inline void prefetch_slots(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
+/// The slots that hold a primitive.
+static inline unsigned prims_of_node(const glint_node *node)
+{
+    unsigned prims = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF)
+        prims |= fm_bits(i_lt(i_load(node->child + i), i_set(0))) << i;
+    return prims;
+}
+
+/// Has the memory of primitives, and of the node to be looked into next, on its way.
+static inline void prefetch_prims(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
     for (; mask; mask &= mask - 1) {
-        const uint32_t child = node->child[__builtin_ctz(mask)];
-        if (child & GLINT_NODE_PRIM) {
-            const char *prim = (const char *)&geometry->prims[child & ~GLINT_NODE_PRIM];
-            __builtin_prefetch(prim);
-            __builtin_prefetch(prim + 64);
-        }
+        const char *prim = (const char *)&geometry->prims[node->child[__builtin_ctz(mask)] & ~GLINT_NODE_PRIM];
+        __builtin_prefetch(prim);
+        __builtin_prefetch(prim + 64);
     }
 }
 

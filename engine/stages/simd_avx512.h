@@ -100,6 +100,13 @@ static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
 static inline vd d_set(double x) { return _mm512_set1_pd(x); }
 static inline vd d_load(const double *p) { return _mm512_load_pd(p); }
 static inline void d_store(double *p, vd x) { _mm512_store_pd(p, x); }
+
+/// table[index], the table being 16 numbers and the indices below 16.
+static inline vd d_pick(const double *table, const uint32_t *index)
+{
+    const __m512i i = _mm512_cvtepu32_epi64(_mm256_load_si256((const __m256i *)index));
+    return _mm512_permutex2var_pd(d_load(table), i, d_load(table + 8));
+}
 static inline vd d_sqrt(vd x) { return _mm512_sqrt_pd(x); }
 static inline vd d_min(vd a, vd b) { return _mm512_min_pd(a, b); }
 static inline vd d_max(vd a, vd b) { return _mm512_max_pd(a, b); }

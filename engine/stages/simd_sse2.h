@@ -89,6 +89,10 @@ static inline void i_store_rgb(uint8_t *to, size_t stride, vi rgb, bool spill)
 static inline vd d_set(double x) { return _mm_set1_pd(x); }
 static inline vd d_load(const double *p) { return _mm_load_pd(p); }
 static inline void d_store(double *p, vd x) { _mm_store_pd(p, x); }
+static inline vd d_pick(const double *table, const uint32_t *index)
+{
+    return _mm_setr_pd(table[index[0]], table[index[1]]);
+}
 static inline vd d_sqrt(vd x) { return _mm_sqrt_pd(x); }
 static inline vd d_min(vd a, vd b) { return _mm_min_pd(a, b); }
 static inline vd d_max(vd a, vd b) { return _mm_max_pd(a, b); }

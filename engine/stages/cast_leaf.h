@@ -1,0 +1,160 @@
+// cast_leaf: the triangles of a node against the groups of a tile. Float says which rays may pass between which edges; these
+// pairs of triangle and ray are decided a vector at a time, each lane with a triangle of its own. Contract: stages.h, cast.
+
+#define GLINT_PAIRS (4 * GLINT_GROUP)
+
+/// The triangles of one node, and pairs that are to be decided.
+typedef struct R(cast_leaf) {
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle, from the eye, in units of the table
+    _Alignas(64) real direction[3][GLINT_PAIRS], t[GLINT_PAIRS];
+    _Alignas(64) uint32_t slot[GLINT_PAIRS];
+    uint16_t at[GLINT_PAIRS]; ///< the ray
+    int count;
+    const glint_node *node;
+    leaf_on_screen shown;
+    _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
+} R(cast_leaf);
+
+static inline void R(begin_leaf)(R(cast_leaf) * leaf)
+{
+    memset(leaf->corner, 0, sizeof leaf->corner);
+    leaf->count = 0;
+}
+
+/// Loads the corners. Lanes without a triangle keep what they had.
+static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(cast_leaf) * leaf)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const real eye[3] = { (real)args->camera->eye[0], (real)args->camera->eye[1], (real)args->camera->eye[2] };
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        const glint_prim *prim = &geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                leaf->corner[j][k][slot] = ((real)prim->corner[j][k] - eye[k]) * (real)geometry->scale;
+    }
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            R(narrow)(leaf->corner[j][k], leaf->shown.corner[j][k]);
+}
+
+/// Which pixels of the tile each triangle may show in. Returns the slots of `mask` that show in any.
+static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf)
+{
+    const float start[2] = { tile->s[0][0], -tile->t[0][0] };
+    const int count[2] = { 4 * tile->across, 4 * tile->down };
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vi pixels = i_set(0);
+        fm none = fm_from_bits(0);
+        for (int n = 1; n >= 0; n--) {
+            const vf low = (f_load(leaf->shown.least[n] + i) - f_set(start[n])) * f_set(0.5f),
+                     high = (f_load(leaf->shown.most[n] + i) - f_set(start[n])) * f_set(0.5f);
+            // rounded up and down; NaN: all of them
+            const vi first =
+                i_sub(i_set(64), i_from_f(f_set(64) - f_min(f_max(low, f_set(0)), f_set((float)count[n]))));
+            const vi end = i_from_f(f_max(f_min(high, f_set((float)(count[n] - 1))), f_set(-1)) + f_set(1));
+            none = fm_or(none, i_lt(end, i_add(first, i_set(1))));
+            pixels = i_or(i_shl(pixels, 16), i_or(first, i_shl(i_and(i_sub(end, i_set(1)), i_set(255)), 8)));
+        }
+        i_store(leaf->pixels + i, pixels);
+        mask &= ~(fm_bits(none) << i);
+    }
+    return mask;
+}
+
+/// Keeps what is nearer than all before.
+static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, int n, uint64_t *moved)
+{
+    const glint_cast_args *args = tile->args;
+    const glint_prim *prims = args->geometry->prims;
+    const uint32_t at = leaf->at[n], id = leaf->node->child[leaf->slot[n]] & ~GLINT_NODE_PRIM;
+    const real t = leaf->t[n];
+    real *best = (real *)args->t + at;
+    uint32_t *best_id = args->prim + at;
+    const bool tie = t == *best && t < (real)HUGE_VAL && *best_id != GLINT_MISS && prims[id].id < prims[*best_id].id;
+    if (!(t < *best || tie))
+        return;
+    *best = t;
+    *best_id = id;
+    tile->depth[at / GLINT_GROUP][at % GLINT_GROUP] = (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
+    *moved |= (uint64_t)1 << at / GLINT_GROUP;
+}
+
+static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
+{
+    const real scale = (real)tile->args->geometry->scale;
+    uint64_t moved = 0;
+    for (int n = leaf->count; n % VR; n++) {
+        leaf->slot[n] = leaf->slot[0];
+        for (int k = 0; k < 3; k++)
+            leaf->direction[k][n] = leaf->direction[k][0];
+    }
+    for (int i = 0; i < leaf->count; i += VR) {
+        vr p[3][3], d[3], t;
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                p[j][k] = r_pick(leaf->corner[j][k], leaf->slot + i);
+        for (int k = 0; k < 3; k++)
+            d[k] = r_load(leaf->direction[k] + i);
+        const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
+        unsigned hits = rm_bits(R(meet_triangle)(p, d, r_set(scale), &t)) & there;
+        r_store(leaf->t + i, t);
+        for (; hits; hits &= hits - 1)
+            R(keep_pair)(tile, leaf, i + __builtin_ctz(hits), &moved);
+    }
+    for (; moved; moved &= moved - 1) {
+        const int g = __builtin_ctzll(moved);
+        tile->far[g / tile->across][g % tile->across] = group_highest(tile->depth[g]);
+    }
+    leaf->count = 0;
+}
+
+/// Pairs a triangle with lanes of group (x, y).
+static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, int x, int y, unsigned lanes)
+{
+    const R(group_directions) directions = R(directions_of)(tile->args->camera, (uint32_t)x, (uint32_t)y);
+    const uint32_t first = (uint32_t)(y * tile->across + x) * GLINT_GROUP;
+    int n = leaf->count;
+    for (; lanes; lanes &= lanes - 1, n++) {
+        const unsigned lane = (unsigned)__builtin_ctz(lanes);
+        leaf->slot[n] = (uint32_t)slot;
+        leaf->at[n] = (uint16_t)(first + lane);
+        for (int k = 0; k < 3; k++)
+            leaf->direction[k][n] = directions.across[k * GLINT_GROUP + lane] + directions.down[k * GLINT_GROUP + lane];
+    }
+    leaf->count = n;
+    if (n > GLINT_PAIRS - GLINT_GROUP)
+        R(decide_pairs)(tile, leaf);
+}
+
+/// Finds the rays that may meet the triangle in a slot.
+static void R(cast_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot)
+{
+    const screen_cells pixels = leaf->pixels[slot];
+    const float near = leaf->shown.near[slot];
+    for (int y = first_row(pixels) / 4; y <= last_row(pixels) / 4; y++)
+        for (int x = first_column(pixels) / 4; x <= last_column(pixels) / 4; x++) {
+            unsigned lanes = 0;
+            if (tile->far[y][x] < near)
+                continue;
+            for (int i = 0; i < GLINT_GROUP; i += VF) {
+                const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+                lanes |= (open & between_edges(&leaf->shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i)))
+                         << i;
+            }
+            if (lanes)
+                R(add_pairs)(tile, leaf, slot, x, y, lanes);
+        }
+}
+
+/// Casts the triangles in the slots of `mask`.
+static void R(cast_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
+                              const node_on_screen *seen, unsigned mask)
+{
+    leaf->node = node;
+    R(load_leaf)(tile->args, mask, leaf);
+    show_leaf(&tile->view, seen, GLINT_REAL == 32, &leaf->shown);
+    for (mask = R(pixels_of_leaf)(tile, mask, leaf); mask; mask &= mask - 1)
+        R(cast_triangle)(tile, leaf, __builtin_ctz(mask));
+    R(decide_pairs)(tile, leaf);
+}

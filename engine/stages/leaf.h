@@ -1,0 +1,148 @@
+// leaf: the triangles of a node as an eye or a light sees them, a lane each: where on the screen they may show, how near they
+// come, and their edges, which are linear over the screen. Float and conservative, as screen.h is, whose frame this is.
+//
+// A ray at place (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It meets a triangle whose corners are P_j
+// there where its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners' determinant.
+
+#define LEAF_SLACK 0x1p-20f ///< of a corner's numbers: what rounding may have moved it by, on the way to its place
+
+typedef struct leaf_on_screen {
+    /// In: of each corner and axis, from the view's exact origin, in the index's units.
+    _Alignas(64) float corner[3][3][GLINT_NODE_WIDTH];
+    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= -doubt.
+    _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
+    _Alignas(64) float doubt[GLINT_NODE_WIDTH]; ///< infinite where nobody knows on which side the corners run
+    _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
+    _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< the places between which it shows
+    unsigned certain, turned; ///< slots whose doubt is finite; of them, those whose determinant is negative
+} leaf_on_screen;
+
+/// The slots of `mask`, which hold primitives, that hold triangles.
+static inline unsigned triangles_in(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
+{
+    unsigned found = 0;
+    for (unsigned left = geometry->triangles ? mask : 0; left; left &= left - 1) {
+        const uint32_t child = node->child[__builtin_ctz(left)];
+        if (geometry->prims[child & ~GLINT_NODE_PRIM].kind == GLINT_PRIM_TRIANGLE)
+            found |= left & -left;
+    }
+    return found;
+}
+
+/// VF triangles in the coordinates of the screen.
+typedef struct leaf_lanes {
+    vf a[3], b[3], w[3], k[3];
+    vf lowest, highest; ///< least k, and the largest of any sign
+    vf numbers, size; ///< of the corners: bounds of their components' sum, and of the triangle's
+} leaf_lanes;
+
+static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_view *view, int i)
+{
+    leaf_lanes out = { .numbers = f_set(0), .size = f_set(0) };
+    vf x[3][3];
+    for (int j = 0; j < 3; j++) {
+        for (int c = 0; c < 3; c++)
+            x[j][c] = f_load(leaf->corner[j][c] + i);
+        vf *const to[3] = { &out.a[j], &out.b[j], &out.w[j] };
+        for (int n = 0; n < 3; n++)
+            *to[n] = (f_set(view->axis[n][0]) * x[j][0] + f_set(view->axis[n][1]) * x[j][1]) +
+                     f_set(view->axis[n][2]) * x[j][2];
+        out.k[j] = f_set(view->base) + out.w[j] * f_set(view->inverse);
+        out.numbers = f_max(out.numbers, (f_abs(x[j][0]) + f_abs(x[j][1])) + f_abs(x[j][2]));
+    }
+    for (int c = 0; c < 3; c++)
+        out.size = out.size + (f_max(f_max(x[0][c], x[1][c]), x[2][c]) - f_min(f_min(x[0][c], x[1][c]), x[2][c]));
+    out.lowest = f_min(f_min(out.k[0], out.k[1]), out.k[2]);
+    out.highest = f_max(f_max(f_abs(out.k[0]), f_abs(out.k[1])), f_abs(out.k[2]));
+    return out;
+}
+
+/// What corners and rays may be off by, as a length at the corners: 6 roundings of a corner across the way, as many along
+/// it, which lean by the screen's stretch, a few of the place and of k, and what the view says.
+static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view)
+{
+    return f_set(view->root_stretch) * (f_set(LEAF_SLACK) * at->numbers + f_set(view->slack)) +
+           f_set(0x1p-21f * view->spread + view->drift) * at->highest;
+}
+
+/// The places between which the triangles show; the box's where they come too near to the eye.
+static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
+{
+    const fm ahead = f_lt(f_set(4 * view->inverse) * slack, at->lowest);
+    const vf nearest = f_set(1) / at->lowest;
+    vf x[3], y[3];
+    for (int j = 0; j < 3; j++) {
+        const vf per_k = f_set(1) / at->k[j];
+        x[j] = at->a[j] * per_k;
+        y[j] = at->b[j] * per_k;
+    }
+    const vf *const place[2] = { x, y };
+    for (int n = 0; n < 2; n++) {
+        const vf *p = place[n];
+        const vf low = f_min(f_min(p[0], p[1]), p[2]), high = f_max(f_max(p[0], p[1]), p[2]);
+        const vf more = (slack * nearest) * f_set(2 / view->unit[n]) +
+                        (f_set(view->margin) + f_set(0x1p-20f) * (f_abs(low) + f_abs(high)));
+        f_store(leaf->least[n] + i, f_select(ahead, low - more, f_set(-HUGE_VALF)));
+        f_store(leaf->most[n] + i, f_select(ahead, high + more, f_set(HUGE_VALF)));
+    }
+}
+
+/// The edges, as seen from the ray through the triangle's middle, which spares digits. A ray that meets the triangle is at
+/// most `wide` from each corner, where that is; all products are of lengths below that, each off by no more than `slack`.
+static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
+{
+    const vf depth = (at->k[0] + at->k[1]) + at->k[2];
+    const vf per_k = f_select(f_lt(f_set(0), depth), f_set(1) / depth, f_set(0));
+    const vf u = ((at->a[0] + at->a[1]) + at->a[2]) * per_k, v = ((at->b[0] + at->b[1]) + at->b[2]) * per_k;
+    vf x[3], y[3], n[3][3], most = f_set(0), volume = f_set(0);
+    for (int j = 0; j < 3; j++) {
+        x[j] = at->a[j] - u * at->k[j];
+        y[j] = at->b[j] - v * at->k[j];
+        most = f_max(most, f_max(f_abs(x[j]) * f_set(view->unit[0]), f_abs(y[j]) * f_set(view->unit[1])));
+    }
+    for (int j = 0; j < 3; j++) {
+        const int p = (j + 1) % 3, q = (j + 2) % 3;
+        n[j][0] = at->k[q] * y[p] - at->k[p] * y[q];
+        n[j][1] = x[q] * at->k[p] - x[p] * at->k[q];
+        n[j][2] = x[p] * y[q] - x[q] * y[p];
+        volume = volume + at->k[j] * n[j][2];
+        n[j][2] = n[j][2] - (n[j][0] * u + n[j][1] * v);
+    }
+    const vf wide = (f_set(2 * view->root_stretch) * at->size + most) + slack;
+    const vf off = (f_set(6) * slack + f_set(0x1p-18f) * wide) + f_set(0x1p-19f * view->spread) * at->highest;
+    const vf doubt = (wide * off) * f_set(1 / view->area) + f_set(16 * FLT_MIN),
+             unsure = f_set(4) * at->highest * doubt;
+    const fm certain = fm_and(f_lt(unsure, f_abs(volume)), f_lt(unsure, f_set(0x1p100f)));
+    const fm turned = fm_and(certain, f_lt(volume, f_set(0)));
+    for (int j = 0; j < 3; j++)
+        for (int c = 0; c < 3; c++)
+            f_store(leaf->edge[j][c] + i, f_select(turned, -n[j][c], n[j][c]));
+    f_store(leaf->doubt + i, f_select(certain, doubt, f_set(HUGE_VALF)));
+    leaf->certain |= fm_bits(certain) << i;
+    leaf->turned |= fm_bits(turned) << i;
+}
+
+/// Fills what follows from the corners. `near` is the box's where rounding may put a hit anywhere on the ray: where the
+/// triangle is seen edge-on, and where float decides.
+static void show_leaf(const screen_view *view, const node_on_screen *seen, bool is_float, leaf_on_screen *leaf)
+{
+    leaf->certain = leaf->turned = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        const leaf_lanes at = place_leaf(leaf, view, i);
+        const vf slack = slack_of_leaf(&at, view);
+        bound_leaf(&at, slack, view, i, leaf);
+        edges_of_leaf(&at, slack, view, i, leaf);
+        const vf near = f_min(f_min(at.w[0], at.w[1]), at.w[2]) - slack, box = f_load(seen->near + i);
+        const fm known = is_float ? fm_from_bits(0) : f_lt(f_load(leaf->doubt + i), f_set(HUGE_VALF));
+        f_store(leaf->near + i, f_select(known, f_max(near, box), box));
+    }
+}
+
+/// Lanes whose rays, at places u, v, may pass between the edges of the triangle in a slot.
+static inline unsigned between_edges(const leaf_on_screen *leaf, int slot, vf u, vf v)
+{
+    vf e[3];
+    for (int j = 0; j < 3; j++)
+        e[j] = (f_set(leaf->edge[j][0][slot]) * u + f_set(leaf->edge[j][1][slot]) * v) + f_set(leaf->edge[j][2][slot]);
+    return ~fm_bits(f_lt(f_min(f_min(e[0], e[1]), e[2]), f_set(-leaf->doubt[slot]))) & ((1u << VF) - 1);
+}
