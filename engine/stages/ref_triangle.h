@@ -8,6 +8,7 @@ static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v
 
 typedef struct NAME(seen_edges) {
     REAL e[3], dz, depth, sum_of_sizes;
+    bool between_corners;
 } NAME(seen_edges);
 
 static int NAME(main_axis)(NAME(vec3) d)
@@ -31,6 +32,9 @@ static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d
     out.e[1] = px[0] * py[2] - py[0] * px[2];
     out.e[2] = px[1] * py[0] - py[1] * px[0];
     out.depth = (out.e[0] * pz[0] + out.e[1] * pz[1]) + out.e[2] * pz[2];
+    out.between_corners =
+        NAME(min)(NAME(min)(px[0], px[1]), px[2]) <= 0 && NAME(max)(NAME(max)(px[0], px[1]), px[2]) >= 0 &&
+        NAME(min)(NAME(min)(py[0], py[1]), py[2]) <= 0 && NAME(max)(NAME(max)(py[0], py[1]), py[2]) >= 0;
     out.sum_of_sizes = NAME(abs)(px[0]) + NAME(abs)(py[0]);
     for (int j = 1; j < 3; j++)
         out.sum_of_sizes = (out.sum_of_sizes + NAME(abs)(px[j])) + NAME(abs)(py[j]);
@@ -43,6 +47,12 @@ static bool NAME(all_on_one_side)(NAME(seen_edges) s, REAL reach)
 {
     REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
     return least >= -reach || most <= reach;
+}
+
+static bool NAME(passes)(NAME(seen_edges) s)
+{
+    REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
+    return least > 0 || most < 0 || ((least == 0 || most == 0) && s.between_corners);
 }
 
 static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
@@ -58,7 +68,7 @@ static REAL NAME(triangle_t)(const glint_prim *prim, double scale, NAME(vec3) or
     NAME(corners_seen)(prim, origin, scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
     REAL t = seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
-    return NAME(all_on_one_side)(seen, 0) && t > 0 ? t : 0;
+    return NAME(passes)(seen) && t > 0 ? t : 0;
 }
 
 static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
@@ -154,7 +164,7 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
         return NAME(touched_triangle_blocks)(args, plane, seen, corner, slack, ray);
     bool crosses = (h < 0 && plane.light > 0) || (h > 0 && plane.light < 0);
     REAL det = NAME(sum_of_edges)(seen);
-    return crosses && NAME(all_on_one_side)(seen, 0) && (det < 0 || det > 0);
+    return crosses && NAME(passes)(seen) && (det < 0 || det > 0);
 }
 
 // ---- cast, of rays that leave a triangle ----

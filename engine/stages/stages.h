@@ -199,7 +199,10 @@ typedef struct glint_cast_args {
 //                 t = -h / nd; a hit where nd nd >= 1e-60 length2(direction) (float: 1e-30) and t > 0
 // triangle, real: P_j = (corner_j - origin) * scale of the table, j = 0, 1, 2; edges (e, dz, depth) of these and direction:
 //                 det = (e_0 + e_1) + e_2;  t = depth / ((det dz) * scale)
-//                 a hit where (min(min(e_0, e_1), e_2) >= 0 or max(max(e_0, e_1), e_2) <= 0) and t > 0
+//                 a hit where the ray passes and t > 0
+//                 passes: least = min(min(e_0, e_1), e_2), most = max(max(e_0, e_1), e_2); where least > 0 or most < 0; where
+//                 least = 0 or most = 0 only if min X <= 0 <= max X and min Y <= 0 <= max Y as well: an e of 0 may be one whose
+//                 sign is lost, and of a triangle seen edge-on all are
 // edges(P, d):    z = 0; z = 1 where max(d_1, -d_1) > max(d_0, -d_0); z = 2 where max(d_2, -d_2) > that of the larger of
 //                 these; x = (z + 1) mod 3, y = (z + 2) mod 3; dz = d_z
 //                 X_j = P_jx d_z - P_jz d_x, Y_j = P_jy d_z - P_jz d_y: the corners as seen along the ray
@@ -476,7 +479,7 @@ typedef struct glint_occlude_args {
 //         M_x = |f_y g_z| + |f_z g_y|, M_y = |f_z g_x| + |f_x g_z|, M_z = |f_x g_y| + |f_y g_x|
 //         bound = ((|m_x| + |m_y|) + |m_z|) slack + point_slack ((M_x |q_x| + M_y |q_y|) + M_z |q_z|)
 //         on = slack > 0 and |h| <= bound: as far as rounding lets us know the point lies in this plane too
-//         not on: blocked = h and light have strictly opposite signs and (all e >= 0 or all e <= 0) and the sum of e is not 0
+//         not on: blocked = h and light have strictly opposite signs, the segment passes as in cast and the sum of e is not 0
 //         on:     a segment from there leaves the plane at once and can meet the triangle at its own beginning alone. It is
 //                 blocked where the triangle reaches to the point and parts it from the light as seen by the viewer's ray:
 //                 r = max of all |P_jk|, move = |dz| (2 (slack scale) + point_slack r)

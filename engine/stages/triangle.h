@@ -77,12 +77,46 @@ static inline rm R(within)(const R(seen_edges) * edges, vr reach)
     return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
 }
 
+/// Whether the ray passes between the corners along both axes of what it sees; X and Y as in edges_along.
+static rm R(between_corners)(vr p[3][3], const vr d[3])
+{
+    const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]), zero = r_set(0);
+    const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
+    vr turned[4][3]; // direction and corners, the direction's largest component last
+    for (int j = 0; j < 4; j++) {
+        const vr *v = j == 3 ? d : p[j];
+        for (int k = 0; k < 3; k++)
+            turned[j][k] = r_select(z, v[k], r_select(y, v[(k + 2) % 3], v[(k + 1) % 3]));
+    }
+    rm between = rm_from_bits((1u << VR) - 1);
+    for (int k = 0; k < 2; k++) {
+        vr x[3];
+        for (int j = 0; j < 3; j++)
+            x[j] = turned[j][k] * turned[3][2] - turned[j][2] * turned[3][k];
+        between = rm_and(
+            between, rm_and(r_le(r_min(r_min(x[0], x[1]), x[2]), zero), r_le(zero, r_max(r_max(x[0], x[1]), x[2]))));
+    }
+    return between;
+}
+
+/// Whether the ray goes through the triangle or its edges. An edge of 0 may be one that rounding has taken the sign of:
+/// seen edge-on, a triangle has such edges all along its plane, and only the corners tell where it ends.
+static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3])
+{
+    const vr *e = edges->e, zero = r_set(0);
+    const rm inside = R(within)(edges, zero);
+    const rm sure = rm_or(r_lt(zero, r_min(r_min(e[0], e[1]), e[2])), r_lt(r_max(r_max(e[0], e[1]), e[2]), zero));
+    if (!rm_bits(rm_andnot(inside, sure)))
+        return inside;
+    return rm_and(inside, rm_or(sure, R(between_corners)(p, d)));
+}
+
 /// p: the corners from the ray's origin, in units of the table.
 static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
     *t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
-    return rm_and(R(within)(&edges, r_set(0)), r_lt(r_set(0), *t));
+    return rm_and(R(passes)(&edges, p, d), r_lt(r_set(0), *t));
 }
 
 /// The corners from a place.
@@ -214,7 +248,7 @@ static inline rm R(triangle_blocks)(const glint_prim *prim, double scale, const 
     const vr det = R(det)(&edges);
     const rm crosses =
         rm_or(rm_and(r_lt(h, zero), r_lt(zero, plane->light)), rm_and(r_lt(zero, h), r_lt(plane->light, zero)));
-    const rm through = rm_and(R(within)(&edges, zero), rm_or(r_lt(det, zero), r_lt(zero, det)));
+    const rm through = rm_and(R(passes)(&edges, p, d), rm_or(r_lt(det, zero), r_lt(zero, det)));
     const rm blocks = rm_andnot(rm_and(crosses, through), on);
     if (!any_on)
         return blocks;

@@ -301,6 +301,80 @@ static void no_area(int count)
              &(hard_values) { 0, taken, HARD_BLANK, HARD_BLANK, HARD_BLANK }, taken == 0);
 }
 
+static double whole(double low, double high) { return rint(uniform(low, high)); }
+
+/// A triangle of whole numbers, of some size, and a ray that runs in its plane and passes its corners on one side.
+static hard_ray aim_beside(double corner[3][3])
+{
+    const double size = uniform(0.1, 10);
+    double from[2], along[2], side[3], f[3], g[3], area;
+    do {
+        for (int k = 0; k < 2; k++) {
+            from[k] = whole(-6, 6);
+            along[k] = whole(-6, 6);
+        }
+        for (int j = 0; j < 3; j++) // the corners are at 0, f and g
+            side[j] = ((j == 1) - from[0]) * along[1] - ((j == 2) - from[1]) * along[0];
+    } while (!((side[0] > 0 && side[1] > 0 && side[2] > 0) || (side[0] < 0 && side[1] < 0 && side[2] < 0)));
+    do {
+        area = 0;
+        for (int c = 0; c < 3; c++) {
+            f[c] = whole(-3, 3);
+            g[c] = whole(-3, 3);
+        }
+        for (int c = 0; c < 3; c++)
+            area += fabs(f[c] * g[(c + 1) % 3] - f[(c + 1) % 3] * g[c]);
+    } while (area == 0);
+    hard_ray ray;
+    for (int c = 0; c < 3; c++) {
+        const double first = whole(-8, 8);
+        corner[0][c] = size * first;
+        corner[1][c] = size * (first + f[c]);
+        corner[2][c] = size * (first + g[c]);
+        ray.o[c] = size * (first + from[0] * f[c] + from[1] * g[c]);
+        ray.d[c] = size * (along[0] * f[c] + along[1] * g[c]);
+    }
+    return ray;
+}
+
+/// G1: a ray in a triangle's own plane that goes past it, by a whole step at least: rounding tilts it a little, but not so far.
+static void in_plane(uint64_t rays)
+{
+    const uint32_t corners[3] = { 0, 1, 2 }, three = 3;
+    hard_values shown = { 0 };
+    hard_test("G1", "rays in a triangle's plane, beside it");
+    for (uint64_t i = 0; i < rays; i++) {
+        double corner[3][3];
+        glint_mesh_desc desc = glint_mesh_desc_default();
+        glint_shape *shape;
+        glint_error error;
+        glint_hit hit;
+        const hard_ray ray = aim_beside(corner);
+        desc.vertices = corner[0];
+        desc.vertex_count = 3;
+        desc.corners = corners;
+        desc.face_sizes = &three;
+        desc.face_count = 1;
+        must(glint_mesh_create(&desc, &shape, &error), &error);
+        glint_scene *scene = scene_new();
+        must(glint_scene_add_shape(scene, shape, &error), &error);
+        glint_shape_release(shape);
+        shown.in_double += !hard_check(!cast(scene, &ray, &hit), "a triangle is met that the ray goes past");
+        shown.naive_double += naive_double((const double(*)[3])corner, &ray);
+        shown.naive_float += naive_float((const double(*)[3])corner, &ray);
+        if (i % 50 == 0) {
+            float id[3];
+            glint_image *image = frame_of_ray(scene, &ray, GLINT_FLOAT, 1u << GLINT_PASS_OBJECT_ID);
+            pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
+            glint_image_release(image);
+            shown.in_float += !hard_check(id[0] == 0, "float meets a triangle that the ray goes past");
+        }
+        glint_scene_release(scene);
+    }
+    hard_row("G1", "rays in a triangle's plane, beside it: hits (float: of one ray in 50)", &shown,
+             shown.in_double == 0);
+}
+
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
@@ -308,6 +382,7 @@ int main(int argc, char **argv)
     seams(hard_rays / 100);
     leaving_seams(hard_rays / 200);
     no_area(1000);
+    in_plane(hard_rays / 50);
     hard_absent("G3", "there are no textures, and so no texture coordinates");
     return hard_end();
 }
