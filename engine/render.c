@@ -135,15 +135,18 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-/// A row of tiles is stamped by the keys of its tiles.
+/// A row of tiles is stamped by the stamps of its tiles.
 static void stamp_rows(glint_image *image, uint32_t across)
 {
     for (size_t row = 0; image->codes && row < glint_image_stamps(image); row++) {
-        const glint_key *film = image->film + row * across;
+        const glint_film_stamp *film = image->film + row * across;
+        glint_key key = { 0 };
         bool known = true;
-        for (size_t x = 0; x < across; x++)
-            known = known && (film[x].low || film[x].high);
-        image->row_stamp[row] = known ? glint_key_add((glint_key) { 0 }, film, across * sizeof *film).low : 0;
+        for (size_t x = 0; x < across; x++) {
+            known = known && film[x].codes;
+            key = glint_key_add(key, &film[x].codes, sizeof film[x].codes);
+        }
+        image->row_stamp[row] = known ? key.low : 0;
     }
 }
 
@@ -243,6 +246,16 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     return status;
 }
 
+static bool has_format(const glint_image *image, const glint_render_desc *desc)
+{
+    uint32_t passes = 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
+    return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
+           image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
+           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
+}
+
 /// `base`: of adaptive sampling, after the choice; else NULL.
 static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
                         const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
@@ -251,7 +264,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                 .shared = { .plan = plan,
                             .stages = renderer->stages,
                             .image = image,
-                            .last = renderer->last,
+                            .last = renderer->last && has_format(renderer->last, &plan->desc) ? renderer->last : NULL,
                             .tone_table = table,
                             .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
@@ -329,16 +342,6 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     renderer->last = within_budget ? glint_image_retain(image) : NULL;
     renderer->last_key = picture_key(plan);
     renderer->last_stats = *stats;
-}
-
-static bool has_format(const glint_image *image, const glint_render_desc *desc)
-{
-    uint32_t passes = 0;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
-        passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
-    return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
-           image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
-           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
 }
 
 /// A picture to render into: one given before that nobody else holds any more, or a new one.

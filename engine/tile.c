@@ -410,11 +410,11 @@ static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
     if (!tile->kept || !last || !last->film)
         return false;
     const glint_key key = glint_reuse_film_key(frame->reuse, tile->kept, plan);
-    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index]))
+    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
         return false;
-    if (!glint_key_equal(key, frame->image->film[tile->index]))
+    if (!glint_key_equal(key, frame->image->film[tile->index].key))
         glint_tile_copy(tile, frame);
-    frame->image->film[tile->index] = key;
+    frame->image->film[tile->index] = last->film[tile->index];
     tile->counts.clipped += tile->kept->clipped;
     tile->counts.nonfinite += tile->kept->nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
@@ -432,7 +432,10 @@ static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t 
     kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
     for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
         kept->lights[i].place = frame->plan->lights[i].place_key;
-    frame->image->film[tile->index] = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    const glint_key key = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
+    const bool same = last && last->codes && glint_tile_has_codes_of(tile, frame->image, frame->last);
+    frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
     kept->clipped = tile->counts.clipped - clipped;
     kept->nonfinite = tile->counts.nonfinite - nonfinite;
 }
@@ -443,7 +446,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_plan *plan = frame->plan;
     const uint64_t clipped = tile->counts.clipped, nonfinite = tile->counts.nonfinite;
     if (tile->kept)
-        frame->image->film[tile->index] = (glint_key) { 0 };
+        frame->image->film[tile->index] = (glint_film_stamp) { 0 };
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);

@@ -193,6 +193,17 @@ void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
     frame->stages->tone(&args);
 }
 
+bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b)
+{
+    const size_t pixel = glint_image_pixel_bytes(a), stride = (size_t)a->width * pixel;
+    const size_t at = tile->y0 * stride + tile->x0 * pixel;
+    for (size_t y = 0; a->codes && y < tile->height; y++)
+        if (memcmp((const char *)a->codes + at + y * stride, (const char *)b->codes + at + y * stride,
+                   tile->width * pixel) != 0)
+            return false;
+    return true;
+}
+
 void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *from = frame->last;

@@ -8,6 +8,12 @@
 
 #include <stdatomic.h>
 
+/// What is known of one tile's pixels.
+typedef struct glint_film_stamp {
+    glint_key key; ///< of what they were made from. Equal keys: equal pixels; all zero: unknown
+    uint64_t codes; ///< equal in two images of one size and tone: equal codes; 0: unknown
+} glint_film_stamp;
+
 struct glint_image {
     atomic_int references;
     int width, height;
@@ -18,8 +24,7 @@ struct glint_image {
     glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
-    glint_key *film; ///< one a tile, left to right, top to bottom: of what its pixels were made from. Equal keys: equal
-        ///< pixels; all zero: unknown. NULL: nobody asked. Owned
+    glint_film_stamp *film; ///< one a tile, left to right, top to bottom. NULL: nobody asked. Owned
     uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
         ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
 };
