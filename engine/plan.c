@@ -175,6 +175,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);
     free(plan->material_keys);
+    free(plan->matte_keys);
     free(plan->lines);
     free(plan->effects);
     free(plan);

@@ -143,7 +143,7 @@ struct glint_plan {
 
     bool runs[GLINT_STAGE_COUNT];
     glint_key keys[GLINT_STAGE_COUNT];
-    glint_key *material_keys; ///< of each row of materials
+    glint_key *material_keys, *matte_keys; ///< of each row of materials; of what it reads where it has no highlight
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
     glint_key output_key; ///< of what pictures are made of pixels

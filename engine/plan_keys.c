@@ -117,6 +117,14 @@ static glint_key material_key(const glint_shade_material *m, glint_key key)
     return key;
 }
 
+/// What of a material is read where it has no highlight.
+static glint_key matte_key(const glint_shade_material *m, glint_key key)
+{
+    ADD(key, m->diffuse);
+    ADD(key, m->ambient);
+    return key;
+}
+
 static glint_key tint_key(const glint_bounce_material *m, glint_key key)
 {
     ADD(key, m->transmission);
@@ -239,10 +247,13 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
     }
     plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
-    if (!plan->material_keys)
+    plan->matte_keys = glint_alloc(plan->material_count, sizeof *plan->matte_keys);
+    if (!plan->material_keys || !plan->matte_keys)
         return glint_fail_nomem(error);
-    for (uint32_t i = 0; i < plan->material_count; i++)
+    for (uint32_t i = 0; i < plan->material_count; i++) {
         plan->material_keys[i] = material_key(&plan->materials[i], none);
+        plan->matte_keys[i] = matte_key(&plan->materials[i], none);
+    }
     plan->all_materials_key =
         add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);

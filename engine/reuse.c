@@ -1,4 +1,5 @@
 #include "engine/reuse.h"
+#include "engine/stages/coefficients.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,19 @@ static bool shows_more(const glint_kept_tile *tile, const glint_plan *plan)
     return false;
 }
 
+/// Whether a material's highlight may be above 0 in the tile.
+static bool shines(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan, uint32_t index)
+{
+    const glint_shade_material *material = &plan->materials[index];
+    if ((material->highlight != GLINT_HIGHLIGHT_PHONG && material->highlight != GLINT_HIGHLIGHT_BLINN) ||
+        plan->light_count > reuse->light_count)
+        return true;
+    for (uint32_t i = 0; i < reuse->light_count; i++)
+        if (tile->lights[i].reaches && !(material->shininess * tile->lights[i].brightest < GLINT_EXP2_LOWEST))
+            return true;
+    return false;
+}
+
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan)
 {
     glint_key parts[GLINT_SHOWN_MAX + GLINT_KEPT_LIGHTS + 4];
@@ -115,7 +129,8 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
     if (tile->shown_count > GLINT_SHOWN_MAX)
         parts[count++] = plan->all_materials_key;
     for (uint32_t i = 0; i < tile->shown_count && tile->shown_count <= GLINT_SHOWN_MAX; i++)
-        parts[count++] = plan->material_keys[tile->shown[i]];
+        parts[count++] =
+            (shines(reuse, tile, plan, tile->shown[i]) ? plan->material_keys : plan->matte_keys)[tile->shown[i]];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_kept_light *light = &tile->lights[i];
         if (!glint_key_equal(light->place, plan->lights[i].place_key))

@@ -5,7 +5,7 @@
 /// where its key equals the plan's, so the reused frame has the fresh frame's bits.
 ///
 /// A tile as a whole has a key too, of what its pixels were made from: the materials it shows and the lights that reach
-/// it, and no others. Where that is the last frame's, its pixels are copied from the last picture.
+/// it, and no others; of a material that no highlight shows on, its highlight neither. Where that is the last frame's, its pixels are copied from the last picture.
 #ifndef GLINT_REUSE_H
 #define GLINT_REUSE_H
 
@@ -20,12 +20,14 @@ typedef struct glint_kept_light {
     glint_key light, occlude; ///< of what is in the arrays; all zero: nothing yet
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
+    float kept_brightest; ///< the largest log2_specular there
     uint16_t *open; ///< its own block: lit lanes that the light reaches
     float *visible; ///< its own block: by caps, how far, with the attenuation
     glint_key facet; ///< of what is in the next
     float *sine2, *schlick; ///< a block of their own, sine2 first
-    glint_key place; ///< the light's place and shadows when `reaches` was found; all zero: never
+    glint_key place; ///< the light's place and shadows when the following was found; all zero: never
     bool reaches; ///< some lane
+    float brightest; ///< the largest log2_specular of those lit, in shadow or not
 } glint_kept_light;
 
 #define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart

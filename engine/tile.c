@@ -1,6 +1,7 @@
 /// The walk of a tile: which stages run, in what order, and where their results go.
 #include "engine/tile.h"
 
+#include <math.h>
 #include <string.h>
 
 static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row)
@@ -65,12 +66,14 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
     tile->at.light[slot].lit = own->lit;
     tile->at.light[slot].open = own->open;
     tile->at.light[slot].visible = own->visible;
+    tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
     if (*light_known ||
         (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
         tile->at.light[slot].cosine = kept->cosine + first;
         tile->at.light[slot].attenuation = kept->attenuation + first;
         tile->at.light[slot].log2_specular = kept->log2_specular + first;
         tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
+        tile->at.light[slot].brightest = kept->kept_brightest;
     }
     if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
                            (k ? has_occlude(kept, l) : glint_reuse_hold_occlude(reuse, kept, l->cap)))) {
@@ -91,8 +94,10 @@ static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
     if (reuse->keep_cast && kept->t)
         kept->cast = plan->keys[GLINT_STAGE_CAST];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        if (reuse->keep_light[i] && kept->lights[i].cosine)
+        if (reuse->keep_light[i] && kept->lights[i].cosine) {
             kept->lights[i].light = plan->lights[i].key;
+            kept->lights[i].kept_brightest = kept->lights[i].brightest;
+        }
         if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&kept->lights[i], &plan->lights[i]))
             kept->lights[i].occlude = plan->lights[i].key;
     }
@@ -139,7 +144,7 @@ static void note_surfaces(const glint_tile *tile, const glint_tile_frame *frame,
         kept->background = kept->background || tile->at.hits[g] != tile->active[g];
 }
 
-/// Notes whether a light reaches any point of a sample.
+/// Notes whether a light reaches any point of a sample, and the most that its highlights may be there.
 static void note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
 {
     glint_kept_light *kept = &tile->kept->lights[index];
@@ -148,6 +153,7 @@ static void note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bo
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= lanes[g];
     kept->reaches = (k && kept->reaches) || any;
+    kept->brightest = fmaxf(k ? kept->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
 }
 
 /// The same where nothing is hit.

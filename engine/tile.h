@@ -62,6 +62,7 @@ typedef struct glint_tile_sample {
         float *sine2, *schlick; ///< only in frames with microfacets, as `facing`
         uint16_t *lit, *open;
         float *visible; ///< of lights with caps
+        float brightest; ///< the largest log2_specular of the sample, or of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
 } glint_tile_sample;

@@ -198,6 +198,7 @@ static glint_light_args light_args(glint_tile *tile, const glint_tile_frame *fra
         args.cosine[i] = tile->at.light[slot[i]].cosine;
         args.attenuation[i] = tile->at.light[slot[i]].attenuation;
         args.log2_specular[i] = tile->at.light[slot[i]].log2_specular;
+        args.brightest[i] = &tile->at.light[slot[i]].brightest;
     }
     for (int c = 0; c < 3; c++) {
         args.point[c] = tile->point[c];

@@ -468,6 +468,7 @@ static void lit_surface_case(int precision, bool odd)
         light.cosine[0] = output("cosine", KIND_FLOAT, n);
         light.attenuation[0] = output("attenuation", KIND_FLOAT, n);
         light.log2_specular[0] = output("log2_specular", KIND_FLOAT, n);
+        light.brightest[0] = output("brightest", KIND_FLOAT, 1);
         geometry(precision)->lit_surface(&args, &light);
         put_box(&box);
         compare_outputs("lit_surface");

@@ -151,6 +151,7 @@ static void light_case(int precision, bool odd)
             args.cosine[s] = output("cosine", KIND_FLOAT, n);
             args.attenuation[s] = output("attenuation", KIND_FLOAT, n);
             args.log2_specular[s] = output("log2_specular", KIND_FLOAT, n);
+            args.brightest[s] = output("brightest", KIND_FLOAT, 1);
         }
         geometry(precision)->light(&args);
         compare_outputs("light");

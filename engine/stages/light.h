@@ -8,6 +8,7 @@ typedef struct R(lit_group) {
     _Alignas(64) real x[GLINT_GROUP], x_less_1[GLINT_GROUP]; ///< (r.v)^2 or (n.h)^2, and that less 1
     _Alignas(64) float cone_cosine[GLINT_GROUP], cone_less_1[GLINT_GROUP], cone_step[GLINT_GROUP]; ///< of a spot
     unsigned lit, shiny;
+    vf brightest; ///< of the groups so far, a lane
 } R(lit_group);
 
 INNER rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
@@ -106,8 +107,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
 }
 
 /// The float part of one group.
-INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at,
-                           const R(lit_group) * group)
+INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_t s, size_t at, R(lit_group) * group)
 {
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(group->lit >> i & ((1u << VF) - 1));
@@ -130,9 +130,17 @@ INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_
             const fm shiny = fm_from_bits(shiny_lanes);
             vf log2 =
                 f_log2(f_select(shiny, R(load_narrow)(group->x + i), f_set(1)), R(load_narrow)(group->x_less_1 + i));
-            f_store(args->log2_specular[s] + at + i, f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR)));
+            log2 = f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
+            f_store(args->log2_specular[s] + at + i, log2);
+            group->brightest = f_max(group->brightest, log2);
         }
     }
+}
+
+INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, const R(lit_group) * group)
+{
+    if (args->highlights && args->brightest[s])
+        *args->brightest[s] = f_max_all(group->brightest);
 }
 
 /// Lanes by the highlight of their material.
@@ -177,6 +185,8 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
                                    const R(lamp_lanes) * lanes, R(lit_group) * groups)
 {
     R(lit_point) surface = { 0 };
+    for (uint32_t s = 0; s < samples; s++)
+        groups[s].brightest = f_set(GLINT_NO_SPECULAR);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         R(light_group)(args, kind, samples, lanes, place, &surface, groups);
         for (uint32_t s = 0; s < samples; s++) {
@@ -185,6 +195,8 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
                 R(finish_light)(args, kind, s, (size_t)place.g * GLINT_GROUP, &groups[s]);
         }
     }
+    for (uint32_t s = 0; s < samples; s++)
+        R(say_brightest)(args, s, &groups[s]);
 }
 
 static void R(light_lamp)(const glint_light_args *args)

@@ -47,6 +47,7 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
     R(lit_point) point = { 0 };
     R(lit_group) group;
     R(begin_walk)(&walk);
+    group.brightest = f_set(GLINT_NO_SPECULAR);
     for (R(group_place) place = { 0 }; place.g < surface->group_count; R(next_group)(surface->camera, &place)) {
         const uint32_t g = place.g;
         group.lit = group.shiny = 0;
@@ -61,4 +62,5 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
             R(finish_light)(light, LIGHT_PLAIN, 0, (size_t)g * GLINT_GROUP, &group);
     }
     R(end_walk)(surface, &walk);
+    R(say_brightest)(light, 0, &group);
 }

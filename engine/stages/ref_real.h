@@ -515,11 +515,23 @@ static void NAME(light_group)(const glint_light_args *args, uint32_t s, uint32_t
     }
 }
 
+static float NAME(brightest)(const glint_light_args *args, uint32_t s)
+{
+    float brightest = GLINT_NO_SPECULAR;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        if (args->lit[s][i / GLINT_GROUP] && args->log2_specular[s][i] > brightest)
+            brightest = args->log2_specular[s][i];
+    return brightest;
+}
+
 static void NAME(light)(const glint_light_args *args)
 {
-    for (uint32_t s = 0; s < args->sample_count; s++)
+    for (uint32_t s = 0; s < args->sample_count; s++) {
         for (uint32_t group = 0; group < args->group_count; group++)
             NAME(light_group)(args, s, group);
+        if (args->highlights && args->brightest[s])
+            *args->brightest[s] = NAME(brightest)(args, s);
+    }
 }
 
 static void NAME(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)

@@ -381,6 +381,7 @@ typedef struct glint_light_args {
     float *attenuation[GLINT_LIGHT_CHUNK]; ///< w; 0 where unlit
     float *log2_specular
         [GLINT_LIGHT_CHUNK]; ///< log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
+    float *brightest[GLINT_LIGHT_CHUNK]; ///< the largest log2_specular written, or GLINT_NO_SPECULAR; NULL: not asked
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
