@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#define TIMED_TILES 17 ///< one in so many; no divisor of a picture's width in tiles that is common
+
 static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row)
 {
     const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
@@ -14,6 +16,9 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
     tile->height = height - tile->y0 < GLINT_TILE_HEIGHT ? height - tile->y0 : GLINT_TILE_HEIGHT;
     tile->groups_across = (tile->width + 3) / 4;
     tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
+    memset(tile->active, 0xff, sizeof tile->active);
+    if (tile->width == GLINT_TILE_WIDTH && tile->height == GLINT_TILE_HEIGHT)
+        return;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t columns = tile->width - 4 * (g % tile->groups_across);
         const uint32_t rows = tile->height - 4 * (g / tile->groups_across);
@@ -129,17 +134,18 @@ static void note_surfaces(const glint_tile *tile, const glint_tile_frame *frame,
         kept->shown_count = 0;
         kept->background = kept->sites = false;
     }
-    uint32_t last = GLINT_MISS;
+    uint32_t last = k ? kept->only : GLINT_MISS;
+    bool several = k && kept->only == GLINT_MISS;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const uint32_t prim = tile->at.prim[i];
-        if (prim == last)
+        if (prim == last || prim == GLINT_MISS)
             continue;
-        if (prim != GLINT_MISS) {
-            note_material(kept, frame->geometry.prims[prim].material);
-            kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
-        }
+        note_material(kept, frame->geometry.prims[prim].material);
+        kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
+        several = several || last != GLINT_MISS;
         last = prim;
     }
+    kept->only = several ? GLINT_MISS : last;
     for (uint32_t g = 0; g < tile->group_count; g++)
         kept->background = kept->background || tile->at.hits[g] != tile->active[g];
 }
@@ -159,8 +165,10 @@ static void note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bo
 /// The same where nothing is hit.
 static void note_nothing(const glint_tile *tile, uint32_t k)
 {
-    if (k == 0)
+    if (k == 0) {
         tile->kept->shown_count = 0;
+        tile->kept->only = GLINT_MISS;
+    }
     tile->kept->background = true;
 }
 
@@ -226,6 +234,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         else
             note_nothing(tile, w->sample);
     }
+    tile->at.only = tile->kept && tile->kept->only != GLINT_MISS ? &tile->kept->only : NULL;
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
     if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
@@ -446,6 +455,12 @@ static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t 
     kept->nonfinite = tile->counts.nonfinite - nonfinite;
 }
 
+/// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
+static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    return frame->time_stages || tile->index % TIMED_TILES == 0 ? glint_tile_now_ns() : 0;
+}
+
 /// Every stage that the tile needs.
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -470,25 +485,25 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (frame->base)
         glint_tile_take_base(tile, frame);
     glint_tile_store_light(tile, frame);
-    const uint64_t rendered = glint_tile_now_ns();
+    const uint64_t rendered = clock_of(tile, frame);
     if (plan->runs[GLINT_STAGE_TONE]) {
         glint_tile_tone(tile, frame);
         tile->counts.runs[GLINT_STAGE_TONE]++;
     }
-    tile->counts.ns[GLINT_STAGE_TONE] += glint_tile_now_ns() - rendered;
+    tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
     sign_film(tile, frame, clipped, nonfinite);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
 {
     const glint_plan *plan = frame->plan;
-    const uint64_t start = glint_tile_now_ns();
     const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
-    tile->clock = start;
     tile->index = (size_t)row * across + column;
+    const uint64_t start = clock_of(tile, frame);
+    tile->clock = start;
     tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
     place(tile, plan, column, row);
     if (!unchanged(tile, frame))
         run_stages(tile, frame);
-    tile->counts.tile_ns += glint_tile_now_ns() - start;
+    tile->counts.tile_ns += clock_of(tile, frame) - start;
 }

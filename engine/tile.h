@@ -55,6 +55,7 @@ typedef struct glint_tile_sample {
     void *t;
     uint32_t *prim;
     uint16_t *hits;
+    const uint32_t *only; ///< the primitive of all hits, where they have one; NULL: not known
     const glint_point_box *box; ///< of the points, NULL: not known
     const uint16_t *sampled; ///< of these, the lanes whose light is worked out for themselves
     struct {

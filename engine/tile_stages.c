@@ -132,6 +132,7 @@ static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame 
     glint_surface_args args = { .group_count = tile->group_count,
                                 .hits = tile->at.hits,
                                 .prim = tile->at.prim,
+                                .only = tile->at.only,
                                 .prims = frame->geometry.prims,
                                 .mixed = frame->geometry.triangles || frame->geometry.solids,
                                 .scale = frame->geometry.scale,
@@ -165,6 +166,11 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_prim *prims = frame->geometry.prims;
     uint32_t last = GLINT_MISS, material = 0;
+    for (uint32_t g = 0; tile->at.only && g < tile->group_count; g++)
+        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+            tile->material[g * GLINT_GROUP + lane] = prims[*tile->at.only].material;
+    if (tile->at.only)
+        return;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const uint32_t prim = tile->at.prim[i];
         if (prim != last && prim != GLINT_MISS)
@@ -329,6 +335,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .active = tile->active,
                               .hits = tile->at.hits,
                               .material = tile->material,
+                              .only = tile->at.only ? &frame->geometry.prims[*tile->at.only].material : NULL,
                               .materials = plan->materials,
                               .facing = tile->at.facing,
                               .highlights = plan->highlights,

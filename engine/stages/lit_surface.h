@@ -7,8 +7,10 @@ INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_arg
                         R(group_place) place, R(lit_point) * point, R(lit_group) * group)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
-    const uint32_t id = surface->prim[at];
-    if ((surface->hits[place.g] & light->hits[place.g]) != 0xffff || lanes_equal(surface->prim + at, id) != 0xffff)
+    if ((surface->hits[place.g] & light->hits[place.g]) != 0xffff)
+        return false;
+    const uint32_t id = surface->only ? *surface->only : surface->prim[at];
+    if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
     R(look_at)(surface, walk, id);
     const glint_prim *prim = walk->seen.prim;

@@ -314,10 +314,10 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
                               d_set(args->background[c]));
         bool done = false;
         while (left) {
-            const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
+            const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(left)];
             const glint_shade_material *material = &args->materials[index];
             const bool specular = args->highlights && material->highlight;
-            const unsigned lanes = lanes_equal(args->material + at, index) & left;
+            const unsigned lanes = args->only ? left : lanes_equal(args->material + at, index) & left;
             find_factors(args, material, specular, g, &factors);
             if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
                 shade_whole(args, material, specular, &factors, at);

@@ -273,6 +273,7 @@ typedef struct glint_surface_args {
     uint32_t group_count;
     const uint16_t *hits;
     const uint32_t *prim;
+    const uint32_t *only; ///< the primitive of all hits, where they have one; NULL: not known
     const glint_prim *prims;
     bool mixed; ///< there are triangles or solids among prims; false: what they need is not read
     double scale; ///< of the table
@@ -602,6 +603,7 @@ typedef struct glint_shade_args {
     uint32_t group_count;
     const uint16_t *active, *hits;
     const uint32_t *material;
+    const uint32_t *only; ///< the material of all hits, where they have one; NULL: not known
     const glint_shade_material *materials;
     double background[3];
     const float *facing; ///< read for materials of GLINT_HIGHLIGHT_FACETS
