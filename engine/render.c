@@ -99,7 +99,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     drop_spares(renderer);
     glint_sites_clear(&renderer->sites, &renderer->reuse);
     glint_scan_clear(&renderer->scan);
-    glint_reuse_clear(&renderer->reuse);
+    glint_reuse_destroy(&renderer->reuse);
     glint_image_release(renderer->last);
     if (!renderer->shares)
         glint_pool_destroy(renderer->pool);

@@ -1,38 +1,44 @@
 #include "engine/reuse.h"
+#include "engine/base/alloc.h"
 #include "engine/stages/coefficients.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+/// Blocks are cut from chunks of large pages: many tiles follow each other there, and few pages are looked up.
+#define CHUNK_BYTES ((size_t)4 << 20)
+#define BLOCK_ALIGN 64
+
 void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget)
 {
     memset(reuse, 0, sizeof *reuse);
+    pthread_mutex_init(&reuse->lock, NULL);
     reuse->on = on;
     reuse->budget = budget ? budget : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
 }
 
 void glint_reuse_clear(glint_reuse *reuse)
 {
-    for (size_t i = 0; i < reuse->tile_count; i++) {
-        glint_kept_tile *tile = &reuse->tiles[i];
-        free(tile->t);
-        free(tile->facing);
-        for (uint32_t k = 0; k < reuse->light_count; k++) {
-            free(tile->lights[k].cosine);
-            free(tile->lights[k].open);
-            free(tile->lights[k].visible);
-            free(tile->lights[k].sine2);
-        }
-        free(tile->lights);
+    while (reuse->chunk) {
+        void *before = *(void **)reuse->chunk;
+        free(reuse->chunk);
+        reuse->chunk = before;
     }
+    for (size_t i = 0; i < reuse->tile_count; i++)
+        free(reuse->tiles[i].lights);
     free(reuse->tiles);
-    const size_t budget = reuse->budget, pictures = reuse->pictures;
-    const bool on = reuse->on;
-    memset(reuse, 0, sizeof *reuse);
-    reuse->on = on;
-    reuse->budget = budget;
-    reuse->pictures = pictures;
+    reuse->tiles = NULL;
+    reuse->tile_count = reuse->used = reuse->free_bytes = 0;
+    reuse->light_count = 0;
+    reuse->cast = reuse->view = (glint_key) { 0 };
+    memset(reuse->light, 0, sizeof reuse->light);
+}
+
+void glint_reuse_destroy(glint_reuse *reuse)
+{
+    glint_reuse_clear(reuse);
+    pthread_mutex_destroy(&reuse->lock);
 }
 
 /// The slots of every tile, or none at all.
@@ -55,7 +61,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
             return;
         }
     }
-    atomic_store(&reuse->used, bytes);
+    reuse->used = bytes;
 }
 
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count)
@@ -147,7 +153,7 @@ bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes)
 {
     const size_t half = reuse->budget / 2;
     if (!reuse->on || bytes > half || reuse->pictures > half - bytes ||
-        atomic_load(&reuse->used) > reuse->budget - reuse->pictures - bytes)
+        reuse->used > reuse->budget - reuse->pictures - bytes)
         return false;
     reuse->pictures += bytes;
     return true;
@@ -155,19 +161,37 @@ bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes)
 
 void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes) { reuse->pictures -= bytes; }
 
-/// A block of memory within the budget, or NULL; its contents do not matter yet. Nothing is booked that does not fit:
-/// a failing request must not make another worker's fail.
+/// Makes a chunk for blocks of this size: a large one where the budget has room for it.
+static bool add_chunk(glint_reuse *reuse, size_t bytes)
+{
+    const size_t room = reuse->budget - reuse->pictures, least = bytes + BLOCK_ALIGN;
+    const size_t whole =
+        least < CHUNK_BYTES && room >= CHUNK_BYTES && reuse->used <= room - CHUNK_BYTES ? CHUNK_BYTES : least;
+    if (whole > room || reuse->used > room - whole)
+        return false;
+    char *chunk = glint_alloc_large(whole, 1);
+    if (!chunk)
+        return false;
+    *(void **)(void *)chunk = reuse->chunk;
+    reuse->chunk = chunk;
+    reuse->free = chunk + BLOCK_ALIGN;
+    reuse->free_bytes = whole - BLOCK_ALIGN;
+    reuse->used += whole;
+    return true;
+}
+
+/// A block of memory within the budget, or NULL; its contents do not matter yet. It lasts until all is cleared.
 static void *hold(glint_reuse *reuse, size_t bytes)
 {
-    size_t used = atomic_load(&reuse->used);
-    do {
-        const size_t room = reuse->budget - reuse->pictures;
-        if (bytes > room || used > room - bytes)
-            return NULL;
-    } while (!atomic_compare_exchange_weak(&reuse->used, &used, used + bytes));
-    void *block = aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!block)
-        atomic_fetch_sub(&reuse->used, bytes);
+    void *block = NULL;
+    bytes = (bytes + BLOCK_ALIGN - 1) / BLOCK_ALIGN * BLOCK_ALIGN;
+    pthread_mutex_lock(&reuse->lock);
+    if (bytes <= reuse->free_bytes || add_chunk(reuse, bytes)) {
+        block = reuse->free;
+        reuse->free += bytes;
+        reuse->free_bytes -= bytes;
+    }
+    pthread_mutex_unlock(&reuse->lock);
     return block;
 }
 

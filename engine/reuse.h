@@ -11,7 +11,7 @@
 
 #include "engine/plan.h"
 
-#include <stdatomic.h>
+#include <pthread.h>
 
 #define GLINT_KEPT_LIGHTS 64 ///< lights of a frame whose results may be kept
 
@@ -53,7 +53,11 @@ typedef struct glint_reuse {
     bool on;
     size_t budget;
     size_t pictures; ///< bytes of the budget that whole pictures have, see glint_reuse_reserve
-    atomic_size_t used;
+    size_t used; ///< bytes of it that the tiles have
+    pthread_mutex_t lock; ///< of `used` and of the following, while a frame's workers make blocks
+    void *chunk; ///< owned: the last piece of memory that blocks were cut from; it begins with the one before
+    char *free; ///< what is left of it
+    size_t free_bytes;
     uint32_t width, height, samples; ///< the layout of what is kept
     size_t real_size;
     bool plain; ///< order of the primitives, whose places are kept
@@ -68,6 +72,7 @@ typedef struct glint_reuse {
 /// budget  bytes; 0: a quarter of the machine's memory.
 void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget);
 void glint_reuse_clear(glint_reuse *reuse);
+void glint_reuse_destroy(glint_reuse *reuse);
 /// Before a frame: compares keys with the last frame's and makes the tiles' slots. Without memory nothing is kept.
 void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_count);
 

@@ -33,9 +33,9 @@ void *glint_alloc_large(size_t count, size_t size)
     const size_t whole = whole_bytes(count, size, LARGE_PAGE);
     void *memory = whole ? aligned_alloc(LARGE_PAGE, whole) : NULL;
 #ifdef MADV_HUGEPAGE
-    // advice: refused, the pages are small
+    // advice: refused, the pages are small; what is beyond the last whole one stays so, and is not resident for nothing
     if (memory)
-        madvise(memory, whole, MADV_HUGEPAGE);
+        madvise(memory, bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
 #endif
     return memory;
 }

@@ -1,12 +1,11 @@
 #include "engine/image/image.h"
 
+#include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/image/tone.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#define PLANE_ALIGN 64
 
 static const struct {
     const char *name;
@@ -37,8 +36,7 @@ int glint_pass_channels(glint_pass pass) { return is_pass(pass) ? pass_table[pas
 
 static bool allocate_plane(size_t pixels, float **plane)
 {
-    size_t bytes = pixels * sizeof(float); // at most 2^34
-    *plane = aligned_alloc(PLANE_ALIGN, (bytes + PLANE_ALIGN - 1) / PLANE_ALIGN * PLANE_ALIGN);
+    *plane = glint_alloc_large(pixels, sizeof(float));
     return *plane != NULL;
 }
 
@@ -52,7 +50,7 @@ static bool allocate_all(glint_image *image, uint32_t passes, const glint_tone_d
     if (!codes_tone)
         return true;
     image->code_tone = *codes_tone;
-    image->codes = malloc(pixels * glint_image_pixel_bytes(image));
+    image->codes = glint_alloc_large(pixels, glint_image_pixel_bytes(image));
     image->row_stamp = calloc(glint_image_stamps(image), sizeof *image->row_stamp);
     return image->codes && image->row_stamp;
 }
