@@ -44,6 +44,8 @@ typedef struct glint_kept_tile {
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
     uint32_t only; ///< the primitive of all hits; GLINT_MISS: they have several, or there are none
+    glint_key boxed; ///< the surfaces' key when `box` was found; all zero: never
+    glint_point_box box; ///< of the points, in frames of one sample a pixel
     bool background; ///< some sample hits nothing
     bool sites; ///< some sample has the light of a face or of vertices, which are not all in the tile
     uint64_t clipped, nonfinite; ///< pixels, when the tile was last run

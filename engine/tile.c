@@ -438,8 +438,14 @@ static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
     return true;
 }
 
+/// What the worker had counted before a tile.
+typedef struct film_counts {
+    uint64_t clipped, nonfinite;
+    uint64_t lights; ///< calls of the stage light
+} film_counts;
+
 /// Writes down what the tile shows now.
-static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t clipped, uint64_t nonfinite)
+static void sign_film(glint_tile *tile, const glint_tile_frame *frame, film_counts before)
 {
     glint_kept_tile *kept = tile->kept;
     if (!kept)
@@ -449,10 +455,11 @@ static void sign_film(glint_tile *tile, const glint_tile_frame *frame, uint64_t 
         kept->lights[i].place = frame->plan->lights[i].place_key;
     const glint_key key = glint_reuse_film_key(frame->reuse, kept, frame->plan);
     const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
-    const bool same = last && last->codes && glint_tile_has_codes_of(tile, frame->image, frame->last);
+    const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
+    const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
     frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
-    kept->clipped = tile->counts.clipped - clipped;
-    kept->nonfinite = tile->counts.nonfinite - nonfinite;
+    kept->clipped = tile->counts.clipped - before.clipped;
+    kept->nonfinite = tile->counts.nonfinite - before.nonfinite;
 }
 
 /// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
@@ -465,7 +472,9 @@ static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const uint64_t clipped = tile->counts.clipped, nonfinite = tile->counts.nonfinite;
+    const film_counts before = { .clipped = tile->counts.clipped,
+                                 .nonfinite = tile->counts.nonfinite,
+                                 .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
     if (tile->kept)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate; k++)
@@ -491,7 +500,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         tile->counts.runs[GLINT_STAGE_TONE]++;
     }
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
-    sign_film(tile, frame, clipped, nonfinite);
+    sign_film(tile, frame, before);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)

@@ -127,6 +127,23 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_si
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 
+/// Whether the box of the tile's points is known from an earlier frame.
+static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    return tile->kept && glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
+}
+
+/// The box that a call of the stage filled in, or the known one; of the only sample of each pixel it is kept.
+static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
+{
+    glint_kept_tile *kept = tile->kept;
+    if (filled && kept && frame->plan->desc.samples == 1) {
+        kept->box = *filled;
+        kept->boxed = frame->plan->keys[GLINT_STAGE_SURFACE];
+    }
+    tile->at.box = filled ? filled : &kept->box;
+}
+
 static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_surface_args args = { .group_count = tile->group_count,
@@ -144,7 +161,7 @@ static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame 
                                 .material = tile->material,
                                 .back = tile->back,
                                 .dark = tile->dark,
-                                .box = &tile->box };
+                                .box = has_box(tile, frame) ? NULL : &tile->box };
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];
@@ -158,7 +175,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_surface_args args = surface_args(tile, frame);
     frame->stages->geometry[frame->plan->desc.precision].surface(&args);
-    tile->at.box = args.box;
+    take_box(tile, frame, args.box);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
 }
 
@@ -230,7 +247,7 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     const glint_surface_args surface = surface_args(tile, frame);
     const glint_light_args args = light_args(tile, frame, light, &slot, 1);
     frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
-    tile->at.box = surface.box;
+    take_box(tile, frame, surface.box);
     glint_tile_count_light(tile, frame, 1);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);

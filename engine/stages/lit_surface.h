@@ -24,7 +24,8 @@ INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_arg
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         R(found) found;
         R(find_lanes)(surface, &walk->seen, point->directions, at, i, false, &found);
-        R(enclose)(&walk->box, found.point, true, rm_from_bits(0));
+        if (surface->box)
+            R(enclose)(&walk->box, found.point, true, rm_from_bits(0));
         back |= rm_bits(found.back) << i;
         for (int k = 0; k < 3; k++) {
             r_store((real *)surface->point[k] + at + i, found.point[k]);
@@ -32,8 +33,9 @@ INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_arg
             point->normal[k] = found.normal[k];
             point->direction[k] = found.direction[k];
         }
-        point->aimed = true;
-        point->viewed = false;
+        point->aimed = point->viewed = true;
+        point->a = DOT(found.direction, found.direction);
+        point->nv = r_select(found.back, found.away, -found.away);
         R(light_lanes)(light, LIGHT_PLAIN, 0, NULL, at, i, 0xffff, point, group);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);

@@ -83,6 +83,7 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
 /// One vector of lanes of one primitive.
 typedef struct R(found) {
     vr direction[3], point[3], normal[3], slack;
+    vr away; ///< dot(outward normal, direction)
     rm back;
 } R(found);
 
@@ -114,7 +115,8 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
         else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
-    found->back = r_lt(r_set(0), DOT(n, d));
+    found->away = DOT(n, d);
+    found->back = r_lt(r_set(0), found->away);
     for (int k = 0; k < 3; k++)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
     if (smooth) {
@@ -174,7 +176,8 @@ INNER unsigned R(surface_lanes)(const glint_surface_args *args, const R(seen_pri
         R(put)(args->point[k], at + i, whole, mask, found.point[k]);
         R(put)(args->normal[k], at + i, whole, mask, found.normal[k]);
     }
-    R(enclose)(box, found.point, whole, mask);
+    if (args->box)
+        R(enclose)(box, found.point, whole, mask);
     if (mixed && args->slack)
         R(put)(args->slack, at + i, whole, mask, found.slack);
     return rm_bits(found.back) & lanes;
