@@ -2,16 +2,19 @@
 --     glint scripts/particle_box.lua                             particle_box.png
 --     glint scripts/particle_box.lua --set count=1000000 --set format=f32
 --     glint scripts/particle_box.lua --set file=melt.dump --set frame=3     a frame of a LAMMPS dump instead
+--     glint scripts/particle_box.lua --set count=1000 --set longest=1.1     bonds, those of a dump across its box's faces
 local glint = require "glint"
-local particles, lammps = require "glint.particles", require "glint.lammps"
+local particles, lammps, bonds = require "glint.particles", require "glint.lammps", require "glint.bonds"
 
 local P = glint.params {
   count = { 100000, min = 1, max = 1e8, doc = "particles" },
   format = { "f64", choices = { "f64", "f32" }, doc = "how the numbers are kept; f32 takes half the memory" },
   file = { "", doc = "a LAMMPS dump file" },
   frame = { 1, min = 1, max = 1e9, doc = "which frame of it" },
+  longest = { 0, min = 0, max = 1000, doc = "joins what is as near as this by bonds, radii halved; 0: none" },
 }
-local set = particles.new { format = P.format, material = { specular = 0.15, shininess = 30 } }
+local joins = P.longest > 0
+local set = particles.new { format = P.format, scale = joins and 0.5 or 1, material = { specular = 0.15, shininess = 30 } }
 if P.file ~= "" then
   set:add_frame(lammps.frame(P.file, P.frame, { wrap = true }))
 else
@@ -28,5 +31,7 @@ else
 end
 local scene = glint.scene { ambient = 0.25, background = "#10131a", camera = set:camera { from = { -0.8, 1.1, 1.5 } } }
 scene:add(glint.directional_light { direction = { 1, -2, -1.4 }, intensity = 0.75 })
+local joined = joins and bonds.new(set, { distance = P.longest, radius = P.longest / 8 })
+if joined then scene:add(joined) end
 scene:add(set:spheres())
 scene:render { width = 800, height = 600, samples = 4, output = "particle_box.png" }

@@ -334,6 +334,87 @@ function tests.bonds()
   check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
 end
 
+-- The bonds of atoms in a box against every pair and every repetition of it, one by one.
+local function count_across(box, atoms, longest)
+  local count, s = 0, box.size
+  for i, a in ipairs(atoms) do
+    for j = 1, i do
+      for p = -3, 3 do
+        for q = -3, 3 do
+          for r = -3, 3 do
+            local x, y = a[1] - atoms[j][1] + p * s[1] + q * box.xy + r * box.xz, a[2] - atoms[j][2] + q * s[2] + r * box.yz
+            local d = math.sqrt(x * x + y * y + (a[3] - atoms[j][3] + r * s[3]) ^ 2)
+            if d > 0 and d <= longest then count = count + (i == j and 0.5 or 1) end
+          end
+        end
+      end
+    end
+  end
+  return count
+end
+
+function tests.periodic_bonds()
+  local path = write("wall.dump", dump(0, 2, "pp pp pp\n0 10\n0 10\n0 10", "element x y z", "C 0.5 5 5\nO 9.5 5 5\n"))
+  local function load() return particles.new():add_frame(lammps.frame(path)) end
+  local group, count = bonds.new(load())
+  check(count == 1 and group.count == 2, "one bond across a face, got %d", count)
+  local scene = glint.scene { group }
+  for _, case in ipairs { { 0.25, "C" }, { -0.1, nil }, { 9.75, "O" }, { 10.1, nil }, { 5, nil } } do
+    local hit = scene:cast({ case[1], 5, 20 }, { 0, 0, -1 })
+    check((hit and hit.object.material.name) == case[2], "at x = %g: %s", case[1], tostring(case[2]))
+  end
+  check(select(2, bonds.new(load(), { box = false })) == 0, "none across a face on request")
+  check(select(2, bonds.new(load(), { box = { size = { 12, 10, 10 } } })) == 0, "another box")
+  local set = particles.new()
+  set:add("C", 0.5, 5, 5)
+  set:add("C", -9.5 + 10 * 7, 5, 5) -- unwrapped, seven boxes away
+  _, count = bonds.new(set, { box = { size = { 10, 10, 10 }, periodic = { true, false, false } } })
+  check(count == 0, "the same place, not a bond: %d", count)
+  set = particles.new()
+  set:add("C", 0.5, 5, 5)
+  set:add("C", -9.5 + 10 * 7 + 1.2, 5, 5)
+  group, count = bonds.new(set, { box = { size = { 10, 10, 10 } } })
+  check(count == 1 and glint.scene { group }:cast({ 61.5, 5, 20 }, { 0, 0, -1 }), "halves set out from where the atoms are")
+  local state = 7
+  local function draw(size)
+    state = state * 48271 % 0x7fffffff
+    return state / 0x7fffffff * size
+  end
+  for _, tilt in ipairs { { 0, 0, 0 }, { 1.5, -1, 0.7 }, { -2, 1.9, -1.5 } } do
+    for _, size in ipairs { { 4, 4, 4 }, { 9, 4, 5 }, { 1.3, 3, 4 } } do
+      local box = { size = size, low = { -3, 1, 2 }, periodic = { true, true, true }, xy = tilt[1], xz = tilt[2], yz = tilt[3] }
+      local atoms = {}
+      set = particles.new()
+      for i = 1, 12 do
+        local u, v, w = draw(1), draw(1), draw(1)
+        local x, y, z = -3 + u * size[1] + v * box.xy + w * box.xz, 1 + v * size[2] + w * box.yz, 2 + w * size[3]
+        atoms[i] = { x, y, z }
+        set:add("point", x, y, z)
+      end
+      _, count = bonds.new(set, { distance = 1.25, box = box })
+      local want = count_across(box, atoms, 1.25)
+      check(count == want and want > 0, "a box of %g, %g, %g: %g bonds, got %d", size[1], size[2], size[3], want, count)
+    end
+  end
+  set = particles.new()
+  set:add("point", 0, 0, 0) -- a crystal of one atom: a bond along each side
+  _, count = bonds.new(set, { distance = 1.1, box = { size = { 1, 1, 1 } } })
+  check(count == 3, "a simple cubic crystal has three bonds an atom, got %d", count)
+  for given, message in pairs {
+    [3] = "bonds.box: a box expected, got 3", [{}] = "bonds.box.size: three finite numbers expected, got nil",
+    [{ size = { 1, 0, 1 } }] = "bonds.box.size: numbers > 0 expected, got 0",
+    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box at least 1/8 as wide as the longest bond expected, got 0.1 for one of 1.1",
+    [{ size = { 1, 1, 1 }, periodic = { 1, 2, 3 } }] = "bonds.box.periodic: three booleans expected, got 1 at 1",
+  } do
+    local ok, got = pcall(bonds.new, set, { distance = 1.1, box = given })
+    check(not ok and got:find(message, 1, true), "<%s> expected, got <%s>", message, tostring(got))
+  end
+  set = load()
+  set:add_frame(lammps.frame(write("other.dump", dump(0, 1, "pp pp pp\n0 11\n0 10\n0 10", "element x y z", "C 3 5 5\n"))))
+  local ok, message = pcall(bonds.new, set)
+  check(not ok and message:find("different boxes; give box", 1, true), "two boxes: %s", tostring(message))
+end
+
 function tests.sphereflake()
   local list = {}
   sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)

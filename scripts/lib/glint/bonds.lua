@@ -3,24 +3,32 @@
 --     set:add_frame(xyz.frame "caffeine.xyz")
 --     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
 -- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each
--- looks at its neighbours alone: the time grows with the number of atoms. Periodic images are not looked at.
+-- looks at its neighbours alone: the time grows with the number of atoms.
+-- In a periodic box (that of a LAMMPS frame is known, of other files give it: box = { size = { 10, 10, 10 } }) atoms are
+-- joined across its faces, too: each to the nearest image of the other, by a half that sets out from it and ends where
+-- the bond would be cut in two, outside the box. box = false leaves these out.
 local glint = require "glint"
-local elements = require "glint.elements"
+local elements, boxes = require "glint.elements", require "glint.box"
 
 local bonds = {}
 
 local CLOSEST = 0.4 -- angstroms: what is nearer is the same atom in another place
 local SIDE = 1 << 20 -- cells across, at most
+local IMAGES = 8 -- how many sides of a periodic box the longest bond may be
 
 -- The options with their defaults; unknown ones are refused.
 local function settings(options)
   local known = { radius = 0.15, tolerance = 0.45, distance = false }
   for name, value in pairs(options or {}) do
-    if known[name] == nil then error(("bonds.%s: no such option; radius, tolerance, distance are"):format(name), 3) end
-    if type(value) ~= "number" or value ~= value or value <= (name == "tolerance" and -1 or 0) then
+    if name == "box" then
+      known.box = value and boxes.check(value, "bonds.box")
+    elseif known[name] == nil then
+      error(("bonds.%s: no such option; radius, tolerance, distance, box are"):format(name), 3)
+    elseif type(value) ~= "number" or value ~= value or value <= (name == "tolerance" and -1 or 0) then
       error(("bonds.%s: a number above %d expected, got %s"):format(name, name == "tolerance" and -1 or 0, value), 3)
+    else
+      known[name] = value
     end
-    known[name] = value
   end
   return known
 end
@@ -70,14 +78,52 @@ function bonds.each(x, y, z, reach, closest, found)
   end
 end
 
+-- The box to look across: that of the options, else the frames'; nil when nothing repeats.
+local function box_of(set, options)
+  local box = options.box
+  if box == nil then
+    if set.box == false then
+      error("bonds: the frames of the set have different boxes; give box, or box = false for bonds inside alone", 3)
+    end
+    box = set.box
+  end
+  if box and (box.periodic[1] or box.periodic[2] or box.periodic[3]) then return box end
+end
+
+-- Like bonds.each in a periodic box: found(i, j, dx, dy, dz) with the way from j to i, or to its nearest images.
+local function each_across(box, x, y, z, reach, closest, found)
+  local n, widest, at, u, v, w, own = #x, 0, {}, {}, {}, {}, {}
+  for i = 1, n do
+    u[i], v[i], w[i] = boxes.unscale(box, boxes.wrapped(box, boxes.scale(box, x[i], y[i], z[i])))
+    own[i], at[i] = reach[i], i
+    widest = math.max(widest, 2 * reach[i])
+  end
+  for i = 1, 3 do
+    if box.periodic[i] and widest > IMAGES * box.size[i] then
+      error(("bonds: a periodic box at least 1/%d as wide as the longest bond expected, got %.6g for one of %.6g"):format(
+        IMAGES, box.size[i], widest), 3)
+    end
+  end
+  local inside_u, inside_v, inside_w = table.move(u, 1, n, 1, {}), table.move(v, 1, n, 1, {}), table.move(w, 1, n, 1, {})
+  boxes.images(box, inside_u, inside_v, inside_w, widest, function(i, ux, vx, wx)
+    local k = #at + 1
+    at[k], u[k], v[k], w[k], own[k] = i, ux, vx, wx, reach[i]
+  end)
+  bonds.each(u, v, w, own, closest, function(i, j)
+    if j <= n then found(at[i], j, u[i] - u[j], v[i] - v[j], w[i] - w[j]) end
+  end)
+end
+
 --- The bonds of a set of glint.particles, as one group; nil when there are none.
 ---@param set table
----@param options? { radius: number, tolerance: number, distance: number }  radius of the cylinders (default 0.15);
---- tolerance in angstroms (default 0.45); distance, the longest bond of any two in place of covalent radii
+---@param options? { radius: number, tolerance: number, distance: number, box: table|false }  radius of the cylinders
+--- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two in place of covalent
+--- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if they have one)
 ---@return table? group
 ---@return integer count  of bonds
 function bonds.new(set, options)
   options = settings(options)
+  local box = box_of(set, options)
   local x, y, z, place = set:places_of_all()
   local by_kind, reach = {}, {}
   for name, kind in pairs(set.kinds) do
@@ -89,12 +135,17 @@ function bonds.new(set, options)
     parts[#parts + 1] = glint.cylinder { base = { x[i], y[i], z[i] }, top = { mx, my, mz }, radius = options.radius,
       capped = false, material = set.materials[place[i]] }
   end
-  bonds.each(x, y, z, reach, options.distance and 0 or CLOSEST, function(i, j)
-    local mx, my, mz = (x[i] + x[j]) / 2, (y[i] + y[j]) / 2, (z[i] + z[j]) / 2
-    half(i, mx, my, mz)
-    half(j, mx, my, mz)
+  local function join(i, j, dx, dy, dz)
+    half(i, x[i] - dx / 2, y[i] - dy / 2, z[i] - dz / 2)
+    half(j, x[j] + dx / 2, y[j] + dy / 2, z[j] + dz / 2)
     count = count + 1
-  end)
+  end
+  local closest = options.distance and 0 or CLOSEST
+  if box then
+    each_across(box, x, y, z, reach, closest, join)
+  else
+    bonds.each(x, y, z, reach, closest, function(i, j) join(i, j, x[i] - x[j], y[i] - y[j], z[i] - z[j]) end)
+  end
   return count > 0 and glint.group(parts) or nil, count
 end
 

@@ -6,7 +6,7 @@
 -- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
 -- box); `radius` or `diameter` where it is given. A label is the column `element`, or `types[type]` of the options, or
 -- "type1", "type2" ... The u columns lie outside a periodic box where an atom has left it: wrap = true brings it back.
-local frames = require "glint.frames"
+local frames, boxes = require "glint.frames", require "glint.box"
 
 local lammps = {}
 
@@ -48,25 +48,6 @@ local function read_box(source, header)
     if box.size[i] <= 0 then source:fail("a box larger than its tilt", header) end
   end
   return box
-end
-
--- A point from its shares of the box, and the other way round.
-local function unscale(box, u, v, w)
-  local size, low = box.size, box.low
-  return low[1] + u * size[1] + v * box.xy + w * box.xz, low[2] + v * size[2] + w * box.yz, low[3] + w * size[3]
-end
-
-local function scale(box, x, y, z)
-  local size, low = box.size, box.low
-  local w = (z - low[3]) / size[3]
-  local v = (y - low[2] - w * box.yz) / size[2]
-  return (x - low[1] - v * box.xy - w * box.xz) / size[1], v, w
-end
-
-local function wrapped(box, u, v, w)
-  local periodic = box.periodic
-  return periodic[1] and u - math.floor(u) or u, periodic[2] and v - math.floor(v) or v,
-    periodic[3] and w - math.floor(w) or w
 end
 
 -- Which columns hold what. One pattern takes the at most five that matter out of a line: columns.x and the others say
@@ -116,9 +97,9 @@ local function read_atom(source, frame, columns, options)
   local x, y = source:number_of(list[columns.x], "x"), source:number_of(list[columns.y], "y")
   local z, radius = source:number_of(list[columns.z], "z"), nil
   if columns.scaled or options.wrap then
-    if not columns.scaled then x, y, z = scale(frame.box, x, y, z) end
-    if options.wrap then x, y, z = wrapped(frame.box, x, y, z) end
-    x, y, z = unscale(frame.box, x, y, z)
+    if not columns.scaled then x, y, z = boxes.scale(frame.box, x, y, z) end
+    if options.wrap then x, y, z = boxes.wrapped(frame.box, x, y, z) end
+    x, y, z = boxes.unscale(frame.box, x, y, z)
   end
   if columns.radius then
     radius = source:number_of(list[columns.radius], "radius")

@@ -117,9 +117,23 @@ function set:add(label, x, y, z, radius)
   if not done then error(("%s expected, got %q"):format(expected, got), 2) end
 end
 
---- Adds the atoms of a frame that a reader gave. What cannot be added is an error with file and line.
+-- The box of all frames added; false when they have different ones.
+local function keep_box(self, box)
+  local kept = self.box
+  if kept == nil then self.box = box end
+  if not kept then return end
+  local same = kept.xy == box.xy and kept.xz == box.xz and kept.yz == box.yz
+  for i = 1, 3 do
+    same = same and kept.low[i] == box.low[i] and kept.size[i] == box.size[i] and kept.periodic[i] == box.periodic[i]
+  end
+  self.box = same and box
+end
+
+--- Adds the atoms of a frame that a reader gave. What cannot be added is an error with file and line. A box the frame
+--- has is kept, for glint.bonds.
 ---@return table set  the same
 function set:add_frame(frame)
+  if frame.box then keep_box(self, frame.box) end
   for label, x, y, z, radius in frame:atoms() do
     local done, expected, got = put(self, label, x, y, z, radius)
     if not done then frame:fail(expected, got) end

@@ -1,0 +1,89 @@
+-- The box of a simulation: { low, size, periodic, xy, xz, yz } as glint.lammps gives it; its sides are {size x, 0, 0},
+-- {xy, size y, 0} and {xz, yz, size z}. By hand { size = { 10, 10, 10 } } is enough: from 0, upright, periodic.
+local box = {}
+
+local function three(value, name, kind)
+  for i = 1, 3 do
+    local v = type(value) == "table" and value[i]
+    if type(v) ~= kind or (kind == "number" and not (math.abs(v) < math.huge)) then
+      error(("%s: three %s expected, got %s"):format(name, kind == "number" and "finite numbers" or "booleans",
+        type(value) == "table" and ("%s at %d"):format(tostring(v), i) or tostring(value)), 0)
+    end
+  end
+  return value
+end
+
+--- A whole box of what was given; raises where something is missing or wrong.
+---@param given table
+---@param name string  for messages
+function box.check(given, name)
+  if type(given) ~= "table" then error(("%s: a box expected, got %s"):format(name, tostring(given)), 0) end
+  local size = three(given.size, name .. ".size", "number")
+  for i = 1, 3 do
+    if size[i] <= 0 then error(("%s.size: numbers > 0 expected, got %.14g"):format(name, size[i]), 0) end
+  end
+  local tilt = three({ given.xy or 0, given.xz or 0, given.yz or 0 }, name .. ".xy, xz, yz", "number")
+  return {
+    size = size, low = three(given.low or { 0, 0, 0 }, name .. ".low", "number"),
+    periodic = three(given.periodic or { true, true, true }, name .. ".periodic", "boolean"),
+    xy = tilt[1], xz = tilt[2], yz = tilt[3],
+  }
+end
+
+--- A point from its shares of the box.
+function box.unscale(b, u, v, w)
+  local size, low = b.size, b.low
+  return low[1] + u * size[1] + v * b.xy + w * b.xz, low[2] + v * size[2] + w * b.yz, low[3] + w * size[3]
+end
+
+--- The shares of a point, 0 .. 1 inside.
+function box.scale(b, x, y, z)
+  local size, low = b.size, b.low
+  local w = (z - low[3]) / size[3]
+  local v = (y - low[2] - w * b.yz) / size[2]
+  return (x - low[1] - v * b.xy - w * b.xz) / size[1], v, w
+end
+
+--- Shares brought back into the box where it is periodic.
+function box.wrapped(b, u, v, w)
+  local periodic = b.periodic
+  return periodic[1] and u - math.floor(u) or u, periodic[2] and v - math.floor(v) or v,
+    periodic[3] and w - math.floor(w) or w
+end
+
+--- Which share of each side `reach` is, measured across the box: from one face to the one that repeats it.
+local function margins(b, reach)
+  local x, y, z = b.size[1], b.size[2], b.size[3]
+  local a, c = b.yz / z, (b.xy * b.yz / y - b.xz) / z -- the planes' normals: (1, -xy/y, c) and (0, 1, -yz/z)
+  return reach / x * math.sqrt(1 + (b.xy / y) ^ 2 + c * c), reach / y * math.sqrt(1 + a * a), reach / z
+end
+
+--- The repetitions of points inside the box that lie within `reach` of it: calls found(i, x, y, z) with the number of a
+--- point and the place of its image. Of each two opposite steps, by p, q, r sides and by -p, -q, -r, one is taken.
+---@param b table
+---@param x number[]  places, brought back into the box
+---@param y number[]
+---@param z number[]
+---@param reach number  world units
+---@param found function
+function box.images(b, x, y, z, reach, found)
+  local size, m, most = b.size, { margins(b, reach) }, {}
+  for i = 1, 3 do
+    most[i] = b.periodic[i] and math.ceil(m[i]) or 0
+    if not b.periodic[i] then m[i] = math.huge end -- points may lie outside
+  end
+  for i = 1, #x do
+    local u, v, w = box.scale(b, x[i], y[i], z[i])
+    for p = 0, most[1] do
+      for q = p == 0 and 0 or -most[2], most[2] do
+        for r = p == 0 and q == 0 and 1 or -most[3], most[3] do
+          if u + p <= 1 + m[1] and v + q >= -m[2] and v + q <= 1 + m[2] and w + r >= -m[3] and w + r <= 1 + m[3] then
+            found(i, x[i] + p * size[1] + q * b.xy + r * b.xz, y[i] + q * size[2] + r * b.yz, z[i] + r * size[3])
+          end
+        end
+      end
+    end
+  end
+end
+
+return box
