@@ -117,7 +117,8 @@ typedef struct cli_file_list {
 } cli_file_list;
 
 /// The files that the command's words name: themselves, or, of one word with a place for a number, the selected files
-/// that fit it. False: frames are missing, or there are none; the message names them. To be freed in any case.
+/// that fit it. False: frames are missing, there are none, or options->output is one of them; the message names them. To
+/// be freed in any case.
 bool cli_list_files(const cli_options *options, const glintL_selection *selection, cli_file_list *out,
                     char message[GLINTL_MESSAGE_SIZE]);
 void cli_free_list(cli_file_list *list);

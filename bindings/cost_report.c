@@ -315,12 +315,14 @@ static bool make_folders(const char *folder)
         mkdir(path, 0777); // whether it is there now shows at the end
         *at = '/';
     }
-    mkdir(path, 0777);
+    const int why = mkdir(path, 0777) == 0 ? 0 : errno;
     struct stat info;
-    if (stat(path, &info) != 0)
-        return false;
-    errno = ENOTDIR;
-    return S_ISDIR(info.st_mode);
+    if (stat(path, &info) == 0) {
+        errno = ENOTDIR;
+        return S_ISDIR(info.st_mode);
+    }
+    errno = why;
+    return false;
 }
 
 bool cost_report_check(const char *folder, char message[GLINTL_MESSAGE_SIZE])

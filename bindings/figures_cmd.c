@@ -15,13 +15,12 @@ static int refuse(cli_output *output, int code, const char *command, const char 
 
 int cli_sheet(const cli_options *options, cli_output *output)
 {
-    static const glintL_selection all;
     char message[GLINTL_MESSAGE_SIZE];
     cli_file_list list;
     int code = GLINTL_EXIT_USAGE;
     if (!options->output)
         return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
-    if (cli_list_files(options, &all, &list, message)) {
+    if (cli_list_files(options, &options->asked.selection, &list, message)) {
         glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
         sheet.label = options->label;
         sheet.title = options->title;

@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "bindings/cli.h"
 
@@ -113,6 +114,42 @@ static bool add_file(cli_file_list *out, const char *path, char *message)
     return true;
 }
 
+// A word with shell's wildcards in it that no shell has taken apart.
+static bool is_quoted_wildcard(const char *word, char *message)
+{
+    struct stat info;
+    if (!word[strcspn(word, "*?")] || stat(word, &info) == 0)
+        return false;
+    snprintf(message, GLINTL_MESSAGE_SIZE,
+             "%.200s: no such file; give it without quotes, or a pattern such as 'frame_%%04d.png'", word);
+    return true;
+}
+
+// Whether a figure would take the place of a file it is made of.
+static bool is_among(const cli_file_list *list, const char *output, char *message)
+{
+    struct stat out, file;
+    if (!output || stat(output, &out) != 0 || !S_ISREG(out.st_mode))
+        return false;
+    for (size_t i = 0; i < list->count; i++)
+        if (stat(list->files[i], &file) == 0 && file.st_dev == out.st_dev && file.st_ino == out.st_ino) {
+            snprintf(message, GLINTL_MESSAGE_SIZE, "-o: a file that is none of the pictures expected, got '%.200s'",
+                     output);
+            return true;
+        }
+    return false;
+}
+
+static bool add_words(const cli_options *options, cli_file_list *out, char *message)
+{
+    for (int i = 0; i < options->argument_count; i++)
+        if (is_quoted_wildcard(options->arguments[i], message) || !add_file(out, options->arguments[i], message))
+            return false;
+    if (out->count == 0)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "finished pictures expected, or a pattern such as 'frame_%%04d.png'");
+    return out->count > 0;
+}
+
 static bool add_numbers(const char *pattern, const int64_t *numbers, size_t count, const glintL_selection *selection,
                         cli_file_list *out, char *message)
 {
@@ -151,20 +188,16 @@ static bool add_pattern(const char *pattern, const glintL_selection *selection, 
 bool cli_list_files(const cli_options *options, const glintL_selection *selection, cli_file_list *out,
                     char message[GLINTL_MESSAGE_SIZE])
 {
+    bool good = false;
     *out = (cli_file_list) { 0 };
     if (options->argument_count == 1 && glintL_name_check(options->arguments[0], message) &&
         !glintL_name_is_special(options->arguments[0]) && glintL_name_has_number(options->arguments[0]))
-        return add_pattern(options->arguments[0], selection, out, message);
-    if (selection->range_count) {
+        good = add_pattern(options->arguments[0], selection, out, message);
+    else if (selection->range_count)
         snprintf(message, GLINTL_MESSAGE_SIZE, "--frames: a pattern such as 'frame_%%04d.png' expected with it");
-        return false;
-    }
-    for (int i = 0; i < options->argument_count; i++)
-        if (!add_file(out, options->arguments[i], message))
-            return false;
-    if (out->count == 0)
-        snprintf(message, GLINTL_MESSAGE_SIZE, "finished pictures expected, or a pattern such as 'frame_%%04d.png'");
-    return out->count > 0;
+    else
+        good = add_words(options, out, message);
+    return good && !is_among(out, options->output, message);
 }
 
 void cli_free_list(cli_file_list *list)

@@ -106,7 +106,9 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
     if (options->command == CLI_COMPLETION)
         return cli_completion(options, output);
     if (!options->script && options->command != CLI_ASSEMBLE) {
-        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "a script expected; glint --help lists the commands");
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE,
+                         options->command == CLI_REPRODUCE ? "reproduce: a finished picture and its script expected"
+                                                           : "a script expected; glint --help lists the commands");
         return GLINTL_EXIT_USAGE;
     }
     int code;

@@ -91,6 +91,8 @@ int cli_new(const cli_options *options, cli_output *output)
     int code = write_script(path);
     if (code == EEXIST)
         return refuse(output, GLINTL_EXIT_USAGE, path, "it is there already, and stays as it is");
+    if (code == ENOENT)
+        return refuse(output, GLINTL_EXIT_FAILED, path, "its folder is not there; mkdir makes it");
     if (code)
         return refuse(output, code == ENOSPC || code == EDQUOT ? GLINTL_EXIT_LATER : GLINTL_EXIT_FAILED, path,
                       strerror(code));

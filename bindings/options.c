@@ -289,7 +289,7 @@ static bool read_knobs(cli_options *options, const cli_option *option, char *tex
 }
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    { "frames", 'f', true, CLI_RENDER | CLI_ASSEMBLE, read_frames },
+    { "frames", 'f', true, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_frames },
     { "start", 's', true, CLI_RENDER, read_step },
     { "end", 'e', true, CLI_RENDER, read_step },
     { "jump", 'j', true, CLI_RENDER, read_step },

@@ -3,12 +3,15 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "bindings/cli.h"
 
 #define BAR_WIDTH 24
+#define BAR_LEAST 4 // a narrower one is left out
+#define TEXT_SIZE 160
 #define INTERVAL_MS 100
 #define DELAY_MS 300 // a run shorter than this shows no bar
 
@@ -34,35 +37,43 @@ static void format_time(char out[32], double seconds)
         snprintf(out, 32, "%d:%02d", (int)(whole / 60), (int)(whole % 60));
 }
 
-static void draw_bar(const cli_progress *progress, double share)
+// One line: the bar, as wide as the terminal has room for, and the text. What does not fit would begin a line of its own.
+static void draw_line(cli_progress *progress, double share, const char *text)
 {
     char bar[BAR_WIDTH + 1];
+    struct winsize size = { 0 };
+    const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    int room = columns - (int)strlen(text) - 4; // brackets, a space, and the last column, which stays free
+    room = room < BAR_WIDTH ? room : BAR_WIDTH;
     share = share < 1 ? share : 1;
-    memset(bar, '.', BAR_WIDTH);
-    memset(bar, '#', (size_t)(share * BAR_WIDTH));
-    bar[BAR_WIDTH] = '\0';
-    fprintf(stderr, "\r\033[K%s[%s]%s", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
+    fputs("\r\033[K", stderr);
+    if (room >= BAR_LEAST) {
+        memset(bar, '.', (size_t)room);
+        memset(bar, '#', (size_t)(share * room));
+        bar[room] = '\0';
+        fprintf(stderr, "%s[%s]%s ", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
+    }
+    fprintf(stderr, "%.*s", columns - 1, text);
+    fflush(stderr);
+    progress->is_drawn = true;
 }
 
 static void draw_step(cli_progress *progress)
 {
-    char left[32];
+    char left[32], text[TEXT_SIZE];
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double done_ms = progress->done_ms + now * progress->step_ms;
     double left_ms = progress->left_ms + (1 - now) * progress->step_ms;
-    draw_bar(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0);
     format_time(left, left_ms * 1e-3);
-    fprintf(stderr, " %s", progress->what);
-    if (left_ms > 0)
-        fprintf(stderr, ", %s left", left);
-    fflush(stderr);
-    progress->is_drawn = true;
+    snprintf(text, sizeof text, "%s%s%s%s", progress->what, left_ms > 0 ? ", " : "", left_ms > 0 ? left : "",
+             left_ms > 0 ? " left" : "");
+    draw_line(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0, text);
 }
 
 // The lock is held.
 static void draw(cli_progress *progress)
 {
-    char left[32] = "", total[32] = "";
+    char left[32] = "", total[32] = "", text[TEXT_SIZE];
     double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
     double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
     double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing of the speed
@@ -73,12 +84,9 @@ static void draw(cli_progress *progress)
     }
     if (rate > 0 && progress->todo > 0)
         format_time(left, ((double)progress->todo - (double)progress->done - now) / rate);
-    draw_bar(progress, share);
-    fprintf(stderr, " %" PRId64 "%s frames, %.*f/s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
-            *left ? ", " : "", left);
-    fputs(*left ? " left" : "", stderr);
-    fflush(stderr);
-    progress->is_drawn = true;
+    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
+             *left ? ", " : "", left, *left ? " left" : "");
+    draw_line(progress, share, text);
 }
 
 static void *draw_until_stopped(void *argument)

@@ -1,7 +1,9 @@
 // Running a script: its Lua state, where it finds modules, and what it returns.
+#include <errno.h>
 #include <lualib.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bindings/untrusted.h"
 
@@ -173,6 +175,23 @@ static const char *dialect_hint(const cli_options *options, const char *message)
     return !options->dialect && strstr(message, "(global 'gr')") ? "; is it a scene for --dialect gr?" : "";
 }
 
+// The first word may have been meant for the name of a command, or for that of a script without its ending.
+static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH_SIZE + 32])
+{
+    char path[GLINTL_PATH_SIZE];
+    const char *word = options->script;
+    if (options->untrusted_s > 0 || access(word, F_OK) == 0 || errno != ENOENT || strlen(word) > sizeof path - 5)
+        return "";
+    snprintf(path, sizeof path, "%s.lua", word);
+    if (access(path, F_OK) == 0)
+        snprintf(out, GLINTL_PATH_SIZE + 32, "; did you mean %s?", path);
+    else if (options->command == CLI_RENDER && !strpbrk(word, "./"))
+        return "; no command has this name, either: glint --help lists them";
+    else
+        return "";
+    return out;
+}
+
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
 {
     task work = { script, options, run };
@@ -187,9 +206,10 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     int status = lua_pcall(L, 1, 0, 1);
     const bool is_short = status == LUA_ERRMEM && !run->asked.is_untrusted; // such a script has a limit of its own
     if (status != LUA_OK && !run->is_stopped && !run->interrupted) {
+        char hint[GLINTL_PATH_SIZE + 32];
         const char *message = lua_tostring(L, -1);
-        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s%s", message,
-                        dialect_hint(options, message));
+        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s%s%s", message,
+                        dialect_hint(options, message), missing_hint(options, hint));
     }
     return status == LUA_OK && !run->exit_code && !run->interrupted;
 }

@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/cli.h"
@@ -34,6 +35,7 @@ typedef struct watcher {
     size_t given_count;
     quality now;
     bool shown; // this run has shown a picture
+    bool has_begun; // what is shown now was asked for later than at the start
     bool differs; // the picture in full is another than the preview
     double since_ms; // when what is shown now was asked for; 0: at the start
     int64_t pictures, frame, frames; // pictures: shown so far
@@ -139,9 +141,12 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
     publish(w, picture);
     if (w->output->json)
         print_picture_event(w);
-    snprintf(line, sizeof line, "%.255s, frame %" PRId64 ": %d x %d%s, %.0f ms after the change%s%s", w->run->script,
-             w->frame, w->width, w->height, w->is_preview ? ", preview" : "", w->ms, *w->warnings ? "\n" : "",
-             w->warnings);
+    char of[32] = ""; // a loop counts its calls while it runs
+    if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
+        snprintf(of, sizeof of, " of %" PRId64, w->frames);
+    snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s, %.0f ms after the %s%s%s", w->run->script,
+             w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", w->ms,
+             w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
     if (!w->output->quiet && !(w->is_preview && w->terminal.graphics == WATCH_TEXT))
         watch_terminal_draw(&w->terminal, work->image, picture, line);
     watch_picture_release(picture);
@@ -426,8 +431,10 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
     watcher w = { .options = options, .output = output, .run = run };
     char message[GLINTL_MESSAGE_SIZE];
     watch_ask ask = { .run_again = true };
-    if (access(options->script, R_OK) != 0) {
-        snprintf(message, sizeof message, "%.900s: %s", options->script, strerror(errno));
+    struct stat info;
+    const bool is_folder = stat(options->script, &info) == 0 && S_ISDIR(info.st_mode);
+    if (is_folder || access(options->script, R_OK) != 0) {
+        snprintf(message, sizeof message, "%.900s: %s", options->script, strerror(is_folder ? EISDIR : errno));
         cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
         return GLINTL_EXIT_USAGE;
     }
@@ -439,6 +446,7 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
         do {
             tell_change(&w, ask.changed);
             answer(&w, ask.run_again);
+            w.has_begun = true;
         } while (!output->data_failed && !run->interrupted && take_ask(&w, &ask));
     }
     close_watcher(&w);

@@ -115,6 +115,14 @@ exits 0 "the same sheet of files" sheet grid/000*.png -o again.png
 check "and the same picture" "$GLINT" compare grid/sheet.png again.png
 exits 0 "the same sheet of a pattern" sheet 'grid/%04d.png' -o pattern.png
 check "byte for byte" cmp again.png pattern.png
+exits 0 "chosen frames of a pattern" sheet 'grid/%04d.png' -f 2-3 -o chosen.png --json
+prints "are in it" '"file":"chosen.png","frames":2'
+exits 2 "a pattern in quotes that is a shell's" sheet 'grid/000*.png' -o wrong.png
+says "is told so" 'no such file; give it without quotes'
+before=$(sha256sum <grid/0002.png)
+exits 2 "a frame's name for the sheet" sheet grid/0001.png grid/0002.png -o grid/../grid/0002.png
+says "is refused" '-o: a file that is none of the pictures expected'
+[ "$before" = "$(sha256sum <grid/0002.png)" ] && pass || fail "a frame was overwritten"
 exits 0 "columns" sheet grid/000*.png -o columns.png --columns 2
 exits 3 "make another sheet" compare again.png columns.png
 exits 0 "a title and no labels" sheet grid/000*.png -o titled.png --title "Glanz ä" --label none
@@ -206,6 +214,8 @@ exits 0 "frames" turn.lua -o 'f/%02d.png' -q
 exits 0 "the first frame is the picture" compare film.png f/01.png
 exits 0 "assembled from frames" assemble 'f/%02d.png' -o assembled.png --fps 12
 check "it is the same film" cmp film.png assembled.png
+exits 2 "a frame's name for the film" assemble f/01.png f/02.png -o f/02.png
+says "is refused, too" '-o: a file that is none of the pictures expected'
 exits 0 "of one frame" assemble f/01.png -o one.png
 [ "$(chunks one.png)" = "IHDR sRGB acTL fcTL IDAT IEND " ] && pass || fail "chunks of one frame: $(chunks one.png)"
 exits 0 "of 16 bits, linear" turn.lua -f 1-2 --bits 16 --transfer linear -o deep.png --apng
@@ -223,6 +233,9 @@ absent "its frames are gone" film.mp4.frames
 if command -v script >/dev/null; then
     PATH=$path_with:$PATH TERM=xterm FFMPEG_SLOW=1 timeout 20 script -qec "$GLINT turn.lua -o slow.mp4" typescript >/dev/null </dev/null
     check "a terminal shows that the film is made" grep -qaE "(making|finishing) slow.mp4" typescript
+    PATH=$path_with:$PATH TERM=xterm FFMPEG_SLOW=1 timeout 20 script -qec "stty cols 22; $GLINT turn.lua -o slow.mp4 --force" typescript >/dev/null </dev/null
+    check "in one line of a narrow one" awk 'BEGIN { RS = "[\r\n]" } { gsub(/\033\[[0-9]*[mK]/, "") }
+        /(making|finishing) slow/ { seen = 1; if (length($0) > 21) exit 1 } END { exit !seen }' typescript
 fi
 with "$path_with" 0 "another rate" turn.lua -o film.webm --fps 30
 check "beats the script's" grep -q -- '-framerate 30 .*libvpx-vp9' film.webm
@@ -385,6 +398,7 @@ exits 2 "a script without the parameter" reproduce made_0004.png loop.lua
 says "names it" "no parameter 'radius'"
 exits 2 "a script that is not there" reproduce made_0004.png none.lua
 exits 2 "no script" reproduce made_0004.png
+says "and what is expected" 'a finished picture and its script expected'
 exits 5 "no file" reproduce none.png turn.lua
 exits 5 "a file without a key" reproduce difference.png grid.lua
 exits 5 "a cut file" reproduce cut.png grid.lua
@@ -404,6 +418,11 @@ says "and it says so" 'start.lua: it is there already'
 exits 2 "no name" new
 exits 2 "a folder's name" new x/
 exits 1 "a folder that is not there" new none/x/y
+says "and what makes it" 'none/x/y.lua: its folder is not there'
+exits 2 "a script without its ending" start
+says "names the file" 'did you mean start.lua'
+exits 2 "a word that is neither command nor script" stort
+says "says both" 'cannot open stort: .*no command has this name'
 command -v luacheck >/dev/null && check "and is clean Lua" luacheck -q start.lua
 
 echo "$passed passed, $failed failed"

@@ -286,7 +286,7 @@ END
 draws() { # TERMINAL: draws still.lua into drawn.TERMINAL
     COLORTERM=truecolor timeout 60 "$glint" watch still.lua --size 96x54 --terminal "$1" >/dev/null 2>"drawn.$1" </dev/null &
     watchers+=($!)
-    await 'still.lua, frame 1: 96 x 54' 1 "drawn.$1"
+    await 'still.lua, frame 1 of 1: 96 x 54' 1 "drawn.$1"
 }
 check "kitty" draws kitty
 tr -d '\n' <drawn.kitty | grep -oaP '\x1b_G(a=T|m=)[^;]*;\K[^\x1b]*' | tr -d '\n' | base64 -d >kitty.png
@@ -304,7 +304,7 @@ check "on a real terminal, which does not answer" eval '
 check "on a terminal without colours a line" eval '
     command -v script >/dev/null || { echo "# skip: no script command"; exit 0; }
     (TERM=vt100 timeout 3 script -qec "timeout 2 $glint watch still.lua --size 96x54" plain >/dev/null </dev/null)
-    grep -qa "still.lua, frame 1: 96 x 54" plain && ! grep -qa "▀" plain'
+    grep -qa "still.lua, frame 1 of 1: 96 x 54" plain && ! grep -qa "▀" plain'
 
 fails() { # MESSAGE OPTION...: exit 2 with a message
     local message=$1
@@ -313,6 +313,8 @@ fails() { # MESSAGE OPTION...: exit 2 with a message
     [ $? -eq 2 ] && grep -q -- "$message" err5
 }
 check "no script" fails "a script expected"
+mkdir folder
+check "a folder" fails "folder: Is a directory" folder
 check "a script that is not there" fails "nowhere.lua: No such file" nowhere.lua
 check "a wrong port" fails "whole number 0 .. 65535 expected, got '70000'" scene.lua --http 70000
 check "a wrong terminal" fails "kitty, sixel, blocks or text expected, got 'vt100'" scene.lua --terminal vt100
