@@ -12,6 +12,7 @@ local elements = require "glint.elements"
 local particles = {}
 
 local CHUNK = 256 -- spheres packed at a time
+local LARGE = 100000 -- spheres whose strings are collected at once when the engine has its copy, of which Lua knows nothing
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
 local POINT = { color = "#b8b8b8", radius = 0.5 }
 
@@ -169,7 +170,12 @@ function set:spheres(fields)
   all.data, self.data = table.concat(self.data), nil
   all.index, self.index = table.concat(self.index), nil
   for name, value in pairs(fields or {}) do all[name] = value end
-  return glint.spheres(all)
+  local shape = glint.spheres(all)
+  if self.count >= LARGE then
+    all.data, all.index = nil, nil
+    collectgarbage()
+  end
+  return shape
 end
 
 --- The centre of the box around all spheres, and half its diagonal.
