@@ -111,4 +111,16 @@ for name in pairs(functions) do
   end
 end
 
+-- The manual page names every object, field, method and function.
+local page = assert(io.open(root .. "/bindings/glint.1")):read "a"
+local section = page:match "%.SH SCRIPTS\n(.-)\n%.SH "
+check(section, "the manual page has a section SCRIPTS")
+local named = {}
+for word in (section or ""):gsub("%.BR? ", " "):gmatch "[%a_][%w_]*" do named[word] = true end
+for name in pairs(functions) do check(named[name], "the manual page does not name glint.%s", name) end
+for name, class in pairs(classes) do
+  for field in pairs(class.fields) do check(named[field], "the manual page does not name %s.%s", name, field) end
+  for method in pairs(class.methods) do check(named[method], "the manual page does not name %s:%s()", name, method) end
+end
+
 tally.finish()
