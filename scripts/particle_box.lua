@@ -2,7 +2,7 @@
 --     glint scripts/particle_box.lua                             particle_box.png
 --     glint scripts/particle_box.lua --set count=1000000 --set format=f32
 --     glint scripts/particle_box.lua --set file=melt.dump --set frame=3     a frame of a LAMMPS dump instead
---     glint scripts/particle_box.lua --set count=1000 --set longest=1.1     bonds, those of a dump across its box's faces
+--     glint scripts/particle_box.lua --set count=1000 --set longest=1.1     bonds; those of a dump across its faces
 local glint = require "glint"
 local particles, lammps, bonds = require "glint.particles", require "glint.lammps", require "glint.bonds"
 
@@ -11,7 +11,7 @@ local P = glint.params {
   format = { "f64", choices = { "f64", "f32" }, doc = "how the numbers are kept; f32 takes half the memory" },
   file = { "", doc = "a LAMMPS dump file" },
   frame = { 1, min = 1, max = 1e9, doc = "which frame of it" },
-  longest = { 0, min = 0, max = 1000, doc = "joins what is as near as this by bonds, radii halved; 0: none" },
+  longest = { 0, min = 0, max = 1000, doc = "of the bonds to draw, with radii halved; 0: none" },
 }
 local joins = P.longest > 0
 local set = particles.new { format = P.format, scale = joins and 0.5 or 1, material = { specular = 0.15, shininess = 30 } }

@@ -4,9 +4,9 @@
 --     scene:add(bonds.new(set))       -- before set:spheres(), which takes the set's data away
 -- Each half of a bond has the material of its atom. Cells as wide as the longest bond hold the atoms, so that each
 -- looks at its neighbours alone: the time grows with the number of atoms.
--- In a periodic box (that of a LAMMPS frame is known, of other files give it: box = { size = { 10, 10, 10 } }) atoms are
--- joined across its faces, too: each to the nearest image of the other, by a half that sets out from it and ends where
--- the bond would be cut in two, outside the box. box = false leaves these out.
+-- In a periodic box (that of a LAMMPS frame is known, for others give it: box = { size = { 10, 10, 10 } }) atoms are
+-- joined across its faces, too: each to the nearest image of the other, by a half that sets out from it and ends in the
+-- middle of the bond, outside the box. box = false leaves these out.
 local glint = require "glint"
 local elements, boxes = require "glint.elements", require "glint.box"
 
@@ -100,12 +100,11 @@ local function each_across(box, x, y, z, reach, closest, found)
   end
   for i = 1, 3 do
     if box.periodic[i] and widest > IMAGES * box.size[i] then
-      error(("bonds: a periodic box at least 1/%d as wide as the longest bond expected, got %.6g for one of %.6g"):format(
-        IMAGES, box.size[i], widest), 3)
+      local message = "bonds: a periodic box at least 1/%d as wide as the longest bond expected, got %.6g for one of %.6g"
+      error(message:format(IMAGES, box.size[i], widest), 3)
     end
   end
-  local inside_u, inside_v, inside_w = table.move(u, 1, n, 1, {}), table.move(v, 1, n, 1, {}), table.move(w, 1, n, 1, {})
-  boxes.images(box, inside_u, inside_v, inside_w, widest, function(i, ux, vx, wx)
+  boxes.images(box, n, u, v, w, widest, function(i, ux, vx, wx)
     local k = #at + 1
     at[k], u[k], v[k], w[k], own[k] = i, ux, vx, wx, reach[i]
   end)
@@ -118,7 +117,7 @@ end
 ---@param set table
 ---@param options? { radius: number, tolerance: number, distance: number, box: table|false }  radius of the cylinders
 --- (default 0.15); tolerance in angstroms (default 0.45); distance, the longest bond of any two in place of covalent
---- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if they have one)
+--- radii; box, see glint.box: across whose periodic faces bonds are made (default: the box of the frames, if any)
 ---@return table? group
 ---@return integer count  of bonds
 function bonds.new(set, options)

@@ -5,7 +5,7 @@ local box = {}
 local function three(value, name, kind)
   for i = 1, 3 do
     local v = type(value) == "table" and value[i]
-    if type(v) ~= kind or (kind == "number" and not (math.abs(v) < math.huge)) then
+    if type(v) ~= kind or (kind == "number" and (v ~= v or math.abs(v) == math.huge)) then
       error(("%s: three %s expected, got %s"):format(name, kind == "number" and "finite numbers" or "booleans",
         type(value) == "table" and ("%s at %d"):format(tostring(v), i) or tostring(value)), 0)
     end
@@ -61,18 +61,19 @@ end
 --- The repetitions of points inside the box that lie within `reach` of it: calls found(i, x, y, z) with the number of a
 --- point and the place of its image. Of each two opposite steps, by p, q, r sides and by -p, -q, -r, one is taken.
 ---@param b table
+---@param n integer  how many points; the lists may be longer, and grow meanwhile
 ---@param x number[]  places, brought back into the box
 ---@param y number[]
 ---@param z number[]
 ---@param reach number  world units
 ---@param found function
-function box.images(b, x, y, z, reach, found)
+function box.images(b, n, x, y, z, reach, found)
   local size, m, most = b.size, { margins(b, reach) }, {}
   for i = 1, 3 do
     most[i] = b.periodic[i] and math.ceil(m[i]) or 0
     if not b.periodic[i] then m[i] = math.huge end -- points may lie outside
   end
-  for i = 1, #x do
+  for i = 1, n do
     local u, v, w = box.scale(b, x[i], y[i], z[i])
     for p = 0, most[1] do
       for q = p == 0 and 0 or -most[2], most[2] do

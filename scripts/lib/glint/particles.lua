@@ -12,7 +12,7 @@ local elements = require "glint.elements"
 local particles = {}
 
 local CHUNK = 256 -- spheres packed at a time
-local LARGE = 100000 -- spheres whose strings are collected at once when the engine has its copy, of which Lua knows nothing
+local LARGE = 100000 -- spheres: their strings are collected once the engine has its copy, of which Lua knows nothing
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
 local POINT = { color = "#b8b8b8", radius = 0.5 }
 
