@@ -14,7 +14,8 @@ local P = glint.params {
   longest = { 0, min = 0, max = 1000, doc = "of the bonds to draw, with radii halved; 0: none" },
 }
 local joins = P.longest > 0
-local set = particles.new { format = P.format, scale = joins and 0.5 or 1, material = { specular = 0.15, shininess = 30 } }
+local set = particles.new { format = P.format, scale = joins and 0.5 or 1,
+  material = { specular = 0.15, shininess = 30 } }
 if P.file ~= "" then
   set:add_frame(lammps.frame(P.file, P.frame, { wrap = true }))
 else

@@ -404,7 +404,7 @@ function tests.periodic_bonds()
   for given, message in pairs {
     [3] = "bonds.box: a box expected, got 3", [{}] = "bonds.box.size: three finite numbers expected, got nil",
     [{ size = { 1, 0, 1 } }] = "bonds.box.size: numbers > 0 expected, got 0",
-    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box at least 1/8 as wide as the longest bond expected, got 0.1 for one of 1.1",
+    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box of at least 1/8 of the longest bond expected, got 0.1 for one of 1.1",
     [{ size = { 1, 1, 1 }, periodic = { 1, 2, 3 } }] = "bonds.box.periodic: three booleans expected, got 1 at 1",
   } do
     local ok, got = pcall(bonds.new, set, { distance = 1.1, box = given })

@@ -100,7 +100,7 @@ local function each_across(box, x, y, z, reach, closest, found)
   end
   for i = 1, 3 do
     if box.periodic[i] and widest > IMAGES * box.size[i] then
-      local message = "bonds: a periodic box at least 1/%d as wide as the longest bond expected, got %.6g for one of %.6g"
+      local message = "bonds: a periodic box of at least 1/%d of the longest bond expected, got %.6g for one of %.6g"
       error(message:format(IMAGES, box.size[i], widest), 3)
     end
   end
