@@ -6,6 +6,7 @@
 ///   plan_camera.c     the view
 ///   plan_shading.c    materials and lights
 ///   plan_bounce.c     mirrors and transparent materials
+///   plan_eye.c        what the eye is inside of
 ///   plan_glow.c       lights that are seen
 ///   plan_indirect.c   light that surfaces get from other surfaces and the background
 ///   plan_explain.c    which effects the scene calls for, and who called
@@ -178,6 +179,8 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
 /// Fills what mirrors and transparent materials need, after that.
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
+/// Fills what the eye of a perspective camera is inside of, which glint_plan_bounce does where something transmits.
+glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
 
 /// Fills the lights that are seen.
 glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error);

@@ -4,8 +4,6 @@
 #include "engine/base/vec.h"
 #include "engine/plan.h"
 
-#include <string.h>
-
 /// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
 #define STRENGTH_MAX 1e150
 
@@ -89,69 +87,6 @@ static double geometric(double g, double depth)
     return g < 1 ? fmin(depth + 1, 1 / (1 - g)) : (depth + 1) * glint_pow(g, depth);
 }
 
-// ---- What the eye is in ----
-
-/// What is around the eye: media from the outermost to the innermost, which is the smallest, of equals the last defined.
-typedef struct around {
-    uint32_t count;
-    struct holder {
-        double size;
-        uint32_t id, material;
-    } in[GLINT_MEDIA_MAX];
-} around;
-
-static bool holds(const glint_prim *prim, const double point[3])
-{
-    double e[3];
-    if (prim->kind != GLINT_PRIM_SPHERE && prim->kind != GLINT_PRIM_PLANE)
-        return false;
-    vec_sub(e, point, prim->center);
-    if (prim->kind == GLINT_PRIM_PLANE)
-        return vec_dot(prim->normal, e) < 0;
-    return sqrt(vec_dot(e, e)) < prim->radius;
-}
-
-static bool is_outside(const struct holder *a, const struct holder *b)
-{
-    return a->size > b->size || (a->size == b->size && a->id < b->id);
-}
-
-static void add_holder(around *eye, const glint_prim *prim)
-{
-    const double size = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : HUGE_VAL;
-    const struct holder holder = { size, prim->id, prim->material };
-    if (eye->count == GLINT_MEDIA_MAX) {
-        if (is_outside(&holder, &eye->in[0]))
-            return;
-        memmove(eye->in, eye->in + 1, --eye->count * sizeof *eye->in);
-    }
-    uint32_t at = eye->count++;
-    for (; at > 0 && is_outside(&holder, &eye->in[at - 1]); at--)
-        eye->in[at] = eye->in[at - 1];
-    eye->in[at] = holder;
-}
-
-/// A renderer may be arranging the primitives meanwhile.
-static void find_eye_media(glint_plan *plan)
-{
-    const glint_geometry *geometry = plan->geometry;
-    around eye = { 0 };
-    pthread_mutex_lock(&geometry->index->lock);
-    for (uint32_t i = 0; i < geometry->table.prim_count; i++) {
-        const glint_prim *prim = &geometry->prims[i];
-        if (plan->bouncing[prim->material].transmits && holds(prim, plan->camera.eye))
-            add_holder(&eye, prim);
-    }
-    pthread_mutex_unlock(&geometry->index->lock);
-    for (uint32_t i = 0; i < eye.count; i++)
-        glint_media_enter(&plan->eye_media, eye.in[i].material);
-    if (eye.count == 0)
-        return;
-    const glint_bounce_material *m = &plan->bouncing[glint_media_top(&plan->eye_media)];
-    plan->veil.on = brightest_of(m->absorption) > 0;
-    vec_copy(plan->veil.absorption, m->absorption);
-}
-
 // ---- How bright ----
 
 /// Bounds what a ray can bring, and with it what a way of indirect light must still weigh: two bounds' worth of what all
@@ -205,7 +140,8 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
             splitting = fmax(splitting, gain(m));
     }
     bound_light(plan);
-    if (plan->transmits && !plan->camera.orthographic)
-        find_eye_media(plan);
-    return check_depth(plan, splitting, error);
+    glint_status status = check_depth(plan, splitting, error);
+    if (!status && plan->transmits && !plan->camera.orthographic)
+        status = glint_plan_eye(plan, error);
+    return status;
 }

@@ -173,6 +173,51 @@ do
   channels("an eye outside", { 0.5, 0.5, 0.5 }, { 0, 0, 9 }, { 0, 0, -1 }, { ball(r, wall {}) }, { max_depth = 0 })
 end
 
+do -- whatever shape the glass has: the way out is what Beer's law takes, and a mirror shows how the index changes at the way out
+  local a = { 0.5, 0, 2 }
+  local function wall(ior) return material { transmission = 0.25, ior = ior or 1, absorption = a, ambient = 0.5 } end
+  local function cube(of, turn) -- corners of -1 .. 1; turn: faces look inwards
+    local faces = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } }
+    local vertices = {}
+    for i = 0, 7 do vertices[i + 1] = { (i & 1) * 2 - 1, (i >> 1 & 1) * 2 - 1, (i >> 2 & 1) * 2 - 1 } end
+    for _, face in ipairs(turn and faces or {}) do face[2], face[4] = face[4], face[2] end
+    return glint.mesh { vertices = vertices, faces = faces, material = of }
+  end
+  local turned = glint.rotate({ 0, 0, 1 }, 90) * glint.scale(2, 1, 1)
+  local shapes = { -- what it is, the eye, the way, its length in the glass
+    { "box", glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = wall() }, { 0.5, 0, 0 }, { 1, 0, 0 }, 0.5 },
+    { "cylinder", glint.cylinder { base = { 0, -1, 0 }, top = { 0, 1, 0 }, radius = 1, material = wall() }, { 0, 0.25, 0 }, { 0, 1, 0 }, 0.75 },
+    { "cone", glint.cone { base = { 0, 0, 0 }, top = { 0, 2, 0 }, radius = 1, material = wall() }, { 0, 1, 0 }, { 1, 0, 0 }, 0.5 },
+    { "ellipsoid", glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = turned, material = wall() }, { 0, 1, 0 }, { 0, 1, 0 }, 1 },
+    { "mesh", cube(wall()), { 0.25, 0, 0 }, { 1, 0, 0 }, 0.75 },
+    { "mesh, by an edge and a corner", cube(wall()), { 0, 0, 0 }, { 1, 1, 1 }, math.sqrt(3) },
+    { "a group's mesh, mirrored", glint.group { transform = glint.scale(2, 1, 1), cube(wall()) }, { 0.5, 0, 0 }, { 1, 0, 0 }, 1.5 },
+    { "ball of triangles", glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 16, material = wall() }, { 0, 0.5, 0 }, { 0, 1, 0 }, 0.5 },
+    { "mesh in a mesh", glint.group { cube(wall()), glint.group { transform = glint.scale(0.5), cube(material { transmission = 1, ior = 1 }) } },
+      { 0.75, 0, 0 }, { 1, 0, 0 }, 0.25 },
+  }
+  for _, shape in ipairs(shapes) do
+    local name, object, eye, way, length = table.unpack(shape)
+    local got = { select(2, look(eye, way, { object })):pixel(0, 0) }
+    for c = 1, 3 do near(got[c], 0.5 * math.exp(-a[c] * length), ROUNDING, ("an eye in a %s %d"):format(name, c)) end
+  end
+  local outside = { -- beside it, in what has no inside, and behind a face that looks away
+    { "beside a box", glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = wall() }, { 3, 0, 0 }, { -1, 0, 0 } },
+    { "beside a mesh", cube(wall()), { 3, 0, 0 }, { -1, 0, 0 } },
+    { "behind a mesh", cube(wall()), { 3, 0.25, 0.5 }, { 1, 0, 0 } },
+    { "in the hole of a mesh turned inside out", cube(wall(), true), { 0.25, 0, 0 }, { 1, 0, 0 } },
+    { "in a tube", glint.cylinder { base = { 0, -1, 0 }, top = { 0, 1, 0 }, radius = 1, capped = false, material = wall() }, { 0, 0, 0 }, { 1, 0, 0 } },
+    { "in a cone's air", glint.cone { base = { 0, 0, 0 }, top = { 0, 2, 0 }, radius = 1, material = wall() }, { 0.9, 1, 0 }, { -1, 0, 0 } },
+    { "an opaque mesh", cube(material { ambient = 0.5, absorption = a }), { 0.25, 0, 0 }, { 1, 0, 0 } },
+  }
+  for _, shape in ipairs(outside) do
+    local name, object, eye, way = table.unpack(shape)
+    local got = { select(2, look(eye, way, { object }, { max_depth = 0 })):pixel(0, 0) }
+    local want = name == "behind a mesh" and 0 or 0.5
+    for c = 1, 3 do near(got[c], want, ROUNDING, ("an eye %s %d"):format(name, c)) end
+  end
+end
+
 local function pool(absorption, more)
   local scene = glint.scene {
     camera = glint.camera { eye = { 0, 0.3, 2 }, at = { 0, 0, 0 }, fov = 70 }, ambient = 0.3, background = { 0.2, 0.4, 0.6 },
