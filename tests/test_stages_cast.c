@@ -284,6 +284,75 @@ static void test_borders(void **state)
     run_cases(2 * CASES, 3500, border_case);
 }
 
+// ---- Groups that something fills -----------------------------------------------------------------------------------
+
+/// A sphere or plane whose outline runs along the border of a group, inside or outside of it by a little or not at all.
+static void set_along_border(const ray_case *c, glint_prim *prim, double distance)
+{
+    double origin[3], direction[3], outwards[3], place[3], center[3];
+    border_ray(c, origin, direction, outwards);
+    const double radius = distance * power_of_ten(-2.5, one_in(4) ? 4 : 0.5), sign = one_in(4) ? 1 : -1;
+    along3(origin, distance * between(0.5, 2) / length3(direction), direction, place);
+    if (one_in(6)) {
+        for (int k = 0; k < 3; k++)
+            place[k] = origin[k] + distance * between(-1, 1);
+        set_plane(prim, place, outwards);
+        return;
+    }
+    along3(place, sign * radius * (1 + slight()), outwards, center);
+    set_sphere(prim, center, radius);
+}
+
+/// A sphere that has nearly the outline of another, but is farther away, if often not by much.
+static void set_behind(const ray_case *c, glint_prim *prim, const glint_prim *other)
+{
+    const double times = 1 + power_of_ten(-12, 0);
+    double center[3];
+    for (int k = 0; k < 3; k++)
+        center[k] = c->camera.eye[k] + times * (other->center[k] - c->camera.eye[k]);
+    set_sphere(prim, center, times * other->radius * (1 + slight()));
+}
+
+static uint32_t groups_filled;
+
+/// Few primitives, each of which fills groups of the tile, up to their very border.
+static void filled_case(int precision, bool odd)
+{
+    (void)odd;
+    static test_scene scene;
+    const double distance = power_of_ten(-1, 3);
+    ray_case c = { .kind = RAYS_OF_EYE, .precision = precision, .plan = { .size = distance }, .scene = &scene };
+    set_border_camera(&c.camera, distance);
+    make_axes(&c.camera, precision);
+    shoot_camera(&c);
+    scene.table.prim_count = 1 + below(one_in(3) ? 20 : 4);
+    for (uint32_t i = 0; i < scene.table.prim_count; i++) {
+        set_along_border(&c, &scene.prims[i], distance);
+        if (i > 0 && one_in(4) && scene.prims[i - 1].kind == GLINT_PRIM_SPHERE)
+            set_behind(&c, &scene.prims[i], &scene.prims[i - 1]);
+    }
+    finish_scene(&c.plan, &scene);
+    uint16_t *active = masks(c.camera.group_count);
+    if (!one_in(4))
+        memset(active, 0xff, c.camera.group_count * sizeof *active);
+    c.cast = (glint_cast_args) {
+        .group_count = c.camera.group_count, .active = active, .geometry = &scene.table, .camera = &c.camera
+    };
+    cast_all(&c);
+    const uint16_t *hits = array_elements(wanted_array("hits"));
+    for (uint32_t g = 0; g < c.camera.group_count; g++)
+        groups_filled += hits[g] == 0xffff;
+    end_rays(&c);
+}
+
+static void test_filled(void **state)
+{
+    (void)state;
+    groups_filled = 0;
+    run_cases(8 * CASES, 8500, filled_case);
+    assert_true(groups_filled > 10 * CASES);
+}
+
 // ---- Equal distances ---------------------------------------------------------------------------------------------
 
 /// Four primitives that a ray downwards meets at one point, numbered in any order: two spheres that coincide, a third that
@@ -495,6 +564,7 @@ int main(void)
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving), cmocka_unit_test(test_lit_surface),
+        cmocka_unit_test(test_filled),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

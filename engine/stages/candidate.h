@@ -10,6 +10,9 @@ typedef struct R(tile_cast) {
     int across, down;
     bool scaled; ///< the arrays below are filled
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
+    float rr, uu; ///< squares of the lengths of right and up
+    float longest; ///< no direction is longer
+    float spread; ///< by how much the lengths within a group differ from that in its middle, at most
     _Alignas(64) float s[GLINT_TILE_WIDTH / 4][GLINT_GROUP], t[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     _Alignas(64) float ss[GLINT_TILE_WIDTH / 4][GLINT_GROUP], tt[GLINT_TILE_HEIGHT / 4][GLINT_GROUP];
     ///< |direction|^2 = ss + tt
@@ -22,13 +25,18 @@ typedef struct R(tile_cast) {
 typedef struct R(candidate) {
     const glint_prim *prim;
     uint32_t id;
-    float depth; ///< where its box begins
-    unsigned columns, rows; ///< of groups that it may show in, a bit each
     real f[3], c; ///< see R(offset) and R(offset_constant)
-    float base[3], along_s[3], along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle
+    float base[3], along_s[3],
+        along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
+        ///< fast a ray nears a plane
     float limit; ///< sphere: square of how long f x d may be; triangle: how far below 0 e may be
     real corner[3][3]; ///< of a triangle, from the eye
-    _Alignas(64) float row[3][GLINT_GROUP]; ///< base and along_t for the row of groups at hand
+    // what cover.h knows of it
+    float outer, inner; ///< round: how long f x d may be; is where the ray hits for certain. < 0: nothing is certain
+    float around; ///< round: how long what f x d changes by is, from the middle of a group to its corner
+    float ahead[3], sway; ///< sphere: of b; how much that changes
+    float power; ///< t of a hit is this divided by ... > 0; 0: nothing is known of it
+    bool distant; ///< sphere: where it is hit, the discriminant is that of afar
 } R(candidate);
 
 /// The tile's rays.
@@ -93,19 +101,23 @@ static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_
 
 static void R(scale_tile)(R(tile_cast) * tile)
 {
+    static const _Alignas(64) float column[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
+    static const _Alignas(64) float row[GLINT_GROUP] = { 0, 0, 0, 0, 2, 2, 2, 2, 4, 4, 4, 4, 6, 6, 6, 6 };
     const glint_camera_args *camera = tile->args->camera;
-    const vf rr = f_set((float)DOT(camera->right, camera->right)), uu = f_set((float)DOT(camera->up, camera->up));
-    for (int x = 0; x < tile->across; x++)
-        for (int i = 0; i < GLINT_GROUP; i++)
-            tile->s[x][i] = (float)(2 * ((camera->x0 + 4 * x + i % 4) + camera->offset[0]) - camera->width);
-    for (int y = 0; y < tile->down; y++)
-        for (int i = 0; i < GLINT_GROUP; i++)
-            tile->t[y][i] = (float)(camera->height - 2 * ((camera->y0 + 4 * y + i / 4) + camera->offset[1]));
+    const float left = (float)(2 * (camera->x0 + camera->offset[0]) - camera->width);
+    const float top = (float)(camera->height - 2 * (camera->y0 + camera->offset[1]));
+    const vf rr = f_set(tile->rr), uu = f_set(tile->uu);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        for (int x = 0; x < tile->across; x++)
-            f_store(tile->ss[x] + i, f_load(tile->s[x] + i) * f_load(tile->s[x] + i) * rr);
-        for (int y = 0; y < tile->down; y++)
-            f_store(tile->tt[y] + i, f_set(1) + f_load(tile->t[y] + i) * f_load(tile->t[y] + i) * uu);
+        for (int x = 0; x < tile->across; x++) {
+            const vf s = f_set(left + (float)(8 * x)) + f_load(column + i);
+            f_store(tile->s[x] + i, s);
+            f_store(tile->ss[x] + i, s * s * rr);
+        }
+        for (int y = 0; y < tile->down; y++) {
+            const vf t = f_set(top - (float)(8 * y)) - f_load(row + i);
+            f_store(tile->t[y] + i, t);
+            f_store(tile->tt[y] + i, f_set(1) + t * t * uu);
+        }
     }
     tile->scaled = true;
 }
@@ -175,6 +187,19 @@ static inline void R(make_solid_filter)(const glint_cast_args *args, R(candidate
         candidate->limit = HUGE_VALF;
 }
 
+/// A ray meets the plane where it comes nearer to it.
+static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) * candidate)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    const double *normal = candidate->prim->normal, side = candidate->c < 0 ? 1 : -1;
+    for (int j = 0; j < 3; j++) {
+        candidate->base[j] = (float)(side * DOT(normal, camera->forward));
+        candidate->along_s[j] = (float)(side * DOT(normal, camera->right));
+        candidate->along_t[j] = (float)(side * DOT(normal, camera->up));
+    }
+    candidate->limit = 1e-5f * tile->longest;
+}
+
 /// What the decision needs.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
@@ -205,16 +230,14 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
 }
 
 /// That, and the filter.
-static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
+static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidate) * candidate)
 {
     const glint_cast_args *args = tile->args;
     R(place_candidate)(args, id, candidate);
     const glint_prim *prim = candidate->prim;
-    if (prim->kind == GLINT_PRIM_PLANE)
-        return;
-    if (!tile->scaled)
-        R(scale_tile)(tile);
-    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+    if (prim->kind == GLINT_PRIM_PLANE) {
+        R(make_plane_filter)(tile, candidate);
+    } else if (prim->kind == GLINT_PRIM_TRIANGLE) {
         R(make_triangle_filter)(tile, candidate);
     } else if (prim->kind == GLINT_PRIM_SOLID) {
         R(make_solid_filter)(args, candidate);
@@ -227,16 +250,14 @@ static void R(make_candidate)(R(tile_cast) * tile, uint32_t id, R(candidate) * c
 /// Lanes of group (x, y) that pass near the candidate.
 INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y)
 {
-    if (candidate->prim->kind == GLINT_PRIM_PLANE)
-        return 0xffff;
-    const bool triangle = candidate->prim->kind == GLINT_PRIM_TRIANGLE;
+    const bool flat = candidate->prim->kind == GLINT_PRIM_TRIANGLE || candidate->prim->kind == GLINT_PRIM_PLANE;
     unsigned near = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf s = f_load(tile->s[x] + i);
+        const vf s = f_load(tile->s[x] + i), t = f_load(tile->t[y] + i);
         vf v[3];
         for (int k = 0; k < 3; k++)
-            v[k] = f_load(candidate->row[k] + i) + s * f_set(candidate->along_s[k]);
-        if (triangle) {
+            v[k] = (f_set(candidate->base[k]) + t * f_set(candidate->along_t[k])) + s * f_set(candidate->along_s[k]);
+        if (flat) {
             near |= (~fm_bits(f_lt(f_min(f_min(v[0], v[1]), v[2]), f_set(-candidate->limit))) & ((1u << VF) - 1)) << i;
             continue;
         }
@@ -296,38 +317,18 @@ static inline void R(note_depth)(R(tile_cast) * tile, int x, int y)
     tile->far[y][x] = group_highest(tile->depth[g]);
 }
 
-static inline void R(begin_row)(const R(tile_cast) * tile, R(candidate) * candidates, int count, int y)
-{
-    for (int j = 0; j < count && tile->scaled; j++)
-        for (int k = 0; k < 3; k++)
-            for (int i = 0; i < GLINT_GROUP; i += VF)
-                f_store(candidates[j].row[k] + i,
-                        f_set(candidates[j].base[k]) + f_load(tile->t[y] + i) * f_set(candidates[j].along_t[k]));
-}
-
 /// Tests candidates, group by group.
-static void R(cast_candidates)(R(tile_cast) * tile, R(candidate) * candidates, int count)
+static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candidates, int count)
 {
-    unsigned columns = 0, rows = 0;
-    for (int k = 0; k < count; k++) {
-        columns |= candidates[k].columns;
-        rows |= candidates[k].rows;
-    }
-    for (; rows; rows &= rows - 1) {
-        const int y = __builtin_ctz(rows);
-        R(begin_row)(tile, candidates, count, y);
-        for (unsigned left = columns; left; left &= left - 1) {
-            const int x = __builtin_ctz(left);
+    if (!tile->scaled)
+        R(scale_tile)(tile);
+    for (int y = 0; y < tile->down; y++)
+        for (int x = 0; x < tile->across; x++)
             for (int k = 0; k < count; k++) {
-                const R(candidate) *candidate = &candidates[k];
-                if (!(candidate->columns >> x & candidate->rows >> y & 1) || tile->far[y][x] < candidate->depth)
-                    continue;
-                const unsigned near = R(near_pixels)(tile, candidate, x, y);
-                if (near && R(decide_pixels)(tile, candidate, x, y, near))
+                const unsigned near = R(near_pixels)(tile, &candidates[k], x, y);
+                if (near && R(decide_pixels)(tile, &candidates[k], x, y, near))
                     R(note_depth)(tile, x, y);
             }
-        }
-    }
 }
 
 static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
@@ -336,6 +337,10 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
     tile->scaled = false;
     tile->deep = false;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
+    tile->rr = (float)DOT(args->camera->right, args->camera->right);
+    tile->uu = (float)DOT(args->camera->up, args->camera->up);
+    tile->longest = sqrtf(tile->view.stretch);
+    tile->spread = 4.00001f * sqrtf(tile->rr + tile->uu);
     tile->across = tile->view.count[0];
     tile->down = tile->view.count[1];
     for (int y = 0; y < tile->down; y++)

@@ -35,38 +35,124 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
     args->hits[g] = (uint16_t)hits;
 }
 
-/// One group and the first candidates of its tile.
-static inline void R(begin_group_cast)(R(tile_cast) * tile, const R(candidate) * candidates, int count, int x, int y)
+/// Groups that a sphere fills and that are inside the image: no pixel needs to be asked whether it hits.
+static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candidate, uint64_t groups)
 {
+    const glint_cast_args *args = tile->args;
+    const vr f[3] = { r_set(-candidate->f[0]), r_set(-candidate->f[1]), r_set(-candidate->f[2]) };
+    const vr c = r_set(candidate->c), r2 = r_set(candidate->prim->r2), scale = r_set(candidate->prim->scale);
+    const bool distant = candidate->distant;
+    for (; groups; groups &= groups - 1) {
+        const int slot = __builtin_ctzll(groups), x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
+        const uint32_t g = (uint32_t)(y * tile->across + x);
+        const size_t at = (size_t)g * GLINT_GROUP;
+        const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            vr d[3];
+            R(load_direction)(directions, args->direction, 0, i, d);
+            const vr a = DOT(d, d), b = DOT(f, d);
+            const vr disc = distant ? R(discriminant_afar)(f, d, a * r2) : R(discriminant)(f, d, a, b, c, r2);
+            r_store((real *)args->t + at + i, c / ((b + r_sqrt(disc)) * scale));
+        }
+        lanes_put(args->prim + at, 0xffff, candidate->id);
+        args->hits[g] = 0xffff;
+    }
+}
+
+static inline void R(clear_groups)(R(tile_cast) * tile, uint64_t groups)
+{
+    for (; groups; groups &= groups - 1) {
+        const int slot = __builtin_ctzll(groups), x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
+        const uint32_t g = (uint32_t)(y * tile->across + x);
+        if (tile->deep) {
+            R(start_group)(tile->args, g);
+            R(note_depth)(tile, x, y);
+            continue;
+        }
+        for (int i = 0; i < GLINT_GROUP; i += VR)
+            r_store((real *)tile->args->t + (size_t)g * GLINT_GROUP + i, r_set(HUGE_VAL));
+        lanes_put(tile->args->prim + (size_t)g * GLINT_GROUP, 0xffff, GLINT_MISS);
+        tile->args->hits[g] = 0;
+    }
+}
+
+/// A group whose pixels decide, and the candidates that it may show.
+static inline void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
+                                 const uint64_t may[], const uint64_t sure[], int slot)
+{
+    const int x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
     const uint32_t g = (uint32_t)(y * tile->across + x);
     unsigned near[GLINT_FIRST_CANDIDATES];
-    int order[GLINT_FIRST_CANDIDATES], found = 0;
+    const R(candidate) * order[GLINT_FIRST_CANDIDATES];
+    int found = 0;
     for (int k = 0; k < count; k++) {
-        if (!(candidates[k].columns >> x & candidates[k].rows >> y & 1))
+        if (!(may[k] >> slot & 1))
             continue;
-        near[found] = R(near_pixels)(tile, &candidates[k], x, y);
-        order[found] = k;
+        near[found] = sure[k] >> slot & 1 ? 0xffff : R(near_pixels)(tile, candidates[k], x, y);
+        order[found] = candidates[k];
         found += near[found] != 0;
     }
     if (found == 1 && !tile->deep) {
-        if (candidates[order[0]].prim->kind == GLINT_PRIM_SPHERE)
-            R(cast_alone)(tile, &candidates[order[0]], true, x, y, near[0]);
+        if (order[0]->prim->kind == GLINT_PRIM_SPHERE)
+            R(cast_alone)(tile, order[0], true, x, y, near[0]);
         else
-            R(cast_alone)(tile, &candidates[order[0]], false, x, y, near[0]);
+            R(cast_alone)(tile, order[0], false, x, y, near[0]);
         return;
     }
     R(start_group)(tile->args, g);
     for (int k = 0; k < found; k++)
-        R(decide_pixels)(tile, &candidates[order[k]], x, y, near[k]);
+        R(decide_pixels)(tile, order[k], x, y, near[k]);
     if (tile->deep)
         R(note_depth)(tile, x, y);
     else
         R(finish_group)(tile->args, g);
 }
 
+/// Groups that are inside the image with all their pixels, of those in `groups`.
+static inline uint64_t R(whole_groups)(const R(tile_cast) * tile, uint64_t groups)
+{
+    uint64_t whole = 0;
+    for (uint64_t left = groups; left; left &= left - 1) {
+        const int slot = __builtin_ctzll(left);
+        if (tile->args->active[slot / COVER_ACROSS * tile->across + slot % COVER_ACROSS] == 0xffff)
+            whole |= left & -left;
+    }
+    return whole;
+}
+
+/// Every group and the first candidates.
+static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[])
+{
+    const uint64_t all = R(groups_of)(bit_range(0, tile->across - 1), bit_range(0, tile->down - 1));
+    uint64_t sure[GLINT_FIRST_CANDIDATES], any = 0, several = 0, filled = 0;
+    R(cover_tile)(tile, candidates, count, may, sure);
+    for (int k = 0; k < count; k++) {
+        several |= any & may[k];
+        any |= may[k];
+    }
+    const uint64_t alone = R(whole_groups)(tile, any & ~several);
+    for (int k = 0; k < count; k++) {
+        const uint64_t fills = alone & may[k] & sure[k];
+        if (!fills || candidates[k]->prim->kind != GLINT_PRIM_SPHERE)
+            continue;
+        R(cast_filled)(tile, candidates[k], fills);
+        filled |= fills;
+    }
+    R(clear_groups)(tile, all & ~any);
+    if (!tile->scaled && any & ~filled)
+        R(scale_tile)(tile);
+    for (uint64_t left = any & ~filled; left; left &= left - 1)
+        R(cast_mixed)(tile, candidates, count, may, sure, __builtin_ctzll(left));
+    for (uint64_t left = tile->deep ? filled : 0; left; left &= left - 1) {
+        const int slot = __builtin_ctzll(left);
+        R(note_depth)(tile, slot % COVER_ACROSS, slot / COVER_ACROSS);
+    }
+}
+
 /// Looks into the root: its primitives become candidates, its nodes go on the stack, the nearest on top. Returns how many
-/// candidates.
-static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, screen_entry *stack, int *height)
+/// candidates. may: the groups of each one's box.
+static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, uint64_t may[], screen_entry *stack,
+                        int *height)
 {
     const glint_node *root = tile->args->geometry->nodes;
     node_on_screen seen;
@@ -76,11 +162,9 @@ static int R(open_root)(R(tile_cast) * tile, R(candidate) * candidates, screen_e
         if (!(root->child[order[i]] & GLINT_NODE_PRIM))
             continue;
         const screen_cells cells = seen.cells[order[i]];
-        R(candidate) *candidate = &candidates[found++];
-        candidate->columns = bit_range(first_column(cells), last_column(cells));
-        candidate->rows = bit_range(first_row(cells), last_row(cells));
-        candidate->depth = seen.near[order[i]];
-        R(make_candidate)(tile, root->child[order[i]] & ~GLINT_NODE_PRIM, candidate);
+        may[found] = R(groups_of)(bit_range(first_column(cells), last_column(cells)),
+                                  bit_range(first_row(cells), last_row(cells)));
+        R(make_candidate)(tile, root->child[order[i]] & ~GLINT_NODE_PRIM, &candidates[found++]);
     }
     for (int i = count; i-- > 0;)
         if (!(root->child[order[i]] & GLINT_NODE_PRIM))
@@ -187,9 +271,6 @@ static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * ca
         const uint32_t id = geometry->unbounded[*next];
         if (!R(plane_ahead)(tile->args->camera, &tile->view, &geometry->prims[id]))
             continue;
-        candidates[found].columns = bit_range(0, tile->across - 1);
-        candidates[found].rows = bit_range(0, tile->down - 1);
-        candidates[found].depth = 0;
         R(make_candidate)(tile, id, &candidates[found++]);
     }
     return found;
@@ -200,19 +281,24 @@ static void R(cast_bundle)(const glint_cast_args *args)
     const glint_geometry_table *geometry = args->geometry;
     R(tile_cast) tile;
     R(candidate) candidates[GLINT_FIRST_CANDIDATES];
+    const R(candidate) * list[GLINT_FIRST_CANDIDATES];
+    uint64_t may[GLINT_FIRST_CANDIDATES];
     screen_entry stack[WALK_STACK];
     int height = 0, count = 0;
     uint32_t planes = 0;
     R(begin_tile)(args, &tile);
     if (geometry->nodes)
-        count = R(open_root)(&tile, candidates, stack, &height);
+        count = R(open_root)(&tile, candidates, may, stack, &height);
+    const int rooted = count;
     count += R(open_planes)(&tile, &planes, candidates + count, GLINT_FIRST_CANDIDATES - count);
-    tile.deep = height > 0 || planes < geometry->unbounded_count;
-    for (int y = 0; y < tile.down; y++) {
-        R(begin_row)(&tile, candidates, count, y);
-        for (int x = 0; x < tile.across; x++)
-            R(begin_group_cast)(&tile, candidates, count, x, y);
+    for (int k = 0; k < count; k++) {
+        R(make_cover)(&tile, &candidates[k]);
+        list[k] = &candidates[k];
+        if (k >= rooted)
+            may[k] = R(groups_of)(bit_range(0, tile.across - 1), bit_range(0, tile.down - 1));
     }
+    tile.deep = height > 0 || planes < geometry->unbounded_count;
+    R(cast_first)(&tile, list, count, may);
     if (!tile.deep)
         return;
     while ((count = R(open_planes)(&tile, &planes, candidates, GLINT_FIRST_CANDIDATES)) > 0)

@@ -14,6 +14,13 @@ INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
 #endif
 }
 
+/// a r^2 - |f x d|^2
+INNER vr R(discriminant_afar)(const vr f[3], const vr d[3], vr ar2)
+{
+    vr x = f[1] * d[2] - f[2] * d[1], y = f[2] * d[0] - f[0] * d[2], z = f[0] * d[1] - f[1] * d[0];
+    return ar2 - ((x * x + y * y) + z * z);
+}
+
 /// The better of two discriminants: from within the sphere's width b^2 - a c, from afar a r^2 - |f x d|^2 (Haines,
 /// Gunther, Akenine-Moller, Ray Tracing Gems ch. 7, gives the second; neither alone is accurate everywhere).
 INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
@@ -22,8 +29,7 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
     const rm near = r_lt(bb, ar2);
     if (rm_bits(near) == (1u << VR) - 1) // a ground seen from above it: the cross product is not needed
         return inner;
-    vr x = f[1] * d[2] - f[2] * d[1], y = f[2] * d[0] - f[0] * d[2], z = f[0] * d[1] - f[1] * d[0];
-    return r_select(near, inner, ar2 - ((x * x + y * y) + z * z));
+    return r_select(near, inner, R(discriminant_afar)(f, d, ar2));
 }
 
 INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)

@@ -1,0 +1,200 @@
+// cover: which groups of a tile a candidate may show in, which it fills, and where another hides it, by the ray through
+// the middle of each group: the group's others are near to it. Float and conservative, rounding and NaN included: what is
+// not certain here is left to the pixels. Contract: stages.h, cast.
+
+#define COVER_ACROSS (GLINT_TILE_WIDTH / 4) ///< bit COVER_ACROSS y + x of a set of groups is group (x, y)
+#define COVER_MARGIN 1e-4 ///< of what is certain; far above the rounding of float and real
+
+/// Every group of columns and rows, a bit each.
+static inline uint64_t R(groups_of)(unsigned columns, unsigned rows)
+{
+    uint64_t groups = 0;
+    for (; rows; rows &= rows - 1)
+        groups |= (uint64_t)columns << COVER_ACROSS * __builtin_ctz(rows);
+    return groups;
+}
+
+INNER bool R(is_round)(const R(candidate) * candidate)
+{
+    return candidate->prim->kind == GLINT_PRIM_SPHERE || candidate->prim->kind == GLINT_PRIM_SOLID;
+}
+
+// ---- What a candidate is to groups ----
+
+/// Of a sphere with the eye outside.
+static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    const glint_prim *prim = candidate->prim;
+    const double f[3] = { candidate->f[0], candidate->f[1], candidate->f[2] }, ff = DOT(f, f), size = sqrt(ff);
+    const double c = candidate->c;
+    candidate->distant = 2.1 * prim->r2 < ff;
+    if (!(1e-30 < c) || !(1e-15 < prim->scale && prim->scale < 1e15))
+        return;
+    candidate->ahead[0] = (float)-DOT(f, camera->forward);
+    candidate->ahead[1] = (float)-DOT(f, camera->right);
+    candidate->ahead[2] = (float)-DOT(f, camera->up);
+    candidate->sway = 4 * (fabsf(candidate->ahead[1]) + fabsf(candidate->ahead[2])) +
+                      (float)(GLINT_FILTER_SLACK * size) * tile->longest;
+    candidate->inner = (float)(prim->radius * prim->scale * (1 - COVER_MARGIN) - 2 * GLINT_FILTER_SLACK * size);
+    candidate->power = (float)(c / prim->scale);
+}
+
+/// After the filter. Nothing is certain of triangles and solids.
+static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
+{
+    const double c = candidate->c, height = fabs(c);
+    double diagonal2[2] = { 0, 0 };
+    candidate->outer = sqrtf(candidate->limit) * (1 + 0x1p-20f);
+    candidate->inner = -1;
+    candidate->power = 0;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 2; i++) {
+            const double s = candidate->along_s[k], t = candidate->along_t[k], way = i ? s + t : s - t;
+            diagonal2[i] += way * way;
+        }
+    candidate->around = (float)(4.00001 * sqrt(fmax(diagonal2[0], diagonal2[1])));
+    if (candidate->prim->kind == GLINT_PRIM_SPHERE) {
+        R(make_sphere_cover)(tile, candidate);
+    } else if (candidate->prim->kind == GLINT_PRIM_PLANE && 1e-30 < height && height < 1e30) {
+        candidate->inner = 1;
+        candidate->power = (float)height;
+    }
+}
+
+// ---- Groups ----
+
+/// VF groups of a tile.
+typedef struct R(patches) {
+    vf s, t, length; ///< place of the middle, and length of the direction there
+} R(patches);
+
+/// From group i on, i a multiple of VF.
+INNER R(patches) R(patches_at)(const R(tile_cast) * tile, int i)
+{
+    static const _Alignas(
+        64) float column[GLINT_GROUP] = { 0, 8, 16, 24, 32, 40, 48, 56, 0, 8, 16, 24, 32, 40, 48, 56 };
+    static const _Alignas(64) float row[GLINT_GROUP] = { 0, 0, 0, 0, 0, 0, 0, 0, 8, 8, 8, 8, 8, 8, 8, 8 };
+    const glint_camera_args *camera = tile->args->camera;
+    const float s = (float)(2 * camera->x0 + 4 - camera->width), above = (float)(i / GLINT_GROUP * 16);
+    const float t = (float)(camera->height - (2 * camera->y0 + 4)) - above;
+    R(patches)
+    out = { .s = f_set(s) + f_load(column + i % GLINT_GROUP), .t = f_set(t) - f_load(row + i % GLINT_GROUP) };
+    out.length = f_sqrt((f_set(1) + out.s * out.s * f_set(tile->rr)) + out.t * out.t * f_set(tile->uu));
+    return out;
+}
+
+INNER void R(filter_at)(const R(candidate) * candidate, const R(patches) * at, vf v[3])
+{
+    for (int k = 0; k < 3; k++)
+        v[k] =
+            (f_set(candidate->base[k]) + at->s * f_set(candidate->along_s[k])) + at->t * f_set(candidate->along_t[k]);
+}
+
+/// The least and the most of an edge within a group, from what it is in the middle.
+INNER float R(edge_sway)(const R(candidate) * candidate, int j)
+{
+    return 4 * (fabsf(candidate->along_s[j]) + fabsf(candidate->along_t[j]));
+}
+
+/// Groups that the candidate may show in; *sure: those that it fills.
+INNER unsigned R(cover_groups)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at,
+                               unsigned *sure)
+{
+    const vf zero = f_set(0), inner = f_set(candidate->inner);
+    vf v[3];
+    R(filter_at)(candidate, at, v);
+    if (!R(is_round)(candidate)) {
+        const vf limit = f_set(candidate->limit);
+        vf most = v[0] + f_set(R(edge_sway)(candidate, 0));
+        for (int j = 1; j < 3; j++)
+            most = f_min(most, v[j] + f_set(R(edge_sway)(candidate, j)));
+        *sure = fm_bits(fm_and(f_lt(zero, inner), f_lt(limit, v[0] - f_set(R(edge_sway)(candidate, 0)))));
+        return ~fm_bits(f_lt(most, -limit)) & ((1u << VF) - 1);
+    }
+    const vf spread = f_set(tile->spread), around = f_set(candidate->around), off2 = DOT(v, v);
+    const vf reach = f_set(candidate->outer) * (at->length + spread) + around;
+    const vf fill = inner * (at->length - spread) - around;
+    *sure = fm_bits(fm_and(f_lt(zero, fill), f_lt(off2, fill * fill)));
+    if (*sure) { // in front, not behind
+        const vf b =
+            (f_set(candidate->ahead[0]) + at->s * f_set(candidate->ahead[1])) + at->t * f_set(candidate->ahead[2]);
+        *sure &= fm_bits(f_lt(zero, b));
+    }
+    return ~fm_bits(f_lt(reach * reach, off2)) & ((1u << VF) - 1);
+}
+
+/// Bounds of t where the candidate is hit in the groups, the upper one where it fills them.
+INNER void R(ways_to)(const R(tile_cast) * tile, const R(candidate) * candidate, const R(patches) * at, vf *low,
+                      vf *high)
+{
+    const vf zero = f_set(0), less = f_set(1 - 1e-5f), more = f_set(1 + 1e-5f), power = f_set(candidate->power);
+    *low = zero;
+    *high = f_set(HUGE_VALF);
+    if (!(candidate->power > 0))
+        return;
+    if (candidate->prim->kind == GLINT_PRIM_PLANE) {
+        const vf nearing =
+            (f_set(candidate->base[0]) + at->s * f_set(candidate->along_s[0])) + at->t * f_set(candidate->along_t[0]);
+        const vf sway = f_set(R(edge_sway)(candidate, 0) + candidate->limit);
+        *low = less * (power / f_max(nearing + sway, zero));
+        *high = more * (power / (nearing - sway));
+        return;
+    }
+    const vf sway = f_set(candidate->sway), c = f_set((float)candidate->c), spread = f_set(tile->spread);
+    const vf doubt = f_set(1e-5f);
+    const vf b = (f_set(candidate->ahead[0]) + at->s * f_set(candidate->ahead[1])) + at->t * f_set(candidate->ahead[2]);
+    const vf most = f_max(b + sway, zero), least = f_max(b - sway, zero);
+    const vf longest = at->length + spread, shortest = f_max(at->length - spread, zero);
+    const vf above = (most * most - shortest * shortest * c) + doubt * (most * most);
+    const vf below = (least * least - longest * longest * c) - doubt * (least * least);
+    *low = less * (power / (most + f_sqrt(f_max(above, zero))));
+    *high = more * (power / (least + f_sqrt(f_max(below, zero))));
+}
+
+/// Leaves out of `may` the groups, from group i on, that another fills nearer to the eye.
+static inline void R(leave_hidden)(const R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
+                                   const R(patches) * at, unsigned may[], const unsigned sure[])
+{
+    vf low[GLINT_FIRST_CANDIDATES], nearest = f_set(HUGE_VALF);
+    for (int k = 0; k < count; k++) {
+        vf high;
+        if (!may[k])
+            continue;
+        R(ways_to)(tile, candidates[k], at, &low[k], &high);
+        nearest = f_select(fm_from_bits(may[k] & sure[k]), f_min(high, nearest), nearest);
+    }
+    for (int k = 0; k < count; k++)
+        if (may[k])
+            may[k] &= ~fm_bits(f_lt(nearest, low[k]));
+}
+
+/// may: in, groups that a candidate's box leaves; out, those that it may show in. sure: out, groups that it fills, if
+/// nothing is before it.
+static void R(cover_tile)(const R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[],
+                          uint64_t sure[])
+{
+    const int end = COVER_ACROSS * tile->down;
+    for (int k = 0; k < count; k++)
+        sure[k] = 0;
+    for (int i = 0; i < end; i += VF) {
+        const R(patches) at = R(patches_at)(tile, i);
+        unsigned here[GLINT_FIRST_CANDIDATES], fill[GLINT_FIRST_CANDIDATES], any = 0, several = 0, filled = 0;
+        for (int k = 0; k < count; k++) {
+            here[k] = (unsigned)(may[k] >> i) & ((1u << VF) - 1);
+            fill[k] = 0;
+            if (!here[k])
+                continue;
+            here[k] &= R(cover_groups)(tile, candidates[k], &at, &fill[k]);
+            several |= any & here[k];
+            any |= here[k];
+            filled |= fill[k];
+        }
+        if (several & filled)
+            R(leave_hidden)(tile, candidates, count, &at, here, fill);
+        for (int k = 0; k < count; k++) {
+            may[k] = (may[k] & ~((((uint64_t)1 << VF) - 1) << i)) | (uint64_t)here[k] << i;
+            sure[k] |= (uint64_t)fill[k] << i;
+        }
+    }
+}
