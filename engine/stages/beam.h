@@ -4,6 +4,7 @@
 #define BEAM_DOWN 32 ///< rows of cells
 #define BEAM_NEAREST 0.25f ///< least k of a point: nearer to the light a place is not worth much
 #define BEAM_WIDEST 1.0f ///< largest tangent of an angle to the axis
+#define BEAM_BACK 0x80000000u ///< of a point's own surface: it is seen from behind
 
 /// Sets the frame's axes: `away` from the light, and `along` as far as it is across it, which becomes the second. All
 /// may have any length but 0.
@@ -26,20 +27,32 @@ static bool make_beam_axes(const double away[3], const double along[3], screen_v
     return true;
 }
 
-/// On which side of a triangle the light is: 1 in front, -1 behind, or 0 where float cannot tell.
-static int side_of_light(const shape_on_screen *triangle, const float middle[3], const screen_view *view)
+// ---- Triangles ----
+
+/// Which cells each triangle may show in. Returns the slots of `mask` that show in any.
+static unsigned cells_of_leaf(const screen_view *view, const leaf_on_screen *shown, unsigned mask,
+                              uint32_t cells[GLINT_NODE_WIDTH])
 {
-    // from a corner to the light, times the share `inverse` of the way where there is one
-    const float corner[3] = { triangle->across[0], triangle->down[0], triangle->w[0] };
-    const float *a = triangle->across, *b = triangle->down, *c = triangle->w;
-    const float f[3] = { a[1] - a[0], b[1] - b[0], c[1] - c[0] }, g[3] = { a[2] - a[0], b[2] - b[0], c[2] - c[0] };
-    float side = 0, size = 0;
-    for (int k = 0; k < 3; k++) {
-        const float way = -view->inverse * (middle[k] + corner[k]) - (k == 2 ? 1.0f : 0.0f);
-        side += (f[(k + 1) % 3] * g[(k + 2) % 3] - f[(k + 2) % 3] * g[(k + 1) % 3]) * way;
-        size += fabsf(way);
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vi in = i_set(0);
+        fm away = fm_from_bits(0);
+        for (int n = 1; n >= 0; n--) {
+            const vf start = f_set(view->first[n]), end = f_set(view->last[n]);
+            const vf least = f_load(shown->least[n] + i), most = f_load(shown->most[n] + i);
+            away = fm_or(away, fm_or(f_lt(most, start), f_lt(end, least)));
+            in = i_or(i_shl(in, 16), i_or(cell_of_place(view, n, f_max(least, start)),
+                                          i_shl(cell_of_place(view, n, f_min(most, end)), 8)));
+        }
+        i_store(cells + i, in);
+        mask &= ~(fm_bits(away) << i);
     }
-    const float doubt = triangle->size * (triangle->size * (0x1p-16f * size + 16 * triangle->slack * view->inverse) +
-                                          16 * triangle->slack * size);
-    return side > doubt ? 1 : side < -doubt ? -1 : 0;
+    return mask;
 }
+
+/// Which side of its own triangle a point must be seen from to be dark for that, as in `own` of the beam; any where float
+/// cannot tell on which side the light is.
+typedef struct own_side {
+    uint32_t id;
+    uint32_t side;
+    bool any;
+} own_side;

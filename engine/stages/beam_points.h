@@ -4,12 +4,27 @@
 /// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
 typedef struct R(beam_batch) {
     glint_occlude_args args; ///< of the call, with these points in place of the tile's
-    _Alignas(64) real point[3][GLINT_GROUP], direction[3][GLINT_GROUP], slack[GLINT_GROUP];
+    _Alignas(64) real point[3][GLINT_GROUP];
     uint16_t back;
     uint16_t from[GLINT_GROUP]; ///< index in the beam
     int count;
     unsigned own; ///< lanes that are on the surface itself
 } R(beam_batch);
+
+#define GLINT_BEAM_PAIRS (2 * GLINT_GROUP)
+
+/// The triangles of a node, and pairs of one and a point that are to be decided.
+typedef struct R(beam_leaf) {
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of the triangle in each slot
+    _Alignas(64) real point[3][GLINT_BEAM_PAIRS], direction[3][GLINT_BEAM_PAIRS], slack[GLINT_BEAM_PAIRS];
+    _Alignas(64) uint32_t slot[GLINT_BEAM_PAIRS];
+    uint16_t from[GLINT_BEAM_PAIRS]; ///< index in the beam
+    unsigned own, back; ///< pairs whose point is on the triangle; whose point is seen from behind
+    int count;
+    const glint_node *node;
+    leaf_on_screen shown;
+    _Alignas(64) uint32_t cells[GLINT_NODE_WIDTH]; ///< see screen_cells
+} R(beam_leaf);
 
 typedef struct R(beam) {
     const R(shadow_tile) * tile;
@@ -18,11 +33,12 @@ typedef struct R(beam) {
     // the points, a cell's in a row, the cells row by row
     _Alignas(64) float place[2][GLINT_TILE_SAMPLES + GLINT_GROUP];
     _Alignas(64) float w[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< of blocked ones: -inf
-    uint32_t prim[GLINT_TILE_SAMPLES + GLINT_GROUP];
+    uint32_t own[GLINT_TILE_SAMPLES + GLINT_GROUP]; ///< what it is on; with BEAM_BACK: seen from behind
     uint16_t at[GLINT_TILE_SAMPLES + GLINT_GROUP], cell[GLINT_TILE_SAMPLES + GLINT_GROUP];
     uint16_t begin[BEAM_DOWN * SCREEN_ACROSS + 1]; ///< where each cell's begin
     _Alignas(64) float far[BEAM_DOWN][SCREEN_ACROSS]; ///< largest w of each cell's open points
     R(beam_batch) batch;
+    R(beam_leaf) leaf;
 } R(beam);
 
 // ---- The points ----
@@ -32,13 +48,15 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
-    double away[3], along[3] = { 0, 0, 0 }, size = 0;
+    double away[3], along[3] = { 0, 0, 0 }, size = 0, width = 0;
     int longest = 0;
     for (int k = 0; k < 3; k++) {
         view->origin[k] = 0.5f * (tile->lower[k] + tile->upper[k]);
+        view->exact[k] = (double)view->origin[k];
         const double light = (args->position[k] - geometry->reference[k]) * geometry->scale;
         away[k] = args->directional ? -args->position[k] : (double)view->origin[k] - light;
         size += largest_of(tile->lower[k], tile->upper[k]);
+        width += tile->upper[k] - tile->lower[k];
         if (tile->upper[k] - tile->lower[k] > tile->upper[longest] - tile->lower[longest])
             longest = k;
     }
@@ -57,7 +75,23 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
     view->count[1] = BEAM_DOWN;
     view->margin = 0;
     view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
+    // what a point on a triangle's plane may be beside it, and less
+    view->corner_slack = (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
+    view->drift = 16 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // k of a point is above BEAM_NEAREST
     return true;
+}
+
+/// Points of a group in the index's frame, from `origin`, before anything is rounded to float.
+static inline void R(points_from)(const void *const point[3], size_t at, const glint_geometry_table *geometry,
+                                  const double origin[3], float (*local)[GLINT_GROUP])
+{
+    _Alignas(64) real moved[GLINT_GROUP];
+    for (int k = 0; k < 3; k++) {
+        const vr reference = r_set(geometry->reference[k]), scale = r_set(geometry->scale);
+        for (int i = 0; i < GLINT_GROUP; i += VR)
+            r_store(moved + i, (r_load((const real *)point[k] + at + i) - reference) * scale - r_set(origin[k]));
+        R(narrow)(moved, local[k]);
+    }
 }
 
 /// Where the light sees the points, in the order of the call's groups.
@@ -81,11 +115,10 @@ static bool R(project_points)(const R(shadow_tile) * tile, const uint16_t *lit, 
         float *const out[3] = { places->place[0] + at, places->place[1] + at, places->w + at };
         if (!lit[g])
             continue;
-        R(index_frame)(tile->args->point, at, tile->args->geometry, local);
+        R(points_from)(tile->args->point, at, tile->args->geometry, view->exact, local);
         for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf x[3], seen[3];
-            for (int k = 0; k < 3; k++)
-                x[k] = f_load(local[k] + i) - f_set(view->origin[k]);
+            const vf x[3] = { f_load(local[0] + i), f_load(local[1] + i), f_load(local[2] + i) };
+            vf seen[3];
             for (int j = 0; j < 3; j++)
                 seen[j] =
                     (f_set(view->axis[j][0]) * x[0] + f_set(view->axis[j][1]) * x[1]) + f_set(view->axis[j][2]) * x[2];
@@ -146,7 +179,7 @@ static void R(sort_points)(R(beam) * beam, const uint16_t *lit, R(beam_places) *
             beam->place[0][to] = places->place[0][from];
             beam->place[1][to] = places->place[1][from];
             beam->w[to] = places->w[from];
-            beam->prim[to] = args->prim[from];
+            beam->own[to] = args->prim[from] | (args->back[g] >> from % GLINT_GROUP & 1 ? BEAM_BACK : 0);
             beam->at[to] = (uint16_t)from;
             beam->cell[to] = (uint16_t)cell;
             *far = larger(*far, places->w[from]);

@@ -182,13 +182,15 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     const uint32_t g = (uint32_t)(at / GLINT_GROUP), across = args->camera ? args->camera->groups_across : 1;
     const R(group_directions) viewing = R(directions_of)(args->camera, g % across, g / across);
     const vr zero = r_set(0);
+    vr corner[3][3];
     unsigned blocked = 0;
+    R(corners_of)(prim, corner);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1), own_lanes = own >> i & lanes;
         if (!lanes)
             continue;
         const vr light[3] = { r_load(position[0] + i), r_load(position[1] + i), r_load(position[2] + i) };
-        const R(triangle_plane) plane = R(plane_of)(prim, scale, light, args->directional);
+        const R(triangle_plane) plane = R(plane_of)(corner, scale, light, args->directional);
         unsigned hit = 0;
         if (own_lanes)
             hit = own_lanes &
@@ -199,7 +201,7 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
             R(load_direction)(viewing, args->direction, at, i, ray);
             R(directions_to)(args, position, at, i, d);
             const vr slack = r_load((const real *)args->slack + at + i);
-            hit |= rm_bits(R(triangle_blocks)(prim, scale, p, d, slack, &plane, ray)) & lanes & ~own_lanes;
+            hit |= rm_bits(R(triangle_blocks)(corner, scale, p, d, slack, &plane, ray)) & lanes & ~own_lanes;
         }
         blocked |= hit << i;
     }

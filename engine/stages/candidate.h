@@ -66,7 +66,7 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     view->unit[1] = (float)sqrt(uu);
     view->base = 0;
     view->inverse = 1;
-    view->slack = R(walk_slack)(geometry);
+    view->slack = view->corner_slack = R(walk_slack)(geometry);
     view->drift = 0;
     view->margin = (float)(0.01 + 1e-5 * (wide[0] + wide[1])); // of half a pixel; far above the rounding
     view->far = HUGE_VALF;

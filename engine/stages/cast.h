@@ -180,7 +180,7 @@ static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shap
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
         if (open)
-            lanes |= near_shape(shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i), open, 0) << i;
+            lanes |= (open & near_shape(shape, f_load(tile->s[x] + i), -f_load(tile->t[y] + i))) << i;
     }
     return lanes;
 }
@@ -201,7 +201,7 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
             if (tile->far[y][x] < depth)
                 continue;
             if (!shaped)
-                shape = shape_of(node, seen, slot, &geometry->prims[id], geometry, &tile->view);
+                shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
             shaped = true;
             const unsigned near = R(lanes_near_shape)(tile, &shape, depth, x, y);
             if (!near)

@@ -61,7 +61,7 @@ static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_vie
 /// it, which lean by the screen's stretch, a few of the place and of k, and what the view says.
 static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view)
 {
-    return f_set(view->root_stretch) * (f_set(LEAF_SLACK) * at->numbers + f_set(view->slack)) +
+    return f_set(view->root_stretch) * (f_set(LEAF_SLACK) * at->numbers + f_set(view->corner_slack)) +
            f_set(0x1p-21f * view->spread + view->drift) * at->highest;
 }
 

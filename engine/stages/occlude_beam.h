@@ -3,26 +3,11 @@
 
 // ---- The decision ----
 
-/// Nothing is between this point and the light any more that matters.
-static inline void R(close_point)(R(beam) * beam, uint32_t i)
-{
-    const uint32_t at = beam->at[i], cell = beam->cell[i];
-    float far = -HUGE_VALF;
-    beam->tile->args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
-    beam->w[i] = -HUGE_VALF;
-    beam->open--;
-    for (uint32_t j = beam->begin[cell]; j < beam->begin[cell + 1]; j++)
-        far = larger(far, beam->w[j]);
-    beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = far;
-}
-
 static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, unsigned wanted)
 {
     const R(beam_batch) *batch = &beam->batch;
     const R(shadow_tile) *tile = beam->tile;
     const unsigned own = batch->own;
-    if (prim->kind == GLINT_PRIM_TRIANGLE)
-        return R(blocked_by_triangle)(&batch->args, prim, tile->position, 0, own, wanted);
     const R(light_sides) sides = R(seen_sides)(tile, NULL, prim);
     if (prim->kind == GLINT_PRIM_SOLID)
         return R(blocked_by_solid)(&batch->args, prim, tile->position, 0, own, wanted, sides.outside);
@@ -53,24 +38,13 @@ static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
 
 static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint32_t i, bool own, bool back)
 {
-    const glint_occlude_args *args = beam->tile->args;
     R(beam_batch) *batch = &beam->batch;
-    const uint32_t at = beam->at[i], g = at / GLINT_GROUP, lane = at % GLINT_GROUP;
+    real *const point[3] = { batch->point[0], batch->point[1], batch->point[2] };
     const int n = batch->count++;
     batch->from[n] = (uint16_t)i;
     batch->own |= (unsigned)own << n;
     batch->back |= (uint16_t)((unsigned)back << n);
-    for (int k = 0; k < 3; k++)
-        batch->point[k][n] = ((const real *)args->point[k])[at];
-    if (prim->kind == GLINT_PRIM_TRIANGLE) {
-        const uint32_t across = args->camera ? args->camera->groups_across : 1;
-        const R(group_directions) viewing = R(directions_of)(args->camera, g % across, g / across);
-        batch->slack[n] = ((const real *)args->slack)[at];
-        for (int k = 0; k < 3; k++)
-            batch->direction[k][n] = viewing.across
-                                         ? viewing.across[k * GLINT_GROUP + lane] + viewing.down[k * GLINT_GROUP + lane]
-                                         : ((const real *)args->direction[k])[at];
-    }
+    R(copy_point)(beam, i, false, n, point, NULL, NULL);
     if (batch->count == GLINT_GROUP)
         R(decide_batch)(beam, prim);
 }
@@ -83,33 +57,23 @@ typedef struct R(beam_blocker) {
     uint32_t id;
     float near; ///< least w of its box
     shape_on_screen shape;
-    int light; ///< of a triangle: side_of_light
 } R(beam_blocker);
 
-/// Whether a point on the surface itself may be dark for that: what it is decided by in blocked.h, where float can tell.
-static inline bool R(own_matters)(const R(beam_blocker) * b, bool back)
-{
-    return b->shape.is_triangle ? b->light != (back ? -1 : 1) : back;
-}
-
-/// Tests the points from `i` on and before `end`.
+/// Tests the points from `i` on and before `end`. Its own are dark for that only where they are seen from behind, see blocked.h.
 static void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
 {
-    const uint16_t *backs = beam->tile->args->back;
     for (; i < end; i += VF) {
         const vf u = f_load_any(beam->place[0] + i), v = f_load_any(beam->place[1] + i), w = f_load_any(beam->w + i);
         const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
         const unsigned behind = fm_bits(f_le(f_set(b->near), w)) & in_run;
         if (!behind)
             continue;
-        const unsigned own = behind & fm_bits(i_eq(f_bits(f_load_any((const float *)(beam->prim + i))), i_set(b->id)));
-        unsigned near = near_shape(&b->shape, u, v, behind, own);
-        for (; near; near &= near - 1) {
+        const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
+        const unsigned front = fm_bits(i_eq(owner, i_set(b->id)));
+        for (unsigned near = behind & ~front & near_shape(&b->shape, u, v); near; near &= near - 1) {
             const unsigned lane = (unsigned)__builtin_ctz(near);
-            const uint32_t at = beam->at[i + lane];
-            const bool is_own = own >> lane & 1, back = backs[at / GLINT_GROUP] >> at % GLINT_GROUP & 1;
-            if (!is_own || R(own_matters)(b, back))
-                R(add_to_batch)(beam, b->prim, i + lane, is_own, back);
+            const uint32_t on = beam->own[i + lane];
+            R(add_to_batch)(beam, b->prim, i + lane, (on & ~BEAM_BACK) == b->id, (on & BEAM_BACK) != 0);
         }
     }
 }
@@ -122,10 +86,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
     if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, b.near, cells))
         return;
-    b.shape = shape_of(node, seen, slot, b.prim, geometry, &beam->view);
-    if (b.shape.is_triangle)
-        b.light = side_of_light(
-            &b.shape, (const float[3]) { b.shape.middle[0], b.shape.middle[1], seen->middle[2][slot] }, &beam->view);
+    b.shape = shape_of(node, seen, slot, b.prim, &beam->view);
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
@@ -137,31 +98,48 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     R(decide_batch)(beam, b.prim);
 }
 
+/// Takes out of args->open what the primitives in the slots of `mask` block.
+static void R(block_prims)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
+{
+    const unsigned triangles = triangles_in(beam->tile->args->geometry, node, mask);
+    for (unsigned left = mask & ~triangles; left; left &= left - 1)
+        R(block_cells)(beam, node, seen, __builtin_ctz(left));
+    if (triangles)
+        R(block_triangles)(beam, node, seen, triangles);
+}
+
 // ---- The walk ----
 
+/// A node's primitives wait for their memory as in walk_tile.
 static void R(walk_beam)(R(beam) * beam)
 {
     const glint_geometry_table *geometry = beam->tile->args->geometry;
+    const glint_node *waiting = NULL;
+    unsigned waiting_prims = 0;
+    int height = 0, turn = 0;
     screen_entry stack[WALK_STACK];
-    node_on_screen seen;
-    int height = 0;
+    node_on_screen seen[2];
     stack[height++] = entry_of_root(&beam->view);
-    while (height > 0 && beam->open && !is_stopped(beam->tile->args->stop)) {
+    for (; height > 0 && beam->open && !is_stopped(beam->tile->args->stop); turn = !turn) {
         const screen_entry top = stack[--height];
-        if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, top.cells))
-            continue;
         const glint_node *node = &geometry->nodes[top.node];
-        const unsigned mask = boxes_on_screen(node, &beam->view, &seen);
-        prefetch_prims(geometry, node, mask & prims_of_node(node));
-        for (unsigned left = mask; left; left &= left - 1)
-            if (!(node->child[__builtin_ctz(left)] & GLINT_NODE_PRIM))
-                stack[height++] = entry_of(node, &seen, __builtin_ctz(left));
+        unsigned prims = 0;
+        if (any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, top.cells)) {
+            const unsigned mask = boxes_on_screen(node, &beam->view, &seen[turn]);
+            prims = mask & prims_of_node(node);
+            prefetch_prims(geometry, node, prims);
+            for (unsigned left = mask & ~prims; left; left &= left - 1)
+                stack[height++] = entry_of(node, &seen[turn], __builtin_ctz(left));
+        }
         if (height > 0)
             prefetch_node(&geometry->nodes[stack[height - 1].node]);
-        for (unsigned left = mask; left; left &= left - 1)
-            if (node->child[__builtin_ctz(left)] & GLINT_NODE_PRIM)
-                R(block_cells)(beam, node, &seen, __builtin_ctz(left));
+        if (waiting_prims)
+            R(block_prims)(beam, waiting, &seen[!turn], waiting_prims);
+        waiting = node;
+        waiting_prims = prims;
     }
+    if (waiting_prims)
+        R(block_prims)(beam, waiting, &seen[!turn], waiting_prims);
 }
 
 static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch)
@@ -172,14 +150,9 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
     batch->args = *args;
     batch->args.camera = NULL;
     batch->args.back = &batch->back;
-    batch->args.slack = batch->slack;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
         batch->args.point[k] = batch->point[k];
-        batch->args.direction[k] = batch->direction[k];
-    }
-    for (int i = 0; i < GLINT_GROUP; i++) // lanes without a point are computed too
-        for (int k = 0; k < 3; k++)
-            batch->point[k][i] = batch->direction[k][i] = batch->slack[i] = 0;
+    memset(batch->point, 0, sizeof batch->point); // lanes without a point are computed too
 }
 
 /// Takes out of args->open what the index blocks. False: no beam can be made of these points, and nothing is done.
@@ -195,6 +168,7 @@ static bool R(occlude_beam)(const R(shadow_tile) * tile)
         return false;
     R(sort_points)(&beam, args->open[0], &places);
     R(begin_batch)(args, &beam.batch);
+    R(begin_beam_leaf)(&beam.leaf);
     R(walk_beam)(&beam);
     return true;
 }

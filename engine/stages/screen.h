@@ -24,7 +24,7 @@ typedef struct screen_view {
         reach_of_numbers; ///< what a ray may be off by at a surface: the first, and the second times its numbers
     float weight[2], area; ///< squares of `unit`, and their product's root
     float root_stretch, spread; ///< of `stretch`; bound of the lengths of places, where k is 1
-    float drift; ///< what rounding may have moved a place by, times `unit`, besides slack
+    float corner_slack, drift; ///< as slack, for corners from the exact origin: anywhere, and where k is 1, with k
 } screen_view;
 
 /// Fills what follows from the rest.
@@ -164,82 +164,34 @@ static inline void prefetch_node(const glint_node *node)
 
 // ---- Surfaces ----
 
-/// A surface as the filter sees it: a ball around it, and of a triangle its edges too, from the middle of its box.
+/// A surface as the filter sees it: a ball around it.
 typedef struct shape_on_screen {
     float middle[2], k; ///< places of rays times k are where they pass the middle
     float weight[2], reach2; ///< square of how far from it they may pass, and what makes lengths of places
-    bool is_triangle;
-    float across[3], down[3], w[3],
-        lean[3]; ///< of the corners; lean: how far a ray at place 1 moves on its way to there
-    float doubt; ///< how far on the wrong side of an edge a ray may pass
-    float size, slack; ///< of a triangle: bound of its corners; what they may be off by
 } shape_on_screen;
 
-/// Corners from the middle of the box, which is `middle` in the index's frame.
-static inline void place_corners(const glint_prim *prim, const glint_geometry_table *geometry, const screen_view *view,
-                                 const float middle[3], shape_on_screen *out)
-{
-    for (int j = 0; j < 3; j++) {
-        float x[3];
-        for (int k = 0; k < 3; k++)
-            x[k] = (float)((prim->corner[j][k] - geometry->reference[k]) * geometry->scale - (double)middle[k]);
-        out->across[j] = DOT(view->axis[0], x);
-        out->down[j] = DOT(view->axis[1], x);
-        out->w[j] = DOT(view->axis[2], x);
-        out->lean[j] = out->w[j] * view->inverse;
-        out->size = larger(out->size, (fabsf(x[0]) + fabsf(x[1])) + fabsf(x[2]));
-    }
-}
-
 static inline shape_on_screen shape_of(const glint_node *node, const node_on_screen *seen, int slot,
-                                       const glint_prim *prim, const glint_geometry_table *geometry,
-                                       const screen_view *view)
+                                       const glint_prim *prim, const screen_view *view)
 {
-    shape_on_screen out = { .is_triangle = prim->kind == GLINT_PRIM_TRIANGLE };
-    float middle[3], numbers = 0;
-    for (int k = 0; k < 3; k++) {
-        middle[k] = 0.5f * (node->lower[k][slot] + node->upper[k][slot]);
-        numbers += fabsf(middle[k]);
-    }
-    out.slack = view->reach + view->reach_of_numbers * numbers;
-    const float reach = prim->filter_bound + out.slack;
+    shape_on_screen out;
+    float numbers = 0;
+    for (int k = 0; k < 3; k++)
+        numbers += fabsf(0.5f * (node->lower[k][slot] + node->upper[k][slot]));
+    const float reach = prim->filter_bound + (view->reach + view->reach_of_numbers * numbers);
     out.k = view->base + seen->middle[2][slot] * view->inverse;
     for (int j = 0; j < 2; j++) {
         out.middle[j] = seen->middle[j][slot];
         out.weight[j] = view->weight[j];
     }
     out.reach2 = reach * reach * view->stretch;
-    if (out.is_triangle) {
-        // lengths from a ray within reach to a corner are below `wide`; a product of two is off by what each is off by
-        const float wide = 3 * sqrtf(out.reach2);
-        out.doubt = wide * (6 * out.slack + 0x1p-20f * wide) / view->area;
-        place_corners(prim, geometry, view, middle, &out);
-    }
     return out;
 }
 
-/// Lanes whose rays may pass between the edges: the corners, from the ray where each of them is.
-static inline unsigned near_edges(const shape_on_screen *shape, vf u, vf v, vf across, vf down)
-{
-    vf x[3], y[3], e[3];
-    for (int j = 0; j < 3; j++) {
-        x[j] = f_set(shape->across[j]) - (across + f_set(shape->lean[j]) * u);
-        y[j] = f_set(shape->down[j]) - (down + f_set(shape->lean[j]) * v);
-    }
-    for (int j = 0; j < 3; j++)
-        e[j] = x[(j + 1) % 3] * y[(j + 2) % 3] - x[(j + 2) % 3] * y[(j + 1) % 3];
-    const vf doubt = f_set(shape->doubt);
-    return ~fm_bits(fm_and(f_lt(f_min(f_min(e[0], e[1]), e[2]), -doubt), f_lt(doubt, f_max(f_max(e[0], e[1]), e[2]))));
-}
-
-/// Lanes of `wanted` whose rays, at places u, v, may meet the shape; those of `sure` are not asked about edges.
-static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v, unsigned wanted, unsigned sure)
+/// Lanes whose rays, at places u, v, may meet the shape.
+static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
 {
     const vf across = u * f_set(shape->k) - f_set(shape->middle[0]),
              down = v * f_set(shape->k) - f_set(shape->middle[1]);
     const vf distance2 = f_set(shape->weight[0]) * (across * across) + f_set(shape->weight[1]) * (down * down);
-    wanted &= ~fm_bits(f_lt(f_set(shape->reach2), distance2));
-    if (shape->is_triangle && wanted & ~sure)
-        wanted &= sure | near_edges(shape, u, v, across, down);
-    return wanted;
+    return ~fm_bits(f_lt(f_set(shape->reach2), distance2)) & ((1u << VF) - 1);
 }

@@ -119,12 +119,28 @@ static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
     return rm_and(R(passes)(&edges, p, d), r_lt(r_set(0), *t));
 }
 
-/// The corners from a place.
-static inline void R(corners_from)(const vr from[3], const glint_prim *prim, double scale, vr p[3][3])
+/// A triangle's corners, in every lane.
+static inline void R(corners_of)(const glint_prim *prim, vr corner[3][3])
 {
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
-            p[j][k] = (r_set(prim->corner[j][k]) - from[k]) * r_set(scale);
+            corner[j][k] = r_set(prim->corner[j][k]);
+}
+
+/// Corners from a place.
+static inline void R(corners_seen)(vr corner[3][3], const vr from[3], double scale, vr p[3][3])
+{
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            p[j][k] = (corner[j][k] - from[k]) * r_set(scale);
+}
+
+/// A triangle's corners from a place.
+static inline void R(corners_from)(const vr from[3], const glint_prim *prim, double scale, vr p[3][3])
+{
+    vr corner[3][3];
+    R(corners_of)(prim, corner);
+    R(corners_seen)(corner, from, scale, p);
 }
 
 // ---- Surface ----
@@ -190,16 +206,16 @@ typedef struct R(triangle_plane) {
 } R(triangle_plane);
 
 /// light: position, or direction towards it.
-static inline R(triangle_plane) R(plane_of)(const glint_prim *prim, double scale, const vr light[3], bool directional)
+static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const vr light[3], bool directional)
 {
     R(triangle_plane) plane;
     vr f[3], g[3], q[3];
     for (int k = 0; k < 3; k++) {
-        f[k] = (r_set(prim->corner[1][k]) - r_set(prim->corner[0][k])) * r_set(scale);
-        g[k] = (r_set(prim->corner[2][k]) - r_set(prim->corner[0][k])) * r_set(scale);
+        f[k] = (corner[1][k] - corner[0][k]) * r_set(scale);
+        g[k] = (corner[2][k] - corner[0][k]) * r_set(scale);
         q[k] = light[k];
         if (!directional)
-            q[k] = q[k] - r_set(prim->corner[0][k]);
+            q[k] = q[k] - corner[0][k];
     }
     for (int k = 0; k < 3; k++) {
         const int x = (k + 1) % 3, y = (k + 2) % 3;
@@ -230,14 +246,14 @@ static inline rm R(parts_from_light)(vr p[3][3], const R(seen_edges) * edges, co
 }
 
 /// Segments from points of another surface.
-static inline rm R(triangle_blocks)(const glint_prim *prim, double scale, const vr point[3], const vr d[3], vr slack,
+static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr point[3], const vr d[3], vr slack,
                                     const R(triangle_plane) * plane, const vr ray[3])
 {
     const vr zero = r_set(0);
     vr p[3][3], q[3];
-    R(corners_from)(point, prim, scale, p);
+    R(corners_seen)(corner, point, scale, p);
     for (int k = 0; k < 3; k++)
-        q[k] = point[k] - r_set(prim->corner[0][k]);
+        q[k] = point[k] - corner[0][k];
     const vr h = DOT(plane->m, q);
     const vr spread = (R(abs)(plane->m[0]) + R(abs)(plane->m[1])) + R(abs)(plane->m[2]);
     const vr rounding = (plane->size[0] * R(abs)(q[0]) + plane->size[1] * R(abs)(q[1])) + plane->size[2] * R(abs)(q[2]);
