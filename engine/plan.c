@@ -89,6 +89,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
     plan->runs[GLINT_STAGE_INDIRECT] = plan->indirect.samples > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
+    plan->dims = plan->tints && plan->absorbs;
     plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
     plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
     plan->runs[GLINT_STAGE_CUE] = plan->cue.on || plan->veil.on;

@@ -136,10 +136,11 @@ struct glint_plan {
     size_t glow_edge_count;
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
-    bool mirrors, transmits; ///< some material
+    bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits
     glint_plan_indirect indirect;
     glint_media eye_media; ///< what the eye of a perspective camera is inside of
     bool tints; ///< some light casts shadows, and something transmits
+    bool dims; ///< and something absorbs what goes through it
     double brightest; ///< bound of what any ray can bring; may be infinite
 
     bool runs[GLINT_STAGE_COUNT];

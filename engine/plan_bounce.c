@@ -136,6 +136,7 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
         bounce_material_init(m, &((const glint_material *)list->items[i])->desc);
         plan->mirrors = plan->mirrors || m->mirrors;
         plan->transmits = plan->transmits || m->transmits;
+        plan->absorbs = plan->absorbs || (m->transmits && brightest_of(m->absorption) > 0);
         if (m->mirrors && m->transmits)
             splitting = fmax(splitting, gain(m));
     }

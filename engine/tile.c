@@ -332,7 +332,7 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w
 /// What a light gives through transparent objects.
 static void find_tint(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index, uint32_t slot)
 {
-    if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, slot))
+    if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, frame->plan, slot))
         return;
     need_points(tile, frame, w);
     glint_tile_tint(tile, frame, index, slot);
@@ -394,6 +394,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);
         }
+        if (lit && frame->plan->dims) // which points are inside what absorbs
+            need_points(tile, frame, &w);
         glint_tile_shade(tile, frame, from, count);
         for (uint32_t i = 0; i < count && frame->plan->tints; i++)
             find_tint(tile, frame, &w, from + i, i);

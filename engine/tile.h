@@ -100,6 +100,7 @@ typedef struct glint_tile {
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
+    const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
     struct glint_cue *cue; ///< of tile_cue.c; NULL until a frame fades
     struct glint_beside *beside; ///< likewise, of tile_scan.c
@@ -204,10 +205,14 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
 /// tile_tint.c: light through transparent objects.
 struct glint_tint *glint_tint_create(void);
 void glint_tint_destroy(struct glint_tint *tint);
-/// Whether the light in `slot` is kept from any point.
-bool glint_tile_is_shadowed(const glint_tile *tile, uint32_t slot);
-/// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely. The
-/// points are found.
+/// Finds the points whose light goes through what absorbs from its first step on. The points are found.
+void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
+/// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
+/// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
+bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot);
+/// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely, or not
+/// whole. The points are found.
 void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
 
 /// The camera, where the rays are not in arrays.

@@ -11,6 +11,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
     tile->tint = to->tint;
+    tile->rays = batch->ray;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
     tile->glow = to->glow;
@@ -160,7 +161,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
             i += shine(tile, frame, from, i, count);
         glint_tile_shade(tile, frame, from, count);
         for (uint32_t i = 0; i < count && plan->tints; i++)
-            if (plan->lights[from + i].shadows && glint_tile_is_shadowed(tile, i))
+            if (plan->lights[from + i].shadows && glint_tile_is_shadowed(tile, plan, i))
                 glint_tile_tint(tile, frame, from + i, i);
         from += count;
     } while (from < lights);

@@ -334,10 +334,16 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 {
     const glint_plan *plan = frame->plan;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
+    if (plan->dims && count > 0)
+        glint_tile_find_dim(tile, frame);
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
+        const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        for (uint32_t g = 0; g < tile->group_count && plan->dims && light->shadows; g++)
+            whole[i][g] = open[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
         lights[i] = (glint_shade_light) { .joined = light->joined && i > 0,
-                                          .lit = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit,
+                                          .lit = plan->dims && light->shadows ? whole[i] : open,
                                           .cosine = tile->at.light[i].cosine,
                                           .attenuation = light->cap          ? tile->at.light[i].visible
                                                          : light->attenuated ? tile->at.light[i].attenuation

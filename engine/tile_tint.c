@@ -1,11 +1,12 @@
 /// Light through transparent objects. Points that a light does not reach freely are asked again: a ray towards the light
-/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent on this way.
+/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent on this way. What
+/// absorbs takes its part of the whole way: where the light stands in it, or the point, or both.
 ///
 /// What parts a point from a light for good is decided by `occlude` alone: where the ray meets nothing that transmits, the
 /// point stays dark.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile.h"
+#include "engine/batch.h"
 
 #include <stdlib.h>
 
@@ -25,6 +26,7 @@ struct glint_tint {
     uint16_t active[GLINT_TILE_GROUPS]; ///< rays on their way
     uint16_t inward[GLINT_TILE_GROUPS];
     uint16_t arrived[GLINT_TILE_GROUPS]; ///< through something
+    uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
     double color[3][GLINT_TILE_SAMPLES];
     glint_media media[GLINT_TILE_SAMPLES];
     bool crossed[GLINT_TILE_SAMPLES];
@@ -34,11 +36,43 @@ struct glint_tint *glint_tint_create(void) { return glint_alloc(1, sizeof(struct
 
 void glint_tint_destroy(struct glint_tint *tint) { free(tint); }
 
-bool glint_tile_is_shadowed(const glint_tile *tile, uint32_t slot)
+/// What is around a sample's point, on the side of the viewer, to which the light comes as well.
+static glint_media media_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        if (tile->at.light[slot].lit[g] & ~tile->at.light[slot].open[g])
+    glint_media media = tile->rays ? tile->rays[i].media : plan->eye_media;
+    const uint32_t material = tile->material[i];
+    if (plan->bouncing[material].transmits && glint_has_lane(tile->back, i) && !glint_media_has(&media, material))
+        glint_media_enter(&media, material);
+    return media;
+}
+
+static bool absorbs(const glint_plan *plan, const glint_media *media)
+{
+    const uint32_t medium = glint_media_top(media);
+    const double *a = medium == GLINT_NO_MEDIUM ? NULL : plan->bouncing[medium].absorption;
+    return a && (a[0] > 0 || a[1] > 0 || a[2] > 0);
+}
+
+void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        tile->tint->dim[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const glint_media media = media_at(tile, frame->plan, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            tile->tint->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
+        }
+    }
+}
+
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return tile->tint->dim[g]; }
+
+bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? tile->tint->dim[g] : 0u);
+        if (tile->at.light[slot].lit[g] & ~whole)
             return true;
+    }
     return false;
 }
 
@@ -75,14 +109,47 @@ static void begin(struct glint_tint *tint, const glint_tile *tile, const glint_t
                 tint->color[c][i] = 1;
                 tint->attenuation[c][i] = 0;
             }
-            tint->media[i].count = 0;
             tint->crossed[i] = false;
         }
         for (unsigned left = tint->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            tint->media[i] = media_at(tile, frame->plan, i);
             aim(tint, tile, frame, light, tile->point, i, tile->at.prim[i], tile->back[g] & left & -left);
         }
     }
+}
+
+/// What a medium leaves of channel c on a way.
+static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
+{
+    const double a = medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c];
+    return a > 0 ? glint_exp(-a * way) : 1;
+}
+
+/// The rest of the way to the light, on which there is nothing more; directional light has none that ends.
+static void arrive(struct glint_tint *tint, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i)
+{
+    const uint32_t medium = glint_media_top(&tint->media[i]);
+    double d[3];
+    for (int c = 0; c < 3; c++)
+        d[c] = glint_real_at(tint->direction[c], frame->plan->desc.precision, i);
+    const double way = light->directional ? HUGE_VAL : sqrt(vec_dot(d, d));
+    for (int c = 0; c < 3; c++)
+        tint->color[c][i] *= left_of(frame->plan, medium, c, way);
+    tint->arrived[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+}
+
+/// Points that the light reaches freely, inside what absorbs.
+static void dim(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame,
+                const glint_plan_light *light, uint32_t slot)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.light[slot].open[g] & tint->dim[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            tint->media[i] = media_at(tile, frame->plan, i);
+            aim(tint, tile, frame, light, tile->point, i, tile->at.prim[i], false);
+            arrive(tint, frame, light, i);
+        }
 }
 
 static void cast(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame)
@@ -127,10 +194,7 @@ static bool cross(struct glint_tint *tint, const glint_plan *plan, uint32_t i, d
     const uint32_t medium = glint_media_before(&tint->media[i], material, back);
     bool any = false;
     for (int c = 0; c < 3; c++) {
-        double left = plan->bouncing[material].transmission[c];
-        if (medium != GLINT_NO_MEDIUM && plan->bouncing[medium].absorption[c] > 0)
-            left *= glint_exp(-plan->bouncing[medium].absorption[c] * length);
-        tint->color[c][i] *= left;
+        tint->color[c][i] *= plan->bouncing[material].transmission[c] * left_of(plan, medium, c, length);
         any = any || tint->color[c][i] > 0;
     }
     glint_media_cross(&tint->media[i], material, back);
@@ -160,7 +224,8 @@ static bool step(struct glint_tint *tint, glint_tile *tile, const glint_tile_fra
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             tile->counts.shadow++;
             if (!(tint->hits[g] & bit) || (!light->directional && !(glint_real_at(tint->t, precision, i) < 1))) {
-                tint->arrived[g] |= (uint16_t)(tint->crossed[i] ? bit : 0);
+                if (tint->crossed[i])
+                    arrive(tint, frame, light, i);
             } else if (frame->plan->bouncing[tint->material[i]].transmits &&
                        cross(tint, frame->plan, i, length_of(tint, precision, i))) {
                 aim(tint, tile, frame, light, (const double(*)[GLINT_TILE_SAMPLES])tint->point, i, tint->prim[i],
@@ -211,12 +276,16 @@ void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
     for (int k = 0; k < CROSSINGS_MAX && step(tint, tile, frame, light); k++)
         if (glint_tile_cancelled(frame))
             return;
+    if (frame->plan->dims)
+        dim(tint, tile, frame, light, slot);
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         any |= tint->arrived[g];
         for (unsigned left = tint->arrived[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double a = light->attenuated ? tile->at.light[slot].attenuation[i] : 1;
+            const double a = light->cap          ? tile->at.light[slot].visible[i]
+                             : light->attenuated ? tile->at.light[slot].attenuation[i]
+                                                 : 1;
             for (int c = 0; c < 3; c++)
                 tint->attenuation[c][i] = (float)fmin(a * tint->color[c][i], GLINT_ATTENUATION_MAX);
         }

@@ -218,6 +218,46 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
   end
 end
 
+-- The light's way, too: a light in the same glass as the point it lights, in another one than it, or the point alone. By Beer's
+-- law exp(-absorption x way inside); the eye's own way inside is taken off beforehand.
+do
+  local a = { 0.5, 0, 2 }
+  local function dense(share) return material { transmission = share or 1, ior = 1, absorption = a } end
+  local function lit(name, way, share, eye, direction, objects, more)
+    local fields = more or { max_depth = 0 }
+    local got = { select(2, look(eye, direction, objects, fields)):pixel(0, 0) }
+    for c = 1, 3 do near(got[c], share * math.exp(-a[c] * way), 2 * ROUNDING, name .. (" %d"):format(c)) end
+  end
+  local white = material { diffuse = 1 }
+  local lamp = function(at, more)
+    local fields = { position = at }
+    for key, value in pairs(more or {}) do fields[key] = value end
+    return glint.point_light(fields)
+  end
+  -- the eye is 1 above the floor
+  local box = function(low, high, share) return glint.box { min = { -9, low, -9 }, max = { 9, high, 9 }, material = dense(share) } end
+  local down, eye = { 0, -1, 0 }, { 0, 1, 0 }
+  lit("a light in the eye's glass", 1 + 2.5, 1, eye, down, { floor(white), ball(5, dense()), lamp { 0, 2.5, 0 } })
+  lit("and in float", 1 + 2.5, 1, eye, down, { floor(white), ball(5, dense()), lamp { 0, 2.5, 0 } }, { max_depth = 0, precision = "float" })
+  lit("across, with fall-off", 1 + 5, 0.8 / 26, eye, down,
+    { floor(white), ball(9, dense()), lamp({ 3, 4, 0 }, { attenuation = { 1, 0, 1 } }) })
+  lit("many samples of a small light", 1 + 2.5, 1, eye, down,
+    { floor(white), ball(5, dense()), glint.sphere_light { position = { 0, 2.5, 0 }, radius = 1e-9, samples = 4 } })
+  lit("the glass itself, from inside", 1 + 3, 0.5, { 0, 2, 0 }, down, -- its lower side, at 1
+    { glint.box { min = { -9, 1, -9 }, max = { 9, 9, 9 }, material = material { transmission = 1, ior = 1, absorption = a, diffuse = 0.5 } },
+      lamp { 0, 4, 0 } })
+  lit("another ball in the way, clear", 1 + 3 - 1, 0.25, eye, down,
+    { floor(white), ball(9, dense()), ball(0.5, glass(1, { transmission = 0.5 }), { 0, 2, 0 }), lamp { 0, 3, 0 } })
+  lit("the light alone in the glass", 1.5, 0.5, eye, down, { floor(white), box(2, 5, 0.5), lamp { 0, 3.5, 0 } })
+  lit("the point alone in the glass", 1 + 2, 0.5, eye, down, { floor(white), box(-1, 2, 0.5), lamp { 0, 4, 0 } })
+  lit("the sun, through the glass around", 1 + 2, 0.5, eye, down,
+    { floor(white), box(-1, 2, 0.5), glint.directional_light { direction = { 0, -1, 0 } } })
+  lit("a light without shadows", 1, 1, eye, down, { floor(white), ball(5, dense()), lamp({ 0, 2.5, 0 }, { shadows = false }) })
+  lit("seen from outside", 2 + 1.5, 0.5, { 0, 4, 0 }, down, { floor(white), box(-1, 2, 0.5), lamp { 0, 1.5, 0 } }, { max_depth = 3 })
+  lit("in a mirror", 1 + 2 + 0.75, 1, eye, { 0, 1, 0 },
+    { ball(9, dense()), floor(material { mirror = 1 }, 2, -1), floor(white), lamp { 0, 0.75, 0 } }, { max_depth = 2 })
+end
+
 local function pool(absorption, more)
   local scene = glint.scene {
     camera = glint.camera { eye = { 0, 0.3, 2 }, at = { 0, 0, 0 }, fov = 70 }, ambient = 0.3, background = { 0.2, 0.4, 0.6 },
@@ -225,14 +265,14 @@ local function pool(absorption, more)
     ball(3, glass(1.2, { fresnel = true, absorption = absorption, ambient = 0.1 })),
     ball(0.6, glint.material { diffuse = { 0.8, 0.5, 0.3 }, specular = 0.4 }),
     ball(0.4, material { mirror = 0.7, ambient = 0.05 }, { 0.9, 0.2, 0.3 }),
-    glint.sphere_light { position = { -0.8, 1, 0 }, radius = 0.2, samples = 2, visible = true, intensity = 0.5 },
+    glint.sphere_light { position = { -0.8, 1, 0 }, radius = 0.2, samples = 2, visible = true, intensity = 0.5, shadows = false },
   }
   for name, value in pairs(more or {}) do scene[name] = value end
   return scene
 end
 local A = { 0.2, 0.05, 0.7 }
 
-do -- the eye's own way alone: what mirrors and glass bring is absorbed further on, too
+do -- the eye's own way alone: what mirrors and glass bring is absorbed further on, too; a light without shadows is not
   local fields = { width = 40, height = 30, output = "none", passes = "depth,beauty," .. table.concat(TERMS, ",") }
   local clear, dense = pool(0):render(fields), pool(A):render(fields)
   local worst, sums = 0, 0
