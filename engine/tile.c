@@ -72,6 +72,7 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
     tile->at.light[slot].open = own->open;
     tile->at.light[slot].visible = own->visible;
     tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
+    tile->at.light[slot].summed = false;
     if (*light_known ||
         (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
         tile->at.light[slot].cosine = kept->cosine + first;
@@ -307,7 +308,9 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     } else {
         if (shining || occluding)
             need_points(tile, frame, w);
-        if (shining)
+        if (shining == count && glint_tile_sum_light(tile, frame, first, slot, count))
+            occluding = 0;
+        else if (shining)
             glint_tile_shine(tile, frame, first, shine, shining);
     }
     if (occluding)

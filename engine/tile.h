@@ -64,6 +64,8 @@ typedef struct glint_tile_sample {
         uint16_t *lit, *open;
         float *visible; ///< of lights with caps
         float brightest; ///< the largest log2_specular of the sample, or of all
+        bool summed; ///< of samples of an area light: their sum alone is there, in place of the first's cosine and
+            ///< log2_specular, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
 } glint_tile_sample;
@@ -141,6 +143,15 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                       uint32_t count);
 void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                         uint32_t count);
+/// The arguments of these two.
+glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                       const uint32_t *slot, uint32_t count);
+glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                           const uint32_t *slot, uint32_t count);
+/// tile_soft.c: both in one, and books them, for the samples of a light in slots `slot` and on, where their sum is all that
+/// anybody reads. Returns whether it is, and marks the slots. The points are found.
+bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
+                          uint32_t count);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.

@@ -27,6 +27,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
         tile->at.light[i].lit = own->lit;
         tile->at.light[i].open = own->open;
         tile->at.light[i].visible = own->visible;
+        tile->at.light[i].summed = false;
     }
     if (frame->plan->facets)
         glint_tile_lend_facets(tile, to);
@@ -126,6 +127,8 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         slots[count] = slot + count;
         count++;
     } while (slot + count < end && lights[slot + count].joined);
+    if (glint_tile_sum_light(tile, frame, first, slot, count))
+        return count;
     glint_tile_shine(tile, frame, first, slots, count);
     if (frame->plan->runs[GLINT_STAGE_FACET])
         glint_tile_facet(tile, frame, first, slots, count);

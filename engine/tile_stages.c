@@ -196,8 +196,8 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-static glint_light_args light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
-                                   const uint32_t *slot, uint32_t count)
+glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                       const uint32_t *slot, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
@@ -234,7 +234,7 @@ static glint_light_args light_args(glint_tile *tile, const glint_tile_frame *fra
 void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
                       uint32_t count)
 {
-    const glint_light_args args = light_args(tile, frame, first, slot, count);
+    const glint_light_args args = glint_tile_light_args(tile, frame, first, slot, count);
     frame->stages->geometry[frame->plan->desc.precision].light(&args);
     glint_tile_count_light(tile, frame, count);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
@@ -245,7 +245,7 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
 {
     const uint32_t slot = 0;
     const glint_surface_args surface = surface_args(tile, frame);
-    const glint_light_args args = light_args(tile, frame, light, &slot, 1);
+    const glint_light_args args = glint_tile_light_args(tile, frame, light, &slot, 1);
     frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
     take_box(tile, frame, surface.box);
     glint_tile_count_light(tile, frame, 1);
@@ -288,8 +288,8 @@ static void occlude_middle(const glint_tile_frame *frame, const glint_occlude_ar
             samples->open[s][g] = samples->lit[s][g] & open[g];
 }
 
-void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
-                        uint32_t count)
+glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                           const uint32_t *slot, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot[0]];
@@ -315,6 +315,15 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         args.point[c] = tile->point[c];
         args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->direction[c];
     }
+    return args;
+}
+
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
+    glint_occlude_args args = glint_tile_occlude_args(tile, frame, first, slot, count);
     if (light->cap) {
         args.lamp[0] = light->cap;
         args.visible = tile->at.light[slot[0]].visible;
@@ -330,29 +339,42 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
     tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
 }
 
+/// The light in slot i as shade sees it; `lit`: the lanes that it reaches.
+static glint_shade_light shade_light(const glint_tile *tile, const glint_plan_light *light, uint32_t i,
+                                     const uint16_t *lit)
+{
+    glint_shade_light out = { .joined = light->joined && i > 0,
+                              .lit = lit,
+                              .cosine = tile->at.light[i].cosine,
+                              .attenuation = light->cap          ? tile->at.light[i].visible
+                                             : light->attenuated ? tile->at.light[i].attenuation
+                                                                 : NULL,
+                              .log2_specular = tile->at.light[i].log2_specular,
+                              .sine2 = tile->at.light[i].sine2,
+                              .schlick = tile->at.light[i].schlick,
+                              .summed = tile->at.light[i].summed,
+                              .highlight = tile->at.light[i].log2_specular };
+    vec_copy(out.diffuse, light->diffuse);
+    vec_copy(out.specular, light->specular);
+    return out;
+}
+
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
+    uint32_t light_count = 0;
     if (plan->dims && count > 0)
         glint_tile_find_dim(tile, frame);
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &plan->lights[from + i];
         const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        if (tile->at.light[i].summed && light->joined && i > 0)
+            continue; // it is in the sum
         for (uint32_t g = 0; g < tile->group_count && plan->dims && light->shadows; g++)
             whole[i][g] = open[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
-        lights[i] = (glint_shade_light) { .joined = light->joined && i > 0,
-                                          .lit = plan->dims && light->shadows ? whole[i] : open,
-                                          .cosine = tile->at.light[i].cosine,
-                                          .attenuation = light->cap          ? tile->at.light[i].visible
-                                                         : light->attenuated ? tile->at.light[i].attenuation
-                                                                             : NULL,
-                                          .log2_specular = tile->at.light[i].log2_specular,
-                                          .sine2 = tile->at.light[i].sine2,
-                                          .schlick = tile->at.light[i].schlick };
-        vec_copy(lights[i].diffuse, light->diffuse);
-        vec_copy(lights[i].specular, light->specular);
+        lights[light_count++] = shade_light(tile, light, i, plan->dims && light->shadows ? whole[i] : open);
     }
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
@@ -364,7 +386,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .highlights = plan->highlights,
                               .first = from == 0,
                               .lights = lights,
-                              .light_count = count };
+                              .light_count = light_count };
     uint16_t unlit[GLINT_TILE_GROUPS];
     if (plan->runs[GLINT_STAGE_GLOW] && args.first)
         args.active = glint_tile_unlit_lanes(tile, unlit);

@@ -1,4 +1,4 @@
-/// occlude on every instruction set against the scalar reference, which asks every primitive about every point: neither
+/// occlude and soft_light on every instruction set against the scalar reference, which asks every primitive about every point: neither
 /// the index nor the list of a tile nor a filter loses a shadow or makes one.
 #include "tests/stage_scene.h"
 
@@ -219,6 +219,138 @@ static void count_lanes(const shadow_case *c)
     }
 }
 
+// ---- soft_light --------------------------------------------------------------------------------------------------
+
+static uint64_t summed, highlights; ///< lanes that were reached; of them, those with a highlight
+
+static void count_sums(const glint_light_args *light)
+{
+    const uint16_t *reached = array_elements(wanted_array("reached"));
+    const float *specular = light->highlights ? array_elements(wanted_array("specular")) : NULL;
+    for (uint32_t i = 0; i < light->group_count * GLINT_GROUP; i++) {
+        summed += lane_of(reached, i);
+        highlights += specular && lane_of(reached, i) && specular[i] > 0;
+    }
+}
+
+/// Normals and rays of all kinds; more often than not, ones that show what the light does.
+static void look_at_points(const shadow_case *c, glint_light_args *light, bool odd)
+{
+    const uint32_t n = light->group_count * GLINT_GROUP;
+    uint32_t *material = input(KIND_U32, n);
+    light->material = material;
+    input3(light->normal, real_kind(c->precision), n);
+    input3(light->direction, real_kind(c->precision), n);
+    const uint32_t one = below(6);
+    for (uint32_t i = 0; i < n; i++) {
+        double normal[3], direction[3], way[3];
+        for (int k = 0; k < 3; k++)
+            way[k] = c->args.position[k] - get(light->point[k], c->precision, i);
+        const double length = length3(way);
+        random_unit(normal);
+        random_unit(direction);
+        for (int k = 0; k < 3; k++) {
+            if (length > 0 && i % 3)
+                normal[k] = 0.3 * normal[k] + way[k] / length;
+            if (length > 0 && i % 5)
+                direction[k] = 0.4 * direction[k] - way[k] / length;
+            normal[k] = maybe_odd(odd, normal[k]);
+            direction[k] = maybe_odd(odd, direction[k] * 3);
+        }
+        put3(light->normal, c->precision, i, normal);
+        put3(light->direction, c->precision, i, direction);
+        material[i] = one_in(4) ? below(6) : one;
+    }
+}
+
+static void make_gloss(glint_shade_material materials[6])
+{
+    for (int m = 0; m < 6; m++)
+        materials[m] = (glint_shade_material) { .highlight = below(GLINT_HIGHLIGHT_FACETS),
+                                                .lobe = below(GLINT_LOBE_POWER_COSINE + 1),
+                                                .shininess = one_in(6) ? 0 : (float)power_of_ten(-1, 5) };
+}
+
+static const glint_point_box *hit_box(const shadow_case *c, const uint16_t *hits, glint_point_box *box)
+{
+    shadow_case hit = *c;
+    hit.args.lit[0] = hits;
+    hit.args.sample_count = 1;
+    make_box(&hit, box);
+    return box;
+}
+
+static void soft_light_all(const shadow_case *c, bool odd)
+{
+    static const uint32_t emissions[] = { GLINT_EMIT_ALL,         GLINT_EMIT_ALL,           GLINT_EMIT_ALL,
+                                          GLINT_EMIT_FRONT,       GLINT_EMIT_RADIANT_FRONT, GLINT_EMIT_RADIANT_BOTH,
+                                          GLINT_EMIT_RADIANT_BALL };
+    const uint32_t groups = c->args.group_count, emission = emissions[below(COUNT_OF(emissions))];
+    glint_shade_material materials[6];
+    glint_light_args light = { .group_count = groups,
+                               .hits = masks(groups),
+                               .dark = masks(groups),
+                               .materials = materials,
+                               .scale = c->args.scale,
+                               .sample_count = c->args.sample_count,
+                               .attenuated = one_in(2) || emission >= GLINT_EMIT_RADIANT_FRONT,
+                               .coefficients = { 1, 0.1, 0.01 },
+                               .highlights = !one_in(4) };
+    glint_occlude_args occlude = c->args;
+    glint_point_box box;
+    make_gloss(materials);
+    for (uint32_t s = 0; s < light.sample_count; s++) {
+        lamps[s].emission = emission;
+        light.lamp[s] = &lamps[s];
+        for (int lane = 0; lane < GLINT_GROUP; lane++) {
+            double out[3];
+            random_unit(out);
+            for (int k = 0; k < 3; k++)
+                lamps[s].normal[k][lane] = out[k];
+        }
+        occlude.lit[s] = light.hits;
+    }
+    for (uint32_t g = 0; g < groups; g++)
+        ((uint16_t *)light.dark)[g] &= (uint16_t)(random_bits() & light.hits[g]);
+    memcpy(light.point, c->args.point, sizeof light.point);
+    look_at_points(c, &light, odd);
+    occlude.box = one_in(2) ? hit_box(c, light.hits, &box) : NULL;
+    const bool shadows = !one_in(9);
+    FOR_EACH_TESTED
+    {
+        uint64_t rays = 0;
+        occlude.rays = &rays;
+        const glint_soft_args args = { .light = &light,
+                                       .occlude = shadows ? &occlude : NULL,
+                                       .reached = output("reached", KIND_U16, groups),
+                                       .diffuse = output("diffuse", KIND_FLOAT, groups * GLINT_GROUP),
+                                       .specular = output("specular", KIND_FLOAT, groups * GLINT_GROUP) };
+        if (geometry(c->precision)->soft_light(&args))
+            compare_outputs("soft_light");
+        else
+            free_arrays(gotten, &gotten_count); // too much lies between
+        assert_true(rays <= (uint64_t)groups * GLINT_GROUP * light.sample_count);
+    }
+    count_sums(&light);
+}
+
+static void soft_light_case(int precision, bool odd)
+{
+    shadow_case c;
+    start_shadows(&c, precision);
+    if (c.soft)
+        soft_light_all(&c, odd);
+    free_scene(c.scene);
+}
+
+static void test_soft_light(void **state)
+{
+    (void)state;
+    summed = highlights = 0;
+    run_cases(CASES, 900000, soft_light_case);
+    assert_true(summed > 10000 && highlights > 1000);
+}
+
 static void occlude_case(int precision, bool odd)
 {
     shadow_case c;
@@ -244,7 +376,7 @@ static void test_occlude(void **state)
 int main(void)
 {
     find_tested();
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_soft_light) };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();
     return failed;

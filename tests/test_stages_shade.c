@@ -40,6 +40,8 @@ static void make_shade_light(glint_shade_light *light, const uint16_t *hits, uin
     light->log2_specular = log2_specular;
     light->sine2 = sine2;
     light->schlick = schlick;
+    light->summed = false;
+    light->highlight = attenuation; // as good as any
 }
 
 static void make_materials(glint_shade_material *material, uint32_t count)
@@ -94,6 +96,9 @@ static void shade_case(int precision, bool odd)
             before[i] = one_in(3) ? 0 : power_of_ten(-5, 3);
     }
     make_materials(material_table, COUNT_OF(material_table));
+    const bool sums = one_in(3);
+    for (size_t i = 0; sums && i < COUNT_OF(material_table); i++)
+        material_table[i].highlight %= GLINT_HIGHLIGHT_FACETS;
     glint_shade_args args = { .group_count = groups,
                               .active = active,
                               .hits = hits,
@@ -105,10 +110,12 @@ static void shade_case(int precision, bool odd)
                               .lights = lights,
                               .light_count = below(GLINT_LIGHT_CHUNK + 1) };
     random_color(args.background);
-    for (uint32_t k = 0; k < args.light_count; k++)
+    for (uint32_t k = 0; k < args.light_count; k++) {
         make_shade_light(&lights[k], hits, groups);
+        lights[k].summed = sums && one_in(2);
+    }
     for (uint32_t k = 1; k < args.light_count; k++) { // samples of one light have its colours
-        lights[k].joined = one_in(2);
+        lights[k].joined = !lights[k - 1].summed && !lights[k].summed && one_in(2);
         if (!lights[k].joined)
             continue;
         memcpy(lights[k].diffuse, lights[k - 1].diffuse, sizeof lights[k].diffuse);

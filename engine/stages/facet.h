@@ -77,15 +77,15 @@ static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, cons
 
 static void R(facet)(const glint_facet_args *args)
 {
-    R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK];
+    R(lamp_set) lamps;
     const bool area = args->lamp[0] != NULL;
     if (area)
-        R(load_lamps)(args->lamp, args->sample_count, lanes);
+        R(load_lamps)(args->lamp, args->sample_count, &lamps);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         const size_t at = (size_t)place.g * GLINT_GROUP;
         const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
         for (uint32_t s = 0; s < args->sample_count; s++)
             if (R(has_facets)(args, at, args->lit[s][place.g]))
-                R(facet_group)(args, s, area ? &lanes[s] : NULL, at, directions);
+                R(facet_group)(args, s, area ? &lamps.lamp[s] : NULL, at, directions);
     }
 }

@@ -6,18 +6,33 @@
 
 /// A lamp's lanes as the stage computes with them.
 typedef struct R(lamp_lanes) {
-    _Alignas(64) real position[3][GLINT_GROUP];
-    _Alignas(64) real normal[3][GLINT_GROUP];
+    const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
 } R(lamp_lanes);
 
-static inline void R(load_lamps)(const glint_lamp *const lamp[], uint32_t count, R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK])
+/// The samples of one call.
+typedef struct R(lamp_set) {
+    R(lamp_lanes) lamp[GLINT_LIGHT_CHUNK];
+#if GLINT_REAL == 32
+    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< what these point to
+#endif
+} R(lamp_set);
+
+static inline void R(load_lamps)(const glint_lamp *const lamp[], uint32_t count, R(lamp_set) * out)
 {
-    for (uint32_t s = 0; s < count; s++)
+    for (uint32_t s = 0; s < count; s++) {
+#if GLINT_REAL == 32
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i++) {
-                lanes[s].position[k][i] = (real)lamp[s]->position[k][i];
-                lanes[s].normal[k][i] = (real)lamp[s]->normal[k][i];
+                out->rounded[s][0][k][i] = (float)lamp[s]->position[k][i];
+                out->rounded[s][1][k][i] = (float)lamp[s]->normal[k][i];
             }
+        out->lamp[s].position = (const float(*)[GLINT_GROUP])out->rounded[s][0];
+        out->lamp[s].normal = (const float(*)[GLINT_GROUP])out->rounded[s][1];
+#else
+        out->lamp[s].position = lamp[s]->position;
+        out->lamp[s].normal = lamp[s]->normal;
+#endif
+    }
 }
 
 /// The lanes within the cone; their cosine, less 1 too, and the smooth step there.

@@ -11,20 +11,22 @@ typedef struct R(lit_group) {
     vf brightest; ///< of the groups so far, a lane
 } R(lit_group);
 
-INNER rm R(phong)(vr nl, vr nv, vr lv, vr l2a, vr *x)
+/// (r.v)^2 is num / den; where there is one.
+INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
 {
     vr rv = (r_set(2) * nl) * nv - lv;
-    *x = r_min((rv * rv) / l2a, r_set(1));
+    *num = rv * rv;
+    *den = l2a;
     return r_lt(r_set(0), rv);
 }
 
-INNER rm R(blinn)(vr nl, vr nv, vr lv, vr l2, vr a, vr *x)
+/// (n.h)^2 likewise.
+INNER rm R(blinn_parts)(vr nl, vr nv, vr lv, vr l2, vr a, vr *num, vr *den)
 {
     vr w = r_sqrt(l2 * a);
-    vr num = ((nl * nl) * a + (nv * nv) * l2) + ((r_set(2) * nl) * nv) * w;
-    vr den = (r_set(2) * w) * (w + lv);
-    *x = r_min(num / den, r_set(1));
-    return rm_and(r_lt(r_set(0), num), r_lt(r_set(0), den));
+    *num = ((nl * nl) * a + (nv * nv) * l2) + ((r_set(2) * nl) * nv) * w;
+    *den = (r_set(2) * w) * (w + lv);
+    return rm_and(r_lt(r_set(0), *num), r_lt(r_set(0), *den));
 }
 
 /// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
@@ -92,14 +94,15 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     if (!(phong | blinn))
         return;
     R(view_lanes)(args, at, i, surface);
-    vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction), x = r_set(1);
+    vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction), x = r_set(1), num, den;
     rm some = rm_from_bits(0);
-    if (phong)
-        some = rm_and(rm_from_bits(phong), R(phong)(nl, nv, lv, l2 * a, &x));
+    if (phong) {
+        some = rm_and(rm_from_bits(phong), R(phong_parts)(nl, nv, lv, l2 * a, &num, &den));
+        x = r_min(num / den, r_set(1));
+    }
     if (blinn) {
-        vr xb;
-        some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn)(nl, nv, lv, l2, a, &xb)));
-        x = r_select(rm_from_bits(blinn), xb, x);
+        some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn_parts)(nl, nv, lv, l2, a, &num, &den)));
+        x = r_select(rm_from_bits(blinn), r_min(num / den, r_set(1)), x);
     }
     r_store(group->x + i, x);
     r_store(group->x_less_1 + i, x - r_set(1));
@@ -201,10 +204,10 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
 
 static void R(light_lamp)(const glint_light_args *args)
 {
-    R(lamp_lanes) lanes[GLINT_LIGHT_CHUNK];
+    R(lamp_set) lamps;
     R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
-    R(load_lamps)(args->lamp, args->sample_count, lanes);
-    R(light_groups)(args, LIGHT_LAMP, args->sample_count, lanes, groups);
+    R(load_lamps)(args->lamp, args->sample_count, &lamps);
+    R(light_groups)(args, LIGHT_LAMP, args->sample_count, lamps.lamp, groups);
 }
 
 static void R(light_spot)(const glint_light_args *args)

@@ -175,6 +175,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #include "engine/stages/ref_real.h"
 #include "engine/stages/ref_facet.h"
 #include "engine/stages/ref_scatter.h"
+#include "engine/stages/ref_soft.h"
 #undef REAL
 #undef ROUNDER
 #undef NAME
@@ -185,6 +186,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #include "engine/stages/ref_real.h"
 #include "engine/stages/ref_facet.h"
 #include "engine/stages/ref_scatter.h"
+#include "engine/stages/ref_soft.h"
 #undef REAL
 #undef ROUNDER
 #undef NAME
@@ -244,6 +246,12 @@ static bool add_facets(const glint_shade_args *args, const glint_shade_light *li
 static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
 {
     const glint_shade_material *material = &args->materials[args->material[i]];
+    if (light->summed) {
+        bool shiny = args->highlights && material->highlight != GLINT_HIGHLIGHT_NONE;
+        sum->diffuse = light->cosine[i];
+        sum->specular = shiny ? light->highlight[i] : 0;
+        return shiny;
+    }
     float w = light->attenuation ? light->attenuation[i] : 1;
     sum->diffuse += w * light->cosine[i];
     if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE)
@@ -411,6 +419,7 @@ static void tone(const glint_tone_args *args)
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
         .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .scan = scan_##real, \
+        .soft_light = soft_light_##real, \
     }
 
 const glint_stages glint_stages_ref = {

@@ -107,6 +107,19 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
     }
 }
 
+/// The factors of a light whose samples have been summed up.
+static inline void put_sums(const glint_shade_light *light, bool specular, size_t at, float diffuse[GLINT_GROUP],
+                            float highlight[GLINT_GROUP])
+{
+    const unsigned lit = light->lit[at / GLINT_GROUP];
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
+        f_store(diffuse + i, f_select(mask, f_load(light->cosine + at + i), f_set(0)));
+        if (specular)
+            f_store(highlight + i, f_select(mask, f_load(light->highlight + at + i), f_set(0)));
+    }
+}
+
 static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                                 uint32_t g, light_factors *factors)
 {
@@ -120,11 +133,13 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
         if (!light->lit[g])
             continue;
         const uint32_t slot = begun ? factors->count - 1 : factors->count++;
-        if (begun)
+        if (light->summed)
+            put_sums(light, specular, at, factors->diffuse[slot], factors->specular[slot]);
+        else if (begun)
             put_factors(light, material, power, at, true, factors->diffuse[slot], factors->specular[slot]);
         else
             put_factors(light, material, power, at, false, factors->diffuse[slot], factors->specular[slot]);
-        if (specular && !power)
+        if (specular && !power && !light->summed)
             put_lobe(args, light, material, at, begun, factors->specular[slot], factors->grazing[slot]);
         factors->light[slot] = light;
         begun = true;

@@ -18,19 +18,16 @@ typedef struct R(soft_occluder) {
     int side; ///< of a plane: 1, all of the light is in front; -1, behind; 0, neither
 } R(soft_occluder);
 
-/// What the groups of one call share besides the tile.
-typedef struct R(soft_light) {
+/// All of the light, and what the groups of one call share besides the tile.
+typedef struct R(whole_light) {
     float middle[3], radius; ///< of the ball
     double scale; ///< of the index's frame
     R(soft_occluder) occluders[GLINT_OCCLUDERS];
     bool ready; ///< the rest is made: what samples need
-    const real (*position[GLINT_LIGHT_CHUNK])[GLINT_GROUP];
+    R(lamp_set) lamps;
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
     unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
-#if GLINT_REAL == 32
-    _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
-#endif
-} R(soft_light);
+} R(whole_light);
 
 /// 1: the light's box, of the index's frame, is in front of the plane; -1: behind; 0: neither for certain.
 static int R(side_of_box)(const R(shadow_tile) * tile, const glint_prim *plane)
@@ -49,7 +46,7 @@ static int R(side_of_box)(const R(shadow_tile) * tile, const glint_prim *plane)
     return (height > reach) - (height < -reach);
 }
 
-static void R(place_soft_light)(const R(shadow_tile) * tile, R(soft_light) * light)
+static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const glint_lamp *lamp = tile->args->lamp[0];
@@ -105,7 +102,7 @@ static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const 
 /// A ball around the occluder is apart from the point's cone around the light where a plane that touches the ball has
 /// both the point and the light on its other side: one along the cone, one across the way from the point, or one before
 /// the light. A sphere hides all of the light where, at some share of the way, it holds the cone's whole width.
-static inline R(soft_lanes) R(sort_by_ball)(const R(soft_light) * light, const R(soft_occluder) * occluder,
+static inline R(soft_lanes) R(sort_by_ball)(const R(whole_light) * light, const R(soft_occluder) * occluder,
                                             const glint_prim *prim, const float local[3][GLINT_GROUP])
 {
     R(soft_lanes) out = { 0, 0 };
@@ -152,7 +149,7 @@ static inline R(soft_lanes) R(sort_by_ball)(const R(soft_light) * light, const R
 
 /// What the tile's occluders are to the lanes of a group.
 static R(soft_group)
-    R(sort_group)(const R(shadow_tile) * tile, const R(soft_light) * light, R(shadow_group) * group, unsigned lanes)
+    R(sort_group)(const R(shadow_tile) * tile, const R(whole_light) * light, R(shadow_group) * group, unsigned lanes)
 {
     const glint_occlude_args *args = tile->args;
     const unsigned back = args->back[group->at / GLINT_GROUP];
@@ -187,29 +184,22 @@ static R(soft_group)
 }
 
 /// Makes what the samples of one call share, as soon as a group asks for them.
-static void R(prepare_samples)(const R(shadow_tile) * tile, R(soft_light) * light)
+static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;
-    for (uint32_t s = 0; s < args->sample_count; s++) {
-#if GLINT_REAL == 32
-        for (int k = 0; k < 3; k++)
-            for (int i = 0; i < GLINT_GROUP; i++)
-                light->rounded[s][k][i] = (float)args->lamp[s]->position[k][i];
-        light->position[s] = (const float(*)[GLINT_GROUP])light->rounded[s];
-#else
-        light->position[s] = args->lamp[s]->position;
-#endif
+    R(load_lamps)(args->lamp, args->sample_count, &light->lamps);
+    for (uint32_t s = 0; s < args->sample_count; s++)
         for (int k = 0; k < tile->count; k++) {
             light->sides[k][s] = (R(light_sides)) { 0xffff, 0 };
             if (!light->occluders[k].outside)
                 light->sides[k][s] = R(sides_of)(args, args->lamp[s], &args->geometry->prims[tile->occluders[k].id]);
         }
-    }
     light->ready = true;
 }
 
 /// Takes out of every sample's open lanes what the tile's occluder k blocks of `near`.
-static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned near, size_t at, R(soft_light) * light)
+static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned near, size_t at,
+                                    R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;
     const uint32_t id = tile->occluders[k].id;
@@ -219,13 +209,13 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     const unsigned back = sphere ? args->back[at / GLINT_GROUP] & own : 0, others = near & ~own;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->position[s], at, own & light->open[s],
-                                                      near & light->open[s]);
+            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->lamps.lamp[s].position, at,
+                                                      own & light->open[s], near & light->open[s]);
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_solid)(args, prim, light->position[s], at, own & light->open[s],
+            light->open[s] &= ~R(blocked_by_solid)(args, prim, light->lamps.lamp[s].position, at, own & light->open[s],
                                                    near & light->open[s], light->sides[k][s].outside);
         return;
     }
@@ -244,7 +234,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             const unsigned outside = sides.outside >> i & all, inside = sides.inside >> i & all;
             if (!(lanes >> i & all))
                 continue;
-            R(directions_to)(args, light->position[s], at, i, d);
+            R(directions_to)(args, light->lamps.lamp[s].position, at, i, d);
             const rm hit =
                 sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
             light->open[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
@@ -253,7 +243,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
 }
 
 /// Takes out of the open lanes of every sample what blocks them, of a group that has been sorted.
-static void R(block_group)(const R(shadow_tile) * tile, const R(soft_group) * sorted, size_t at, R(soft_light) * light)
+static void R(block_group)(const R(shadow_tile) * tile, const R(soft_group) * sorted, size_t at, R(whole_light) * light)
 {
     if (!light->ready)
         R(prepare_samples)(tile, light);
@@ -266,7 +256,7 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
 {
     const glint_occlude_args *args = tile->args;
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
-    R(soft_light) light;
+    R(whole_light) light;
     R(place_soft_light)(tile, &light);
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(soft_group) sorted;

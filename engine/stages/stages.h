@@ -458,8 +458,8 @@ typedef struct glint_occlude_args {
     uint64_t *rays; ///< added to: lit lanes; of area lights, those that no test of the whole light has settled
     float
         *visible; ///< out, caps: the share of the light that lit lanes see, 0 in others; `open` then has the lanes that
-        ///< see any. There are spheres and planes alone, and lamp[0] is the light, whose samples mean nothing, around
-        ///< `position`. NULL: no caps
+    ///< see any. There are spheres and planes alone, and lamp[0] is the light, whose samples mean nothing, around
+    ///< `position`. NULL: no caps
     uint64_t *overlaps; ///< caps: added to: pairs of a point and a primitive that were looked at
 } glint_occlude_args;
 // `position` stands for each lane's own in what follows.
@@ -494,6 +494,21 @@ typedef struct glint_occlude_args {
 //   The own: a disk never blocks; tube and funnel: blocked where `back` and the span hits, `out` is not by a face, 0 < out and
 //         out scale < 1 (directional: < inf); others, being convex: blocked where `back` and light_side > 0.
 //   Of triangles: a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
+
+// ---- soft_light: light, occlude and the sums of shade for the samples of an area light in one ----
+
+typedef struct glint_soft_args {
+    const glint_light_args *light; ///< of an area light; what it would write is not touched
+    const glint_occlude_args *occlude; ///< of the same points and samples; `lit` is not read, `open` not touched; NULL:
+        ///< the light throws no shadows
+    // out:
+    uint16_t *reached; ///< a bit a lane that some sample reaches
+    float *diffuse; ///< the sum of w cosine over the samples that reach the lane
+    float *specular; ///< the sum of w S; written if highlights
+} glint_soft_args;
+// False: too much lies between for one kernel; nothing that is written means anything, and light and occlude are to be called.
+// Else as light, occlude, and shade's sums for joined lights, of materials without microfacets. Groups that no sample reaches
+// get reached = 0 and nothing else; in others, lanes that none reaches get 0.
 
 // ---- vertex: light that was worked out once for a face or a vertex ----
 
@@ -596,6 +611,10 @@ typedef struct glint_shade_light {
     const uint16_t *lit; ///< lanes that the light reaches: its `lit`, or `open` where it casts shadows
     const float *cosine, *attenuation, *log2_specular; ///< attenuation: NULL = 1 everywhere
     const float *sine2, *schlick; ///< read for materials of GLINT_HIGHLIGHT_FACETS
+    bool
+        summed; ///< all samples of a light, as soft_light sums them up: `cosine` is its diffuse, `highlight` its specular,
+        ///< and no other factors are read. No light is joined to it, and no material has microfacets
+    const float *highlight;
     double diffuse[3], specular[3]; ///< colour times intensity
 } glint_shade_light;
 
@@ -708,6 +727,7 @@ typedef struct glint_stages {
         void (*light)(const glint_light_args *args);
         void (*facet)(const glint_facet_args *args);
         void (*occlude)(const glint_occlude_args *args);
+        bool (*soft_light)(const glint_soft_args *args);
         void (*bounce)(const glint_bounce_args *args);
         void (*vertex)(const glint_vertex_args *args);
         void (*scatter)(const glint_scatter_args *args);

@@ -1,0 +1,288 @@
+// soft_light: light, occlude and the sums of shade for the samples of an area light, a group at a time: what is hidden from
+// all of the light is left out, and sums stay in registers. The arithmetic is theirs. Contract: stages.h.
+
+#define SOFT_PARTS (VF / VR) // vectors of real that make one of float
+
+/// Sixteen lanes as highlights need them.
+typedef struct R(soft_gloss) {
+    unsigned phong, blinn, cosine; ///< lanes by the highlight and the lobe of their material
+    _Alignas(64) float shininess[GLINT_GROUP];
+    _Alignas(64) float least[GLINT_GROUP]; ///< of (r.v)^2 or (n.h)^2: at less, shade sees no highlight
+} R(soft_gloss);
+
+/// VF lanes of a group, and what the samples so far have brought them.
+typedef struct R(soft_point) {
+    vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3];
+    vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< where some lane is glossy
+    vf diffuse, specular;
+    unsigned reached;
+} R(soft_point);
+
+/// What all groups of a call share.
+typedef struct R(soft_call) {
+    const glint_soft_args *args;
+    R(lamp_set) lamps;
+    R(shadow_tile) tile;
+    R(whole_light) light;
+    R(soft_gloss) gloss; ///< of the group at hand
+    bool plain; ///< the light is not attenuated, and no sample is aimed
+} R(soft_call);
+
+INNER vf R(join)(const vr x[SOFT_PARTS])
+{
+#if GLINT_REAL == 64
+    return f_join(x[0], x[1]);
+#else
+    return x[0];
+#endif
+}
+
+INNER vr R(load_wide)(const float *p)
+{
+#if GLINT_REAL == 64
+    return d_load_f(p);
+#else
+    return f_load(p);
+#endif
+}
+
+INNER unsigned R(join_bits)(const rm mask[SOFT_PARTS])
+{
+    unsigned bits = 0;
+    for (int j = 0; j < SOFT_PARTS; j++)
+        bits |= rm_bits(mask[j]) << j * VR;
+    return bits;
+}
+
+/// The highlights of the lanes in `shiny`: w S.
+INNER vf R(soft_highlight)(const R(soft_call) * call, int i, unsigned shiny, const vr x[SOFT_PARTS], vf w, vf cosine)
+{
+    const R(soft_gloss) *gloss = &call->gloss;
+    const fm mask = fm_from_bits(shiny);
+    vr less_1[SOFT_PARTS];
+    for (int j = 0; j < SOFT_PARTS; j++)
+        less_1[j] = x[j] - r_set(1);
+    const vf log2 = f_set(0.5f) * f_log2(f_select(mask, R(join)(x), f_set(1)), R(join)(less_1));
+    vf s = f_exp2(f_load(gloss->shininess + i) * f_select(mask, log2, f_set(0)));
+    if (gloss->cosine)
+        s = s * f_select(fm_from_bits(gloss->cosine >> i & ((1u << VF) - 1)), cosine, f_set(1));
+    return f_select(mask, w * s, f_set(0));
+}
+
+/// Adds the highlights of one sample to the lanes in `lit`.
+INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr l[SOFT_PARTS][3],
+                             const vr l2[SOFT_PARTS], const vr nl[SOFT_PARTS], vf w, vf cosine, R(soft_point) * p)
+{
+    const R(soft_gloss) *gloss = &call->gloss;
+    const unsigned phong = gloss->phong >> i & lit, blinn = GLINT_WITH_BLINN ? gloss->blinn >> i & lit : 0;
+    vr num[SOFT_PARTS], den[SOFT_PARTS], x[SOFT_PARTS];
+    rm some[SOFT_PARTS];
+    for (int j = 0; j < SOFT_PARTS; j++) {
+        const vr lv = -DOT(l[j], p->direction[j]);
+        const unsigned blinn_lanes = blinn >> j * VR & ((1u << VR) - 1);
+        some[j] = R(phong_parts)(nl[j], p->nv[j], lv, l2[j] * p->a[j], &num[j], &den[j]);
+        if (blinn_lanes) {
+            vr blinn_num, blinn_den;
+            const rm mask = rm_from_bits(blinn_lanes),
+                     bright = R(blinn_parts)(nl[j], p->nv[j], lv, l2[j], p->a[j], &blinn_num, &blinn_den);
+            some[j] = rm_or(rm_and(mask, bright), rm_andnot(some[j], mask));
+            num[j] = r_select(mask, blinn_num, num[j]);
+            den[j] = r_select(mask, blinn_den, den[j]);
+        }
+        // NaN, and where den overflows, are for the division
+        some[j] = rm_andnot(some[j], r_lt(num[j], R(load_wide)(gloss->least + i + j * VR) * den[j]));
+    }
+    if (!(R(join_bits)(some) & (phong | blinn)))
+        return;
+    for (int j = 0; j < SOFT_PARTS; j++) {
+        x[j] = r_min(num[j] / den[j], r_set(1));
+        some[j] = rm_and(some[j], r_le(r_set(0x1p-126), x[j]));
+    }
+    const unsigned shiny = R(join_bits)(some) & (phong | blinn);
+    p->specular = p->specular + R(soft_highlight)(call, i, shiny, x, w, cosine);
+}
+
+/// Adds sample s to VF lanes from i on; `open`: those that it may reach. Returns the lanes before which it is, open or not.
+INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const bool glossy, uint32_t s, int i,
+                             unsigned open, R(soft_point) * p)
+{
+    const glint_light_args *args = call->args->light;
+    const R(lamp_lanes) *lamp = &call->lamps.lamp[s];
+    const vr zero = r_set(0), scale = r_set(args->scale);
+    const bool aimed = !plain && args->lamp[s]->emission != GLINT_EMIT_ALL;
+    vr l[SOFT_PARTS][3], l2[SOFT_PARTS], nl[SOFT_PARTS], m[SOFT_PARTS];
+    rm ahead[SOFT_PARTS];
+    for (int j = 0; j < SOFT_PARTS; j++) {
+        for (int k = 0; k < 3; k++)
+            l[j][k] = (r_load(lamp->position[k] + i + j * VR) - p->point[j][k]) * scale;
+        l2[j] = DOT(l[j], l[j]);
+        nl[j] = DOT(p->normal[j], l[j]);
+        ahead[j] = r_lt(zero, nl[j]);
+        m[j] = zero;
+        if (aimed)
+            ahead[j] = rm_and(ahead[j], R(in_front)(args->lamp[s], lamp, i + j * VR, l[j], p->point[j], &m[j]));
+    }
+    const unsigned before = R(join_bits)(ahead), lit = before & open;
+    if (!lit)
+        return before;
+    const fm mask = fm_from_bits(lit);
+    const vf cosine = f_min(R(join)(nl) / f_sqrt(R(join)(l2)), f_set(1));
+    vf w = f_set(1);
+    if (!plain && args->attenuated) {
+        vr attenuation[SOFT_PARTS];
+        for (int j = 0; j < SOFT_PARTS; j++) {
+            attenuation[j] = R(fall_off)(args, l2[j]);
+            if (aimed && args->lamp[s]->emission != GLINT_EMIT_FRONT)
+                attenuation[j] = attenuation[j] * (m[j] / (l2[j] * r_sqrt(l2[j])));
+        }
+        w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
+    }
+    p->diffuse = f_select(mask, p->diffuse + w * cosine, p->diffuse);
+    p->reached |= lit;
+    if (glossy)
+        R(add_highlights)(call, i, lit, l, l2, nl, w, cosine, p);
+    return before;
+}
+
+/// Sorts a group's lanes by their materials.
+static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned left, R(soft_gloss) * gloss)
+{
+    gloss->phong = gloss->blinn = gloss->cosine = 0;
+    while (args->highlights && left) {
+        const uint32_t index = args->material[at + (unsigned)__builtin_ctz(left)];
+        const glint_shade_material *material = &args->materials[index];
+        const unsigned lanes = lanes_equal(args->material + at, index) & left;
+        left &= ~lanes;
+        if (material->highlight == GLINT_HIGHLIGHT_PHONG)
+            gloss->phong |= lanes;
+        else if (GLINT_WITH_BLINN && material->highlight == GLINT_HIGHLIGHT_BLINN)
+            gloss->blinn |= lanes;
+        else
+            continue;
+        gloss->cosine |= material->lobe == GLINT_LOBE_POWER_COSINE ? lanes : 0;
+        // exp2's argument is half the logarithm times the shininess; a share of 1e-4 is far above all rounding
+        const float lowest = 2 * GLINT_EXP2_LOWEST / material->shininess;
+        const vf least = f_exp2_above(f_set(lowest), GLINT_EXP2_LEAST) * f_set(1 - 1e-4f);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
+            f_store(gloss->shininess + i, f_select(mask, f_set(material->shininess), f_load(gloss->shininess + i)));
+            f_store(gloss->least + i, f_select(mask, least, f_load(gloss->least + i)));
+        }
+    }
+}
+
+/// All samples for VF lanes from i on; their open lanes are in call->light, of which `near` are counted. `plain` and
+/// `glossy` are constants.
+INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const bool glossy, R(group_place) place, int i,
+                          unsigned near, R(soft_point) * p)
+{
+    const glint_light_args *args = call->args->light;
+    const size_t at = (size_t)place.g * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    p->diffuse = p->specular = f_set(0);
+    p->reached = 0;
+    for (int j = 0; j < SOFT_PARTS; j++) {
+        R(load3)(args->point, at + (size_t)(i + j * VR), p->point[j]);
+        R(load3)(args->normal, at + (size_t)(i + j * VR), p->normal[j]);
+        if (!glossy)
+            continue;
+        R(load_direction)(directions, args->direction, at, i + j * VR, p->direction[j]);
+        p->a[j] = DOT(p->direction[j], p->direction[j]);
+        p->nv[j] = -DOT(p->normal[j], p->direction[j]);
+    }
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        const unsigned open = call->light.open[s] >> i & ((1u << VF) - 1);
+        const unsigned before = R(add_sample)(call, plain, glossy, s, i, open, p);
+        if (near)
+            *call->args->occlude->rays += (unsigned)__builtin_popcount(before & near);
+    }
+}
+
+/// Each way is compiled for its constants.
+static void R(add_matt)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
+{
+    if (call->plain)
+        R(add_samples)(call, true, false, place, i, near, p);
+    else
+        R(add_samples)(call, false, false, place, i, near, p);
+}
+
+static void R(add_glossy)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
+{
+    if (call->plain)
+        R(add_samples)(call, true, true, place, i, near, p);
+    else
+        R(add_samples)(call, false, true, place, i, near, p);
+}
+
+/// One group; `open`: the lanes that are not hidden from all of the light, of them `near` those that may be from a part.
+static void R(sum_group)(R(soft_call) * call, R(group_place) place, unsigned open, unsigned near)
+{
+    const glint_soft_args *args = call->args;
+    const size_t at = (size_t)place.g * GLINT_GROUP;
+    _Alignas(64) float diffuse[GLINT_GROUP], specular[GLINT_GROUP];
+    R(soft_point) p;
+    unsigned reached = 0;
+    R(sort_gloss)(args->light, at, open, &call->gloss);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned lanes = (1u << VF) - 1;
+        if ((call->gloss.phong | call->gloss.blinn) >> i & lanes)
+            R(add_glossy)(call, place, i, near >> i & lanes, &p);
+        else
+            R(add_matt)(call, place, i, near >> i & lanes, &p);
+        f_store(diffuse + i, p.diffuse);
+        f_store(specular + i, p.specular);
+        reached |= p.reached << i;
+    }
+    args->reached[place.g] = (uint16_t)reached;
+    for (int i = 0; reached && i < GLINT_GROUP; i += VF) {
+        f_store(args->diffuse + at + i, f_load(diffuse + i));
+        if (args->light->highlights)
+            f_store(args->specular + at + i, f_load(specular + i));
+    }
+}
+
+static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
+{
+    const glint_soft_args *args = call->args;
+    R(shadow_group) group = { .last_blocker = GLINT_MISS };
+    for (R(group_place) place = { 0 }; place.g < args->light->group_count; R(next_group)(args->light->camera, &place)) {
+        R(soft_group) sorted;
+        sorted.any_near = sorted.hidden = 0;
+        if (lit[place.g] && call->tile.count) {
+            R(begin_group)(place.g, &group);
+            sorted = R(sort_group)(&call->tile, &call->light, &group, lit[place.g]);
+        }
+        const unsigned open = lit[place.g] & ~sorted.hidden;
+        args->reached[place.g] = 0;
+        if (!open)
+            continue;
+        for (uint32_t s = 0; s < GLINT_LIGHT_CHUNK; s++)
+            call->light.open[s] = open;
+        if (sorted.any_near)
+            R(block_group)(&call->tile, &sorted, group.at, &call->light);
+        R(sum_group)(call, place, open, sorted.any_near);
+    }
+}
+
+static bool R(soft_light)(const glint_soft_args *args)
+{
+    const glint_light_args *light = args->light;
+    R(soft_call) call;
+    uint16_t lit[GLINT_TILE_GROUPS];
+    call.args = args;
+    call.tile.count = 0;
+    call.gloss = (R(soft_gloss)) { .phong = 0 };
+    for (uint32_t g = 0; g < light->group_count; g++)
+        lit[g] = light->hits[g] & (light->hits[g] ? ~(unsigned)light->dark[g] : 0);
+    if (args->occlude)
+        R(begin_shadows)(args->occlude, lit, &call.tile);
+    if (call.tile.count > GLINT_OCCLUDERS)
+        return false;
+    if (call.tile.count)
+        R(place_soft_light)(&call.tile, &call.light);
+    R(load_lamps)(light->lamp, light->sample_count, &call.lamps);
+    call.plain = !light->attenuated && light->lamp[0]->emission == GLINT_EMIT_ALL;
+    R(sum_groups)(&call, lit);
+    return true;
+}
