@@ -175,6 +175,7 @@ end
 local function read_obj(path)
   local vertices, faces = {}, {}
   for line in io.lines(path) do
+    line = line:gsub("#.*", "")
     local word = line:match "^%s*(%S+)"
     if word == "v" or word == "f" then
       local numbers = {}
@@ -340,7 +341,15 @@ function witness.run(path, order, options)
   local env = setmetatable({}, { __index = _G })
   env.gr, env.unpack = new_gr(folder, order, options, pictures), table.unpack
   env.table = setmetatable({ getn = function(list) return #list end }, { __index = table })
-  env.math = setmetatable({ pow = function(a, b) return a ^ b end }, { __index = math })
+  env.math = setmetatable({
+    pow = function(a, b) return a ^ b end, mod = math.fmod,
+    random = function(...)
+      local limits = { ... }
+      for i, limit in ipairs(limits) do limits[i] = limit // 1 | 0 end
+      return math.random(table.unpack(limits))
+    end,
+    randomseed = function(seed) math.randomseed(seed // 1 | 0) end,
+  }, { __index = math })
   env.string = setmetatable({ gfind = string.gmatch, format = function(pattern, ...)
     local values = { ... }
     for i, value in ipairs(values) do values[i] = type(value) == "number" and value // 1 | 0 or value end

@@ -85,11 +85,12 @@ local function requires(text)
   return false
 end
 
-local function by_words(text)
-  text = text:gsub("unpack%s*or%s*table%s*%.%s*unpack", ""):gsub("table%s*%.%s*unpack%s*or%s*unpack", "")
+local function by_words(whole)
+  local text = whole:gsub("unpack%s*or%s*table%s*%.%s*unpack", ""):gsub("table%s*%.%s*unpack%s*or%s*unpack", "")
   if text:find "table%s*%.%s*unpack" then return 2 end
+  local serves_both = text ~= whole -- then a bare `unpack(` is not the old one
   local modern = text:find "require%s*%(?%s*\"gr\"" -- written for this module: its own `require`s say nothing
-  return (says_unpack(text) or not modern and requires(text)) and 1 or nil
+  return (not serves_both and says_unpack(text) or not modern and requires(text)) and 1 or nil
 end
 
 --- What the meshes say and what the words say: each 1, 2 or nil.

@@ -27,7 +27,7 @@ end
 -- Numbers count from 1, or from the last vertex where negative; in the list from 0.
 local function read_face(text, count, place)
   local face, n = {}, 0
-  for word in text:gmatch "[^%s#]+" do
+  for word in text:gmatch "%S+" do
     local number = tointeger(tonumber(word:match "^[^/]*"))
     local vertex = number and (number < 0 and count + number or number - 1)
     if not vertex or number == 0 or vertex < 0 then
@@ -57,7 +57,7 @@ function obj.read(call, path, vertex)
   local faces, numbers, count, number = {}, {}, 0, 0
   for line in lines(found) do
     number = number + 1
-    local word, text = line:match "^%s*([vf])%s+(.-)%s*$"
+    local word, text = line:match "^%s*([vf])%s+([^#]-)%s*%f[#\0]"
     if word == "v" then
       count = count + 1
       vertex(count, read_vertex(text, found .. ": line " .. number))
