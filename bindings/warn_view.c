@@ -145,13 +145,16 @@ static void each_member(lua_State *L, int scene, void (*visit)(lua_State *L, voi
 }
 
 // The ball of a shape before its transform; false: not known.
-static bool find_ball(const glint_shape_desc *desc, ball *out)
+static bool find_ball(const glint_shape *shape, ball *out)
 {
-    double half[3], square = 0;
+    const glint_shape_desc *desc = glint_shape_get(shape);
+    double half[3], square = 0, lower[3], upper[3];
     bool is_round = desc->kind == GLINT_SHAPE_SPHERE || desc->kind == GLINT_SHAPE_DISK;
     bool is_long = desc->kind == GLINT_SHAPE_CYLINDER || desc->kind == GLINT_SHAPE_CONE;
-    const double *low = is_long ? desc->base : desc->min, *high = is_long ? desc->top : desc->max;
-    if (!is_round && !is_long && desc->kind != GLINT_SHAPE_BOX)
+    const bool is_many = glint_shape_bounds(shape, lower, upper);
+    const double *low = is_many ? lower : is_long ? desc->base : desc->min;
+    const double *high = is_many ? upper : is_long ? desc->top : desc->max;
+    if (!is_round && !is_long && !is_many && desc->kind != GLINT_SHAPE_BOX)
         return false;
     for (int c = 0; c < 3; c++) {
         half[c] = is_round ? 0 : (high[c] - low[c]) / 2;
@@ -234,15 +237,17 @@ typedef struct look {
 
 static void describe(const glint_shape_desc *shape, const ball *b, char out[160])
 {
-    static const char *const names[] = { [GLINT_SHAPE_SPHERE] = "sphere",
-                                         [GLINT_SHAPE_BOX] = "box",
-                                         [GLINT_SHAPE_DISK] = "disk",
-                                         [GLINT_SHAPE_CYLINDER] = "cylinder",
-                                         [GLINT_SHAPE_CONE] = "cone" };
+    static const char *const names[] = {
+        [GLINT_SHAPE_SPHERE] = "sphere", [GLINT_SHAPE_SPHERES] = "set of spheres", [GLINT_SHAPE_MESH] = "mesh",
+        [GLINT_SHAPE_BOX] = "box",       [GLINT_SHAPE_DISK] = "disk",       [GLINT_SHAPE_CYLINDER] = "cylinder",
+        [GLINT_SHAPE_CONE] = "cone"
+    };
     if (*shape->name)
         snprintf(out, 160, "%s '%s'", names[shape->kind], shape->name);
     else
-        snprintf(out, 160, "the %s at {%g, %g, %g}", names[shape->kind], b->center[0], b->center[1], b->center[2]);
+        snprintf(out, 160, "the %s %s {%g, %g, %g}", names[shape->kind],
+                 shape->kind == GLINT_SHAPE_SPHERES || shape->kind == GLINT_SHAPE_MESH ? "around" : "at", b->center[0],
+                 b->center[1], b->center[2]);
 }
 
 static bool is_dark(const glint_light_desc *light)
@@ -316,7 +321,7 @@ static void look_into(lua_State *L, const look *l, const glint_shape *shape, con
         look_into(L, l, child, &placed, count);
         lua_pop(L, 1);
     }
-    if (!find_ball(desc, &b))
+    if (!find_ball(shape, &b))
         return;
     move_ball(&placed, &b);
     if (l->view && b.is_sphere && !shows_through(L, desc->material))

@@ -265,6 +265,10 @@ void glint_shape_release(glint_shape *shape);
 /// The materials of a shape, one for most; returns how many. The list belongs to the shape.
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list);
 
+/// A box around all spheres or vertices of a GLINT_SHAPE_SPHERES or GLINT_SHAPE_MESH shape, before its transform. False,
+/// with the box untouched: the shape is of another kind, and its description says where it is.
+bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3]);
+
 #define GLINT_GROUP_DEPTH 64 ///< groups one within the other
 
 /// The group retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of

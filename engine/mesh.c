@@ -352,6 +352,8 @@ static glint_status make_shape(const glint_mesh_desc *desc, glint_shape *shape, 
     if (!status)
         status = glint_mesh_prepare(shape->mesh, shape->desc.shading, error);
     shape->count = shape->mesh->triangle_count;
+    for (size_t i = 0; i < shape->mesh->vertex_count && !status; i++)
+        glint_shape_stretch(shape, shape->mesh->vertices[i], 0, i == 0);
     return status;
 }
 

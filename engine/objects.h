@@ -48,6 +48,7 @@ struct glint_shape {
     size_t probed; ///< the level that search supposed
     uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
     uint64_t children_hash; ///< of their revisions then
+    double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
     uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
     glint_material **materials;
@@ -68,6 +69,8 @@ static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i)
 
 /// A shape of `count` primitives with room for `material_count` materials, none there yet; NULL: no memory.
 glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
+/// Makes the box of the shape hold a ball around the point, too; `first`: it holds nothing yet.
+void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first);
 /// Gives a shape a new revision.
 void glint_shape_changed(glint_shape *shape);
 /// Its revision; of a group, another one after every change of anything within.

@@ -205,6 +205,26 @@ void glint_shape_release(glint_shape *shape)
     free(shape);
 }
 
+void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first)
+{
+    for (int c = 0; c < 3; c++) {
+        const double low = center[c] - radius, high = center[c] + radius;
+        if (first || low < shape->lower[c])
+            shape->lower[c] = low;
+        if (first || high > shape->upper[c])
+            shape->upper[c] = high;
+    }
+}
+
+bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3])
+{
+    if (shape->desc.kind != GLINT_SHAPE_SPHERES && shape->desc.kind != GLINT_SHAPE_MESH)
+        return false;
+    memcpy(lower, shape->lower, sizeof shape->lower);
+    memcpy(upper, shape->upper, sizeof shape->upper);
+    return true;
+}
+
 size_t glint_spheres_count(const glint_shape *shape) { return shape->count; }
 
 static void read_sphere(const glint_spheres_desc *desc, size_t i, double out[4])
@@ -240,6 +260,7 @@ static glint_status fill_spheres(glint_shape *shape, const glint_spheres_desc *d
         glint_status status = check_sphere(i, shape->spheres[i], error);
         if (status)
             return status;
+        glint_shape_stretch(shape, shape->spheres[i], shape->spheres[i][3], i == 0);
     }
     shape->count = desc->count;
     if (!desc->material_index)

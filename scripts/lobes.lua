@@ -54,7 +54,7 @@ local scene = glint.scene {
 for row, model in ipairs { "phong", "blinn_phong" } do
   local y = row == 1 and 0.35 or -1.55
   for i, exponent in ipairs(EXPONENTS) do
-    local x, data, axes = 1.75 * (i - 3.5) - 0.2, {}, {}
+    local x, data, axes = 1.75 * (i - 3.5) - 0.08, {}, {}
     local material = glint.material { model = model, specular = 1, shininess = exponent, matched = P.matched }
     lobe(material, x, y, data)
     scene:add(glint.spheres { data = data, material = bright(COLORS[i]), name = model .. " " .. exponent })

@@ -41,9 +41,9 @@ picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
 picture lamps
 picture lampshade
-picture lobes --size 320x160
+picture lobes --size 400x160
 picture mesh_and_sphere --size 400x200
-picture mirror_and_glass --samples 9
+picture mirror_and_glass --size 320x180 --samples 9
 picture molecule --set style=sticks
 picture moving_light --frames 31 --samples 4
 "$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet
@@ -51,13 +51,13 @@ picture nff --set file="$out/flake.nff"
 picture particle_box --samples 9
 picture phong_and_blinn --frames 4 --samples 4
 picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb
-picture protein
+picture protein --size 320x180
 picture roughness --size 400x160
 picture shading --size 400x200 --frames 5
 picture shininess_sweep --frames 5 --samples 4
 picture soft_shadows --frames 11 --samples 4
 picture sphereflake --samples 4
-picture spotlights
+picture spotlights --size 320x180
 picture workshop --samples 9
 
 for script in scripts/*.lua; do

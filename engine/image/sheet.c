@@ -103,7 +103,7 @@ static void measure_sheet(layout *l)
         least[0] = l->left + 2 * (int64_t)text_width(l, desc->title, SIZE_MAX) + l->gap;
     if (desc->difference) {
         snprintf(l->note, sizeof l->note,
-                 "below each: |picture - cell %zu| x %g\nthe largest, in codes of 255\npixels that differ",
+                 "below each: |picture - cell %zu| x %g\nmax: the largest, in codes of 255\n%%: pixels that differ",
                  desc->difference, desc->gain);
         least[1] = l->left + widest_part(l, l->note) + l->gap;
     }
