@@ -18,7 +18,7 @@ static const char HEAD[] =
     "margin-top: 1em; align-items: center }\n"
     "form output { min-width: 6em; font-variant-numeric: tabular-nums }\n"
     "form .wide { grid-column: 1 / -1 }\n"
-    "#label { color: #6a6a6a }\n"
+    "#label { color: #6a6a6a; white-space: pre-wrap; min-height: 1.4em }\n"
     "</style>\n";
 
 static const char BODY[] =
