@@ -12,7 +12,7 @@ typedef struct R(soft_gloss) {
 
 /// VF lanes of a group, and what the samples so far have brought them.
 typedef struct R(soft_point) {
-    vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3];
+    vr point[SOFT_PARTS][3], normal[SOFT_PARTS][3]; ///< plain: the point in the light's units
     vr direction[SOFT_PARTS][3], a[SOFT_PARTS], nv[SOFT_PARTS]; ///< where some lane is glossy
     vf diffuse, specular;
     unsigned reached;
@@ -25,7 +25,8 @@ typedef struct R(soft_call) {
     R(shadow_tile) tile;
     R(whole_light) light;
     R(soft_gloss) gloss; ///< of the group at hand
-    bool plain; ///< the light is not attenuated, and no sample is aimed
+    bool plain; ///< the light is not attenuated, no sample is aimed, and the next is made
+    _Alignas(64) real scaled[GLINT_LIGHT_CHUNK][3][GLINT_GROUP]; ///< positions in the light's units
 } R(soft_call);
 
 INNER vf R(join)(const vr x[SOFT_PARTS])
@@ -114,7 +115,8 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const 
     rm ahead[SOFT_PARTS];
     for (int j = 0; j < SOFT_PARTS; j++) {
         for (int k = 0; k < 3; k++)
-            l[j][k] = (r_load(lamp->position[k] + i + j * VR) - p->point[j][k]) * scale;
+            l[j][k] = plain ? r_load(call->scaled[s][k] + i + j * VR) - p->point[j][k]
+                            : (r_load(lamp->position[k] + i + j * VR) - p->point[j][k]) * scale;
         l2[j] = DOT(l[j], l[j]);
         nl[j] = DOT(p->normal[j], l[j]);
         ahead[j] = r_lt(zero, nl[j]);
@@ -184,6 +186,8 @@ INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const boo
     for (int j = 0; j < SOFT_PARTS; j++) {
         R(load3)(args->point, at + (size_t)(i + j * VR), p->point[j]);
         R(load3)(args->normal, at + (size_t)(i + j * VR), p->normal[j]);
+        for (int k = 0; k < 3 && plain; k++)
+            p->point[j][k] = p->point[j][k] * r_set(args->scale);
         if (!glossy)
             continue;
         R(load_direction)(directions, args->direction, at, i + j * VR, p->direction[j]);
@@ -265,6 +269,27 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
     }
 }
 
+/// Scales the samples' places, so that a way to them needs no more than a difference. The light's scale being a power of
+/// two, that gives the same bits, unless something overflows or loses digits: false.
+static bool R(scale_lamps)(R(soft_call) * call)
+{
+    const glint_light_args *args = call->args->light;
+    const bool wide = GLINT_REAL == 64;
+    const double least_scale = wide ? 0x1p-500 : 0x1p-30, most_scale = wide ? 0x1p500 : 0x1p30;
+    const vr least = r_set(wide ? 0x1p-400 : 0x1p-60), most = r_set(wide ? 0x1p500 : 0x1p60);
+    if (!(args->scale > least_scale && args->scale < most_scale))
+        return false;
+    rm fit = r_lt(r_set(0), r_set(1));
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GLINT_GROUP; i += VR) {
+                const vr x = r_load(call->lamps.lamp[s].position[k] + i), size = r_max(x, -x);
+                fit = rm_and(fit, rm_or(r_eq(x, r_set(0)), rm_and(r_lt(least, size), r_lt(size, most))));
+                r_store(call->scaled[s][k] + i, x * r_set(args->scale));
+            }
+    return rm_bits(fit) == (1u << VR) - 1;
+}
+
 static bool R(soft_light)(const glint_soft_args *args)
 {
     const glint_light_args *light = args->light;
@@ -282,7 +307,7 @@ static bool R(soft_light)(const glint_soft_args *args)
     if (call.tile.count)
         R(place_soft_light)(&call.tile, &call.light);
     R(load_lamps)(light->lamp, light->sample_count, &call.lamps);
-    call.plain = !light->attenuated && light->lamp[0]->emission == GLINT_EMIT_ALL;
+    call.plain = !light->attenuated && light->lamp[0]->emission == GLINT_EMIT_ALL && R(scale_lamps)(&call);
     R(sum_groups)(&call, lit);
     return true;
 }
