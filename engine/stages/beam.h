@@ -29,10 +29,11 @@ static bool make_beam_axes(const double away[3], const double along[3], screen_v
 
 // ---- Triangles ----
 
-/// Which cells each triangle may show in. Returns the slots of `mask` that show in any.
-static unsigned cells_of_leaf(const screen_view *view, const leaf_on_screen *shown, unsigned mask,
-                              uint32_t cells[GLINT_NODE_WIDTH])
+/// Which cells each triangle may show in: seen edge-on, those of its box. Returns the slots of `mask` that show in any.
+static unsigned cells_of_leaf(const screen_view *view, const node_on_screen *seen, const leaf_on_screen *shown,
+                              unsigned mask, uint32_t cells[GLINT_NODE_WIDTH])
 {
+    const unsigned edge_on = mask & ~shown->certain;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
         vi in = i_set(0);
         fm away = fm_from_bits(0);
@@ -46,7 +47,9 @@ static unsigned cells_of_leaf(const screen_view *view, const leaf_on_screen *sho
         i_store(cells + i, in);
         mask &= ~(fm_bits(away) << i);
     }
-    return mask;
+    for (unsigned left = edge_on; left; left &= left - 1)
+        cells[__builtin_ctz(left)] = seen->cells[__builtin_ctz(left)];
+    return mask | edge_on;
 }
 
 /// Which side of its own triangle a point must be seen from to be dark for that, as in `own` of the beam; any where float

@@ -176,7 +176,7 @@ static void R(block_triangles)(R(beam) * beam, const glint_node *node, const nod
     leaf->node = node;
     R(load_beam_leaf)(beam, mask, leaf);
     show_leaf(&beam->view, seen, GLINT_REAL == 32, &leaf->shown);
-    for (mask = cells_of_leaf(&beam->view, &leaf->shown, mask, leaf->cells); mask; mask &= mask - 1)
+    for (mask = cells_of_leaf(&beam->view, seen, &leaf->shown, mask, leaf->cells); mask; mask &= mask - 1)
         R(block_triangle)(beam, __builtin_ctz(mask));
     R(decide_beam_pairs)(beam);
 }

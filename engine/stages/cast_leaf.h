@@ -38,9 +38,12 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
             R(narrow)(leaf->corner[j][k], leaf->shown.corner[j][k]);
 }
 
-/// Which pixels of the tile each triangle may show in. Returns the slots of `mask` that show in any.
-static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf)
+/// Which pixels of the tile each triangle may show in: seen edge-on, wherever its box does. Returns the slots of `mask` that
+/// show in any.
+static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_screen *seen, unsigned mask,
+                                  R(cast_leaf) * leaf)
 {
+    const unsigned edge_on = mask & ~leaf->shown.certain;
     const float start[2] = { tile->s[0][0], -tile->t[0][0] };
     const int count[2] = { 4 * tile->across, 4 * tile->down };
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
@@ -59,7 +62,11 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, unsigned mask, R(ca
         i_store(leaf->pixels + i, pixels);
         mask &= ~(fm_bits(none) << i);
     }
-    return mask;
+    for (unsigned left = edge_on; left; left &= left - 1) {
+        const int slot = __builtin_ctz(left);
+        leaf->pixels[slot] = 4 * seen->cells[slot] + 0x03000300; // from the first of four to the last of them
+    }
+    return mask | edge_on;
 }
 
 /// Keeps what is nearer than all before.
@@ -154,7 +161,7 @@ static void R(cast_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const gl
     leaf->node = node;
     R(load_leaf)(tile->args, mask, leaf);
     show_leaf(&tile->view, seen, GLINT_REAL == 32, &leaf->shown);
-    for (mask = R(pixels_of_leaf)(tile, mask, leaf); mask; mask &= mask - 1)
+    for (mask = R(pixels_of_leaf)(tile, seen, mask, leaf); mask; mask &= mask - 1)
         R(cast_triangle)(tile, leaf, __builtin_ctz(mask));
     R(decide_pairs)(tile, leaf);
 }

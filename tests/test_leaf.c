@@ -1,0 +1,213 @@
+/// Meshes whose triangles are as small as pixels, or seen edge-on, or about the eye or the light: every instruction set
+/// against the reference, which asks every triangle about every ray. Neither eye nor light loses one.
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <setjmp.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/glint.h"
+
+enum { SIDE = 22, SIZE = 40, SEEDS = 36 };
+
+// ---- Random numbers ----
+
+static uint64_t state;
+
+static uint32_t draw(uint32_t below)
+{
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)((state >> 33) % below);
+}
+
+static double uniform(double low, double high) { return low + (high - low) * (draw(1u << 30) * 0x1p-30); }
+
+// ---- Sheets ----
+
+/// How a scene's sheets lie: all coordinates are multiplied by `scale`, then moved.
+typedef struct place {
+    double scale, move[3];
+} place;
+
+static void put(const place *at, const double x[3], double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = x[c] * at->scale + at->move[c];
+}
+
+/// A sheet of SIDE x SIDE quadrangles from `corner` along `across` and `down`, with bumps: two triangles each.
+static void add_sheet(glint_scene *scene, const place *at, const double corner[3], const double across[3],
+                      const double down[3], double bumps)
+{
+    static double vertices[(SIDE + 1) * (SIDE + 1)][3];
+    static uint32_t corners[6 * SIDE * SIDE], sizes[2 * SIDE * SIDE];
+    glint_shape *shape;
+    size_t count = 0;
+    for (uint32_t i = 0; i <= SIDE; i++)
+        for (uint32_t j = 0; j <= SIDE; j++) {
+            double x[3];
+            for (int c = 0; c < 3; c++)
+                x[c] = corner[c] + (across[c] * i + down[c] * j) / SIDE + bumps * uniform(-1, 1);
+            put(at, x, vertices[(SIDE + 1) * i + j]);
+        }
+    for (uint32_t i = 0; i < SIDE; i++)
+        for (uint32_t j = 0; j < SIDE; j++) {
+            const uint32_t a = (SIDE + 1) * i + j, b = a + 1, c = a + SIDE + 1, d = c + 1;
+            memcpy(corners + 3 * count, (const uint32_t[]) { a, b, c, b, d, c }, 6 * sizeof *corners);
+            sizes[count++] = 3;
+            sizes[count++] = 3;
+        }
+    glint_mesh_desc d = glint_mesh_desc_default();
+    d.vertices = &vertices[0][0];
+    d.vertex_count = (SIDE + 1) * (SIDE + 1);
+    d.corners = corners;
+    d.face_sizes = sizes;
+    d.face_count = count;
+    assert_int_equal(glint_mesh_create(&d, &shape, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
+    glint_shape_release(shape);
+}
+
+/// A ball among the triangles.
+static void add_ball(glint_scene *scene, const place *at, const double center[3], double radius)
+{
+    glint_shape *shape;
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    put(at, center, d.center);
+    d.radius = radius * at->scale;
+    assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
+    glint_shape_release(shape);
+}
+
+static glint_scene *lit_scene(const place *at, const double eye[3], const double light[3], bool directional)
+{
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_light *lamp;
+    glint_camera_desc c = glint_camera_desc_default();
+    put(at, eye, c.eye);
+    put(at, (const double[3]) { 0, 0, 0 }, c.at);
+    c.fov_y_rad = draw(2) ? 0.5 : uniform(0.05, 1.5);
+    glint_light_desc l = glint_light_desc_default(directional ? GLINT_LIGHT_DIRECTIONAL : GLINT_LIGHT_POINT);
+    put(at, light, l.position);
+    for (int k = 0; k < 3; k++)
+        l.direction[k] = -light[k];
+    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&l, &lamp, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_set(scene, &(glint_scene_desc) { .camera = camera }, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_light(scene, lamp, NULL), GLINT_OK);
+    glint_camera_release(camera);
+    glint_light_release(lamp);
+    return scene;
+}
+
+/// Sheets one behind the other, some in planes that the eye or the light is in, some through the eye, some that shadow
+/// themselves in nothing but their bumps.
+static glint_scene *sheets(uint64_t seed, glint_precision precision)
+{
+    state = seed * 77;
+    place at = { pow(2, uniform(-10, 10)), { 0, 0, 0 } };
+    for (int c = 0; c < 3 && draw(2) && precision == GLINT_DOUBLE; c++)
+        at.move[c] = at.scale * uniform(-1, 1) * pow(10, uniform(0, 7));
+    const double eye[3] = { draw(2) ? 0 : uniform(-2, 2), draw(2) ? 0 : uniform(-2, 2), 8 };
+    const double light[3] = { draw(3) ? uniform(-6, 6) : 0, draw(3) ? uniform(-6, 6) : 0, draw(4) ? uniform(1, 9) : 8 };
+    glint_scene *scene = lit_scene(&at, eye, light, draw(3) == 0);
+    for (int i = 0, count = 2 + (int)draw(3); i < count; i++) {
+        const double z = uniform(-3, 3), wide = pow(10, uniform(-0.7, 0.8)), bumps = draw(2) ? 0 : 0.3 * wide / SIDE;
+        double corner[3] = { -wide / 2, -wide / 2, z }, across[3] = { wide, 0, 0 }, down[3] = { 0, wide, 0 };
+        const double *from = draw(2) ? eye : light;
+        switch (precision == GLINT_FLOAT ? 1 + draw(4) : draw(5)) {
+        case 0: // in a plane with the eye or the light; in float, anything may be met there
+            for (int c = 0; c < 3; c++)
+                down[c] = (from[c] - corner[c]) * (draw(3) ? 0.5 : 1.5);
+            break;
+        case 1: // around it
+            for (int c = 0; c < 3; c++)
+                corner[c] = from[c] - across[c] / 2 - down[c] / 2 + (c == 2 ? uniform(-0.1, 0.1) : 0);
+            break;
+        case 2: // a grid whose corners are seen at middles of pixels, more or less
+            across[0] = down[1] = SIDE * (8 - z) * 2 * tan(0.25) / SIZE;
+            corner[0] = corner[1] = -across[0] / 2;
+            break;
+        default:
+            across[2] = uniform(-2, 2) * wide;
+            down[2] = uniform(-2, 2) * wide;
+        }
+        add_sheet(scene, &at, corner, across, down, bumps);
+    }
+    if (draw(2))
+        add_ball(scene, &at, (const double[3]) { uniform(-1, 1), uniform(-1, 1), uniform(-1, 4) }, uniform(0.01, 0.5));
+    return scene;
+}
+
+// ---- Pictures ----
+
+static glint_image *render(const glint_scene *scene, const char *isa, glint_precision precision)
+{
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    glint_error error;
+    const glint_renderer_desc r = { .threads = 1, .isa = isa };
+    glint_render_desc d = glint_render_desc_default();
+    d.width = SIZE;
+    d.height = SIZE;
+    d.precision = precision;
+    d.passes = 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_OBJECT_ID;
+    const glint_status status = glint_renderer_create(&r, &renderer, &error);
+    if (status == GLINT_ERR_UNSUPPORTED)
+        return NULL;
+    assert_int_equal(status, GLINT_OK);
+    assert_int_equal(glint_plan_create(scene, &d, &plan, &error), GLINT_OK);
+    assert_int_equal(glint_render(renderer, plan, &image, NULL, &error), GLINT_OK);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+static int differing(const glint_image *a, const glint_image *b, glint_pass pass)
+{
+    int count = 0;
+    for (int y = 0; y < SIZE; y++)
+        for (int x = 0; x < SIZE; x++) {
+            float p[3] = { 0 }, q[3] = { 0 };
+            glint_image_pixel(a, pass, x, y, p, NULL);
+            glint_image_pixel(b, pass, x, y, q, NULL);
+            count += memcmp(p, q, sizeof p) != 0;
+        }
+    return count;
+}
+
+static void no_triangle_is_lost(void **unused)
+{
+    static const char *const sets[] = { "sse2", "avx2", "avx512" };
+    static const glint_pass passes[] = { GLINT_PASS_OBJECT_ID, GLINT_PASS_DEPTH, GLINT_PASS_BEAUTY };
+    (void)unused;
+    for (uint64_t seed = 1; seed <= SEEDS; seed++) {
+        const glint_precision precision = seed % 3 ? GLINT_DOUBLE : GLINT_FLOAT;
+        glint_scene *scene = sheets(seed, precision);
+        glint_image *want = render(scene, "ref", precision);
+        for (int i = 0; i < 3; i++) {
+            glint_image *got = render(scene, sets[i], precision);
+            for (int k = 0; k < 3 && got; k++)
+                if (differing(want, got, passes[k]))
+                    fail_msg("seed %d, %s, precision %d, pass %d: %d pixels", (int)seed, sets[i], (int)precision,
+                             (int)passes[k], differing(want, got, passes[k]));
+            glint_image_release(got);
+        }
+        glint_image_release(want);
+        glint_scene_release(scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(no_triangle_is_lost) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
