@@ -216,10 +216,9 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     } else if (known) {
         glint_tile_book(tile, frame, GLINT_STAGE_CAST, true);
     } else {
-        const bool in_sight = glint_tile_in_sight(tile, frame);
-        if (in_sight)
+        if (glint_tile_in_sight(tile, frame))
             need_rays(tile, frame, w);
-        glint_tile_cast(tile, frame, in_sight);
+        glint_tile_cast(tile, frame);
     }
     if (plan->runs[GLINT_STAGE_GLOW]) {
         if (glint_tile_glow_in_sight(tile, frame)) {

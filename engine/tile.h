@@ -89,6 +89,7 @@ typedef struct glint_tile {
     bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     glint_camera_args camera; ///< of the current sample
+    glint_cast_view view; ///< of the frame's cameras
     glint_point_box box; ///< what at.box points to
     uint32_t sample; ///< which it is
     glint_tile_sample at;
@@ -133,8 +134,8 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sa
 void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame);
 /// False: no ray of the tile hits anything. Not booked.
 bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
-/// `in_sight` false: nothing is hit, and no rays need to have been made.
-void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight);
+/// What is not in sight needs no rays.
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
 /// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);

@@ -7,6 +7,7 @@
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
 {
     bool good = true;
+    tile->view.made = false; // another frame's
     if (plan->runs[GLINT_STAGE_INDIRECT]) { // its size is the plan's
         glint_indirect_destroy(tile->indirect);
         good = (tile->indirect = glint_indirect_create(plan)) != NULL;

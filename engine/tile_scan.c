@@ -52,6 +52,7 @@ void glint_tile_scan(glint_tile *tile, const glint_tile_frame *frame, const glin
         return;
     glint_cast_args others = *args;
     others.geometry = &scan->others;
+    others.view = NULL;
     others.t = tile->beside->t;
     others.prim = tile->beside->prim;
     others.hits = tile->beside->hits;

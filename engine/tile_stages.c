@@ -72,58 +72,61 @@ void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_book(tile, frame, GLINT_STAGE_CAMERA, false);
 }
 
-static glint_cast_args cast_args(glint_tile *tile, const glint_tile_frame *frame)
+static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint_cast_args *args)
 {
-    glint_cast_args args = { .group_count = tile->group_count,
-                             .active = tile->active,
-                             .geometry = &frame->geometry,
-                             .stop = frame->cancelled,
-                             .camera = &tile->camera,
-                             .parallel = frame->plan->camera.orthographic,
-                             .t = tile->at.t,
-                             .prim = tile->at.prim,
-                             .hits = tile->at.hits };
+    *args = (glint_cast_args) { .group_count = tile->group_count,
+                                .active = tile->active,
+                                .geometry = &frame->geometry,
+                                .stop = frame->cancelled,
+                                .camera = &tile->camera,
+                                .view = &tile->view,
+                                .parallel = frame->plan->camera.orthographic,
+                                .t = tile->at.t,
+                                .prim = tile->at.prim,
+                                .hits = tile->at.hits };
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->origin[c];
-        args.direction[c] = tile->direction[c];
+        args->origin[c] = tile->origin[c];
+        args->direction[c] = tile->direction[c];
     }
-    return args;
 }
 
 bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_cast_args args = cast_args(tile, frame);
+    glint_cast_args args;
     if (frame->scan)
         return glint_tile_scan_in_sight(tile, frame);
-    return frame->plan->camera.orthographic || frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
+    if (frame->plan->camera.orthographic)
+        return true;
+    set_cast_args(tile, frame, &args);
+    return frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
 }
 
-static void hit_nothing(glint_tile *tile, glint_precision precision)
+/// Pixels that a sample of is taken.
+static uint64_t count_active(const glint_tile *tile)
 {
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        if (precision == GLINT_FLOAT)
-            ((float *)tile->at.t)[i] = HUGE_VALF;
-        else
-            ((double *)tile->at.t)[i] = HUGE_VAL;
-        tile->at.prim[i] = GLINT_MISS;
+    uint64_t count = 0, four;
+    uint32_t g = 0;
+    for (; g + 4 <= tile->group_count; g += 4) {
+        memcpy(&four, tile->active + g, sizeof four);
+        count += (uint64_t)__builtin_popcountll(four);
     }
-    memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
+    for (; g < tile->group_count; g++)
+        count += (uint64_t)__builtin_popcount(tile->active[g]);
+    return count;
 }
 
-void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame, bool in_sight)
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
 {
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
-    const glint_cast_args args = cast_args(tile, frame);
-    if (!in_sight)
-        hit_nothing(tile, frame->plan->desc.precision);
-    else if (frame->scan)
+    glint_cast_args args;
+    set_cast_args(tile, frame, &args);
+    if (frame->scan)
         glint_tile_scan(tile, frame, &args);
     else if (frame->plan->camera.orthographic)
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        tile->counts.primary += (unsigned)__builtin_popcount(tile->active[g]);
+    tile->counts.primary += count_active(tile);
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 

@@ -53,9 +53,11 @@ static bool any_hit(uint32_t groups)
     return false;
 }
 
-static void check_sight(const ray_case *c)
+static void check_sight(const ray_case *c, glint_cast_view *view)
 {
-    if (geometry(c->precision)->in_sight(&c->cast))
+    glint_cast_args args = c->cast;
+    args.view = view;
+    if (geometry(c->precision)->in_sight(&args))
         return;
     out_of_sight++;
     if (!any_hit(c->cast.group_count))
@@ -64,7 +66,8 @@ static void check_sight(const ray_case *c)
     printf("in_sight %s, seed %llu: false, but something is hit\n", running->name, (unsigned long long)case_seed);
 }
 
-static void cast_all(const ray_case *c)
+/// views: one for each instruction set, or NULL.
+static void cast_with(const ray_case *c, glint_cast_view views[])
 {
     static const char *const names[RAY_KINDS] = { "cast_bundle", "cast_rays, orthographic", "cast_rays, parallel",
                                                   "cast_rays" };
@@ -75,12 +78,15 @@ static void cast_all(const ray_case *c)
         args.t = output("t", real_kind(c->precision), n);
         args.prim = output("prim", KIND_U32, n);
         args.hits = output("hits", KIND_U16, args.group_count);
+        args.view = views ? &views[isa_] : NULL;
         cast_on(running, c, &args);
         compare_outputs(names[c->kind]);
         if (c->kind == RAYS_OF_EYE)
-            check_sight(c);
+            check_sight(c, args.view);
     }
 }
+
+static void cast_all(const ray_case *c) { cast_with(c, NULL); }
 
 /// Now and then what nobody expects in a ray; not a direction next to nothing, whose square is 0 in float.
 static void spoil_rays(ray_case *c)
@@ -173,6 +179,47 @@ static void test_in_sight(void **state)
     out_of_sight = 0;
     run_cases(CASES, 3000, neighbour_case);
     assert_true(out_of_sight > 0);
+}
+
+/// Another tile of the picture, most often the next one, and another place in the pixels.
+static void move_tile(ray_case *c)
+{
+    glint_camera_args *camera = &c->camera;
+    const double x0 = camera->x0 + (double)GLINT_TILE_WIDTH * (below(3) - 1.0);
+    const double y0 = camera->y0 + (double)GLINT_TILE_HEIGHT * (below(3) - 1.0);
+    camera->x0 = x0 < 0 || x0 >= camera->width ? 0 : x0;
+    camera->y0 = y0 < 0 || y0 >= camera->height ? 0 : y0;
+    for (int k = 0; k < 2; k++)
+        camera->offset[k] = one_in(2) ? below(2) : between(0, 1);
+    shoot_camera(c);
+}
+
+/// Tiles of one picture, each with what the calls before it left.
+static void cast_tiles(ray_case *c)
+{
+    static glint_cast_view views[sizeof tested / sizeof *tested];
+    memset(views, 0, sizeof views);
+    for (int round = 0; round < 4; round++) {
+        if (round)
+            free_arrays(wanted, &wanted_count);
+        cast_with(c, views);
+        move_tile(c);
+    }
+}
+
+static void tiles_case(int precision, bool odd)
+{
+    (void)odd;
+    ray_case c;
+    start_rays(&c, RAYS_OF_EYE, precision);
+    cast_tiles(&c);
+    end_rays(&c);
+}
+
+static void test_tiles(void **state)
+{
+    (void)state;
+    run_cases(CASES, 3800, tiles_case);
 }
 
 // ---- From afar ---------------------------------------------------------------------------------------------------
@@ -338,7 +385,7 @@ static void filled_case(int precision, bool odd)
     c.cast = (glint_cast_args) {
         .group_count = c.camera.group_count, .active = active, .geometry = &scene.table, .camera = &c.camera
     };
-    cast_all(&c);
+    cast_tiles(&c);
     const uint16_t *hits = array_elements(wanted_array("hits"));
     for (uint32_t g = 0; g < c.camera.group_count; g++)
         groups_filled += hits[g] == 0xffff;
@@ -564,7 +611,7 @@ int main(void)
         cmocka_unit_test(test_camera),    cmocka_unit_test(test_cast),    cmocka_unit_test(test_in_sight),
         cmocka_unit_test(test_from_afar), cmocka_unit_test(test_borders), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_surface),   cmocka_unit_test(test_leaving), cmocka_unit_test(test_lit_surface),
-        cmocka_unit_test(test_filled),
+        cmocka_unit_test(test_filled),    cmocka_unit_test(test_tiles),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

@@ -28,11 +28,12 @@ typedef struct R(candidate) {
     real f[3], c; ///< see R(offset) and R(offset_constant)
     float base[3], along_s[3],
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
-        ///< fast a ray nears a plane
+    ///< fast a ray nears a plane
     float limit; ///< sphere: square of how long f x d may be; triangle: how far below 0 e may be
     real corner[3][3]; ///< of a triangle, from the eye
     // what cover.h knows of it
     float outer, inner; ///< round: how long f x d may be; is where the ray hits for certain. < 0: nothing is certain
+    float turn[2]; ///< round: lengths of along_s and along_t
     float around; ///< round: how long what f x d changes by is, from the middle of a group to its corner
     float ahead[3], sway; ///< sphere: of b; how much that changes
     float power; ///< t of a hit is this divided by ... > 0; 0: nothing is known of it
@@ -331,11 +332,11 @@ static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candida
             }
 }
 
-static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
+/// The tile's rays, as make_candidate and make_cover ask about them.
+static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
-    tile->scaled = false;
-    tile->deep = false;
+    tile->scaled = tile->deep = false;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
     tile->rr = (float)DOT(args->camera->right, args->camera->right);
     tile->uu = (float)DOT(args->camera->up, args->camera->up);
@@ -343,19 +344,12 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
     tile->spread = 4.00001f * sqrtf(tile->rr + tile->uu);
     tile->across = tile->view.count[0];
     tile->down = tile->view.count[1];
+}
+
+static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
+{
+    R(aim_tile)(args, tile);
     for (int y = 0; y < tile->down; y++)
         for (int x = 0; x < SCREEN_ACROSS; x++)
             tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
-}
-
-static bool R(in_sight)(const glint_cast_args *args)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    screen_view view;
-    node_on_screen seen;
-    R(aim_screen)(args->camera, geometry, &view);
-    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
-        if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))
-            return true;
-    return geometry->nodes && boxes_on_screen(geometry->nodes, &view, &seen);
 }

@@ -123,7 +123,7 @@ static inline uint64_t R(whole_groups)(const R(tile_cast) * tile, uint64_t group
 /// Every group and the first candidates.
 static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[])
 {
-    const uint64_t all = R(groups_of)(bit_range(0, tile->across - 1), bit_range(0, tile->down - 1));
+    const uint64_t all = R(all_groups)(tile);
     uint64_t sure[GLINT_FIRST_CANDIDATES], any = 0, several = 0, filled = 0;
     R(cover_tile)(tile, candidates, count, may, sure);
     for (int k = 0; k < count; k++) {
@@ -276,7 +276,27 @@ static int R(open_planes)(R(tile_cast) * tile, uint32_t *next, R(candidate) * ca
     return found;
 }
 
-static void R(cast_bundle)(const glint_cast_args *args)
+/// Of a scene with few primitives.
+static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
+{
+    R(tile_cast) tile;
+    const R(candidate) * list[GLINT_FIRST_CANDIDATES];
+    uint64_t may[GLINT_FIRST_CANDIDATES];
+    const int count = R(candidates_in)(view, args->camera, list);
+    tile.args = args;
+    tile.scaled = tile.deep = false;
+    tile.rr = view->rr;
+    tile.uu = view->uu;
+    tile.spread = view->spread;
+    tile.across = (int)args->camera->groups_across;
+    tile.down = (int)(args->camera->group_count / args->camera->groups_across);
+    for (int k = 0; k < count; k++)
+        may[k] = R(all_groups)(&tile);
+    R(cast_first)(&tile, list, count, may);
+}
+
+/// Of a scene with many.
+static void R(cast_many)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;
     R(tile_cast) tile;
@@ -295,7 +315,7 @@ static void R(cast_bundle)(const glint_cast_args *args)
         R(make_cover)(&tile, &candidates[k]);
         list[k] = &candidates[k];
         if (k >= rooted)
-            may[k] = R(groups_of)(bit_range(0, tile.across - 1), bit_range(0, tile.down - 1));
+            may[k] = R(all_groups)(&tile);
     }
     tile.deep = height > 0 || planes < geometry->unbounded_count;
     R(cast_first)(&tile, list, count, may);
@@ -306,4 +326,33 @@ static void R(cast_bundle)(const glint_cast_args *args)
     R(walk_tile)(&tile, stack, height);
     for (uint32_t g = 0; g < args->group_count; g++)
         R(finish_group)(args, g);
+}
+
+static void R(cast_bundle)(const glint_cast_args *args)
+{
+    glint_cast_view own;
+    own.made = false;
+    const R(cast_view) *view = R(view_of)(args, &own);
+    if (view->few)
+        R(cast_few)(args, view);
+    else
+        R(cast_many)(args);
+}
+
+static bool R(in_sight)(const glint_cast_args *args)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    glint_cast_view own;
+    own.made = false;
+    const R(cast_view) *few = R(view_of)(args, &own);
+    const R(candidate) * list[GLINT_FIRST_CANDIDATES];
+    screen_view view;
+    node_on_screen seen;
+    if (few->few)
+        return R(candidates_in)(few, args->camera, list) > 0;
+    R(aim_screen)(args->camera, geometry, &view);
+    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
+        if (R(plane_ahead)(args->camera, &view, &geometry->prims[geometry->unbounded[i]]))
+            return true;
+    return geometry->nodes && boxes_on_screen(geometry->nodes, &view, &seen);
 }

@@ -14,6 +14,11 @@ static inline uint64_t R(groups_of)(unsigned columns, unsigned rows)
     return groups;
 }
 
+static inline uint64_t R(all_groups)(const R(tile_cast) * tile)
+{
+    return R(groups_of)(bit_range(0, tile->across - 1), bit_range(0, tile->down - 1));
+}
+
 INNER bool R(is_round)(const R(candidate) * candidate)
 {
     return candidate->prim->kind == GLINT_PRIM_SPHERE || candidate->prim->kind == GLINT_PRIM_SOLID;
@@ -44,7 +49,7 @@ static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) 
 static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
 {
     const double c = candidate->c, height = fabs(c);
-    double diagonal2[2] = { 0, 0 };
+    double diagonal2[2] = { 0, 0 }, s2 = 0, t2 = 0;
     candidate->outer = sqrtf(candidate->limit) * (1 + 0x1p-20f);
     candidate->inner = -1;
     candidate->power = 0;
@@ -53,6 +58,12 @@ static void R(make_cover)(const R(tile_cast) * tile, R(candidate) * candidate)
             const double s = candidate->along_s[k], t = candidate->along_t[k], way = i ? s + t : s - t;
             diagonal2[i] += way * way;
         }
+    for (int k = 0; k < 3; k++) {
+        s2 += (double)candidate->along_s[k] * (double)candidate->along_s[k];
+        t2 += (double)candidate->along_t[k] * (double)candidate->along_t[k];
+    }
+    candidate->turn[0] = (float)sqrt(s2);
+    candidate->turn[1] = (float)sqrt(t2);
     candidate->around = (float)(4.00001 * sqrt(fmax(diagonal2[0], diagonal2[1])));
     if (candidate->prim->kind == GLINT_PRIM_SPHERE) {
         R(make_sphere_cover)(tile, candidate);

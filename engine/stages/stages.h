@@ -164,12 +164,20 @@ typedef struct glint_camera_args {
 
 // ---- cast: the nearest hit of each ray ----
 
+/// What a camera sees of a table from wherever on its picture: made by the first call, of use to those after it.
+typedef struct glint_cast_view {
+    _Alignas(64) unsigned char room[8128]; ///< the kernels' own
+    bool made; ///< false before the first call
+} glint_cast_view;
+
 typedef struct glint_cast_args {
     uint32_t group_count;
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
     const glint_geometry_table *geometry;
     const atomic_bool *stop; ///< true: the results do not matter any more; NULL: they do
     const glint_camera_args *camera; ///< cast_bundle only: the rays
+    glint_cast_view *view; ///< in_sight and cast_bundle only: shared by calls of one thread whose geometry, and whose
+        ///< camera but for tile and offset, are the same; NULL: nothing is shared
     bool parallel; ///< cast_rays only: the directions of a group are all the same
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: none of
@@ -180,7 +188,8 @@ typedef struct glint_cast_args {
     uint16_t *hits; ///< out: a bit a lane
 } glint_cast_args;
 #define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
-// in_sight reads active, geometry and camera alone: false: no ray of the camera's tile can hit anything.
+// in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then
+// cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
 // id is lower). Index and filter are free to reject what the decision below would miss, and no more.
 // sphere, real:   f = (origin - center) * scale (a bundle's origin is the eye), c = exact_c(f, prim)
