@@ -128,22 +128,14 @@ static const field scene_fields[] = {
 
 static const field render_fields[] = {
 #define R(...) FIELD(glint_render_desc, __VA_ARGS__)
-    R(width, WHOLE, 60, 75),
-    R(height, WHOLE, 40, 55),
-    R(samples, WHOLE, 1, 4),
-    R(adaptive, NUMBER, 0, 0.5),
-    R(max_depth, WHOLE, 0, 4),
-    R(precision, CHOICE, 0, 2),
-    R(seed, WHOLE, 0, 2),
-    R(passes, BITS, 0, GLINT_PASS_COUNT),
-    R(codes, FLAG, 0, 1),
-    R(alpha, FLAG, 0, 1),
-    R(outline, CHOICE, 0, 3),
-    R(tone.curve, CHOICE, 0, 3),
-    R(tone.transfer, CHOICE, 0, 3),
-    R(tone.rounding, CHOICE, 0, 2),
-    R(tone.bits, DEPTH, 0, 0),
-    R(tone.exposure, NUMBER, -2, 3),
+    R(width, WHOLE, 60, 75),        R(height, WHOLE, 40, 55),
+    R(samples, WHOLE, 1, 4),        R(adaptive, NUMBER, 0, 0.5),
+    R(max_depth, WHOLE, 0, 4),      R(precision, CHOICE, 0, 2),
+    R(seed, WHOLE, 0, 2),           R(passes, BITS, 0, GLINT_PASS_COUNT),
+    R(codes, FLAG, 0, 1),           R(alpha, FLAG, 0, 1),
+    R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
+    R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
+    R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
 #undef R
 };
 
@@ -351,10 +343,9 @@ static void make_world(world *w)
     c.eye[1] = 2;
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = w->camera,
-                           .ambient = { 0.1, 0.1, 0.1 },
-                           .indirect_samples = 2,
-                           .indirect_bounces = 2 };
+    glint_scene_desc s = {
+        .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2
+    };
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     for (int i = 0; i < SHAPES; i++) {
         glint_material_desc m = glint_material_desc_default();
@@ -587,11 +578,90 @@ static void a_lamp_that_reaches_nothing(void **unused)
     glint_renderer_destroy(fresh);
 }
 
+static double reused_share(const glint_frame_stats *stats, const char *stage)
+{
+    for (int i = 0; i < stats->stage_count; i++)
+        if (strcmp(stats->stage_name[i], stage) == 0)
+            return stats->stage_reused[i];
+    fail_msg("no stage %s", stage);
+    return 0;
+}
+
+/// A sweep of shininess runs the tiles that the highlight is in: of a ball before the eye lit from beside it, a few. Where
+/// the exponent is so low that the highlight is wherever light is, the others do not stay.
+static void a_highlight_that_a_tile_does_not_show(void **unused)
+{
+    (void)unused;
+    static const double shininess[] = { 2000, 2500, 3000, 1, 2 };
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_shape *ball;
+    glint_light *lamp;
+    glint_material *paint;
+    glint_renderer *renderers[2];
+    glint_shape_desc place = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_light_desc light = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
+    glint_material_desc look = glint_material_desc_default();
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    glint_render_desc render = glint_render_desc_default();
+    glint_camera_desc view = glint_camera_desc_default();
+    view.eye[2] = 4;
+    for (int c = 0; c < 3; c++) {
+        view.at[c] = 0;
+        light.direction[c] = -1;
+        look.specular[c] = 1;
+    }
+    render.width = render.height = 480;
+    render.codes = true;
+    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&view, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&light, &lamp, NULL), GLINT_OK);
+    assert_int_equal(glint_material_create(&look, &paint, NULL), GLINT_OK);
+    place.material = paint;
+    assert_int_equal(glint_shape_create(&place, &ball, NULL), GLINT_OK);
+    glint_scene_desc whole = *glint_scene_get(scene);
+    whole.camera = camera;
+    assert_int_equal(glint_scene_set(scene, &whole, NULL), GLINT_OK);
+    glint_scene_add_shape(scene, ball, NULL);
+    glint_scene_add_light(scene, lamp, NULL);
+    for (int i = 0; i < 2; i++) {
+        desc.no_reuse = i;
+        assert_int_equal(glint_renderer_create(&desc, &renderers[i], NULL), GLINT_OK);
+    }
+    for (int frame = 0; frame < 5; frame++) {
+        glint_plan *plan;
+        glint_image *image[2];
+        glint_frame_stats stats;
+        look.shininess = shininess[frame];
+        assert_int_equal(glint_material_set(paint, &look, NULL), GLINT_OK);
+        assert_int_equal(glint_plan_create(scene, &render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(renderers[1], plan, &image[1], NULL, NULL), GLINT_OK);
+        assert_int_equal(glint_render(renderers[0], plan, &image[0], &stats, NULL), GLINT_OK);
+        const double share = reused_share(&stats, "shade");
+        if (frame == 1 || frame == 2)
+            assert_true(share > 0.95 && share < 1);
+        if (frame == 4)
+            assert_true(share < 0.8);
+        assert_true(same_pixels(image[0], image[1], render.passes));
+        for (int i = 0; i < 2; i++)
+            glint_image_release(image[i]);
+        glint_plan_destroy(plan);
+    }
+    for (int i = 0; i < 2; i++)
+        glint_renderer_destroy(renderers[i]);
+    glint_material_release(paint);
+    glint_light_release(lamp);
+    glint_shape_release(ball);
+    glint_camera_release(camera);
+    glint_scene_release(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tables_name_every_field),
         cmocka_unit_test(a_lamp_that_reaches_nothing),
+        cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
         cmocka_unit_test(reused_equals_fresh),
         cmocka_unit_test(reused_equals_fresh_without_memory),
         cmocka_unit_test(reused_equals_fresh_with_little_memory),

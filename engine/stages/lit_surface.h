@@ -33,9 +33,12 @@ INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_arg
             point->normal[k] = found.normal[k];
             point->direction[k] = found.direction[k];
         }
-        point->aimed = point->viewed = true;
-        point->a = DOT(found.direction, found.direction);
-        point->nv = r_select(found.back, found.away, -found.away);
+        point->aimed = true;
+        point->viewed = highlight != GLINT_HIGHLIGHT_NONE;
+        if (point->viewed) {
+            point->a = DOT(found.direction, found.direction);
+            point->nv = r_select(found.back, found.away, -found.away);
+        }
         R(light_lanes)(light, LIGHT_PLAIN, 0, NULL, at, i, 0xffff, point, group);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);
