@@ -1,13 +1,20 @@
 // resolve: the mean of several samples. Contract: stages.h.
 
-/// Adds one term that shade does not make.
-static inline void resolve_further(const glint_resolve_args *args, int term, size_t at)
+/// sum / samples. `inverse`: of a power of two, whose product with anything is that quotient; else 0.
+static inline vd mean_of(vd sum, double samples, double inverse)
 {
-    const vd samples = d_set(args->samples);
+    if (inverse > 0)
+        return sum * d_set(inverse);
+    return sum / d_set(samples);
+}
+
+/// Adds one term that shade does not make.
+static inline void resolve_further(const glint_resolve_args *args, double inverse, int term, size_t at)
+{
     _Alignas(64) float mean[GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < GLINT_GROUP; i += VD)
-            d_store_f(mean + i, d_load(args->sum[term][c] + at + i) / samples);
+            d_store_f(mean + i, mean_of(d_load(args->sum[term][c] + at + i), args->samples, inverse));
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             const vf x = f_load(mean + i);
             if (args->film[term][c])
@@ -19,17 +26,18 @@ static inline void resolve_further(const glint_resolve_args *args, int term, siz
 
 static void resolve(const glint_resolve_args *args)
 {
-    const vd samples = d_set(args->samples);
+    int exponent;
+    const double inverse = frexp(args->samples, &exponent) == 0.5 ? 1 / args->samples : 0;
     group_terms terms;
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         for (int k = 0; k < GLINT_TERM_LOCAL; k++)
             for (int c = 0; c < 3; c++)
                 for (int i = 0; i < GLINT_GROUP; i += VD)
-                    d_store_f(terms.term[k][c] + i, d_load(args->sum[k][c] + at + i) / samples);
+                    d_store_f(terms.term[k][c] + i, mean_of(d_load(args->sum[k][c] + at + i), args->samples, inverse));
         finish_terms(&terms, args->film, args->beauty, at);
         for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
             if (args->sum[k][0])
-                resolve_further(args, k, at);
+                resolve_further(args, inverse, k, at);
     }
 }

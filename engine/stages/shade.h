@@ -153,21 +153,30 @@ static inline float share_color(double reflectance, double light)
     return color < FLT_MAX ? (float)color : FLT_MAX;
 }
 
-/// One light's share of a term in float, for a group: factor times kd Id or ks Is.
-static inline void light_share(const light_factors *factors, const glint_shade_material *material, uint32_t k, int term,
-                               int c, float share[GLINT_GROUP])
+/// What one light's share of a term is in a channel: factor times kd Id or ks Is, and what microfacets add to that.
+typedef struct light_share {
+    const float *factor, *grazing; ///< grazing NULL: nothing
+    float color, rise;
+} light_share;
+
+static inline light_share share_of(const light_factors *factors, const glint_shade_material *material, uint32_t k,
+                                   int term, int c)
 {
     const glint_shade_light *light = factors->light[k];
-    const float color = term ? share_color(material->specular[c], light->specular[c])
-                             : share_color(material->diffuse[c], light->diffuse[c]);
-    const float *factor = term ? factors->specular[k] : factors->diffuse[k];
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        f_store(share + i, f_load(factor + i) * f_set(color));
-    if (!term || !has_facets(material))
-        return;
-    const float rise = share_color(material->grazing[c], light->specular[c]);
-    for (int i = 0; i < GLINT_GROUP; i += VF)
-        f_store(share + i, f_load(share + i) + f_load(factors->grazing[k] + i) * f_set(rise));
+    if (!term)
+        return (light_share) { factors->diffuse[k], NULL, share_color(material->diffuse[c], light->diffuse[c]), 0 };
+    return (light_share) { factors->specular[k], has_facets(material) ? factors->grazing[k] : NULL,
+                           share_color(material->specular[c], light->specular[c]),
+                           has_facets(material) ? share_color(material->grazing[c], light->specular[c]) : 0 };
+}
+
+/// One vector of it.
+static inline vf share_lanes(const light_share *share, int i)
+{
+    vf x = f_load(share->factor + i) * f_set(share->color);
+    if (share->grazing)
+        x = x + f_load(share->grazing + i) * f_set(share->rise);
+    return x;
 }
 
 /// A group's terms in float, before they are added up.
@@ -182,20 +191,26 @@ static inline void put_float(float *to, fm mask, vf x) { f_store(to, f_select(ma
 static inline void add_shares(const light_factors *factors, const glint_shade_material *material, int term, int c,
                               float sum[GLINT_GROUP])
 {
-    _Alignas(64) double total[GLINT_GROUP];
-    _Alignas(64) float share[GLINT_GROUP];
-    light_share(factors, material, 0, term, c, sum);
+    vd total[GLINT_GROUP / VD];
+    light_share share = share_of(factors, material, 0, term, c);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const vf first = share_lanes(&share, i);
+        f_store(sum + i, first);
+        f_split(first, &total[i / VD]);
+    }
     if (factors->count == 1)
         return;
-    for (int i = 0; i < GLINT_GROUP; i += VD)
-        d_store(total + i, d_load_f(sum + i));
     for (uint32_t k = 1; k < factors->count; k++) {
-        light_share(factors, material, k, term, c, share);
-        for (int i = 0; i < GLINT_GROUP; i += VD)
-            d_store(total + i, d_load(total + i) + d_load_f(share + i));
+        share = share_of(factors, material, k, term, c);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vd next[VF / VD];
+            f_split(share_lanes(&share, i), next);
+            for (int h = 0; h < VF / VD; h++)
+                total[i / VD + h] = total[i / VD + h] + next[h];
+        }
     }
     for (int i = 0; i < GLINT_GROUP; i += VD)
-        d_store_f(sum + i, d_load(total + i));
+        d_store_f(sum + i, total[i / VD]);
 }
 
 /// One material's lanes of a group whose terms are final: no sums in memory.
@@ -219,26 +234,32 @@ static inline void shade_direct(const glint_shade_material *material, bool specu
 
 static inline dm lane_mask(unsigned lanes, int i) { return dm_from_bits(lanes >> i & ((1u << VD) - 1)); }
 
-static inline void add_where(double *to, dm mask, vd x)
+/// Adds to one vector of a sum in the lanes given; `whole`: these are all, of the group.
+static inline void add_where(double *sum, int i, bool whole, unsigned lanes, vd x)
 {
-    vd old = d_load(to);
-    d_store(to, d_select(mask, old + x, old));
+    const vd old = d_load(sum + i);
+    vd now = old + x;
+    if (!whole)
+        now = d_select(lane_mask(lanes, i), now, old);
+    d_store(sum + i, now);
 }
 
-/// One material's lanes of a group, added to sums over samples and lights.
+/// One material's lanes of a group, added to sums over samples and lights. `whole`, a constant: all lanes.
 static inline void shade_sums(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                              const light_factors *factors, size_t at, unsigned lanes)
+                              const light_factors *factors, size_t at, bool whole, unsigned lanes)
 {
-    _Alignas(64) float share[GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
         for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
-            add_where(args->sum[GLINT_TERM_AMBIENT][c] + at + i, lane_mask(lanes, i), d_set(material->ambient[c]));
+            add_where(args->sum[GLINT_TERM_AMBIENT][c] + at, i, whole, lanes, d_set(material->ambient[c]));
         for (int kind = 0; kind < (specular ? 2 : 1); kind++)
             for (uint32_t k = 0; k < factors->count; k++) {
-                light_share(factors, material, k, kind, c, share);
-                for (int i = 0; i < GLINT_GROUP; i += VD)
-                    add_where(args->sum[GLINT_TERM_DIFFUSE + kind][c] + at + i, lane_mask(lanes, i),
-                              d_load_f(share + i));
+                const light_share share = share_of(factors, material, k, kind, c);
+                for (int i = 0; i < GLINT_GROUP; i += VF) {
+                    vd halves[VF / VD];
+                    f_split(share_lanes(&share, i), halves);
+                    for (int h = 0; h < VF / VD; h++)
+                        add_where(args->sum[GLINT_TERM_DIFFUSE + kind][c] + at, i + h * VD, whole, lanes, halves[h]);
+                }
             }
     }
 }
@@ -322,10 +343,10 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
         }
         if (direct && left != 0xffff)
             start_direct(args, g, &terms);
-        else if (!direct && args->first)
+        else if (!direct && args->first && args->active[g] & ~left)
             for (int c = 0; c < 3; c++)
                 for (int i = 0; i < GLINT_GROUP; i += VD)
-                    add_where(args->sum[GLINT_TERM_BACKGROUND][c] + at + i, lane_mask(args->active[g] & ~left, i),
+                    add_where(args->sum[GLINT_TERM_BACKGROUND][c] + at, i, false, args->active[g] & ~left,
                               d_set(args->background[c]));
         bool done = false;
         while (left) {
@@ -344,8 +365,10 @@ static inline void shade_groups(const glint_shade_args *args, bool direct)
             left &= ~lanes;
             if (direct)
                 shade_direct(material, specular, &factors, lanes, &terms);
+            else if (lanes == 0xffff)
+                shade_sums(args, material, specular, &factors, at, true, lanes);
             else
-                shade_sums(args, material, specular, &factors, at, lanes);
+                shade_sums(args, material, specular, &factors, at, false, lanes);
         }
         if (direct && !done)
             finish_terms(&terms, args->film, args->beauty, at);

@@ -120,13 +120,19 @@ static inline dm dm_andnot(dm a, dm b) { return a & (dm)~b; }
 static inline unsigned dm_bits(dm m) { return m; }
 static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
 
-static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
 
 /// Two vectors of doubles, rounded.
 static inline vf f_join(vd low, vd high)
 {
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high), 1);
+}
+
+/// The other way.
+static inline void f_split(vf x, vd out[2])
+{
+    out[0] = _mm512_cvtps_pd(_mm512_castps512_ps256(x));
+    out[1] = _mm512_cvtps_pd(_mm512_extractf32x8_ps(x, 1));
 }
 
 /// p = i in the lanes of the mask.
