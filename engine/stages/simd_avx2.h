@@ -128,6 +128,7 @@ static inline dm dm_from_bits(unsigned bits)
     return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x((int)bits), lane), lane));
 }
 
+static inline vd d_load_f(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm_store_ps(p, _mm256_cvtpd_ps(x)); }
 
 /// Two vectors of doubles, rounded.

@@ -120,6 +120,7 @@ static inline dm dm_andnot(dm a, dm b) { return a & (dm)~b; }
 static inline unsigned dm_bits(dm m) { return m; }
 static inline dm dm_from_bits(unsigned bits) { return (dm)bits; }
 
+static inline vd d_load_f(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline void d_store_f(float *p, vd x) { _mm256_store_ps(p, _mm512_cvtpd_ps(x)); }
 
 /// Two vectors of doubles, rounded.

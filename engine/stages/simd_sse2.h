@@ -109,6 +109,10 @@ static inline dm dm_from_bits(unsigned bits)
     return _mm_castsi128_pd(_mm_set_epi64x(-(long long)(bits >> 1 & 1), -(long long)(bits & 1)));
 }
 
+static inline vd d_load_f(const float *p)
+{
+    return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)p)));
+}
 static inline void d_store_f(float *p, vd x) { _mm_storel_epi64((__m128i *)p, _mm_castps_si128(_mm_cvtpd_ps(x))); }
 
 /// Two vectors of doubles, rounded.
