@@ -17,6 +17,17 @@ function tally.near(got, want, tolerance, name)
   tally.check(math.abs(got - want) <= tolerance, "%s: %.9g expected within %.2g, got %.9g", name, want, tolerance, got)
 end
 
+-- Runs the functions of a table by their names' order; one that stops is a failed check.
+function tally.run(tests)
+  local names = {}
+  for name in pairs(tests) do names[#names + 1] = name end
+  table.sort(names)
+  for _, name in ipairs(names) do
+    local ok, message = xpcall(tests[name], debug.traceback)
+    tally.check(ok, "%s stopped: %s", name, message)
+  end
+end
+
 -- Prints the totals and ends the process: 0 when nothing failed.
 function tally.finish()
   print(("%d passed, %d failed"):format(tally.passed, tally.failed))

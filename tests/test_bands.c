@@ -1,21 +1,12 @@
 /// Deflate in bands of rows: whatever was kept from the picture before, the file is that of a fresh encode.
 #include "tests/image_case.h"
+#include "tests/random.h"
 
 #include "engine/image/write.h"
 
 #include <malloc.h>
 
 enum { PICTURES = 5, STEPS = 150 };
-
-static uint64_t random_state;
-
-static uint32_t below(uint32_t n)
-{
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)(((z ^ z >> 31) >> 32) * n >> 32);
-}
 
 static uint64_t next_stamp(void)
 {
@@ -51,8 +42,8 @@ static glint_image *new_picture(int width, int height, const glint_tone_desc *to
 
 static glint_image *random_picture(void)
 {
-    glint_tone_desc tone = {GLINT_TONE_CLAMP, below(2) ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR,
-                            below(2) ? GLINT_ROUND_NEAREST : GLINT_ROUND_TRUNCATE, below(3) ? 8 : 16, 0};
+    glint_tone_desc tone = { GLINT_TONE_CLAMP, below(2) ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR,
+                             below(2) ? GLINT_ROUND_NEAREST : GLINT_ROUND_TRUNCATE, below(3) ? 8 : 16, 0 };
     int width = below(2) ? 1 + (int)below(100) : 1400 + (int)below(300);
     return new_picture(width, 1 + (int)below(width > 100 ? 150 : 1000), &tone);
 }
@@ -72,7 +63,7 @@ static glint_image *edited(const glint_image *old)
 static glint_bytes encode_ok(const glint_image *image, glint_encode encode, glint_bands *bands, double *reused)
 {
     glint_write_desc desc = describe("x.png");
-    glint_bytes bytes = {0};
+    glint_bytes bytes = { 0 };
     desc.tone = image->code_tone;
     desc.encode = encode;
     glint_error error;
@@ -96,7 +87,7 @@ static double check_same(const glint_image *image, glint_encode encode, glint_ba
 
 static void drive(glint_bands *bands, glint_encode encode)
 {
-    glint_image *picture[PICTURES] = {0};
+    glint_image *picture[PICTURES] = { 0 };
     int partly = 0, wholly = 0;
     uint32_t last = 0;
     picture[0] = random_picture();
@@ -179,7 +170,7 @@ static void test_bands_other_pass(void **state)
     glint_write_desc desc = describe("x.png");
     desc.pass = GLINT_PASS_NORMAL;
     for (int i = 0; i < 2; i++) {
-        glint_bytes got = {0}, want = {0};
+        glint_bytes got = { 0 }, want = { 0 };
         double reused = -1;
         assert_int_equal(glint_image_encode(image, &desc, bands, &got, &reused, NULL), GLINT_OK);
         assert_int_equal(glint_image_encode(image, &desc, NULL, &want, NULL, NULL), GLINT_OK);
@@ -199,13 +190,13 @@ static void test_bands_places(void **state)
 {
     (void)state;
     enum { HELD = 64, TIMES = 3000 };
-    void *held[HELD] = {NULL};
+    void *held[HELD] = { NULL };
     glint_tone_desc tone = glint_tone_desc_default();
     random_state = 7;
     (void)mallopt(M_MMAP_THRESHOLD, 1 << 16); // each block in a mapping of its own; a sanitizer places them as it likes
     for (int size = 8; size <= 40; size += 32) {
         glint_image *image = NULL;
-        glint_bytes first = {0};
+        glint_bytes first = { 0 };
         assert_int_equal(glint_image_create(size, size, 0, &tone, &image, NULL), GLINT_OK); // black
         for (int i = 0; i < TIMES; i++) {
             free(held[i % HELD]);

@@ -9,50 +9,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/glint.h"
+#include "tests/floor_scene.h"
+#include "tests/random.h"
 
 #define SIDE 80
 #define PI 3.14159265358979323846264338327950288L
-
-static void add_ball(glint_scene *scene, const double center[3], double radius, double mirror)
-{
-    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
-    glint_material_desc m = glint_material_desc_default();
-    glint_material *material;
-    glint_shape *shape;
-    m.has_mirror = true;
-    m.mirror[0] = mirror;
-    memcpy(d.center, center, sizeof d.center);
-    d.radius = radius;
-    assert_int_equal(glint_material_create(&m, &material, NULL), GLINT_OK);
-    d.material = material;
-    assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
-    glint_shape_release(shape);
-    glint_material_release(material);
-}
-
-/// A floor at y = 0.
-static glint_scene *make_floor(const double eye[3], const double at[3])
-{
-    glint_scene *scene;
-    glint_camera_desc c = glint_camera_desc_default();
-    glint_camera *camera;
-    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_PLANE);
-    glint_shape *floor;
-    memcpy(c.eye, eye, sizeof c.eye);
-    memcpy(c.at, at, sizeof c.at);
-    assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = camera };
-    assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
-    memcpy(d.normal, (double[3]) { 0, 1, 0 }, sizeof d.normal);
-    assert_int_equal(glint_shape_create(&d, &floor, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_add_shape(scene, floor, NULL), GLINT_OK);
-    glint_shape_release(floor);
-    glint_camera_release(camera);
-    return scene;
-}
 
 static glint_light *add_light(glint_scene *scene, const double center[3], double radius, glint_shadow shadow)
 {
@@ -94,19 +55,6 @@ static float diffuse_at(const glint_image *image, int x, int y)
     float p[3];
     assert_int_equal(glint_image_pixel(image, GLINT_PASS_DIFFUSE, x, y, p, NULL), GLINT_OK);
     return p[0];
-}
-
-static int differing(const glint_image *a, const glint_image *b)
-{
-    int count = 0;
-    for (int y = 0; y < glint_image_height(a); y++)
-        for (int x = 0; x < glint_image_width(a); x++) {
-            float p[3], q[3];
-            glint_image_pixel(a, GLINT_PASS_BEAUTY, x, y, p, NULL);
-            glint_image_pixel(b, GLINT_PASS_BEAUTY, x, y, q, NULL);
-            count += memcmp(p, q, sizeof p) != 0;
-        }
-    return count;
 }
 
 // ---- The covered part, by the integral ----
@@ -167,25 +115,17 @@ static void near_share(const double light[3], double light_radius, const double 
                  ball[0], ball[1], ball[2], radius, got, want);
 }
 
-static uint64_t state = 1;
-
-static double uniform(double low, double high)
-{
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return low + (high - low) * (double)(state >> 11) * 0x1p-53;
-}
-
 /// Lights of any size, down to 1e-9 of their distance; balls as large as they look, smaller, larger, next to the point.
 static void parts_of_a_light(void **unused)
 {
     int partial = 0;
     (void)unused;
     for (int n = 0; n < 600; n++) {
-        const double d = pow(10, uniform(-3, 3)), s = n % 3 ? uniform(0.01, 0.6) : pow(10, uniform(-9, -1));
-        const double e = d * (n % 2 ? uniform(0.05, 0.3) : pow(10, uniform(-6, -1)));
-        const double a = n % 5 < 3 ? s * pow(10, uniform(-0.7, 0.7)) : uniform(0.2, 1.2);
-        const double g = a < 1.3 ? (a - s > 0 ? a - s : s - a) + uniform(0, 2) * (a < s ? a : s) : 0;
-        const double tilt = uniform(0, 0.7), turn = uniform(0, 6.28);
+        const double d = pow(10, between(-3, 3)), s = n % 3 ? between(0.01, 0.6) : pow(10, between(-9, -1));
+        const double e = d * (n % 2 ? between(0.05, 0.3) : pow(10, between(-6, -1)));
+        const double a = n % 5 < 3 ? s * pow(10, between(-0.7, 0.7)) : between(0.2, 1.2);
+        const double g = a < 1.3 ? (a - s > 0 ? a - s : s - a) + between(0, 2) * (a < s ? a : s) : 0;
+        const double tilt = between(0, 0.7), turn = between(0, 6.28);
         // the light at an angle `tilt` from above, the ball `g` away from it
         const double light[3] = { d * sin(tilt) * cos(turn), d * cos(tilt), d * sin(tilt) * sin(turn) };
         const double right[3] = { -sin(turn), 0, cos(turn) };
@@ -317,20 +257,6 @@ static void truth_by_samples(void **unused)
 }
 
 // ---- What calls for it ----
-
-static bool has_effect(const glint_scene *scene, const char *effect)
-{
-    glint_render_desc desc = glint_render_desc_default();
-    const glint_effect *list;
-    glint_plan *plan;
-    bool found = false;
-    assert_int_equal(glint_plan_create(scene, &desc, &plan, NULL), GLINT_OK);
-    const size_t count = glint_plan_effects(plan, &list);
-    for (size_t i = 0; i < count; i++)
-        found = found || strcmp(list[i].effect, effect) == 0;
-    glint_plan_destroy(plan);
-    return found;
-}
 
 static void only_where_called_for(void **unused)
 {

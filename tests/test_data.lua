@@ -588,11 +588,5 @@ function tests.photometric()
   end
 end
 
-local names = {}
-for name in pairs(tests) do names[#names + 1] = name end
-table.sort(names)
-for _, name in ipairs(names) do
-  local ok, message = xpcall(tests[name], debug.traceback)
-  check(ok, "%s: %s", name, message)
-end
+tally.run(tests)
 tally.finish()

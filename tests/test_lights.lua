@@ -272,11 +272,5 @@ function tests.seeds_and_blocks()
   near(a / b, 1, 2e-3, "as much light with any seed")
 end
 
-local names = {}
-for name in pairs(tests) do names[#names + 1] = name end
-table.sort(names)
-for _, name in ipairs(names) do
-  local ok, message = xpcall(tests[name], debug.traceback)
-  check(ok, "%s stopped: %s", name, message)
-end
+tally.run(tests)
 tally.finish()

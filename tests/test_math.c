@@ -11,29 +11,15 @@
 #include <string.h>
 
 #include "engine/base/math.h"
+#include "tests/random.h"
 
-#define MAX_ULP 0.51           // results are sums of two doubles, relative error below 2^-60, rounded once
+#define MAX_ULP 0.51 // results are sums of two doubles, relative error below 2^-60, rounded once
 #define MAX_ULP_SUBNORMAL 0.76 // rounded twice
-
-static uint64_t random_state;
-
-static uint64_t random_bits(void)
-{
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static double random_between(double low, double high)
-{
-    return low + (high - low) * (double)(random_bits() >> 11) * 0x1p-53;
-}
 
 /// Any sign and mantissa, exponent uniform in low .. high.
 static double random_scaled(int low, int high)
 {
-    double m = random_between(1, 2);
+    double m = between(1, 2);
     double x = ldexp(m, low + (int)(random_bits() % (uint64_t)(high - low + 1)));
     return random_bits() & 1 ? -x : x;
 }
@@ -93,33 +79,18 @@ static void try_one(worst_case *worst, double (*ours)(double), mpfr_function *th
     mpfr_clear(truth);
 }
 
-static int oracle_sin(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
-{
-    return mpfr_sin(y, x, r);
-}
-static int oracle_cos(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
-{
-    return mpfr_cos(y, x, r);
-}
-static int oracle_tan(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
-{
-    return mpfr_tan(y, x, r);
-}
-static int oracle_exp(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
-{
-    return mpfr_exp(y, x, r);
-}
-static int oracle_log(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r)
-{
-    return mpfr_log(y, x, r);
-}
+static int oracle_sin(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_sin(y, x, r); }
+static int oracle_cos(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_cos(y, x, r); }
+static int oracle_tan(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_tan(y, x, r); }
+static int oracle_exp(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_exp(y, x, r); }
+static int oracle_log(mpfr_t y, mpfr_srcptr x, mpfr_rnd_t r) { return mpfr_log(y, x, r); }
 
 static void check_angle_function(const char *name, double (*ours)(double), mpfr_function *theirs)
 {
-    worst_case worst = {0};
+    worst_case worst = { 0 };
     random_state = 1;
     for (int i = 0; i < 40000; i++) {
-        try_one(&worst, ours, theirs, random_between(-7, 7));
+        try_one(&worst, ours, theirs, between(-7, 7));
         try_one(&worst, ours, theirs, random_scaled(-40, 20));
     }
     for (int i = 0; i < 10000; i++) {
@@ -151,13 +122,13 @@ static void test_angles(void **state)
 static void test_exp_log(void **state)
 {
     (void)state;
-    worst_case e = {0}, l = {0};
+    worst_case e = { 0 }, l = { 0 };
     random_state = 2;
     for (int i = 0; i < 50000; i++) {
-        try_one(&e, glint_exp, oracle_exp, random_between(-746, 710));
+        try_one(&e, glint_exp, oracle_exp, between(-746, 710));
         try_one(&e, glint_exp, oracle_exp, random_scaled(-60, 3));
         try_one(&l, glint_log, oracle_log, fabs(random_scaled(-1074, 1023)));
-        try_one(&l, glint_log, oracle_log, random_between(0.5, 2));
+        try_one(&l, glint_log, oracle_log, between(0.5, 2));
         try_one(&l, glint_log, oracle_log, 1 + random_scaled(-52, -4));
     }
     check_worst("exp", &e);
@@ -183,14 +154,14 @@ static void try_power(worst_case *worst, double x, double y)
 static void test_pow(void **state)
 {
     (void)state;
-    worst_case worst = {0};
+    worst_case worst = { 0 };
     random_state = 3;
     for (int i = 0; i < 60000; i++) {
         double x = fabs(random_scaled(-1074, 1023));
-        try_power(&worst, x, random_between(-740, 709) / log(x));
+        try_power(&worst, x, between(-740, 709) / log(x));
         try_power(&worst, 1 + random_scaled(-52, -2), random_scaled(0, 40));
-        try_power(&worst, random_between(0, 2), random_between(-100, 100));
-        try_power(&worst, random_between(0, 1), 1 / 2.4);
+        try_power(&worst, between(0, 2), between(-100, 100));
+        try_power(&worst, between(0, 1), 1 / 2.4);
     }
     check_worst("pow", &worst);
     for (int base = -40; base <= 40; base++) { // exact where the power is a double
@@ -206,31 +177,31 @@ static void test_pow(void **state)
 static void test_pow_special(void **state)
 {
     (void)state;
-    static const double cases[] = {0.0,
-                                   -0.0,
-                                   1,
-                                   -1,
-                                   2,
-                                   -2,
-                                   0.5,
-                                   -0.5,
-                                   3,
-                                   -3,
-                                   2.5,
-                                   -2.5,
-                                   1e300,
-                                   -1e300,
-                                   1e-300,
-                                   -1e-300,
-                                   0x1p53,
-                                   0x1.fffffffffffffp52,
-                                   -0x1.fffffffffffffp52,
-                                   0x1p-1074,
-                                   -0x1p-1074,
-                                   0x1.fffffffffffffp1023,
-                                   INFINITY,
-                                   -INFINITY,
-                                   NAN};
+    static const double cases[] = { 0.0,
+                                    -0.0,
+                                    1,
+                                    -1,
+                                    2,
+                                    -2,
+                                    0.5,
+                                    -0.5,
+                                    3,
+                                    -3,
+                                    2.5,
+                                    -2.5,
+                                    1e300,
+                                    -1e300,
+                                    1e-300,
+                                    -1e-300,
+                                    0x1p53,
+                                    0x1.fffffffffffffp52,
+                                    -0x1.fffffffffffffp52,
+                                    0x1p-1074,
+                                    -0x1p-1074,
+                                    0x1.fffffffffffffp1023,
+                                    INFINITY,
+                                    -INFINITY,
+                                    NAN };
     size_t count = sizeof cases / sizeof *cases;
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < count; k++) { // the C library follows annex F; an ulp apart elsewhere

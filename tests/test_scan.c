@@ -13,19 +13,7 @@
 
 #include <cmocka.h>
 
-static uint64_t state;
-
-static uint64_t random_bits(void)
-{
-    uint64_t z = state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static uint32_t draw(uint32_t n) { return (uint32_t)((random_bits() >> 32) * n >> 32); }
-
-static double uniform(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
+#include "tests/random.h"
 
 enum { MOST = 1200 };
 
@@ -45,19 +33,19 @@ static void add_face(soup *s, uint32_t size, const uint32_t *corners)
 /// Triangles anywhere: long ones, slivers, some twice.
 static void make_triangles(soup *s)
 {
-    const size_t count = 1 + draw(draw(4) ? 40 : 400);
+    const size_t count = 1 + below(below(4) ? 40 : 400);
     for (size_t i = 0; i < count; i++) {
         const uint32_t n = (uint32_t)s->vertex_count, corners[3] = { n, n + 1, n + 2 };
-        const double size = pow(10, uniform(-2, 1)), thin = draw(5) ? 1 : 1e-5;
+        const double size = pow(10, between(-2, 1)), thin = below(5) ? 1 : 1e-5;
         double middle[3];
         for (int c = 0; c < 3; c++)
-            middle[c] = uniform(-4, 4);
+            middle[c] = between(-4, 4);
         for (int j = 0; j < 3; j++)
             for (int c = 0; c < 3; c++)
-                s->vertices[n + (uint32_t)j][c] = middle[c] + size * uniform(-1, 1) * (j == 2 ? thin : 1);
+                s->vertices[n + (uint32_t)j][c] = middle[c] + size * between(-1, 1) * (j == 2 ? thin : 1);
         s->vertex_count += 3;
         add_face(s, 3, corners);
-        if (draw(10) == 0)
+        if (below(10) == 0)
             add_face(s, 3, corners);
     }
 }
@@ -65,12 +53,12 @@ static void make_triangles(soup *s)
 /// A sheet of squares at whole numbers: with the right camera, corners and edges are in the middle of pixels.
 static void make_sheet(soup *s)
 {
-    const uint32_t n = 2 + draw(14);
-    const int axis = (int)draw(3);
+    const uint32_t n = 2 + below(14);
+    const int axis = (int)below(3);
     for (uint32_t i = 0; i <= n; i++)
         for (uint32_t j = 0; j <= n; j++) {
             double *v = s->vertices[s->vertex_count++];
-            v[axis] = draw(2) ? 0 : draw(3);
+            v[axis] = below(2) ? 0 : below(3);
             v[(axis + 1) % 3] = (double)i - n / 2;
             v[(axis + 2) % 3] = (double)j - n / 2;
         }
@@ -87,17 +75,17 @@ static glint_shape *make_mesh(double scale, const double offset[3])
     glint_shape *shape = NULL;
     glint_error error = { .message = "" };
     glint_mesh_desc d = glint_mesh_desc_default();
-    d.two_sided = draw(4) > 0;
+    d.two_sided = below(4) > 0;
     d.has_shading = true;
-    d.shading = (glint_shading)draw(4);
-    if (draw(3) == 0) {
-        const double center[3] = { offset[0] + scale * uniform(-2, 2), offset[1], offset[2] };
-        if (glint_sphere_mesh_create(center, scale * uniform(0.1, 4), 3 + draw(60), &d, &shape, &error))
+    d.shading = (glint_shading)below(4);
+    if (below(3) == 0) {
+        const double center[3] = { offset[0] + scale * between(-2, 2), offset[1], offset[2] };
+        if (glint_sphere_mesh_create(center, scale * between(0.1, 4), 3 + below(60), &d, &shape, &error))
             fail_msg("%s", error.message);
         return shape;
     }
     memset(&s, 0, sizeof s);
-    if (draw(2))
+    if (below(2))
         make_triangles(&s);
     else
         make_sheet(&s);
@@ -124,16 +112,16 @@ static glint_camera *make_camera(double scale, const double offset[3])
 {
     glint_camera *camera;
     glint_camera_desc c = glint_camera_desc_default();
-    const bool straight = draw(2); // whole numbers: rays along axes, through corners
+    const bool straight = below(2); // whole numbers: rays along axes, through corners
     for (int k = 0; k < 3; k++) {
-        c.eye[k] = offset[k] + scale * (straight ? (k == 2 ? 8 : draw(3)) : uniform(-6, 6));
-        c.at[k] = offset[k] + scale * (straight ? (k == 2 ? 0 : (c.eye[k] - offset[k]) / scale) : uniform(-2, 2));
+        c.eye[k] = offset[k] + scale * (straight ? (k == 2 ? 8 : below(3)) : between(-6, 6));
+        c.at[k] = offset[k] + scale * (straight ? (k == 2 ? 0 : (c.eye[k] - offset[k]) / scale) : between(-2, 2));
     }
-    c.projection = draw(3) == 0 ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
-    c.fov_y_rad = draw(4) ? uniform(0.3, 1.8) : uniform(0.02, 3);
-    c.height = scale * (draw(2) ? 12 : uniform(1, 20));
-    if (draw(3) == 0)
-        c.pixel_offset = uniform(0, 1);
+    c.projection = below(3) == 0 ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+    c.fov_y_rad = below(4) ? between(0.3, 1.8) : between(0.02, 3);
+    c.height = scale * (below(2) ? 12 : between(1, 20));
+    if (below(3) == 0)
+        c.pixel_offset = between(0, 1);
     assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
     return camera;
 }
@@ -141,17 +129,17 @@ static glint_camera *make_camera(double scale, const double offset[3])
 /// Spheres and planes beside the mesh.
 static void add_others(glint_scene *scene, double scale, const double offset[3])
 {
-    for (uint32_t i = draw(4); i > 0; i--) {
+    for (uint32_t i = below(4); i > 0; i--) {
         glint_shape *shape;
-        glint_shape_desc d = glint_shape_desc_default(draw(3)        ? GLINT_SHAPE_SPHERE
-                                                      : draw(2) == 0 ? GLINT_SHAPE_PLANE
-                                                                     : GLINT_SHAPE_BOX);
+        glint_shape_desc d = glint_shape_desc_default(below(3)        ? GLINT_SHAPE_SPHERE
+                                                      : below(2) == 0 ? GLINT_SHAPE_PLANE
+                                                                      : GLINT_SHAPE_BOX);
         for (int c = 0; c < 3; c++) {
-            d.center[c] = d.point[c] = offset[c] + scale * uniform(-4, 4);
+            d.center[c] = d.point[c] = offset[c] + scale * between(-4, 4);
             d.min[c] = d.center[c] - scale;
             d.max[c] = d.center[c] + scale;
         }
-        d.radius = scale * uniform(0.2, 2);
+        d.radius = scale * between(0.2, 2);
         assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
         add(scene, shape);
     }
@@ -160,23 +148,23 @@ static void add_others(glint_scene *scene, double scale, const double offset[3])
 static glint_scene *random_scene(uint64_t seed)
 {
     glint_scene *scene;
-    state = seed;
-    const double scale = draw(4) ? 1 : pow(10, uniform(-6, 6)), far = draw(5) ? 0 : pow(10, uniform(0, 4));
+    random_state = seed;
+    const double scale = below(4) ? 1 : pow(10, between(-6, 6)), far = below(5) ? 0 : pow(10, between(0, 4));
     const double offset[3] = { far * scale, -far * scale, 2 * far * scale };
     assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
     glint_scene_desc s = { .camera = make_camera(scale, offset), .ambient = { 0.4, 0.4, 0.4 }, .background = { 0.1 } };
     assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
     glint_camera_release(s.camera);
-    if (draw(2))
+    if (below(2))
         add_others(scene, scale, offset);
-    for (uint32_t i = 1 + draw(2); i > 0; i--)
+    for (uint32_t i = 1 + below(2); i > 0; i--)
         add(scene, make_mesh(scale, offset));
-    if (draw(2))
+    if (below(2))
         add_others(scene, scale, offset);
     glint_light *light;
     glint_light_desc d = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
     d.direction[0] = -1, d.direction[1] = -2, d.direction[2] = -1;
-    d.shadows = draw(2);
+    d.shadows = below(2);
     assert_int_equal(glint_light_create(&d, &light, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_light(scene, light, NULL), GLINT_OK);
     glint_light_release(light);
@@ -239,8 +227,8 @@ static int scanned_and_cast(uint64_t first, uint64_t last)
     for (uint64_t seed = first; seed <= last; seed++) {
         glint_scene *scene = random_scene(seed);
         glint_render_desc cast = desc_of(GLINT_VISIBILITY_CAST), scan = desc_of(GLINT_VISIBILITY_SCAN);
-        cast.samples = scan.samples = draw(3) ? 1 : 3;
-        cast.precision = scan.precision = draw(3) ? GLINT_DOUBLE : GLINT_FLOAT;
+        cast.samples = scan.samples = below(3) ? 1 : 3;
+        cast.precision = scan.precision = below(3) ? GLINT_DOUBLE : GLINT_FLOAT;
         glint_image *want = render(scene, &cast, NULL), *got = render(scene, &scan, NULL);
         const int wrong = differing(want, got, &hits);
         if (wrong)
@@ -303,10 +291,10 @@ static void in_turn(void **unused)
         for (int frame = 0; frame < 6; frame++) {
             glint_light *light = glint_scene_light_at(scene, 0);
             glint_light_desc l = *glint_light_get(light);
-            l.shadows = draw(2);
-            l.intensity = uniform(0.5, 1);
+            l.shadows = below(2);
+            l.intensity = between(0.5, 1);
             assert_int_equal(glint_light_set(light, &l, NULL), GLINT_OK);
-            glint_render_desc r = desc_of((glint_visibility)draw(3)), cast = desc_of(GLINT_VISIBILITY_CAST);
+            glint_render_desc r = desc_of((glint_visibility)below(3)), cast = desc_of(GLINT_VISIBILITY_CAST);
             glint_plan *plan;
             glint_image *got, *want = render(scene, &cast, NULL);
             assert_int_equal(glint_plan_create(scene, &r, &plan, NULL), GLINT_OK);
@@ -340,7 +328,7 @@ static void only_triangles(void **unused)
     for (int mesh = 0; mesh < 3; mesh++) {
         const double offset[3] = { 0 };
         glint_scene *scene;
-        state = 5;
+        random_state = 5;
         assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
         glint_scene_desc s = { .camera = make_camera(1, offset) };
         assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);

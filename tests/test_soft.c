@@ -8,43 +8,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/glint.h"
+#include "tests/floor_scene.h"
 
 #define SIDE 96
 
-static void add_ball(glint_scene *scene, double x, double y, double z, double radius)
-{
-    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
-    glint_shape *shape;
-    d.center[0] = x;
-    d.center[1] = y;
-    d.center[2] = z;
-    d.radius = radius;
-    assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
-    glint_shape_release(shape);
-}
-
-/// A floor seen from above at a slant, without a light.
-static glint_scene *make_floor(void)
-{
-    glint_scene *scene;
-    glint_camera_desc c = glint_camera_desc_default();
-    glint_camera *camera;
-    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_PLANE);
-    glint_shape *floor;
-    memcpy(c.eye, (double[3]) { 0, 8, 9 }, sizeof c.eye);
-    assert_int_equal(glint_camera_create(&c, &camera, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
-    glint_scene_desc s = { .camera = camera };
-    assert_int_equal(glint_scene_set(scene, &s, NULL), GLINT_OK);
-    memcpy(d.normal, (double[3]) { 0, 1, 0 }, sizeof d.normal);
-    assert_int_equal(glint_shape_create(&d, &floor, NULL), GLINT_OK);
-    assert_int_equal(glint_scene_add_shape(scene, floor, NULL), GLINT_OK);
-    glint_shape_release(floor);
-    glint_camera_release(camera);
-    return scene;
-}
+/// Seen from above at a slant.
+static glint_scene *make_slanted_floor(void) { return make_floor((double[3]) { 0, 8, 9 }, (double[3]) { 0, 0, 0 }); }
 
 static bool visible; ///< whether lights are, from here on
 
@@ -108,9 +77,9 @@ static uint64_t shadow_rays(const glint_scene *scene)
 static void nothing_between_costs_no_rays(void **state)
 {
     (void)state;
-    glint_scene *scene = make_floor();
+    glint_scene *scene = make_slanted_floor();
     add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 16);
-    add_ball(scene, 0, 20, 0, 1); // above the lamp
+    add_ball(scene, (double[3]) { 0, 20, 0 }, 1, 0); // above the lamp
     assert_int_equal(shadow_rays(scene), 0);
     glint_scene_release(scene);
 }
@@ -118,10 +87,10 @@ static void nothing_between_costs_no_rays(void **state)
 static void one_ball_hides_the_whole(void **state)
 {
     (void)state;
-    glint_scene *scene = make_floor();
+    glint_scene *scene = make_slanted_floor();
     glint_frame_stats stats;
     add_light(scene, GLINT_LIGHT_SPHERE, 20, 0.5, 16);
-    add_ball(scene, 0, 15, 0, 4); // between the lamp and all of the floor that is seen
+    add_ball(scene, (double[3]) { 0, 15, 0 }, 4, 0); // between the lamp and all of the floor that is seen
     glint_image *image = render(scene, (setting) { .no_reuse = true }, &stats, NULL);
     float black[3];
     assert_int_equal(glint_image_pixel(image, GLINT_PASS_BEAUTY, SIDE / 2, SIDE / 2, black, NULL), GLINT_OK);
@@ -133,9 +102,9 @@ static void one_ball_hides_the_whole(void **state)
 static void rays_are_of_the_penumbra(void **state)
 {
     (void)state;
-    glint_scene *scene = make_floor();
+    glint_scene *scene = make_slanted_floor();
     add_light(scene, GLINT_LIGHT_SPHERE, 6, 0.5, 64);
-    add_ball(scene, 1, 2, 0, 1);
+    add_ball(scene, (double[3]) { 1, 2, 0 }, 1, 0);
     const uint64_t rays = shadow_rays(scene);
     assert_true(rays > 0 && rays < (uint64_t)SIDE * SIDE * 64 / 3);
     glint_scene_release(scene);
@@ -148,25 +117,12 @@ static void point_like_lights_cost_one_ray(void **state)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         glint_ray_counts expected;
         glint_frame_stats stats;
-        glint_scene *scene = make_floor();
+        glint_scene *scene = make_slanted_floor();
         add_light(scene, kinds[i], 6, 0, 16);
         glint_image_release(render(scene, (setting) { .no_reuse = true }, &stats, &expected));
         assert_int_equal(expected.shadow, SIDE * SIDE);
         glint_scene_release(scene);
     }
-}
-
-static bool same_picture(const glint_image *a, const glint_image *b)
-{
-    for (int y = 0; y < SIDE; y++)
-        for (int x = 0; x < SIDE; x++) {
-            float p[3], q[3];
-            glint_image_pixel(a, GLINT_PASS_BEAUTY, x, y, p, NULL);
-            glint_image_pixel(b, GLINT_PASS_BEAUTY, x, y, q, NULL);
-            if (memcmp(p, q, sizeof p))
-                return false;
-        }
-    return true;
 }
 
 /// The reference has no index and settles nothing at once.
@@ -177,11 +133,11 @@ static void every_way_gives_one_picture(void **state)
         { .isa = "sse2" }, { .isa = "avx2" }, { .isa = "avx512" }, { .threads = 3 }, { .no_reuse = true },
     };
     const glint_light_kind kinds[] = { GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK, GLINT_LIGHT_POLYGON, GLINT_LIGHT_SPHERE };
-    glint_scene *scene = make_floor();
+    glint_scene *scene = make_slanted_floor();
     visible = true;
     for (int i = 0; i < 30; i++) // so many between that groups walk by themselves
-        add_ball(scene, i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2, 0.3);
-    add_ball(scene, 0, 6, 0, 1.2); // a lamp's samples inside and outside
+        add_ball(scene, (double[3]) { i % 6 - 2.5, 1 + 0.1 * i, i / 6 - 2 }, 0.3, 0);
+    add_ball(scene, (double[3]) { 0, 6, 0 }, 1.2, 0); // a lamp's samples inside and outside
     for (int precision = 0; precision < 2; precision++)
         for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
             add_light(scene, kinds[k], 5 + (double)k, 1, 19);
@@ -192,7 +148,7 @@ static void every_way_gives_one_picture(void **state)
                 set.samples = 2;
                 set.precision = (glint_precision)precision;
                 glint_image *got = render(scene, set, NULL, NULL);
-                if (got && !same_picture(got, want))
+                if (got && differing(got, want))
                     fail_msg("kind %zu, way %zu: another picture", k, i);
                 glint_image_release(got);
             }
@@ -219,20 +175,6 @@ static void bad_descriptions_are_refused(void **state)
     assert_string_equal(error.message, "vertices: corner 3: finite numbers expected, got {0, inf, 0}");
 }
 
-static bool has_effect(const glint_scene *scene, const char *effect)
-{
-    glint_render_desc desc = glint_render_desc_default();
-    const glint_effect *list;
-    glint_plan *plan;
-    bool found = false;
-    assert_int_equal(glint_plan_create(scene, &desc, &plan, NULL), GLINT_OK);
-    const size_t count = glint_plan_effects(plan, &list);
-    for (size_t i = 0; i < count; i++)
-        found = found || strcmp(list[i].effect, effect) == 0;
-    glint_plan_destroy(plan);
-    return found;
-}
-
 static void effects_are_those_called_for(void **state)
 {
     (void)state;
@@ -246,7 +188,7 @@ static void effects_are_those_called_for(void **state)
         { GLINT_LIGHT_POINT, "point light", false },
     };
     for (size_t i = 0; i < sizeof lights / sizeof *lights; i++) {
-        glint_scene *scene = make_floor();
+        glint_scene *scene = make_slanted_floor();
         add_light(scene, lights[i].kind, 6, 1, 16);
         for (size_t k = 0; k < sizeof lights / sizeof *lights; k++)
             assert_int_equal(has_effect(scene, lights[k].effect), i == k);
@@ -279,7 +221,7 @@ static void lights_are_seen_where_called_for(void **state)
                   { GLINT_LIGHT_SPOT, 1, true, false },     { GLINT_LIGHT_DIRECTIONAL, 1, true, false },
                   { GLINT_LIGHT_POLYGON, 1, false, false }, { GLINT_LIGHT_DISK, 0, true, false } };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        glint_scene *scene = make_floor();
+        glint_scene *scene = make_slanted_floor();
         glint_frame_stats stats;
         bool glows;
         visible = cases[i].visible;
@@ -298,7 +240,7 @@ static void too_many_samples_are_refused(void **state)
     glint_error error;
     glint_plan *plan;
     glint_render_desc desc = glint_render_desc_default();
-    glint_scene *scene = make_floor();
+    glint_scene *scene = make_slanted_floor();
     for (int i = 0; i < 2049; i++)
         add_light(scene, GLINT_LIGHT_SPHERE, 6, 1, 65536);
     assert_int_equal(glint_plan_create(scene, &desc, &plan, &error), GLINT_ERR_INVALID);

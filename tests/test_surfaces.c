@@ -15,26 +15,14 @@
 
 #include <cmocka.h>
 
+#include "tests/random.h"
+
 __extension__ typedef __float128 quad;
-
-static uint64_t state;
-
-static uint64_t random_bits(void)
-{
-    uint64_t z = state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
-
-static uint32_t draw(uint32_t n) { return (uint32_t)((random_bits() >> 32) * n >> 32); }
-
-static double uniform(double a, double b) { return a + (b - a) * ((double)(random_bits() >> 11) * 0x1p-53); }
 
 static void random_vector(double v[3], double size)
 {
     for (int c = 0; c < 3; c++)
-        v[c] = uniform(-size, size);
+        v[c] = between(-size, size);
 }
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -98,14 +86,14 @@ static void make_soup(soup *s, size_t triangles)
     memset(s, 0, sizeof *s);
     for (size_t i = 0; i < triangles; i++) {
         const uint32_t n = (uint32_t)s->vertex_count;
-        double center[3], size = pow(10, uniform(-2, 0.5));
+        double center[3], size = pow(10, between(-2, 0.5));
         random_vector(center, 4);
         for (int j = 0; j < 3; j++) {
             random_vector(s->vertices[n + (uint32_t)j], size);
             for (int c = 0; c < 3; c++)
                 s->vertices[n + (uint32_t)j][c] += center[c];
         }
-        if (i > 0 && draw(3) == 0)
+        if (i > 0 && below(3) == 0)
             memcpy(s->vertices[n], s->vertices[n - 1], sizeof s->vertices[n]);
         s->vertex_count += 3;
         add_face(s, 3, (const uint32_t[]) { n, n + 1, n + 2 });
@@ -231,13 +219,13 @@ static glint_transform random_map(double move)
     glint_transform out = { { { 0 } } };
     random_turn(a);
     random_turn(b);
-    const bool even = draw(3) == 0;
-    const double s[3] = { uniform(0.3, 2), even ? 0 : uniform(0.2, 3), even ? 0 : -uniform(0.5, 2) };
+    const bool even = below(3) == 0;
+    const double s[3] = { between(0.3, 2), even ? 0 : between(0.2, 3), even ? 0 : -between(0.5, 2) };
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 out.m[i][j] += a[i][k] * (even ? s[0] : s[k]) * b[k][j];
-        out.m[i][3] = uniform(-move, move);
+        out.m[i][3] = between(-move, move);
     }
     return out;
 }
@@ -252,13 +240,13 @@ static glint_shape *random_solid(int kind, bool capped)
     random_vector(d.base, 2);
     random_vector(d.top, 2);
     for (int c = 0; c < 3; c++) {
-        d.min[c] = uniform(-1.5, 0);
-        d.max[c] = uniform(0.2, 1.5);
+        d.min[c] = between(-1.5, 0);
+        d.max[c] = between(0.2, 1.5);
     }
-    d.radius = uniform(0.2, 1.5);
-    d.two_sided = draw(2);
-    d.capped = capped || draw(2);
-    if (draw(4))
+    d.radius = between(0.2, 1.5);
+    d.two_sided = below(2);
+    d.capped = capped || below(2);
+    if (below(4))
         d.transform = random_map(2);
     assert_int_equal(glint_shape_create(&d, &shape, NULL), GLINT_OK);
     return shape;
@@ -275,9 +263,9 @@ static glint_shape *random_group(uint32_t count)
     d.transform = random_map(3);
     assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
     for (uint32_t i = 0; i < count; i++) {
-        glint_shape *shape = random_solid(kinds[draw(5)], false);
+        glint_shape *shape = random_solid(kinds[below(5)], false);
         assert_int_equal(glint_group_add(outer, shape, NULL), GLINT_OK);
-        if (draw(2))
+        if (below(2))
             assert_int_equal(glint_group_add(inner, shape, NULL), GLINT_OK);
         glint_shape_release(shape);
     }
@@ -290,18 +278,18 @@ static glint_scene *random_scene(uint64_t seed)
 {
     static soup s;
     double eye[3], light[3], m[3][3];
-    state = seed;
+    random_state = seed;
     random_vector(eye, 9);
     random_vector(light, 9);
-    soft_light = draw(3) == 0;
-    const double at[3] = { 0, 0, draw(4) ? 0 : PARALLEL };
-    glint_scene *scene = new_scene(eye, at, uniform(0.3, 1.5), light, true);
-    make_soup(&s, 1 + draw(60));
-    add(scene, mesh_of(&s, (glint_shading)draw(4), draw(2)));
+    soft_light = below(3) == 0;
+    const double at[3] = { 0, 0, below(4) ? 0 : PARALLEL };
+    glint_scene *scene = new_scene(eye, at, between(0.3, 1.5), light, true);
+    make_soup(&s, 1 + below(60));
+    add(scene, mesh_of(&s, (glint_shading)below(4), below(2)));
     random_turn(m);
-    make_box(&s, 1 + draw(6), uniform(0.5, 3), draw(2), m);
-    add(scene, mesh_of(&s, (glint_shading)draw(4), draw(2)));
-    add(scene, random_group(draw(8)));
+    make_box(&s, 1 + below(6), between(0.5, 3), below(2), m);
+    add(scene, mesh_of(&s, (glint_shading)below(4), below(2)));
+    add(scene, random_group(below(8)));
     soft_light = false;
     return scene;
 }
@@ -334,10 +322,10 @@ static void no_cracks(void **unused)
     static soup s;
     (void)unused;
     for (uint64_t seed = 1; seed <= 60; seed++) {
-        state = seed;
-        double m[3][3], eye[3], offset = draw(2) ? 0 : pow(10, uniform(0, 6));
+        random_state = seed;
+        double m[3][3], eye[3], offset = below(2) ? 0 : pow(10, between(0, 6));
         random_turn(m);
-        make_box(&s, 1 + draw(8), 1, draw(2), m);
+        make_box(&s, 1 + below(8), 1, below(2), m);
         for (size_t i = 0; i < s.vertex_count; i++)
             for (int c = 0; c < 3; c++)
                 s.vertices[i][c] += offset;
@@ -347,16 +335,16 @@ static void no_cracks(void **unused)
         glint_scene *scene = new_scene(eye, (double[3]) { 9, 9, 9 }, 1, eye, true);
         add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
         for (int k = 0; k < 3000; k++) {
-            const size_t face = draw((uint32_t)s.face_count);
-            const double *a = s.vertices[s.corners[4 * face + draw(4)]];
-            const uint32_t turn = draw(4);
+            const size_t face = below((uint32_t)s.face_count);
+            const double *a = s.vertices[s.corners[4 * face + below(4)]];
+            const uint32_t turn = below(4);
             const double *b = s.vertices[s.corners[4 * face + turn]],
                          *c = s.vertices[s.corners[4 * face + (turn + 1) % 4]];
-            double d[3], w = uniform(0, 1);
+            double d[3], w = between(0, 1);
             for (int i = 0; i < 3; i++)
                 d[i] = k % 3 == 0 ? a[i] - eye[i] : (b[i] + w * (c[i] - b[i])) - eye[i];
             if (k % 2)
-                d[draw(3)] *= 1 + uniform(-4, 4) * DBL_EPSILON;
+                d[below(3)] *= 1 + between(-4, 4) * DBL_EPSILON;
             bool hit = false;
             glint_hit where;
             assert_int_equal(glint_scene_cast(scene, eye, d, &hit, &where, NULL), GLINT_OK);
@@ -373,15 +361,15 @@ static void no_light_by_an_edge(void **unused)
     static soup s;
     (void)unused;
     for (uint64_t seed = 1; seed <= 40; seed++) {
-        state = seed;
+        random_state = seed;
         double m[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, light[3];
         const double eye[3] = { 0, 0, 0 }, at[3] = { 0, 0, -1 };
         if (seed % 2)
             random_turn(m);
-        make_box(&s, 1 + draw(5), 1, seed % 3 ? 0 : 1, m);
+        make_box(&s, 1 + below(5), 1, seed % 3 ? 0 : 1, m);
         random_vector(light, 6);
-        light[draw(3)] = 3;
-        glint_scene *scene = new_scene(eye, at, 2 * atan(1 + draw(2)), light, true);
+        light[below(3)] = 3;
+        glint_scene *scene = new_scene(eye, at, 2 * atan(1 + below(2)), light, true);
         add(scene, mesh_of(&s, GLINT_SHADING_FACETED, true));
         for (int precision = 0; precision < 2; precision++) {
             glint_image *image = render(scene, NULL, 1, 129, (glint_precision)precision);
@@ -409,14 +397,14 @@ static void no_acne(void **unused)
     (void)unused;
     for (uint64_t seed = 1; seed <= 40; seed++) {
         enum { SIDE = 24 };
-        state = seed;
-        double m[3][3], eye[3], at[3], light[3], low = pow(10, uniform(-5, 0.5)), offset = draw(2) ? 0 : 1e5;
+        random_state = seed;
+        double m[3][3], eye[3], at[3], light[3], low = pow(10, between(-5, 0.5)), offset = below(2) ? 0 : 1e5;
         memset(&s, 0, sizeof s);
         random_turn(m);
         const bool aligned = seed % 2;
         if (aligned) { // edges on the pixels' rays, and a slope that is rounded at every vertex
             offset = 0;
-            memcpy(m, (const double[3][3]) { { 1, 0, uniform(-1, 1) }, { 0, 1, uniform(-1, 1) }, { 0, 0, 1 } },
+            memcpy(m, (const double[3][3]) { { 1, 0, between(-1, 1) }, { 0, 1, between(-1, 1) }, { 0, 0, 1 } },
                    sizeof m);
         }
         for (uint32_t i = 0; i <= SIDE; i++)
@@ -484,14 +472,14 @@ static void triangles_against_oracle(void **unused)
     static soup s;
     int hits = 0;
     (void)unused;
-    state = 7;
+    random_state = 7;
     for (int k = 0; k < 20000; k++) {
-        double o[3], d[3], scale = pow(10, uniform(-6, 6));
+        double o[3], d[3], scale = pow(10, between(-6, 6));
         make_soup(&s, 1);
         for (int i = 0; i < 9; i++)
             s.vertices[i / 3][i % 3] *= scale;
         random_vector(o, 10 * scale);
-        const double u = uniform(0, 1.1), v = uniform(0, 1.1 - u);
+        const double u = between(0, 1.1), v = between(0, 1.1 - u);
         for (int c = 0; c < 3; c++)
             d[c] = s.vertices[0][c] + u * (s.vertices[1][c] - s.vertices[0][c]) +
                    v * (s.vertices[2][c] - s.vertices[0][c]) - o[c];
@@ -601,7 +589,7 @@ static void solids_against_oracle(void **unused)
     int hits = 0;
     (void)unused;
     for (int n = 0; n < 4000; n++) {
-        state = (uint64_t)n;
+        random_state = (uint64_t)n;
         glint_shape *shape = random_solid(kinds[n % 4], true);
         const glint_shape_desc d = *glint_shape_get(shape);
         double o[3], dir[3], aim[3];

@@ -13,6 +13,7 @@
 
 #include "engine/image/tone.h"
 #include "engine/stages/stages.h"
+#include "tests/random.h"
 
 #define ALIGNED _Alignas(64)
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
@@ -22,30 +23,10 @@ enum { CASES = 600, TONE_BYTES = 3 * GLINT_TILE_SAMPLES, STRIDE_MOST = 3 * GLINT
 
 // ---- Random numbers ----
 
-static uint64_t random_state;
-
-static uint32_t below(uint32_t n)
-{
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return (uint32_t)(((z ^ z >> 31) >> 32) * n >> 32);
-}
-
-static bool one_in(uint32_t n)
-{
-    return below(n) == 0;
-}
-
-static double between(double a, double b)
-{
-    return a + (b - a) * (below(UINT32_MAX) * 0x1p-32);
-}
-
 static float odd_number(void)
 {
-    static const float odd[] = {0,       -0.0f,    1,       -1,       NAN,      -NAN,      INFINITY, -INFINITY,
-                                FLT_MIN, -FLT_MIN, FLT_MAX, -FLT_MAX, 0x1p-149f, -0x1p-149f, 1.0000001f};
+    static const float odd[] = { 0,       -0.0f,    1,       -1,       NAN,       -NAN,       INFINITY,  -INFINITY,
+                                 FLT_MIN, -FLT_MIN, FLT_MAX, -FLT_MAX, 0x1p-149f, -0x1p-149f, 1.0000001f };
     return odd[below(COUNT_OF(odd))];
 }
 
@@ -57,13 +38,10 @@ static uint16_t random_mask(void)
 
 // ---- Instruction sets ----
 
-static bool runs_here(const glint_stages *stages)
-{
-    return stages != &glint_stages_ref && glint_stages_usable(stages);
-}
+static bool runs_here(const glint_stages *stages) { return stages != &glint_stages_ref && glint_stages_usable(stages); }
 
-#define FOR_EACH_OTHER(stages)                                                                                         \
-    for (const glint_stages *const *stages = glint_stages_built; *stages; stages++)                                    \
+#define FOR_EACH_OTHER(stages) \
+    for (const glint_stages *const *stages = glint_stages_built; *stages; stages++) \
         if (runs_here(*stages))
 
 // ---- Cases ----
@@ -92,8 +70,8 @@ static float tone_value(const uint32_t *table)
 /// 0 .. 3: clamp, 4 .. 7: reinhard, 8 .. 11: filmic.
 static const glint_tone_table *tone_of(int index)
 {
-    glint_tone_desc desc = {(glint_tone_curve)(index / 4), index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
-                            index & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, 8, 0};
+    glint_tone_desc desc = { (glint_tone_curve)(index / 4), index & 1 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB,
+                             index & 2 ? GLINT_ROUND_TRUNCATE : GLINT_ROUND_NEAREST, 8, 0 };
     const glint_tone_table *table = NULL;
     assert_int_equal(glint_tone_table_shared(&desc, &table, NULL), GLINT_OK);
     return table;
@@ -118,8 +96,8 @@ static void make_case(tone_case *c)
     bool tame = one_in(2), made_up = one_in(2);
     const glint_tone_table *real = tone_of((int)below(12));
     make_tone_table(c->table);
-    c->args = (glint_tone_args){.group_count = groups, .groups_across = across, .active = c->active};
-    static const float gains[] = {1, 0.7f, 2, 0x1p-32f, 0x1p32f};
+    c->args = (glint_tone_args) { .group_count = groups, .groups_across = across, .active = c->active };
+    static const float gains[] = { 1, 0.7f, 2, 0x1p-32f, 0x1p32f };
     c->args.table = made_up ? c->table : real->lut;
     c->args.fit = made_up || !real->has_fit ? NULL : &real->fit;
     c->args.top = made_up ? 1 : real->top;
@@ -130,7 +108,9 @@ static void make_case(tone_case *c)
         c->active[g] = random_mask();
     for (int k = 0; k < 3; k++) {
         for (uint32_t i = 0; i < groups * GLINT_GROUP; i++)
-            c->beauty[k][i] = tame ? (float)between(0, 1) : one_in(9) ? (float)between(0, 700) : tone_value(c->args.table);
+            c->beauty[k][i] = tame        ? (float)between(0, 1)
+                              : one_in(9) ? (float)between(0, 700)
+                                          : tone_value(c->args.table);
         c->args.beauty[k] = c->beauty[k];
     }
 }
@@ -200,23 +180,23 @@ static void tone_floats(const glint_stages *stages, const glint_tone_table *tabl
 {
     static ALIGNED float beauty[3][GLINT_TILE_SAMPLES];
     static ALIGNED uint16_t all[GLINT_TILE_GROUPS];
-    uint64_t count[2] = {0};
+    uint64_t count[2] = { 0 };
     memset(all, 0xff, sizeof all);
     for (uint32_t i = 0; i < TONE_BYTES; i++, bits += step)
         memcpy(&beauty[i % 3][i / 3], &bits, sizeof bits);
-    glint_tone_args args = {.group_count = GLINT_TILE_GROUPS,
-                            .groups_across = 1,
-                            .active = all,
-                            .beauty = {beauty[0], beauty[1], beauty[2]},
-                            .gain = 1,
-                            .white = table->white,
-                            .top = table->top,
-                            .table = table->lut,
-                            .fit = table->has_fit ? &table->fit : NULL,
-                            .codes = codes,
-                            .stride = 12,
-                            .clipped = &count[0],
-                            .nonfinite = &count[1]};
+    glint_tone_args args = { .group_count = GLINT_TILE_GROUPS,
+                             .groups_across = 1,
+                             .active = all,
+                             .beauty = { beauty[0], beauty[1], beauty[2] },
+                             .gain = 1,
+                             .white = table->white,
+                             .top = table->top,
+                             .table = table->lut,
+                             .fit = table->has_fit ? &table->fit : NULL,
+                             .codes = codes,
+                             .stride = 12,
+                             .clipped = &count[0],
+                             .nonfinite = &count[1] };
     stages->tone(&args);
 }
 

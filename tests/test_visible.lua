@@ -240,11 +240,5 @@ function tests.samples()
   check(edge > 20, "%d pixels at the edge", edge)
 end
 
-local names = {}
-for name in pairs(tests) do names[#names + 1] = name end
-table.sort(names)
-for _, name in ipairs(names) do
-  local ok, message = xpcall(tests[name], debug.traceback)
-  check(ok, "%s stopped: %s", name, message)
-end
+tally.run(tests)
 tally.finish()

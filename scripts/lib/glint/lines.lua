@@ -42,6 +42,13 @@ function source:next()
   return line:byte(-1) == 13 and line:sub(1, -2) or line
 end
 
+--- The next line with something in it that is no comment (#), nil after the last.
+function source:next_full()
+  for line in function() return self:next() end do
+    if line:find "%S" and not line:find "^%s*#" then return line end
+  end
+end
+
 --- Takes one line back: the next call of next() returns it again.
 function source:back(line)
   self.held = line

@@ -27,19 +27,13 @@ local function numbers(source, text, what, least, most)
   return list
 end
 
-local function next_line(source)
-  for line in function() return source:next() end do
-    if line:find "%S" and not line:find "^%s*#" then return line end
-  end
-end
-
 local read = {} -- by the first word of a line: (picture, source, the rest of the line)
 
 function read.v(picture, source, rest)
   if rest:find "%S" then source:fail("nothing after v in its line", rest) end
   for _, item in ipairs(VIEW) do
     local name, count = item[1], item[2]
-    local line = next_line(source)
+    local line = source:next_full()
     local text = (line or ""):match("^%s*" .. name .. "%s(.*)")
     if not text then source:fail(("%s, %d numbers,"):format(name, count), line) end
     picture.view[name] = numbers(source, text, name, count)
@@ -105,7 +99,7 @@ local function read_polygon(picture, source, name, rest)
   local bunch, face, line_number = bunch_of(picture, name), {}, source.number
   for corner = 1, count do
     local what = ("corner %d of %d"):format(corner, count)
-    local line = next_line(source)
+    local line = source:next_full()
     if not line then source:fail(what, nil) end
     local list = numbers(source, line, what, bunch.normals and 6 or 3)
     bunch.corners = bunch.corners + 1
@@ -157,7 +151,7 @@ function read.c(picture, source, rest)
   if not picture.material then source:fail("f (a material) before the first primitive", "c") end
   local ends = {}
   for i, what in ipairs { "the base of c, x y z radius", "the apex of c, x y z radius" } do
-    local line = next_line(source)
+    local line = source:next_full()
     if not line then source:fail(what, nil) end
     ends[i] = numbers(source, line, what, 4)
     if ends[i][4] < 0 then source:fail("a radius >= 0", line) end
@@ -234,7 +228,7 @@ function nff.load(path, options)
     background = { 0, 0, 0 }, cones = {}, mirrors = not (options and options.mirrors == false),
     set = particles.new { kinds = kinds, format = options and options.format },
   }
-  for line in next_line, source do
+  for line in source.next_full, source do
     local name, rest = line:match "^%s*(%a+)(.*)$"
     if read[name] then
       read[name](picture, source, rest)

@@ -44,12 +44,6 @@ local function split(source, line, separator)
   return list
 end
 
-local function next_line(source)
-  for line in function() return source:next() end do
-    if line:find "%S" and not line:find "^%s*#" then return line end
-  end
-end
-
 -- Where the columns are, from their names.
 local function places(source, names, line)
   local place = {}
@@ -73,7 +67,7 @@ end
 
 local function start(source, number, options)
   if number > 1 then return nil end
-  local line = next_line(source)
+  local line = source:next_full()
   if not line then source:fail("a line of points", nil) end
   local separator = options.separator or line:match "[\t;,]" or " "
   local first = split(source, line, separator)
@@ -86,7 +80,7 @@ local function start(source, number, options)
   local place, count = places(source, names, line), #first
   if not is_header then source:back(line) end
   return {}, function()
-    local text = next_line(source)
+    local text = source:next_full()
     if text then return read_point(source, text, place, separator, count) end
   end
 end
