@@ -3,6 +3,7 @@
 ///   watch.c           the loop: runs the script, renders a preview and then the picture in full
 ///   watch_asks.c      what the other threads ask of the loop, and the overrides of parameters
 ///   watch_files.c     a thread that waits for changes of files; watch_track.lua tells it which
+///   watch_client.c    one connection to that server: its request, and what is still to be sent
 ///   watch_http.c      the server of the page, a thread with a poll loop; watch_page.html is the page
 ///   watch_picture.c   pictures as PNG in memory, and made small for a terminal
 ///   watch_terminal.c  pictures in a terminal

@@ -19,18 +19,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "bindings/watch.h"
+#include "bindings/watch_client.h"
 
 #define CLIENTS_MAX 32
-#define REQUEST_MAX 8192 // head and body together
-#define REQUEST_MS 5000 // a request takes no longer to arrive,
-#define REPLY_MS 30000 // nor a reply to be taken
-#define LINGER_MS 1000
-#define BACKLOG_MAX (1 << 20) // a page that does not read its events is let go
 #define TOKEN_SIZE 33
-#define SECRECY \
-    "Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\n" \
-    "Cross-Origin-Resource-Policy: same-origin\r\n"
 #define POLICY \
     "Content-Security-Policy: default-src 'self'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; " \
     "frame-ancestors 'none'\r\n"
@@ -38,17 +30,6 @@
 static const char page[] = {
 #include "bindings/watch_page.html.h"
 };
-
-typedef struct client {
-    int socket;
-    bool listens; // to events
-    bool lingers; // all is sent; what still comes is read, or closing would take the reply away
-    double until_ms; // when it is given up; 0: never
-    size_t got, sent, size;
-    char request[REQUEST_MAX + 1];
-    char *reply; // owned; `size` bytes, `sent` of them gone
-    watch_picture *picture; // sent after the reply; else NULL
-} client;
 
 struct watch_server {
     pthread_t thread;
@@ -60,7 +41,7 @@ struct watch_server {
     char *state; // owned
     unsigned version, sent_version; // of the state; sent_version: of the thread alone
     watch_picture *picture;
-    client *clients[CLIENTS_MAX];
+    watch_client *clients[CLIENTS_MAX];
     int count;
 };
 
@@ -68,69 +49,25 @@ struct watch_server {
 
 static void close_client(watch_server *server, int i)
 {
-    client *c = server->clients[i];
-    close(c->socket);
-    free(c->reply);
-    watch_picture_release(c->picture);
-    free(c);
+    watch_client_destroy(server->clients[i]);
     server->clients[i] = server->clients[--server->count];
 }
 
-// Adds bytes to what is to be sent. False: out of memory.
-static bool add_bytes(client *c, const char *bytes, size_t size)
+static bool begin_events(watch_server *server, watch_client *c)
 {
-    if (c->sent == c->size)
-        c->sent = c->size = 0;
-    char *grown = realloc(c->reply, c->size + size);
-    if (!grown)
-        return false;
-    c->reply = grown;
-    memcpy(grown + c->size, bytes, size);
-    c->size += size;
-    return true;
-}
-
-static bool reply(client *c, const char *status, const char *type, const char *extra, const char *body, size_t size)
-{
-    char head[1024];
-    int length = snprintf(head, sizeof head,
-                          "HTTP/1.1 %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\n%s%sConnection: close\r\n\r\n",
-                          status, type, size, extra, SECRECY);
-    c->until_ms = glintL_now_ms() + REPLY_MS;
-    return add_bytes(c, head, (size_t)length) && (!body || add_bytes(c, body, size));
-}
-
-static bool reply_text(client *c, const char *status)
-{
-    return reply(c, status, "text/plain; charset=utf-8", "", status, strlen(status));
-}
-
-// The lock is held.
-static bool send_state(client *c, const char *state)
-{
-    return add_bytes(c, "data: ", 6) && add_bytes(c, state, strlen(state)) && add_bytes(c, "\n\n", 2);
-}
-
-static bool begin_events(watch_server *server, client *c)
-{
-    static const char head[] =
-        "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n" SECRECY "Connection: close\r\n\r\nretry: 1000\n\n";
-    bool good = add_bytes(c, head, sizeof head - 1);
     pthread_mutex_lock(&server->lock);
-    if (good && server->state)
-        good = send_state(c, server->state);
+    const bool good = watch_client_listen(c, server->state);
     pthread_mutex_unlock(&server->lock);
-    c->listens = true;
-    c->until_ms = 0;
     return good;
 }
 
-static bool reply_picture(watch_server *server, client *c)
+static bool reply_picture(watch_server *server, watch_client *c)
 {
     pthread_mutex_lock(&server->lock);
     c->picture = server->picture ? watch_picture_retain(server->picture) : NULL;
     pthread_mutex_unlock(&server->lock);
-    return c->picture ? reply(c, "200 OK", "image/png", "", NULL, c->picture->size) : reply_text(c, "404 Not Found");
+    return c->picture ? watch_client_reply(c, "200 OK", "image/png", "", NULL, c->picture->size)
+                      : watch_client_say(c, "404 Not Found");
 }
 
 // ---- Requests ----
@@ -171,70 +108,70 @@ static bool is_own_host(const watch_server *server, const char *head)
             strncmp(host + 9, port, length - 9) == 0);
 }
 
-static bool take_order(watch_server *server, client *c, const char *what, char *body)
+static bool take_order(watch_server *server, watch_client *c, const char *what, char *body)
 {
     const watch_orders *orders = &server->orders;
     if (strcmp(what, "frame") == 0) {
         char *end;
         long long frame = strtoll(body, &end, 10);
         if (end == body || *end || frame < 1 || frame > GLINTL_FRAMES_MAX)
-            return reply_text(c, "400 Bad Request");
+            return watch_client_say(c, "400 Bad Request");
         orders->frame(orders->context, frame);
     } else if (strcmp(what, "set") == 0) {
         char *equals = strchr(body, '=');
         if (!equals || equals == body || equals - body >= GLINT_NAME_SIZE)
-            return reply_text(c, "400 Bad Request");
+            return watch_client_say(c, "400 Bad Request");
         *equals = '\0';
         orders->set(orders->context, body, equals + 1);
     } else if (strcmp(what, "reset") == 0) {
         orders->reset(orders->context);
     } else {
-        return reply_text(c, "404 Not Found");
+        return watch_client_say(c, "404 Not Found");
     }
-    return reply_text(c, "200 OK");
+    return watch_client_say(c, "200 OK");
 }
 
 // The whole request is there. False: the client is let go.
-static bool answer(watch_server *server, client *c, char *body)
+static bool answer(watch_server *server, watch_client *c, char *body)
 {
     char *path = strchr(c->request, ' '), *end = path ? strpbrk(path + 1, " \r\n") : NULL;
     if (!path || !end || *end != ' ')
-        return reply_text(c, "400 Bad Request");
+        return watch_client_say(c, "400 Bad Request");
     if (!is_own_host(server, c->request))
-        return reply_text(c, "403 Forbidden");
+        return watch_client_say(c, "403 Forbidden");
     *path++ = *end = '\0';
     char *query = strchr(path, '?');
     if (query)
         *query = '\0';
     if (path[0] != '/' || !same_token(path + 1, server->token) || path[TOKEN_SIZE] != '/')
-        return reply_text(c, "404 Not Found");
+        return watch_client_say(c, "404 Not Found");
     path += TOKEN_SIZE + 1;
     if (strcmp(c->request, "POST") == 0)
         return take_order(server, c, path, body);
     if (strcmp(c->request, "GET") != 0)
-        return reply_text(c, "405 Method Not Allowed");
+        return watch_client_say(c, "405 Method Not Allowed");
     if (!*path)
-        return reply(c, "200 OK", "text/html; charset=utf-8", POLICY, page, sizeof page);
+        return watch_client_reply(c, "200 OK", "text/html; charset=utf-8", POLICY, page, sizeof page);
     if (strcmp(path, "events") == 0)
         return begin_events(server, c);
     if (strcmp(path, "picture") == 0)
         return reply_picture(server, c);
-    return reply_text(c, "404 Not Found");
+    return watch_client_say(c, "404 Not Found");
 }
 
 // Answers when all of the request has come. False: the client is let go.
-static bool take_request(watch_server *server, client *c)
+static bool take_request(watch_server *server, watch_client *c)
 {
     c->request[c->got] = '\0';
     char *head_end = strstr(c->request, "\r\n\r\n");
     if (!head_end)
-        return c->got < REQUEST_MAX && strlen(c->request) == c->got;
+        return c->got < WATCH_REQUEST_MAX && strlen(c->request) == c->got;
     head_end[2] = '\0'; // headers are searched in the head alone
     const char *length_text = header(c->request, "Content-Length");
     unsigned long length = length_text ? strtoul(length_text, NULL, 10) : 0;
     char *body = head_end + 4;
-    if (length > (unsigned long)(c->request + REQUEST_MAX - body))
-        return reply_text(c, "413 Content Too Large");
+    if (length > (unsigned long)(c->request + WATCH_REQUEST_MAX - body))
+        return watch_client_say(c, "413 Content Too Large");
     if ((unsigned long)(c->request + c->got - body) < length) {
         head_end[2] = '\r';
         return true;
@@ -245,12 +182,12 @@ static bool take_request(watch_server *server, client *c)
 
 // ---- Sockets; each returns false when the client is to be let go ----
 
-static bool read_client(watch_server *server, client *c)
+static bool read_client(watch_server *server, watch_client *c)
 {
     char ignored[256];
     bool answered = c->size > 0 || c->listens;
     ssize_t got = answered ? recv(c->socket, ignored, sizeof ignored, 0)
-                           : recv(c->socket, c->request + c->got, REQUEST_MAX - c->got, 0);
+                           : recv(c->socket, c->request + c->got, WATCH_REQUEST_MAX - c->got, 0);
     if (got <= 0)
         return got < 0 && (errno == EAGAIN || errno == EINTR);
     if (answered)
@@ -259,45 +196,16 @@ static bool read_client(watch_server *server, client *c)
     return take_request(server, c);
 }
 
-static bool linger(client *c)
-{
-    c->lingers = true;
-    c->until_ms = glintL_now_ms() + LINGER_MS;
-    return shutdown(c->socket, SHUT_WR) == 0;
-}
-
-static bool write_client(client *c)
-{
-    if (c->lingers)
-        return true;
-    while (c->sent < c->size || c->picture) {
-        size_t body = c->picture ? c->picture->size : 0, from_body = c->sent > c->size ? c->sent - c->size : 0;
-        const void *at =
-            c->sent < c->size ? (const void *)(c->reply + c->sent) : (const void *)(c->picture->bytes + from_body);
-        size_t left = c->sent < c->size ? c->size - c->sent : body - from_body;
-        if (left == 0)
-            return linger(c); // all of the picture is gone
-        ssize_t sent = send(c->socket, at, left, MSG_NOSIGNAL);
-        if (sent < 0)
-            return errno == EAGAIN || errno == EINTR;
-        c->sent += (size_t)sent;
-    }
-    return c->listens || c->size == 0 || linger(c); // other replies end with the connection
-}
-
 static void accept_client(watch_server *server)
 {
     int socket = accept4(server->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (socket < 0)
         return;
-    client *c = server->count < CLIENTS_MAX ? calloc(1, sizeof *c) : NULL;
-    if (!c) {
+    watch_client *c = server->count < CLIENTS_MAX ? watch_client_create(socket) : NULL;
+    if (c)
+        server->clients[server->count++] = c;
+    else
         close(socket);
-        return;
-    }
-    c->socket = socket;
-    c->until_ms = glintL_now_ms() + REQUEST_MS;
-    server->clients[server->count++] = c;
 }
 
 // Sends a new state to those who listen. False: the server ends.
@@ -308,8 +216,8 @@ static bool take_state(watch_server *server)
     bool is_new = server->version != server->sent_version;
     server->sent_version = server->version;
     for (int i = server->count - 1; i >= 0 && is_new; i--) {
-        client *c = server->clients[i];
-        if (c->listens && (c->size - c->sent > BACKLOG_MAX || !send_state(c, server->state)))
+        watch_client *c = server->clients[i];
+        if (c->listens && !watch_client_tell(c, server->state))
             close_client(server, i);
     }
     pthread_mutex_unlock(&server->lock);
@@ -323,8 +231,8 @@ static int fill_poll(const watch_server *server, struct pollfd *list)
     list[0] = (struct pollfd) { .fd = server->wake, .events = POLLIN };
     list[1] = (struct pollfd) { .fd = server->listener, .events = POLLIN };
     for (int i = 0; i < server->count; i++) {
-        const client *c = server->clients[i];
-        bool writes = !c->lingers && (c->sent < c->size || c->picture);
+        const watch_client *c = server->clients[i];
+        const bool writes = watch_client_writes(c);
         list[2 + i] = (struct pollfd) { .fd = c->socket, .events = (short)(POLLIN | (writes ? POLLOUT : 0)) };
         int left = c->until_ms > 0 ? (int)(c->until_ms - now) + 1 : -1;
         if (c->until_ms > 0 && (timeout < 0 || left < timeout))
@@ -340,8 +248,8 @@ static void *serve(void *argument)
     uint64_t count;
     while (take_state(server)) {
         for (int i = server->count - 1; i >= 0; i--) { // what can be sent is sent at once
-            client *c = server->clients[i];
-            if (!write_client(c) || (c->until_ms > 0 && glintL_now_ms() > c->until_ms))
+            watch_client *c = server->clients[i];
+            if (!watch_client_send(c) || (c->until_ms > 0 && glintL_now_ms() > c->until_ms))
                 close_client(server, i);
         }
         int timeout = fill_poll(server, list), polled = server->count;
