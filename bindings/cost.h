@@ -2,6 +2,7 @@
 /// Private to bindings/.
 ///
 ///   cost.c          the command: what is asked, the phases of a study in order
+///   cost_values.c   the values of a knob
 ///   cost_knobs.c    the table of knobs: a setting that trades accuracy for time is a row of it
 ///   cost_scene.c    a scene whose materials and lights a knob edits, and gets back as they were
 ///   cost_shapes.c   the same for meshes: shading, and spheres of other segments
@@ -137,6 +138,15 @@ extern const int cost_knob_count; ///< <= COST_KNOBS_MAX
 int cost_knob_find(const char *name, size_t length); ///< -1: none
 /// Whether a list "samples,model" names knobs only. False: the message is written.
 bool cost_knobs_check(const char *list, char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- cost_values.c ----
+
+/// The numbers in order, with the script's own among them.
+void cost_list_numbers(const double *numbers, int count, double own, cost_values *out);
+/// The words, of which the script's own is the `own`-th, from 0.
+void cost_list_words(const char *const *words, int count, int own, cost_values *out);
+/// Which of the words a value is; the last when it is none.
+int cost_find_word(cost_value value, const char *const *words, int count);
 void cost_value_text(cost_value value, char out[32]);
 
 // ---- A study ----

@@ -26,43 +26,13 @@ static bool has_effect(const glint_plan *plan, const char *name)
     return false;
 }
 
-// The numbers in order, with the script's own among them.
-static void list_numbers(const double *numbers, int count, double own, cost_values *out)
-{
-    int at = 0;
-    while (at < count && numbers[at] < own)
-        at++;
-    const bool is_new = at == count || numbers[at] != own;
-    for (int i = 0; i < count; i++)
-        out->value[i + (is_new && i >= at)].number = numbers[i];
-    out->value[at].number = own;
-    out->count = count + is_new;
-    out->own = out->base = at;
-}
-
-static void list_words(const char *const *words, int count, int own, cost_values *out)
-{
-    for (int i = 0; i < count; i++)
-        out->value[i].text = words[i];
-    out->count = count;
-    out->own = out->base = own;
-}
-
-static int find_word(const cost_value value, const char *const *words, int count)
-{
-    int at = 0;
-    while (at < count - 1 && strcmp(words[at], value.text) != 0)
-        at++;
-    return at;
-}
-
 // ---- samples: rays a pixel ----
 
 static void list_samples(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 1, 4, 16, 64 };
     if (has_stage(subject->plan, "cast"))
-        list_numbers(counts, COUNT(counts), subject->render->desc.samples, out);
+        cost_list_numbers(counts, COUNT(counts), subject->render->desc.samples, out);
 }
 
 static glint_status apply_samples(cost_draft *draft, cost_value value, glint_error *error)
@@ -78,7 +48,7 @@ static void list_adaptive(const cost_subject *subject, cost_values *out)
 {
     static const double thresholds[] = { 0, 0.01, 0.03, 0.1, 0.3 };
     if (has_stage(subject->plan, "cast") && subject->render->desc.samples > 1)
-        list_numbers(thresholds, COUNT(thresholds), subject->render->desc.adaptive, out);
+        cost_list_numbers(thresholds, COUNT(thresholds), subject->render->desc.adaptive, out);
 }
 
 static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_error *error)
@@ -126,7 +96,7 @@ static void list_shadows(const cost_subject *subject, cost_values *out)
     caps = caps && takes_caps(scene);
     const int count = caps ? 4 : first ? 3 : 2, at = first ? own[first->shadow] : 1;
     if (has_stage(subject->plan, "occlude"))
-        list_words(SHADOWS, count, at < count ? at : 2, out);
+        cost_list_words(SHADOWS, count, at < count ? at : 2, out);
     out->truth = 2;
     out->has_truth = out->count > 0 && first;
 }
@@ -134,7 +104,7 @@ static void list_shadows(const cost_subject *subject, cost_values *out)
 static glint_status apply_shadows(cost_draft *draft, cost_value value, glint_error *error)
 {
     cost_scene *scene = draft->scene;
-    const int sort = find_word(value, SHADOWS, COUNT(SHADOWS));
+    const int sort = cost_find_word(value, SHADOWS, COUNT(SHADOWS));
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < scene->light_count && !status; i++) {
         glint_light_desc desc = *glint_light_get(scene->lights[i]);
@@ -164,7 +134,7 @@ static void list_light_samples(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 1, 4, 16, 64, 256 };
     if (has_effect(subject->plan, "soft shadow"))
-        list_numbers(counts, COUNT(counts), most_light_samples(subject->scene), out);
+        cost_list_numbers(counts, COUNT(counts), most_light_samples(subject->scene), out);
 }
 
 static glint_status apply_light_samples(cost_draft *draft, cost_value value, glint_error *error)
@@ -189,13 +159,13 @@ static const char *const PRECISIONS[] = { [GLINT_DOUBLE] = "double", [GLINT_FLOA
 static void list_precision(const cost_subject *subject, cost_values *out)
 {
     if (has_stage(subject->plan, "cast"))
-        list_words(PRECISIONS, COUNT(PRECISIONS), (int)subject->render->desc.precision, out);
+        cost_list_words(PRECISIONS, COUNT(PRECISIONS), (int)subject->render->desc.precision, out);
 }
 
 static glint_status apply_precision(cost_draft *draft, cost_value value, glint_error *error)
 {
     (void)error;
-    draft->render.desc.precision = (glint_precision)find_word(value, PRECISIONS, COUNT(PRECISIONS));
+    draft->render.desc.precision = (glint_precision)cost_find_word(value, PRECISIONS, COUNT(PRECISIONS));
     return GLINT_OK;
 }
 
@@ -211,7 +181,7 @@ static void list_model(const cost_subject *subject, cost_values *out)
     const bool blinn = has_effect(subject->plan, "Blinn-Phong highlight");
     if (!phong && !blinn)
         return;
-    list_words(MODELS, phong ? 3 : 2, phong ? 0 : 1, out);
+    cost_list_words(MODELS, phong ? 3 : 2, phong ? 0 : 1, out);
     if (phong && blinn) {
         out->value[3].text = "mixed";
         out->count = 4;
@@ -222,7 +192,7 @@ static void list_model(const cost_subject *subject, cost_values *out)
 static glint_status apply_model(cost_draft *draft, cost_value value, glint_error *error)
 {
     cost_scene *scene = draft->scene;
-    const int model = find_word(value, MODELS, COUNT(MODELS));
+    const int model = cost_find_word(value, MODELS, COUNT(MODELS));
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < scene->material_count && !status && strcmp(value.text, "mixed") != 0; i++) {
         glint_material_desc desc = scene->material_descs[i];
@@ -251,7 +221,7 @@ static void list_segments(const cost_subject *subject, cost_values *out)
     if (meshes.globe_count == 0 || !has_effect(subject->plan, "triangles"))
         return;
     if (meshes.segments > 0) {
-        list_numbers(counts, count, meshes.segments, out);
+        cost_list_numbers(counts, count, meshes.segments, out);
     } else {
         for (int i = 0; i < count; i++)
             out->value[i].number = counts[i];
@@ -285,7 +255,7 @@ static void list_shading(const cost_subject *subject, cost_values *out)
         return;
     while (!meshes.is_mixed && SHADING[own] != meshes.shading)
         own++;
-    list_words(SHADINGS, 3, own, out);
+    cost_list_words(SHADINGS, 3, own, out);
     if (meshes.is_mixed || own == 3) {
         out->value[3].text = SHADINGS[meshes.is_mixed ? 4 : 3];
         out->count = 4;
@@ -295,7 +265,7 @@ static void list_shading(const cost_subject *subject, cost_values *out)
 
 static glint_status apply_shading(cost_draft *draft, cost_value value, glint_error *error)
 {
-    const int shading = find_word(value, SHADINGS, COUNT(SHADINGS));
+    const int shading = cost_find_word(value, SHADINGS, COUNT(SHADINGS));
     return shading < COUNT(SHADING) ? cost_scene_set_shading(draft->scene, SHADING[shading], error) : GLINT_OK;
 }
 
@@ -321,7 +291,7 @@ static void list_max_depth(const cost_subject *subject, cost_values *out)
     if (!has_stage(subject->plan, "bounce") &&
         !(own == 0 && has_stage(subject->plan, "cast") && has_bounce(subject->scene)))
         return;
-    list_numbers(depths, COUNT(depths), own, out);
+    cost_list_numbers(depths, COUNT(depths), own, out);
     out->has_truth = true;
     out->truth = out->count - 1;
 }
@@ -339,7 +309,7 @@ static void list_indirect_samples(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 1, 4, 16, 64, 256 };
     if (has_stage(subject->plan, "indirect"))
-        list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_samples, out);
+        cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_samples, out);
 }
 
 static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, glint_error *error)
@@ -354,7 +324,7 @@ static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 0, 1, 2, 4, 8 };
     if (has_stage(subject->plan, "indirect"))
-        list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
+        cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
 }
 
 static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, glint_error *error)
@@ -370,7 +340,7 @@ static void list_bits(const cost_subject *subject, cost_values *out)
 {
     static const double depths[] = { 8, 16 };
     if (!subject->is_pfm)
-        list_numbers(depths, COUNT(depths), subject->render->desc.tone.bits, out);
+        cost_list_numbers(depths, COUNT(depths), subject->render->desc.tone.bits, out);
 }
 
 static glint_status apply_bits(cost_draft *draft, cost_value value, glint_error *error)
@@ -385,13 +355,13 @@ static const char *const ENCODERS[] = { [GLINT_ENCODE_FAST] = "fast", [GLINT_ENC
 static void list_encode(const cost_subject *subject, cost_values *out)
 {
     if (!subject->is_pfm)
-        list_words(ENCODERS, COUNT(ENCODERS), (int)subject->render->encode, out);
+        cost_list_words(ENCODERS, COUNT(ENCODERS), (int)subject->render->encode, out);
 }
 
 static glint_status apply_encode(cost_draft *draft, cost_value value, glint_error *error)
 {
     (void)error;
-    draft->render.encode = (glint_encode)find_word(value, ENCODERS, COUNT(ENCODERS));
+    draft->render.encode = (glint_encode)cost_find_word(value, ENCODERS, COUNT(ENCODERS));
     return GLINT_OK;
 }
 
@@ -403,7 +373,7 @@ static void list_reuse(const cost_subject *subject, cost_values *out)
 {
     if (!subject->has_neighbour)
         return;
-    list_words(SWITCH, COUNT(SWITCH), 1, out);
+    cost_list_words(SWITCH, COUNT(SWITCH), 1, out);
     out->base = 0; // every other row is a whole frame
 }
 
@@ -470,12 +440,4 @@ bool cost_knobs_check(const char *list, char message[GLINTL_MESSAGE_SIZE])
         at += length;
     }
     return true;
-}
-
-void cost_value_text(cost_value value, char out[32])
-{
-    if (value.text)
-        snprintf(out, 32, "%s", value.text);
-    else
-        glintL_format_number(out, value.number);
 }
