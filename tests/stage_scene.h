@@ -20,6 +20,7 @@ typedef struct test_line {
 typedef struct scene_plan {
     double middle[3], size; ///< where primitives are that no line attracts
     double spread; ///< radii are smaller than `size` by up to so many powers of ten
+    bool triangles, solids; ///< some are
     uint32_t line_count;
     test_line lines[MOST_LINES];
 } scene_plan;
@@ -28,6 +29,7 @@ typedef struct test_scene {
     glint_geometry_table table;
     glint_bvh bvh;
     glint_prim prims[MOST_PRIMS];
+    glint_solid solids[MOST_PRIMS];
     uint32_t unbounded[MOST_PRIMS];
 } test_scene;
 
@@ -100,6 +102,80 @@ static inline void set_random_plane(glint_prim *prim, const scene_plan *plan, co
     set_plane(prim, point, normal);
 }
 
+/// Three corners around a place on the line or anywhere; some share an edge with the triangle before, or lie in its plane, or
+/// have the line in theirs.
+static inline void set_random_triangle(glint_prim *prim, const glint_prim *last, const test_line *line,
+                                       const double center[3], double size)
+{
+    const bool joined = last && last->kind == GLINT_PRIM_TRIANGLE && one_in(3), near = one_in(2);
+    double away[3], place[3];
+    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .sites = GLINT_MISS };
+    along3(line->origin, line->length * between(-0.2, 1.2), line->direction, place);
+    for (int j = 0; j < 3; j++) {
+        random_unit(away);
+        along3(near ? place : center, size * between(0.1, 2), away, out.corner[j]);
+        if (joined && j < 2)
+            memcpy(out.corner[j], last->corner[1 - j], sizeof out.corner[j]);
+    }
+    if (joined && one_in(2))
+        for (int k = 0; k < 3; k++)
+            out.corner[2][k] = last->corner[0][k] + (last->corner[1][k] - last->corner[2][k]);
+    else if (one_in(6))
+        along3(out.corner[0], size, line->direction, out.corner[1]);
+    *prim = out;
+}
+
+/// An affine image of any unit shape: turned, stretched and leaning.
+static inline void set_random_solid(test_scene *scene, uint32_t i, const double center[3], double size)
+{
+    glint_solid *solid = &scene->solids[i];
+    double column[3][3], det = 0;
+    solid->form = below(GLINT_FORM_FUNNEL + 1);
+    do {
+        for (int k = 0; k < 3; k++) {
+            const double length = size * power_of_ten(-1, 0);
+            random_unit(column[k]);
+            for (int c = 0; c < 3; c++)
+                solid->forward[c][k] = column[k][c] *= length;
+        }
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++) {
+                const double *a = column[(k + 1) % 3], *b = column[(k + 2) % 3];
+                solid->inverse[k][c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+            }
+        det = 0;
+        for (int c = 0; c < 3; c++)
+            det += column[0][c] * solid->inverse[0][c];
+    } while (!(fabs(det) > 1e-4 * size * size * size));
+    for (int c = 0; c < 9; c++)
+        solid->inverse[c / 3][c % 3] /= det;
+    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1 };
+    scene->prims[i].item = i;
+    memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
+}
+
+/// A place on a solid, in the world.
+static inline void place_on_solid(const test_scene *scene, const glint_prim *prim, double point[3])
+{
+    const glint_solid *solid = &scene->solids[prim->item];
+    double k[3];
+    random_unit(k);
+    const double round = sqrt(k[0] * k[0] + k[1] * k[1]), z = between(0, 1);
+    const bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    for (int c = 0; c < 3 && solid->form == GLINT_FORM_BOX; c++)
+        k[c] = between(-1, 1);
+    if (solid->form == GLINT_FORM_BOX)
+        k[below(3)] = either_sign(1);
+    else if (solid->form == GLINT_FORM_DISK)
+        k[2] = 0;
+    else if (solid->form != GLINT_FORM_BALL)
+        for (int c = 0; c < 3; c++)
+            k[c] = c < 2 ? k[c] / round * (cone ? z : 1) : cone ? z : 2 * z - 1;
+    for (int c = 0; c < 3; c++)
+        point[c] =
+            prim->center[c] + (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
+}
+
 static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32_t i, uint32_t count)
 {
     glint_prim *prim = &scene->prims[i];
@@ -110,7 +186,12 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
     for (int c = 0; c < 3; c++)
         center[c] = plan->middle[c] + plan->size * between(-1, 1);
     const uint32_t kind = below(20);
-    if (kind < 6)
+    const double largest = plan->size * 1e15; // volumes are within the range of double
+    if (plan->triangles && one_in(2))
+        set_random_triangle(prim, i ? prim - 1 : NULL, line, center, radius);
+    else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30)
+        set_random_solid(scene, i, center, radius);
+    else if (kind < 6)
         set_grazing(prim, line, radius);
     else if (kind == 6)
         set_touching(prim, line, 0, radius);
@@ -118,7 +199,9 @@ static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32
         set_touching(prim, line, line->length, radius);
     else if (kind == 8) // hits at one distance
         set_touching(prim, line, line->length - plan->size / 4, radius);
-    else if (kind == 9 && i > 0)
+    else if (kind == 9 && i > 0 && scene->prims[i - 1].kind == GLINT_PRIM_SPHERE)
+        *prim = scene->prims[i - 1];
+    else if (kind == 9 && i > 0 && !plan->triangles && !plan->solids)
         *prim = scene->prims[below(i)];
     else if (kind == 10 && (count < 30 || one_in(count / 10)))
         set_random_plane(prim, plan, line);
@@ -143,6 +226,22 @@ static inline float rounded_up(long double x)
 
 static inline float rounded_down(long double x) { return -rounded_up(-x); }
 
+/// The ends of a primitive, which has some, in the world.
+static inline void ends_of(const test_scene *scene, const glint_prim *prim, long double lower[3], long double upper[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double *m = scene->solids[prim->kind == GLINT_PRIM_SOLID ? prim->item : 0].forward[c];
+        const long double reach =
+            prim->kind == GLINT_PRIM_SOLID ? (fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2]) : prim->radius;
+        lower[c] = (long double)prim->center[c] - reach;
+        upper[c] = (long double)prim->center[c] + reach;
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            lower[c] = fmin(prim->corner[0][c], fmin(prim->corner[1][c], prim->corner[2][c]));
+            upper[c] = fmax(prim->corner[0][c], fmax(prim->corner[1][c], prim->corner[2][c]));
+        }
+    }
+}
+
 /// Any frame will do; most are around the scene, in its own units.
 static inline void choose_frame(const scene_plan *plan, test_scene *scene)
 {
@@ -151,14 +250,25 @@ static inline void choose_frame(const scene_plan *plan, test_scene *scene)
     const uint32_t kind = below(5);
     double largest = DBL_MIN;
     for (int c = 0; c < 3; c++)
-        table->reference[c] = kind == 0 ? 0 : kind == 1 ? some->center[c] : plan->middle[c];
+        table->reference[c] = kind == 0                                        ? 0
+                              : kind == 1 && some->kind == GLINT_PRIM_TRIANGLE ? some->corner[0][c]
+                              : kind == 1                                      ? some->center[c]
+                                                                               : plan->middle[c];
     table->extent = 0;
     for (uint32_t i = 0; i < table->prim_count; i++)
         for (int c = 0; c < 3; c++) {
             const glint_prim *prim = &scene->prims[i];
+            long double lower[3], upper[3];
+            ends_of(scene, prim, lower, upper);
             if (prim->kind == GLINT_PRIM_SPHERE)
                 largest = fmax(largest, fabs(prim->center[c] - table->reference[c]) + prim->radius);
-            table->extent = fmax(table->extent, fmax(fabs(prim->center[c]), prim->radius));
+            else if (prim->kind != GLINT_PRIM_PLANE)
+                largest = fmax(largest, (double)fmaxl(fabsl(lower[c] - table->reference[c]),
+                                                      fabsl(upper[c] - table->reference[c])));
+            if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
+                table->extent = fmax(table->extent, (double)fmaxl(fabsl(lower[c]), fabsl(upper[c])) * (1 + 1e-15));
+            else
+                table->extent = fmax(table->extent, fmax(fabs(prim->center[c]), prim->radius));
         }
     const int exponent = -ilogb(largest) + (one_in(3) ? (int)below(17) - 8 : 0);
     table->scale = ldexp(1, exponent > 1000 ? 1000 : exponent);
@@ -181,6 +291,29 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
     return box;
 }
 
+/// The same of what has no radius.
+static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
+{
+    const glint_geometry_table *table = &scene->table;
+    glint_box box;
+    long double lower[3], upper[3], radius2 = 0;
+    double away[3];
+    ends_of(scene, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        const long double low = (lower[c] - table->reference[c]) * table->scale,
+                          high = (upper[c] - table->reference[c]) * table->scale;
+        const long double slack = 0x1p-60L * (fabsl(lower[c]) + fabsl(upper[c])) * table->scale,
+                          half = (high - low) / 2;
+        away[c] = (double)((low + high) / 2);
+        prim->filter_center[c] = (float)away[c];
+        box.lower[c] = rounded_down(low - slack);
+        box.upper[c] = rounded_up(high + slack);
+        radius2 += (half + slack) * (half + slack);
+    }
+    prim->filter_bound = rounded_up(sqrtl(radius2) * (1 + 2e-6L) + 16 * 0x1p-24L * length3(away) * (1 + 0x1p-40L));
+    return box;
+}
+
 /// Leaves of the tree hold the numbers of boxes; those of the kernels hold primitives.
 static inline void build_index(test_scene *scene)
 {
@@ -196,7 +329,7 @@ static inline void build_index(test_scene *scene)
             scene->unbounded[table->unbounded_count++] = i;
             continue;
         }
-        boxes[count] = place_sphere(table, prim);
+        boxes[count] = prim->kind == GLINT_PRIM_SPHERE ? place_sphere(table, prim) : place_corners_of(scene, prim);
         bounded[count++] = i;
     }
     glint_error error;
@@ -210,6 +343,7 @@ static inline void build_index(test_scene *scene)
     table->nodes = scene->bvh.nodes;
     table->unbounded = scene->unbounded;
     table->prims = scene->prims;
+    table->solids = scene->solids;
 }
 
 /// The order of definition: that of the array, or any.
@@ -247,6 +381,7 @@ static inline test_scene *random_scene(const scene_plan *plan)
     const uint32_t count = scene.table.prim_count = random_count();
     for (uint32_t i = 0; i < count; i++)
         random_prim(plan, &scene, i, count);
+    scene.table.triangles = plan->triangles;
     if (one_in(6))
         set_ground(plan, &scene.prims[below(count)]);
     finish_scene(plan, &scene);
@@ -267,6 +402,7 @@ static inline void random_place(scene_plan *plan, bool beyond)
     plan->spread = one_in(4) ? 6 : one_in(2) ? 2 : 0.5;
     for (int c = 0; c < 3; c++)
         plan->middle[c] = (extreme ? plan->size : 1) * either_sign(offset) * between(0.5, 1);
+    plan->triangles = plan->solids = false;
     plan->line_count = 0;
 }
 

@@ -11,6 +11,7 @@ typedef struct shadow_case {
     glint_occlude_args args;
     uint32_t *prim;
     uint16_t *back;
+    void *slack;
     bool soft; ///< an area light
 } shadow_case;
 
@@ -101,6 +102,23 @@ static void place_points(shadow_case *c, double light_distance)
         add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
 }
 
+/// A point of a triangle, and what rounding may have made of it, as surface says.
+static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
+{
+    const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
+    const double u = one_in(6) ? below(2) : between(0, 1), v = (1 - u) * (one_in(6) ? below(2) : between(0, 1));
+    double point[3], f = 0, g = 0, far = 0;
+    for (int k = 0; k < 3; k++) {
+        const double along = prim->corner[1][k] - prim->corner[0][k], across = prim->corner[2][k] - prim->corner[0][k];
+        point[k] = prim->corner[0][k] + (u * along + v * across);
+        f = fmax(f, fabs(along));
+        g = fmax(g, fabs(across));
+        far = fmax(far, fabs(point[k]));
+    }
+    put3(c->args.point, c->precision, i, point);
+    put(c->slack, c->precision, i, slack * ((f + g) + far));
+}
+
 /// Some of the points go onto the primitive they are said to be on; the others are on none that could shadow them.
 static void place_on_surfaces(shadow_case *c)
 {
@@ -112,9 +130,17 @@ static void place_on_surfaces(shadow_case *c)
         const glint_prim *prim = &scene->prims[c->prim[i]];
         if (one_in(3)) {
             c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+            if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
+                c->prim[i] = GLINT_MISS; // their rules ask where on them a point is
             continue;
         }
-        if (prim->kind == GLINT_PRIM_SPHERE) {
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            place_on_triangle(c, i, prim);
+            continue;
+        }
+        if (prim->kind == GLINT_PRIM_SOLID) {
+            place_on_solid(scene, prim, point);
+        } else if (prim->kind == GLINT_PRIM_SPHERE) {
             random_unit(out);
             along3(prim->center, prim->radius, out, point);
         } else {
@@ -127,7 +153,7 @@ static void place_on_surfaces(shadow_case *c)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-static void start_shadows(shadow_case *c, int precision)
+static void start_shadows(shadow_case *c, int precision, bool odd)
 {
     memset(c, 0, sizeof *c);
     c->precision = precision;
@@ -138,7 +164,18 @@ static void start_shadows(shadow_case *c, int precision)
     c->args.back = c->back = masks(groups);
     for (uint32_t g = 0; g < groups; g++)
         c->back[g] = one_in(2) ? 0 : c->back[g];
+    // float takes what rounding makes of them for hits far away from them, which the index does not look up
+    c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
+    c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
     input3(c->args.point, real_kind(precision), n);
+    input3(c->args.direction, real_kind(precision), n);
+    c->args.slack = c->slack = input(real_kind(precision), n);
+    for (uint32_t i = 0; i < n; i++) {
+        double way[3];
+        random_unit(way);
+        put3(c->args.direction, precision, i, way);
+        put(c->slack, precision, i, 0);
+    }
     const double distance = place_light(c);
     if (!c->args.directional && one_in(2))
         place_lamps(c, distance);
@@ -159,6 +196,11 @@ static uint64_t lit_lanes(const shadow_case *c)
     return lanes;
 }
 
+static bool is_triangle(const shadow_case *c, uint32_t prim)
+{
+    return prim != GLINT_MISS && c->scene->prims[prim].kind == GLINT_PRIM_TRIANGLE;
+}
+
 /// A box as surface gives it: around the lit points, and maybe around more.
 static void make_box(const shadow_case *c, glint_point_box *box)
 {
@@ -171,7 +213,8 @@ static void make_box(const shadow_case *c, glint_point_box *box)
             lit = lit || lane_of(c->args.lit[s], i);
         if (!lit)
             continue;
-        several = several || lane_of(c->back, i) || (box->only != GLINT_MISS && box->only != c->prim[i]);
+        several = several || lane_of(c->back, i) || is_triangle(c, c->prim[i]) ||
+                  (box->only != GLINT_MISS && box->only != c->prim[i]);
         box->only = c->prim[i];
         for (int k = 0; k < 3; k++) {
             const double x = get(c->args.point[k], c->precision, i);
@@ -337,7 +380,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
 static void soft_light_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision);
+    start_shadows(&c, precision, odd);
     if (c.soft)
         soft_light_all(&c, odd);
     free_scene(c.scene);
@@ -354,7 +397,7 @@ static void test_soft_light(void **state)
 static void occlude_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision);
+    start_shadows(&c, precision, odd);
     for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
         for (int k = 0; k < 3 && one_in(8); k++) {
             c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more

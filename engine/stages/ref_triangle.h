@@ -8,7 +8,7 @@ static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v
 
 typedef struct NAME(seen_edges) {
     REAL e[3], dz, depth, sum_of_sizes;
-    bool between_corners;
+    REAL low[2], high[2]; ///< of the corners, along each axis
 } NAME(seen_edges);
 
 static int NAME(main_axis)(NAME(vec3) d)
@@ -32,9 +32,10 @@ static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d
     out.e[1] = px[0] * py[2] - py[0] * px[2];
     out.e[2] = px[1] * py[0] - py[1] * px[0];
     out.depth = (out.e[0] * pz[0] + out.e[1] * pz[1]) + out.e[2] * pz[2];
-    out.between_corners =
-        NAME(min)(NAME(min)(px[0], px[1]), px[2]) <= 0 && NAME(max)(NAME(max)(px[0], px[1]), px[2]) >= 0 &&
-        NAME(min)(NAME(min)(py[0], py[1]), py[2]) <= 0 && NAME(max)(NAME(max)(py[0], py[1]), py[2]) >= 0;
+    out.low[0] = NAME(min)(NAME(min)(px[0], px[1]), px[2]);
+    out.low[1] = NAME(min)(NAME(min)(py[0], py[1]), py[2]);
+    out.high[0] = NAME(max)(NAME(max)(px[0], px[1]), px[2]);
+    out.high[1] = NAME(max)(NAME(max)(py[0], py[1]), py[2]);
     out.sum_of_sizes = NAME(abs)(px[0]) + NAME(abs)(py[0]);
     for (int j = 1; j < 3; j++)
         out.sum_of_sizes = (out.sum_of_sizes + NAME(abs)(px[j])) + NAME(abs)(py[j]);
@@ -49,10 +50,15 @@ static bool NAME(all_on_one_side)(NAME(seen_edges) s, REAL reach)
     return least >= -reach || most <= reach;
 }
 
+static bool NAME(between_corners)(NAME(seen_edges) s, REAL reach)
+{
+    return s.low[0] <= reach && s.low[1] <= reach && s.high[0] >= -reach && s.high[1] >= -reach;
+}
+
 static bool NAME(passes)(NAME(seen_edges) s)
 {
     REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
-    return least > 0 || most < 0 || ((least == 0 || most == 0) && s.between_corners);
+    return least > 0 || most < 0 || ((least == 0 || most == 0) && NAME(between_corners)(s, 0));
 }
 
 static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
@@ -139,11 +145,17 @@ static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(p
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             r = NAME(max)(r, NAME(abs)(NAME(component)(corner[j], k)));
-    REAL move = NAME(abs)(seen.dz) * (2 * (slack * (REAL)args->geometry->scale) + NAME(POINT_SLACK) * r);
+    REAL loose = 2 * (slack * (REAL)args->geometry->scale) + NAME(POINT_SLACK) * r;
+    REAL move = NAME(abs)(seen.dz) * loose;
     REAL reach = move * (seen.sum_of_sizes + 2 * move);
     REAL away = NAME(dot)(plane.m, ray);
     bool other_side = (away < 0 && plane.light < 0) || (away > 0 && plane.light > 0);
-    return other_side && NAME(all_on_one_side)(seen, reach);
+    bool in_box = true;
+    for (int k = 0; k < 3; k++) {
+        REAL a = NAME(component)(corner[0], k), b = NAME(component)(corner[1], k), c = NAME(component)(corner[2], k);
+        in_box = in_box && NAME(min)(NAME(min)(a, b), c) <= loose && NAME(max)(NAME(max)(a, b), c) >= -loose;
+    }
+    return other_side && NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move) && in_box;
 }
 
 /// Sample i, of another surface.

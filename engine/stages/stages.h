@@ -493,10 +493,12 @@ typedef struct glint_occlude_args {
 //         not on: blocked = h and light have strictly opposite signs, the segment passes as in cast and the sum of e is not 0
 //         on:     a segment from there leaves the plane at once and can meet the triangle at its own beginning alone. It is
 //                 blocked where the triangle reaches to the point and parts it from the light as seen by the viewer's ray:
-//                 r = max of all |P_jk|, move = |dz| (2 (slack scale) + point_slack r)
+//                 r = max of all |P_jk|, loose = 2 (slack scale) + point_slack r, move = |dz| loose
 //                 reach = move ((((((|X_0| + |Y_0|) + |X_1|) + |Y_1|) + |X_2|) + |Y_2|) + 2 move): what e may be off by
 //                 away = dot(m, direction of the viewer's ray)
-//                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach)
+//                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach), and of
+//                 min X and min Y none > move, of max X and max Y none < -move, and for each k min P_jk <= loose and
+//                 max P_jk >= -loose
 // solid:  d as of spheres, in and out of the ray from `point` along d: blocked = hits and (0 < in and in scale < 1 or
 //         0 < out and out scale < 1); directional: < inf, without scale
 //         light_side, double: k = inverse (position - center): -1 where k is inside of all bounds of the form, else 1; directional: 1
@@ -622,7 +624,7 @@ typedef struct glint_shade_light {
     const float *sine2, *schlick; ///< read for materials of GLINT_HIGHLIGHT_FACETS
     bool
         summed; ///< all samples of a light, as soft_light sums them up: `cosine` is its diffuse, `highlight` its specular,
-        ///< and no other factors are read. No light is joined to it, and no material has microfacets
+    ///< and no other factors are read. No light is joined to it, and no material has microfacets
     const float *highlight;
     double diffuse[3], specular[3]; ///< colour times intensity
 } glint_shade_light;

@@ -77,10 +77,11 @@ static inline rm R(within)(const R(seen_edges) * edges, vr reach)
     return rm_or(r_le(-reach, r_min(r_min(e[0], e[1]), e[2])), r_le(r_max(r_max(e[0], e[1]), e[2]), reach));
 }
 
-/// Whether the ray passes between the corners along both axes of what it sees; X and Y as in edges_along.
-static rm R(between_corners)(vr p[3][3], const vr d[3])
+/// Whether the ray passes between the corners along both axes of what it sees, give or take `reach`; X and Y as in
+/// edges_along.
+static rm R(between_corners)(vr p[3][3], const vr d[3], vr reach)
 {
-    const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]), zero = r_set(0);
+    const vr ax = R(abs)(d[0]), ay = R(abs)(d[1]), az = R(abs)(d[2]);
     const rm y = r_lt(ax, ay), z = r_lt(r_select(y, ay, ax), az);
     vr turned[4][3]; // direction and corners, the direction's largest component last
     for (int j = 0; j < 4; j++) {
@@ -94,7 +95,7 @@ static rm R(between_corners)(vr p[3][3], const vr d[3])
         for (int j = 0; j < 3; j++)
             x[j] = turned[j][k] * turned[3][2] - turned[j][2] * turned[3][k];
         between = rm_and(
-            between, rm_and(r_le(r_min(r_min(x[0], x[1]), x[2]), zero), r_le(zero, r_max(r_max(x[0], x[1]), x[2]))));
+            between, rm_and(r_le(r_min(r_min(x[0], x[1]), x[2]), reach), r_le(-reach, r_max(r_max(x[0], x[1]), x[2]))));
     }
     return between;
 }
@@ -108,7 +109,7 @@ static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3
     const rm sure = rm_or(r_lt(zero, r_min(r_min(e[0], e[1]), e[2])), r_lt(r_max(r_max(e[0], e[1]), e[2]), zero));
     if (!rm_bits(rm_andnot(inside, sure)))
         return inside;
-    return rm_and(inside, rm_or(sure, R(between_corners)(p, d)));
+    return rm_and(inside, rm_or(sure, R(between_corners)(p, d, zero)));
 }
 
 /// p: the corners from the ray's origin, in units of the table.
@@ -229,20 +230,29 @@ static inline R(triangle_plane) R(plane_of)(vr corner[3][3], double scale, const
 
 /// Whether the triangle stands between the light and points that lie in its plane: they touch it, and the light is on
 /// the other side than the viewer, from whom `ray` came.
-static inline rm R(parts_from_light)(vr p[3][3], const R(seen_edges) * edges, const R(triangle_plane) * plane, vr slack,
-                                     double scale, const vr ray[3])
+static inline rm R(parts_from_light)(vr p[3][3], const vr d[3], const R(seen_edges) * edges,
+                                     const R(triangle_plane) * plane, vr slack, double scale, const vr ray[3])
 {
     const vr zero = r_set(0);
     vr r = zero;
     for (int j = 0; j < 3; j++)
         for (int k = 0; k < 3; k++)
             r = r_max(r, R(abs)(p[j][k]));
-    const vr move = R(abs)(edges->dz) * (r_set(2) * (slack * r_set(scale)) + r_set(GLINT_POINT_SLACK) * r);
+    const vr loose = r_set(2) * (slack * r_set(scale)) + r_set(GLINT_POINT_SLACK) * r;
+    const vr move = R(abs)(edges->dz) * loose;
     const vr reach = move * (edges->reach + r_set(2) * move);
     const vr away = DOT(plane->m, ray);
     const rm other_side =
         rm_or(rm_and(r_lt(away, zero), r_lt(plane->light, zero)), rm_and(r_lt(zero, away), r_lt(zero, plane->light)));
-    return rm_and(other_side, R(within)(edges, reach));
+    rm parts = rm_and(other_side, R(within)(edges, reach));
+    if (!rm_bits(parts))
+        return parts;
+    parts = rm_and(parts, R(between_corners)(p, d, move)); // with the light in this plane, all edges are within reach
+    for (int k = 0; k < 3; k++) { // and the triangle may be behind
+        const vr low = r_min(r_min(p[0][k], p[1][k]), p[2][k]), high = r_max(r_max(p[0][k], p[1][k]), p[2][k]);
+        parts = rm_and(parts, rm_and(r_le(low, loose), r_le(-loose, high)));
+    }
+    return parts;
 }
 
 /// Segments from points of another surface.
@@ -268,5 +278,5 @@ static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr poin
     const rm blocks = rm_andnot(rm_and(crosses, through), on);
     if (!any_on)
         return blocks;
-    return rm_or(blocks, rm_and(on, R(parts_from_light)(p, &edges, plane, slack, scale, ray)));
+    return rm_or(blocks, rm_and(on, R(parts_from_light)(p, d, &edges, plane, slack, scale, ray)));
 }
