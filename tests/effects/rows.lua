@@ -22,7 +22,7 @@ return {
       scene:add(glint.spot_light { position = { 0, 20, 0 }, direction = { 0, -1, 0 }, inner = 20, outer = 40,
         shadows = false })
     end },
-  { name = "area_light", part = "LAMP", functions = { "light_lamp" },
+  { name = "area_light", part = "LAMP", functions = { "light_lamp", "^soft_light" },
     call = function(glint, parts, scene)
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 20, 0 }, radius = 1, samples = 4, shadows = false })
