@@ -299,21 +299,22 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
     return k;
 }
 
-/// Rounds the terms into the film and adds them up into the beauty.
-static void write_film(const terms *sum, int count, float *const film[GLINT_TERM_COUNT][3], float *const beauty[3],
-                       uint32_t i)
+/// Rounds the terms into the film and adds them up into the beauty. further: those there are besides the local ones, a bit each.
+static void write_film(const terms *sum, unsigned further, float *const film[GLINT_TERM_COUNT][3],
+                       float *const beauty[3], uint32_t i)
 {
     for (int c = 0; c < 3; c++) {
         float rounded[GLINT_TERM_COUNT];
-        for (int term = 0; term < count; term++) {
+        for (int term = 0; term < GLINT_TERM_COUNT; term++) {
             rounded[term] = (float)sum->value[term][c];
-            if (film[term][c])
+            if (film[term][c] && (term < GLINT_TERM_LOCAL || further >> term & 1))
                 film[term][c][i] = rounded[term];
         }
         beauty[c][i] = ((rounded[GLINT_TERM_BACKGROUND] + rounded[GLINT_TERM_AMBIENT]) + rounded[GLINT_TERM_DIFFUSE]) +
                        rounded[GLINT_TERM_SPECULAR];
-        for (int term = GLINT_TERM_LOCAL; term < count; term++)
-            beauty[c][i] = beauty[c][i] + rounded[term];
+        for (int term = GLINT_TERM_LOCAL; term < GLINT_TERM_COUNT; term++)
+            if (further >> term & 1)
+                beauty[c][i] = beauty[c][i] + rounded[term];
     }
 }
 
@@ -351,7 +352,7 @@ static void shade_sample(const glint_shade_args *args, uint32_t i)
     if (args->sum[GLINT_TERM_BACKGROUND][0])
         store_sums(&sum, args->sum, i);
     else
-        write_film(&sum, GLINT_TERM_LOCAL, args->film, args->beauty, i);
+        write_film(&sum, 0, args->film, args->beauty, i);
 }
 
 static void shade(const glint_shade_args *args)
@@ -364,13 +365,15 @@ static void shade(const glint_shade_args *args)
 
 static void resolve(const glint_resolve_args *args)
 {
-    int count = args->sum[GLINT_TERM_MIRROR][0] ? GLINT_TERM_COUNT : GLINT_TERM_LOCAL;
+    unsigned further = 0;
+    for (int term = GLINT_TERM_LOCAL; term < GLINT_TERM_COUNT; term++)
+        further |= args->sum[term][0] ? 1u << term : 0;
     for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
         terms mean = load_sums(args->sum, i);
-        for (int term = 0; term < count; term++)
+        for (int term = 0; term < GLINT_TERM_COUNT; term++)
             for (int c = 0; c < 3; c++)
                 mean.value[term][c] /= args->samples;
-        write_film(&mean, count, args->film, args->beauty, i);
+        write_film(&mean, further, args->film, args->beauty, i);
     }
 }
 
