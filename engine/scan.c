@@ -2,6 +2,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/tile.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -80,8 +81,8 @@ static inline void cover_corner(const picture *screen, const seen_corner *corner
 {
     const double per_z = screen->camera->orthographic ? 1 : 1 / corner->z, x = corner->s * per_z, y = corner->t * per_z;
     const double slack = 64 * screen->rounding * (corner->size * per_z);
-    cover(s, x, slack * (screen->unit[0] + fabs(x)) + 0x1p-40 * fabs(x));
-    cover(t, y, slack * (screen->unit[1] + fabs(y)) + 0x1p-40 * fabs(y));
+    cover(s, x, slack * (screen->unit[0] + fabs(x)) + 0x1p-40 * (screen->width + fabs(x)));
+    cover(t, y, slack * (screen->unit[1] + fabs(y)) + 0x1p-40 * (screen->height + fabs(y)));
 }
 
 /// Adds the way to where an edge comes to the eye's plane: it goes to infinity on the screen.
@@ -286,9 +287,11 @@ static picture make_screen(const glint_plan *plan, double scale)
     out.unit[0] = sqrt(out.per_right);
     out.unit[1] = sqrt(out.per_up);
     const bool one = plan->desc.samples == 1;
+    double only[2]; // another place for another seed
+    glint_tile_offset(plan, 0, only);
     for (int c = 0; c < 2; c++) {
-        out.low[c] = one ? camera->pixel_offset : 0;
-        out.high[c] = one ? camera->pixel_offset : 1;
+        out.low[c] = one ? only[c] : 0;
+        out.high[c] = one ? only[c] : 1;
     }
     return out;
 }
