@@ -82,6 +82,19 @@ static void choose_visibility(glint_plan *plan)
     plan->asks_index = !plan->scan || needs_index;
 }
 
+/// Whether the samples of a tile can be shaded in one: what was found for each fits the tile, and light comes from
+/// nowhere else.
+static bool shades_together(const glint_plan *plan)
+{
+    static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE, GLINT_STAGE_INDIRECT, GLINT_STAGE_GLOW,
+                                            GLINT_STAGE_CUE,    GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET };
+    for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+        if (plan->runs[other[i]])
+            return false;
+    return plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+           plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK && !plan->tints;
+}
+
 /// Lists the stages this frame needs.
 static void choose_stages(glint_plan *plan)
 {
@@ -104,6 +117,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.site_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
+    plan->together = shades_together(plan);
     plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
     plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;

@@ -152,6 +152,7 @@ struct glint_plan {
     bool scan; ///< triangles are found by projecting them, not by casting
     bool asks_index; ///< some stage walks it
     bool accumulate; ///< sums over samples or over chunks of lights
+    bool together; ///< all samples of a tile are shaded in one, by what was found for each: they need no sums
 
     glint_stage_info stage_list[GLINT_STAGE_COUNT];
     size_t stage_count;

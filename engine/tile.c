@@ -61,7 +61,7 @@ static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, u
     const glint_plan_light *l = &frame->plan->lights[light];
     glint_reuse *reuse = frame->reuse;
     glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
-    glint_tile_light *own = &tile->lights[slot];
+    glint_tile_light *own = &tile->lights[tile->own_lights + slot];
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
     *light_known = kept && glint_key_equal(kept->light, l->key);
     *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
@@ -379,6 +379,7 @@ static void find_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, b
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
+    tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     const bool any = find_hits(tile, frame, &w);
     if (frame->plan->runs[GLINT_STAGE_CUE])
@@ -398,7 +399,10 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         }
         if (lit && frame->plan->dims) // which points are inside what absorbs
             need_points(tile, frame, &w);
-        glint_tile_shade(tile, frame, from, count);
+        if (frame->plan->together)
+            glint_tile_remember_sample(tile, frame, count);
+        else
+            glint_tile_shade(tile, frame, from, count);
         for (uint32_t i = 0; i < count && frame->plan->tints; i++)
             find_tint(tile, frame, &w, from + i, i);
         from += count;
@@ -481,7 +485,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
                                  .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
     if (tile->kept)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
-    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate; k++)
+    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
@@ -493,7 +497,9 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     sign_kept(tile, frame);
     if (plan->runs[GLINT_STAGE_CUE] && refined)
         glint_tile_take_cued(tile, plan);
-    if (plan->accumulate && refined)
+    if (plan->together && refined)
+        glint_tile_resolve_samples(tile, frame);
+    else if (plan->accumulate && refined)
         glint_tile_resolve(tile, frame);
     if (frame->base)
         glint_tile_take_base(tile, frame);

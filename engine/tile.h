@@ -103,6 +103,8 @@ typedef struct glint_tile {
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
+    struct glint_samples *samples; ///< memory of tile_samples.c; likewise
+    uint32_t own_lights; ///< the first of `lights` that is the current sample's
     const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
     struct glint_cue *cue; ///< of tile_cue.c; NULL until a frame fades
@@ -153,8 +155,20 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
 /// anybody reads. Returns whether it is, and marks the slots. The points are found.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
+/// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in.
+glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
+                                       uint32_t count, glint_shade_light *lights);
+/// Where what is asked for of the picture goes.
+void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3],
+                           float *beauty[3]);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
+/// tile_samples.c: for plans whose samples are shaded together. Remembers what the current sample needs for that, and
+/// after the last shades and resolves all.
+struct glint_samples *glint_samples_create(void);
+void glint_samples_destroy(struct glint_samples *samples);
+void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
+void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
 void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);

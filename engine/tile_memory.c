@@ -22,6 +22,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->beside = glint_beside_create()) && good;
     if (plan->tints && !tile->tint)
         good = (tile->tint = glint_tint_create()) && good;
+    if (plan->together && !tile->samples)
+        good = (tile->samples = glint_samples_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
     if (plan->glow_count && !tile->glow)
@@ -40,6 +42,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_glow_destroy(tile->glow);
     glint_cue_destroy(tile->cue);
     glint_indirect_destroy(tile->indirect);
+    glint_samples_destroy(tile->samples);
     free(tile->facets);
     free(tile);
 }

@@ -362,23 +362,10 @@ static glint_shade_light shade_light(const glint_tile *tile, const glint_plan_li
     return out;
 }
 
-void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
+glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
+                                       uint32_t count, glint_shade_light *lights)
 {
     const glint_plan *plan = frame->plan;
-    glint_shade_light lights[GLINT_LIGHT_CHUNK];
-    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
-    uint32_t light_count = 0;
-    if (plan->dims && count > 0)
-        glint_tile_find_dim(tile, frame);
-    for (uint32_t i = 0; i < count; i++) {
-        const glint_plan_light *light = &plan->lights[from + i];
-        const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
-        if (tile->at.light[i].summed && light->joined && i > 0)
-            continue; // it is in the sum
-        for (uint32_t g = 0; g < tile->group_count && plan->dims && light->shadows; g++)
-            whole[i][g] = open[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
-        lights[light_count++] = shade_light(tile, light, i, plan->dims && light->shadows ? whole[i] : open);
-    }
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
                               .hits = tile->at.hits,
@@ -388,20 +375,48 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .facing = tile->at.facing,
                               .highlights = plan->highlights,
                               .first = from == 0,
-                              .lights = lights,
-                              .light_count = light_count };
-    uint16_t unlit[GLINT_TILE_GROUPS];
-    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
-        args.active = glint_tile_unlit_lanes(tile, unlit);
+                              .lights = lights };
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_plan_light *light = &plan->lights[from + i];
+        const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        if (!tile->at.light[i].summed || !light->joined || i == 0) // else it is in the sum
+            lights[args.light_count++] = shade_light(tile, light, i, open);
+    }
     if (!tile->transparent)
         vec_copy(args.background, plan->background);
+    return args;
+}
+
+void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3], float *beauty[3])
+{
     for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < GLINT_TERM_COUNT; k++) {
-            args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
-            args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
-        }
-        args.beauty[c] = tile->beauty[c];
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
+        beauty[c] = tile->beauty[c];
     }
+}
+
+void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
+    glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights);
+    if (plan->dims && count > 0)
+        glint_tile_find_dim(tile, frame);
+    for (uint32_t i = 0; i < count && plan->dims; i++) { // no light is summed
+        if (!plan->lights[from + i].shadows)
+            continue;
+        for (uint32_t g = 0; g < tile->group_count; g++)
+            whole[i][g] = lights[i].lit[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
+        lights[i].lit = whole[i];
+    }
+    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+        args.active = glint_tile_unlit_lanes(tile, unlit);
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3; c++)
+            args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
+    glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->shade(&args);
     if (plan->runs[GLINT_STAGE_GLOW] && args.first)
         glint_tile_add_glow(tile, frame);
@@ -413,13 +428,10 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
-    for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < GLINT_TERM_COUNT; k++) {
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3; c++)
             args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->sum[k][c] : NULL;
-            args.film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
-        }
-        args.beauty[c] = tile->beauty[c];
-    }
+    glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->resolve(&args);
     glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
 }

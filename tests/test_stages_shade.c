@@ -75,52 +75,69 @@ static void make_shade_outputs(glint_shade_args *args, const double *before, uin
         args->beauty[c] = before ? NULL : output("beauty", KIND_FLOAT, n);
 }
 
+/// Lights of a sample; `sums`: some are sums.
+static void make_shade_lights(glint_shade_args *args, glint_shade_light *lights, uint32_t count, bool sums)
+{
+    args->lights = lights;
+    args->light_count = count;
+    for (uint32_t k = 0; k < count; k++) {
+        make_shade_light(&lights[k], args->hits, args->group_count);
+        lights[k].summed = sums && one_in(2);
+    }
+    for (uint32_t k = 0; k < count; k++) { // samples of one light have its colours
+        lights[k].joined = k > 0 && !lights[k - 1].summed && !lights[k].summed && one_in(2);
+        if (!lights[k].joined)
+            continue;
+        memcpy(lights[k].diffuse, lights[k - 1].diffuse, sizeof lights[k].diffuse);
+        memcpy(lights[k].specular, lights[k - 1].specular, sizeof lights[k].specular);
+    }
+}
+
+/// What a sample shows: of several materials, or of one in most groups, which may be known.
+static void make_shade_hits(glint_shade_args *args, uint32_t material_count)
+{
+    static const uint32_t only = 0;
+    const uint32_t n = args->group_count * GLINT_GROUP;
+    const bool alike = one_in(2), known = alike && one_in(2);
+    uint16_t *hits = masks(args->group_count);
+    uint32_t *material = input(KIND_U32, n);
+    float *facing = input(KIND_FLOAT, n);
+    for (uint32_t g = 0; g < args->group_count; g++)
+        hits[g] = (alike && !one_in(5) ? 0xffff : hits[g]) & args->active[g];
+    for (uint32_t i = 0; i < n; i++) {
+        const bool other = !known && (!alike || one_in(50));
+        if (hits[i / GLINT_GROUP])
+            material[i] = lane_of(hits, i) && other ? below(material_count) : 0;
+        facing[i] = (float)(one_in(9) ? below(2) : between(0, 1));
+    }
+    args->hits = hits;
+    args->material = material;
+    args->only = known ? &only : NULL;
+    args->facing = facing;
+}
+
 static void shade_case(int precision, bool odd)
 {
     (void)precision, (void)odd;
     uint32_t groups = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
     glint_shade_material material_table[6];
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
-    uint16_t *active = masks(groups), *hits = masks(groups);
-    uint32_t *material = input(KIND_U32, n);
     double *before = one_in(2) ? input(KIND_DOUBLE, n) : NULL;
-    float *facing = input(KIND_FLOAT, n);
     uint32_t passes = one_in(3) ? 0 : below(16);
-    for (uint32_t g = 0; g < groups; g++)
-        hits[g] &= active[g];
-    for (uint32_t i = 0; i < n; i++) {
-        if (hits[i / GLINT_GROUP])
-            material[i] = lane_of(hits, i) ? below(COUNT_OF(material_table)) : 0;
-        facing[i] = (float)(one_in(9) ? below(2) : between(0, 1));
-        if (before)
-            before[i] = one_in(3) ? 0 : power_of_ten(-5, 3);
-    }
+    for (uint32_t i = 0; i < n && before; i++)
+        before[i] = one_in(3) ? 0 : power_of_ten(-5, 3);
     make_materials(material_table, COUNT_OF(material_table));
     const bool sums = one_in(3);
     for (size_t i = 0; sums && i < COUNT_OF(material_table); i++)
         material_table[i].highlight %= GLINT_HIGHLIGHT_FACETS;
     glint_shade_args args = { .group_count = groups,
-                              .active = active,
-                              .hits = hits,
-                              .material = material,
+                              .active = masks(groups),
                               .materials = material_table,
-                              .facing = facing,
                               .highlights = one_in(2),
-                              .first = !before || one_in(2),
-                              .lights = lights,
-                              .light_count = below(GLINT_LIGHT_CHUNK + 1) };
+                              .first = !before || one_in(2) };
     random_color(args.background);
-    for (uint32_t k = 0; k < args.light_count; k++) {
-        make_shade_light(&lights[k], hits, groups);
-        lights[k].summed = sums && one_in(2);
-    }
-    for (uint32_t k = 1; k < args.light_count; k++) { // samples of one light have its colours
-        lights[k].joined = !lights[k - 1].summed && !lights[k].summed && one_in(2);
-        if (!lights[k].joined)
-            continue;
-        memcpy(lights[k].diffuse, lights[k - 1].diffuse, sizeof lights[k].diffuse);
-        memcpy(lights[k].specular, lights[k - 1].specular, sizeof lights[k].specular);
-    }
+    make_shade_hits(&args, COUNT_OF(material_table));
+    make_shade_lights(&args, lights, below(GLINT_LIGHT_CHUNK + 1), sums);
     FOR_EACH_TESTED
     {
         make_shade_outputs(&args, before, args.highlights ? passes : passes & 7);
@@ -129,10 +146,46 @@ static void shade_case(int precision, bool odd)
     }
 }
 
+static void resolve_samples_case(int precision, bool odd)
+{
+    (void)precision, (void)odd;
+    const uint32_t groups = 1 + below(GLINT_TILE_GROUPS), count = 1 + below(GLINT_LIGHT_CHUNK);
+    glint_shade_material material_table[6];
+    glint_shade_light lights[GLINT_LIGHT_CHUNK][GLINT_LIGHT_CHUNK];
+    glint_shade_args samples[GLINT_LIGHT_CHUNK] = {
+        { .group_count = groups, .materials = material_table, .highlights = one_in(2), .first = true }
+    };
+    uint16_t *active = masks(groups);
+    const bool everywhere = one_in(2);
+    for (uint32_t g = 0; everywhere && g < groups; g++)
+        active[g] = 0xffff;
+    samples[0].active = active;
+    make_materials(material_table, COUNT_OF(material_table));
+    random_color(samples[0].background);
+    for (uint32_t k = 0; k < count; k++) {
+        samples[k] = samples[0];
+        make_shade_hits(&samples[k], COUNT_OF(material_table));
+        make_shade_lights(&samples[k], lights[k], below(GLINT_LIGHT_CHUNK / count + 1), false);
+    }
+    const uint32_t passes = one_in(2) ? 0 : below(16);
+    FOR_EACH_TESTED
+    {
+        make_shade_outputs(&samples[0], NULL, passes);
+        running->resolve_samples(samples, count);
+        compare_outputs("resolve_samples");
+    }
+}
+
 static void test_shade(void **state)
 {
     (void)state;
     run_cases(2 * CASES, 10000, shade_case);
+}
+
+static void test_resolve_samples(void **state)
+{
+    (void)state;
+    run_cases(CASES, 12000, resolve_samples_case);
 }
 
 static void resolve_case(int precision, bool odd)
@@ -236,6 +289,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_shade),
         cmocka_unit_test(test_resolve),
+        cmocka_unit_test(test_resolve_samples),
         cmocka_unit_test(test_exp2_accuracy),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

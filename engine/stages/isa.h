@@ -78,6 +78,7 @@
 
 #include "engine/stages/shade.h"
 #include "engine/stages/resolve.h"
+#include "engine/stages/samples.h"
 #include "engine/stages/tone.h"
 
 // Of one precision.
@@ -98,5 +99,6 @@ const glint_stages GLINT_STAGES_SYMBOL = {
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
+    .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,
     .tone = tone,
 };

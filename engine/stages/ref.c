@@ -335,20 +335,25 @@ static void store_sums(const terms *total, double *const sum[GLINT_TERM_COUNT][3
                 sum[term][c][i] = total->value[term][c];
 }
 
-static void shade_sample(const glint_shade_args *args, uint32_t i)
+/// Adds the terms of one sample.
+static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
 {
     uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
     bool active = args->active[group] >> lane & 1, hit = args->hits[group] >> lane & 1;
-    terms sum = load_sums(args->sum, i);
     for (int c = 0; c < 3 && args->first; c++) {
         if (active && !hit)
-            sum.value[GLINT_TERM_BACKGROUND][c] += args->background[c];
+            sum->value[GLINT_TERM_BACKGROUND][c] += args->background[c];
         if (hit)
-            sum.value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
+            sum->value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
     }
     for (uint32_t k = 0; k < args->light_count;)
-        k = add_lights(args, k, i, &sum);
+        k = add_lights(args, k, i, sum);
+}
 
+static void shade_sample(const glint_shade_args *args, uint32_t i)
+{
+    terms sum = load_sums(args->sum, i);
+    add_sample(args, i, &sum);
     if (args->sum[GLINT_TERM_BACKGROUND][0])
         store_sums(&sum, args->sum, i);
     else
@@ -374,6 +379,21 @@ static void resolve(const glint_resolve_args *args)
             for (int c = 0; c < 3; c++)
                 mean.value[term][c] /= args->samples;
         write_film(&mean, further, args->film, args->beauty, i);
+    }
+}
+
+static void resolve_samples(const glint_shade_args *sample, uint32_t count)
+{
+    for (uint32_t i = 0; i < sample->group_count * GLINT_GROUP; i++) {
+        terms mean = { 0 };
+        if (!sample->active[i / GLINT_GROUP])
+            continue;
+        for (uint32_t k = 0; k < count; k++)
+            add_sample(&sample[k], i, &mean);
+        for (int term = 0; term < GLINT_TERM_LOCAL; term++)
+            for (int c = 0; c < 3; c++)
+                mean.value[term][c] /= count;
+        write_film(&mean, GLINT_TERM_LOCAL, sample->film, sample->beauty, i);
     }
 }
 
@@ -430,5 +450,6 @@ const glint_stages glint_stages_ref = {
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .shade = shade,
     .resolve = resolve,
+    .resolve_samples = resolve_samples,
     .tone = tone,
 };

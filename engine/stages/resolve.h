@@ -1,6 +1,13 @@
 // resolve: the mean of several samples. Contract: stages.h.
 
-/// sum / samples. `inverse`: of a power of two, whose product with anything is that quotient; else 0.
+/// 1 / samples of a power of two, whose product with anything is the quotient; else 0.
+static inline double inverse_of(double samples)
+{
+    int exponent;
+    return frexp(samples, &exponent) == 0.5 ? 1 / samples : 0;
+}
+
+/// sum / samples. `inverse`: of these samples.
 static inline vd mean_of(vd sum, double samples, double inverse)
 {
     if (inverse > 0)
@@ -26,8 +33,7 @@ static inline void resolve_further(const glint_resolve_args *args, double invers
 
 static void resolve(const glint_resolve_args *args)
 {
-    int exponent;
-    const double inverse = frexp(args->samples, &exponent) == 0.5 ? 1 / args->samples : 0;
+    const double inverse = inverse_of(args->samples);
     group_terms terms;
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;

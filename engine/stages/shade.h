@@ -120,13 +120,13 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
     }
 }
 
-static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                                uint32_t g, light_factors *factors)
+/// Those of the lights that reach a group, after what is there.
+static inline void add_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                               uint32_t g, light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
     bool begun = false; // a light that the next ones may be joined to
-    factors->count = 0;
     for (uint32_t k = 0; k < args->light_count; k++) {
         const glint_shade_light *light = &args->lights[k];
         begun = begun && light->joined;
@@ -144,6 +144,13 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
         factors->light[slot] = light;
         begun = true;
     }
+}
+
+static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                                uint32_t g, light_factors *factors)
+{
+    factors->count = 0;
+    add_factors(args, material, specular, g, factors);
 }
 
 /// What a material makes of a light's colour; finite, so that nothing of it is nothing.
@@ -244,13 +251,19 @@ static inline void add_where(double *sum, int i, bool whole, unsigned lanes, vd 
     d_store(sum + i, now);
 }
 
-/// One material's lanes of a group, added to sums over samples and lights. `whole`, a constant: all lanes.
-static inline void shade_sums(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                              const light_factors *factors, size_t at, bool whole, unsigned lanes)
+/// Sums in double over samples and lights; `at`: where in them a group is.
+typedef struct group_sums {
+    double *const (*sum)[3];
+    size_t at;
+} group_sums;
+
+/// One material's lanes of a group, added to sums. `whole`, a constant: all lanes.
+static inline void add_material(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                                const light_factors *factors, const group_sums *to, bool whole, unsigned lanes)
 {
     for (int c = 0; c < 3; c++) {
         for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
-            add_where(args->sum[GLINT_TERM_AMBIENT][c] + at, i, whole, lanes, d_set(material->ambient[c]));
+            add_where(to->sum[GLINT_TERM_AMBIENT][c] + to->at, i, whole, lanes, d_set(material->ambient[c]));
         for (int kind = 0; kind < (specular ? 2 : 1); kind++)
             for (uint32_t k = 0; k < factors->count; k++) {
                 const light_share share = share_of(factors, material, k, kind, c);
@@ -258,9 +271,38 @@ static inline void shade_sums(const glint_shade_args *args, const glint_shade_ma
                     vd halves[VF / VD];
                     f_split(share_lanes(&share, i), halves);
                     for (int h = 0; h < VF / VD; h++)
-                        add_where(args->sum[GLINT_TERM_DIFFUSE + kind][c] + at, i + h * VD, whole, lanes, halves[h]);
+                        add_where(to->sum[GLINT_TERM_DIFFUSE + kind][c] + to->at, i + h * VD, whole, lanes, halves[h]);
                 }
             }
+    }
+}
+
+/// The material of the first of some lanes of a group, and which of them have it.
+static inline const glint_shade_material *material_of(const glint_shade_args *args, size_t at, unsigned *lanes)
+{
+    const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(*lanes)];
+    if (!args->only)
+        *lanes &= lanes_equal(args->material + at, index);
+    return &args->materials[index];
+}
+
+/// A group of one sample, added to sums.
+static inline void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)
+{
+    const unsigned hits = args->hits[g], empty = args->active[g] & ~hits;
+    light_factors factors;
+    for (int c = 0; args->first && empty && c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VD)
+            add_where(to->sum[GLINT_TERM_BACKGROUND][c] + to->at, i, false, empty, d_set(args->background[c]));
+    for (unsigned left = hits, lanes; left; left &= ~lanes) {
+        lanes = left;
+        const glint_shade_material *material = material_of(args, (size_t)g * GLINT_GROUP, &lanes);
+        const bool specular = args->highlights && material->highlight;
+        find_factors(args, material, specular, g, &factors);
+        if (lanes == 0xffff)
+            add_material(args, material, specular, &factors, to, true, lanes);
+        else
+            add_material(args, material, specular, &factors, to, false, lanes);
     }
 }
 
@@ -314,11 +356,11 @@ static inline void shade_whole(const glint_shade_args *args, const glint_shade_m
 }
 
 /// A group without any surface.
-static inline void shade_background(const glint_shade_args *args, size_t at)
+static inline void store_background(const glint_shade_args *args, const float background[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < GLINT_GROUP; i += VF)
-            f_store(args->beauty[c] + at + i, f_set((float)args->background[c]));
+            f_store(args->beauty[c] + at + i, f_set(background[c]));
 }
 
 static inline bool wants_terms(const glint_shade_args *args)
@@ -329,57 +371,45 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-static inline void shade_groups(const glint_shade_args *args, bool direct)
+/// A group whose terms are final.
+static inline void shade_group(const glint_shade_args *args, bool simple, uint32_t g)
 {
-    const bool simple = direct && !wants_terms(args);
+    const size_t at = (size_t)g * GLINT_GROUP;
+    unsigned left = args->hits[g];
     light_factors factors;
     group_terms terms;
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t at = (size_t)g * GLINT_GROUP;
-        unsigned left = args->hits[g];
-        if (simple && !left && args->active[g] == 0xffff) {
-            shade_background(args, at);
-            continue;
-        }
-        if (direct && left != 0xffff)
-            start_direct(args, g, &terms);
-        else if (!direct && args->first && args->active[g] & ~left)
-            for (int c = 0; c < 3; c++)
-                for (int i = 0; i < GLINT_GROUP; i += VD)
-                    add_where(args->sum[GLINT_TERM_BACKGROUND][c] + at, i, false, args->active[g] & ~left,
-                              d_set(args->background[c]));
-        bool done = false;
-        while (left) {
-            const uint32_t index = args->only ? *args->only : args->material[at + (unsigned)__builtin_ctz(left)];
-            const glint_shade_material *material = &args->materials[index];
-            const bool specular = args->highlights && material->highlight;
-            const unsigned lanes = args->only ? left : lanes_equal(args->material + at, index) & left;
-            find_factors(args, material, specular, g, &factors);
-            if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
-                shade_whole(args, material, specular, &factors, at);
-                done = true;
-                break;
-            }
-            if (direct && left == 0xffff)
-                start_direct(args, g, &terms);
-            left &= ~lanes;
-            if (direct)
-                shade_direct(material, specular, &factors, lanes, &terms);
-            else if (lanes == 0xffff)
-                shade_sums(args, material, specular, &factors, at, true, lanes);
-            else
-                shade_sums(args, material, specular, &factors, at, false, lanes);
-        }
-        if (direct && !done)
-            finish_terms(&terms, args->film, args->beauty, at);
+    if (simple && !left && args->active[g] == 0xffff) {
+        const float background[3] = { (float)args->background[0], (float)args->background[1],
+                                      (float)args->background[2] };
+        store_background(args, background, at);
+        return;
     }
+    if (left != 0xffff)
+        start_direct(args, g, &terms);
+    for (unsigned lanes; left; left &= ~lanes) {
+        lanes = left;
+        const glint_shade_material *material = material_of(args, at, &lanes);
+        const bool specular = args->highlights && material->highlight;
+        find_factors(args, material, specular, g, &factors);
+        if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
+            shade_whole(args, material, specular, &factors, at);
+            return;
+        }
+        if (left == 0xffff)
+            start_direct(args, g, &terms);
+        shade_direct(material, specular, &factors, lanes, &terms);
+    }
+    finish_terms(&terms, args->film, args->beauty, at);
 }
 
-/// Each way is compiled for its constant.
 static void shade(const glint_shade_args *args)
 {
-    if (GLINT_WITH_SAMPLES && args->sum[0][0])
-        shade_groups(args, false);
-    else
-        shade_groups(args, true);
+    const bool simple = !wants_terms(args);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
+        if (GLINT_WITH_SAMPLES && args->sum[0][0])
+            shade_sums(args, g, &sums);
+        else
+            shade_group(args, simple, g);
+    }
 }

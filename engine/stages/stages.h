@@ -682,6 +682,10 @@ typedef struct glint_resolve_args {
 } glint_resolve_args;
 // term = (float)(sum / samples); beauty as in shade, then ((beauty + indirect) + mirror) + transmission of those there are
 
+// resolve_samples: as shade for each of `count` samples in turn, with sums that begin at 0, and then resolve; all have
+// `first`, and `lights` of GLINT_LIGHT_CHUNK in all at most. They have groups, active, background, highlights and film and
+// beauty, which groups without an active lane leave as they are, in common; `sum` is not read.
+
 // ---- tone: 8-bit codes, written into the image ----
 
 /// Any rising map of 0 .. top to 0 .. 255 whose steps are further apart than the buckets. A bucket holds the floats
@@ -746,6 +750,7 @@ typedef struct glint_stages {
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
+    void (*resolve_samples)(const glint_shade_args *sample, uint32_t count);
     void (*tone)(const glint_tone_args *args);
 } glint_stages;
 

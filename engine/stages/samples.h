@@ -1,0 +1,113 @@
+// resolve_samples: shade and resolve in one, with sums that never leave a group. Contract: stages.h.
+
+/// All samples of a frame, and what is the same in every group.
+typedef struct samples_frame {
+    const glint_shade_args *sample;
+    uint32_t count;
+    double inverse; ///< see mean_of
+    float background[3]; ///< the mean of so many
+} samples_frame;
+
+/// The mean of so many equal terms, added up as others are.
+static inline float mean_of_equal(const samples_frame *frame, double term)
+{
+    double sum = 0;
+    for (uint32_t k = 0; k < frame->count; k++)
+        sum = sum + term;
+    return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
+}
+
+/// One vector of a term that lights make, in a channel: the mean of all shares.
+static inline vf mean_share(const samples_frame *frame, const light_factors *factors,
+                            const glint_shade_material *material, int term, int c, int i)
+{
+    vd total[VF / VD];
+    for (int h = 0; h < VF / VD; h++)
+        total[h] = d_set(0);
+    for (uint32_t k = 0; k < factors->count; k++) {
+        const light_share share = share_of(factors, material, k, term, c);
+        vd halves[VF / VD];
+        f_split(share_lanes(&share, i), halves);
+        for (int h = 0; h < VF / VD; h++)
+            total[h] = total[h] + halves[h];
+    }
+    for (int h = 0; h < VF / VD; h++)
+        total[h] = mean_of(total[h], frame->count, frame->inverse);
+    return f_join(total[0], total[1]);
+}
+
+/// The material that every sample shows in every lane; NULL: there is none.
+static inline const glint_shade_material *only_material(const samples_frame *frame, uint32_t g)
+{
+    const glint_shade_material *material = NULL;
+    for (uint32_t k = 0; k < frame->count; k++) {
+        const glint_shade_args *sample = &frame->sample[k];
+        unsigned lanes = 0xffff;
+        if (sample->hits[g] != 0xffff)
+            return NULL;
+        const glint_shade_material *shown = material_of(sample, (size_t)g * GLINT_GROUP, &lanes);
+        if (lanes != 0xffff || (material && shown != material))
+            return NULL;
+        material = shown;
+    }
+    return material;
+}
+
+/// A group that shows one material, with no term asked for: in registers.
+static inline void resolve_whole(const samples_frame *frame, const glint_shade_material *material, uint32_t g)
+{
+    const bool specular = frame->sample->highlights && material->highlight;
+    light_factors factors;
+    factors.count = 0;
+    for (uint32_t k = 0; k < frame->count; k++)
+        add_factors(&frame->sample[k], material, specular, g, &factors);
+    for (int c = 0; c < 3; c++) {
+        const vf ambient = f_set(mean_of_equal(frame, material->ambient[c]));
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            vf beauty = ambient + mean_share(frame, &factors, material, 0, c, i);
+            if (specular)
+                beauty = beauty + mean_share(frame, &factors, material, 1, c, i);
+            f_store(frame->sample->beauty[c] + (size_t)g * GLINT_GROUP + i, beauty);
+        }
+    }
+}
+
+/// Any group.
+static inline void resolve_mixed(const samples_frame *frame, uint32_t g)
+{
+    _Alignas(64) double sum[GLINT_TERM_LOCAL][3][GLINT_GROUP];
+    double *const to[GLINT_TERM_LOCAL][3] = { [GLINT_TERM_BACKGROUND] = { sum[0][0], sum[0][1], sum[0][2] },
+                                              [GLINT_TERM_AMBIENT] = { sum[1][0], sum[1][1], sum[1][2] },
+                                              [GLINT_TERM_DIFFUSE] = { sum[2][0], sum[2][1], sum[2][2] },
+                                              [GLINT_TERM_SPECULAR] = { sum[3][0], sum[3][1], sum[3][2] } };
+    const group_sums sums = { to, 0 };
+    group_terms terms;
+    memset(sum, 0, sizeof sum);
+    for (uint32_t k = 0; k < frame->count; k++)
+        shade_sums(&frame->sample[k], g, &sums);
+    for (int term = 0; term < GLINT_TERM_LOCAL; term++)
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < GLINT_GROUP; i += VD)
+                d_store_f(terms.term[term][c] + i, mean_of(d_load(sum[term][c] + i), frame->count, frame->inverse));
+    finish_terms(&terms, frame->sample->film, frame->sample->beauty, (size_t)g * GLINT_GROUP);
+}
+
+static void resolve_samples(const glint_shade_args *sample, uint32_t count)
+{
+    samples_frame frame = { .sample = sample, .count = count, .inverse = inverse_of(count) };
+    const bool simple = !wants_terms(sample);
+    for (int c = 0; c < 3; c++)
+        frame.background[c] = mean_of_equal(&frame, sample->background[c]);
+    for (uint32_t g = 0; g < sample->group_count; g++) {
+        unsigned any = 0;
+        for (uint32_t k = 0; k < count; k++)
+            any |= sample[k].hits[g];
+        const glint_shade_material *material = simple && any == 0xffff ? only_material(&frame, g) : NULL;
+        if (material)
+            resolve_whole(&frame, material, g);
+        else if (simple && !any && sample->active[g] == 0xffff)
+            store_background(sample, frame.background, (size_t)g * GLINT_GROUP);
+        else if (sample->active[g])
+            resolve_mixed(&frame, g);
+    }
+}
