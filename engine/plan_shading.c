@@ -3,6 +3,7 @@
 #include "engine/base/vec.h"
 #include "engine/lamp.h"
 #include "engine/plan.h"
+#include "engine/stages/coefficients.h"
 
 #include <float.h>
 
@@ -31,6 +32,8 @@ static void power_init(glint_shade_material *out, const glint_material_desc *des
     out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
     out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
     out->shininess = (float)s;
+    // exp2's argument is half the logarithm of x times the shininess; a share of 1e-4 is far above all rounding
+    out->least = (float)(glint_pow(2, 2 * GLINT_EXP2_LOWEST / s) * (1 - 1e-4));
     bounded(out->specular, desc->specular, norm);
 }
 

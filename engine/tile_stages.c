@@ -2,7 +2,9 @@
 #include "engine/tile.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
+#include "engine/stages/coefficients.h"
 
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -199,6 +201,31 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
+/// Whether nobody but this frame's shading reads the highlights.
+static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, const uint32_t *slot, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (tile->at.light[slot[i]].log2_specular != tile->lights[slot[i]].log2_specular)
+            return false;
+    return !frame->count_work;
+}
+
+/// Highlights that were spared may be as bright as any that shade does not see.
+static void bound_brightest(glint_tile *tile, const glint_tile_frame *frame, const glint_light_args *args,
+                            const uint32_t *slot)
+{
+    float bound = GLINT_NO_SPECULAR;
+    if (!tile->kept || !args->sparing || !args->highlights)
+        return;
+    for (uint32_t i = 0; i < tile->kept->shown_count && i < GLINT_SHOWN_MAX; i++) {
+        const glint_shade_material *material = &frame->plan->materials[tile->kept->shown[i]];
+        if (material->least > 0) // half the logarithm of `least`, rounded up
+            bound = fmaxf(bound, GLINT_EXP2_LOWEST / material->shininess - 5e-5f);
+    }
+    for (uint32_t i = 0; i < args->sample_count; i++)
+        tile->at.light[slot[i]].brightest = fmaxf(tile->at.light[slot[i]].brightest, bound);
+}
+
 glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                        const uint32_t *slot, uint32_t count)
 {
@@ -215,7 +242,8 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
                               .spot = light->is_spot ? &light->spot : NULL,
                               .sample_count = count,
                               .attenuated = light->attenuated,
-                              .highlights = plan->powers };
+                              .highlights = plan->powers,
+                              .sparing = is_sparing(tile, frame, slot, count) };
     vec_copy(args.position, light->position);
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
@@ -239,6 +267,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 {
     const glint_light_args args = glint_tile_light_args(tile, frame, first, slot, count);
     frame->stages->geometry[frame->plan->desc.precision].light(&args);
+    bound_brightest(tile, frame, &args, slot);
     glint_tile_count_light(tile, frame, count);
     glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
@@ -250,6 +279,7 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     const glint_surface_args surface = surface_args(tile, frame);
     const glint_light_args args = glint_tile_light_args(tile, frame, light, &slot, 1);
     frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
+    bound_brightest(tile, frame, &args, &slot);
     take_box(tile, frame, surface.box);
     glint_tile_count_light(tile, frame, 1);
     glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);

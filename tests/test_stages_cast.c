@@ -534,7 +534,7 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
 {
     static glint_shade_material materials[4]; // as many as finish_scene gives out
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
-        materials[i].highlight = below(3);
+        materials[i] = (glint_shade_material) { .highlight = below(3), .least = one_in(3) ? 0 : (float)between(0, 1) };
     *light = (glint_light_args) { .group_count = c->cast.group_count,
                                   .hits = c->cast.hits,
                                   .materials = materials,
@@ -544,7 +544,8 @@ static void make_lamp(const ray_case *c, glint_light_args *light)
                                   .sample_count = 1,
                                   .attenuated = one_in(2),
                                   .coefficients = { between(0, 2), between(0, 1), between(0, 1) },
-                                  .highlights = !one_in(4) };
+                                  .highlights = !one_in(4),
+                                  .sparing = one_in(2) };
     if (one_in(2)) { // what a visible lamp covers is not lit
         uint16_t *hits = masks(light->group_count);
         for (uint32_t g = 0; g < light->group_count; g++)

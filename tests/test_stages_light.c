@@ -122,7 +122,8 @@ static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camer
         (glint_light_args) { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
     const double size = power_of_ten(-4, 6);
     for (uint32_t i = 0; i < COUNT_OF(materials); i++)
-        materials[i].highlight = below(4);
+        materials[i] = (glint_shade_material) { .highlight = below(4), .least = one_in(3) ? 0 : (float)between(0, 1) };
+    args->sparing = one_in(2);
     if (one_in(2)) {
         make_camera(camera, precision, odd);
         args->camera = camera;

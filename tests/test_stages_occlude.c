@@ -311,7 +311,8 @@ static void make_gloss(glint_shade_material materials[6])
     for (int m = 0; m < 6; m++)
         materials[m] = (glint_shade_material) { .highlight = below(GLINT_HIGHLIGHT_FACETS),
                                                 .lobe = below(GLINT_LOBE_POWER_COSINE + 1),
-                                                .shininess = one_in(6) ? 0 : (float)power_of_ten(-1, 5) };
+                                                .shininess = one_in(6) ? 0 : (float)power_of_ten(-1, 5),
+                                                .least = one_in(3) ? 0 : (float)between(0, 1) };
 }
 
 static const glint_point_box *hit_box(const shadow_case *c, const uint16_t *hits, glint_point_box *box)
@@ -338,7 +339,8 @@ static void soft_light_all(const shadow_case *c, bool odd)
                                .sample_count = c->args.sample_count,
                                .attenuated = one_in(2) || emission >= GLINT_EMIT_RADIANT_FRONT,
                                .coefficients = { 1, 0.1, 0.01 },
-                               .highlights = !one_in(4) };
+                               .highlights = !one_in(4),
+                               .sparing = one_in(2) };
     glint_occlude_args occlude = c->args;
     glint_point_box box;
     make_gloss(materials);

@@ -32,6 +32,7 @@ INNER rm R(blinn_parts)(vr nl, vr nv, vr lv, vr l2, vr a, vr *num, vr *den)
 /// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
 typedef struct R(lit_point) {
     unsigned phong, blinn; ///< lanes by the highlight of their material
+    _Alignas(64) float least[GLINT_GROUP]; ///< of their material, where highlights are spared; else 0
     R(group_directions) directions;
     vr point[3], normal[3];
     bool aimed; ///< the next is made
@@ -94,16 +95,20 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     if (!(phong | blinn))
         return;
     R(view_lanes)(args, at, i, surface);
-    vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction), x = r_set(1), num, den;
-    rm some = rm_from_bits(0);
-    if (phong) {
-        some = rm_and(rm_from_bits(phong), R(phong_parts)(nl, nv, lv, l2 * a, &num, &den));
-        x = r_min(num / den, r_set(1));
-    }
+    const vr a = surface->a, nv = surface->nv, lv = -DOT(l, surface->direction);
+    vr num, den;
+    rm some = rm_and(rm_from_bits(phong), R(phong_parts)(nl, nv, lv, l2 * a, &num, &den));
     if (blinn) {
-        some = rm_or(some, rm_and(rm_from_bits(blinn), R(blinn_parts)(nl, nv, lv, l2, a, &num, &den)));
-        x = r_select(rm_from_bits(blinn), r_min(num / den, r_set(1)), x);
+        vr blinn_num, blinn_den;
+        const rm mask = rm_from_bits(blinn);
+        some = rm_or(some, rm_and(mask, R(blinn_parts)(nl, nv, lv, l2, a, &blinn_num, &blinn_den)));
+        num = r_select(mask, blinn_num, num);
+        den = r_select(mask, blinn_den, den);
     }
+    some = rm_andnot(some, r_lt(num, R(load_wide)(surface->least + i) * den));
+    if (!rm_bits(some))
+        return;
+    const vr x = r_min(num / den, r_set(1));
     r_store(group->x + i, x);
     r_store(group->x_less_1 + i, x - r_set(1));
     group->shiny |= rm_bits(rm_and(some, r_le(r_set(0x1p-126), x))) << i;
@@ -157,6 +162,10 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
             surface->phong |= lanes;
         else if (GLINT_WITH_BLINN && args->materials[material].highlight == GLINT_HIGHLIGHT_BLINN)
             surface->blinn |= lanes;
+        const vf least = f_set(args->sparing ? args->materials[material].least : 0);
+        for (int i = 0; i < GLINT_GROUP; i += VF)
+            f_store(surface->least + i,
+                    f_select(fm_from_bits(lanes >> i & ((1u << VF) - 1)), least, f_load(surface->least + i)));
         left &= ~lanes;
     }
 }

@@ -1,73 +1,182 @@
 // lit_surface: surface and the light of one plain lamp, a group at a time, so that a point and its normal need not go
 // through memory. The arithmetic is theirs. Contract: stages.h.
 
+#define LIT_PARTS (GLINT_GROUP / VR)
+
+/// The real part of a group.
+typedef struct R(lit_whole) {
+    vr nl[LIT_PARTS], l2[LIT_PARTS]; ///< n.l and its length squared, in the light's units
+    vr num[LIT_PARTS], den[LIT_PARTS]; ///< of (r.v)^2 or (n.h)^2, where `some` has lanes
+    unsigned lit, back, some; ///< lanes
+} R(lit_whole);
+
+/// What all groups of a call ask, as real; in memory as what is seen is.
+typedef struct R(lit_call) {
+    R(surface_walk) walk;
+    real eye[3], position[3], scale;
+} R(lit_call);
+
+/// VR lanes of it, of a sphere near the eye or of a plane; `sphere` is a constant.
+INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args *light, const R(lit_call) * call,
+                       const bool sphere, const glint_shade_material *material, R(group_directions) directions,
+                       size_t at, int j, R(point_box) * box, R(lit_whole) * whole)
+{
+    const R(seen_prim) *seen = &call->walk.seen;
+    const int i = j * VR;
+    vr d[3], n[3], p[3], l[3];
+    R(load_direction)(directions, surface->direction, at, i, d);
+    const vr t = r_load((const real *)surface->t + at + i);
+    if (sphere) {
+        const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
+        R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, true, n, p);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!sphere) {
+            n[k] = r_set(seen->normal[k]);
+            p[k] = r_set(call->eye[k]) + t * d[k];
+        }
+        r_store((real *)surface->point[k] + at + i, p[k]);
+        l[k] = r_set(call->position[k]);
+        if (!light->directional)
+            l[k] = (l[k] - p[k]) * r_set(call->scale);
+    }
+    if (surface->box)
+        R(enclose)(box, p, true, rm_from_bits(0));
+    const vr away = DOT(n, d), l2 = DOT(l, l);
+    const rm back = r_lt(r_set(0), away);
+    vr nl = DOT(n, l);
+    nl = r_select(back, -nl, nl); // as of the normal that is turned to the viewer
+    const rm ahead = r_lt(r_set(0), nl);
+    whole->nl[j] = nl;
+    whole->l2[j] = l2;
+    whole->lit |= rm_bits(ahead) << i;
+    whole->back |= rm_bits(back) << i;
+    if (!material)
+        return;
+    const vr a = DOT(d, d), nv = r_select(back, away, -away), lv = -DOT(l, d);
+    const rm some = !GLINT_WITH_BLINN || material->highlight == GLINT_HIGHLIGHT_PHONG
+                        ? R(phong_parts)(nl, nv, lv, l2 * a, &whole->num[j], &whole->den[j])
+                        : R(blinn_parts)(nl, nv, lv, l2, a, &whole->num[j], &whole->den[j]);
+    const rm spared = r_lt(whole->num[j], r_set(light->sparing ? material->least : 0) * whole->den[j]);
+    whole->some |= rm_bits(rm_and(ahead, rm_andnot(some, spared))) << i;
+}
+
+INNER vf R(join)(const vr *x)
+{
+#if GLINT_REAL == 64
+    return f_join(x[0], x[1]);
+#else
+    return x[0];
+#endif
+}
+
+/// The highlights of VF lanes from i on.
+INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
+{
+    unsigned some = whole->some >> i & ((1u << VF) - 1);
+    if (!some)
+        return f_set(GLINT_NO_SPECULAR);
+    vr x[VF / VR], less_1[VF / VR];
+    for (int j = 0; j < VF / VR; j++) {
+        x[j] = r_min(whole->num[i / VR + j] / whole->den[i / VR + j], r_set(1));
+        less_1[j] = x[j] - r_set(1);
+        some &= ~((~rm_bits(r_le(r_set(0x1p-126), x[j])) & ((1u << VR) - 1)) << j * VR);
+    }
+    const fm shiny = fm_from_bits(some);
+    const vf log2 = f_log2(f_select(shiny, R(join)(x), f_set(1)), R(join)(less_1));
+    return f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
+}
+
+/// The float part.
+INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, size_t at, vf *brightest)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const fm lit = fm_from_bits(whole->lit >> i & ((1u << VF) - 1));
+        vf cosine = R(join)(whole->nl + i / VR);
+        if (!light->directional)
+            cosine = cosine / f_sqrt(R(join)(whole->l2 + i / VR));
+        f_store(light->cosine[0] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
+        if (light->attenuated) {
+            vr attenuation[VF / VR];
+            for (int j = 0; j < VF / VR; j++)
+                attenuation[j] = R(fall_off)(light, whole->l2[i / VR + j]);
+            const vf w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
+            f_store(light->attenuation[0] + at + i, f_select(lit, w, f_set(0)));
+        }
+        if (light->highlights) {
+            const vf log2 = R(lit_log2)(whole, i);
+            f_store(light->log2_specular[0] + at + i, log2);
+            *brightest = f_max(*brightest, log2);
+        }
+    }
+}
+
 /// A group that shows one primitive in every lane, and that from where it is not dark: the common case. Returns whether
 /// it is one.
-INNER bool R(lit_whole)(const glint_surface_args *surface, const glint_light_args *light, R(surface_walk) * walk,
-                        R(group_place) place, R(lit_point) * point, R(lit_group) * group)
+INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_args *light, R(lit_call) * call,
+                          R(group_place) place, R(point_box) * box, vf *brightest)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
-    if ((surface->hits[place.g] & light->hits[place.g]) != 0xffff)
+    if (!surface->camera || (surface->hits[place.g] & light->hits[place.g]) != 0xffff)
         return false;
     const uint32_t id = surface->only ? *surface->only : surface->prim[at];
     if (!surface->only && lanes_equal(surface->prim + at, id) != 0xffff)
         return false;
-    R(look_at)(surface, walk, id);
-    const glint_prim *prim = walk->seen.prim;
-    if (!prim->two_sided)
+    R(look_at)(surface, &call->walk, id);
+    const glint_prim *prim = call->walk.seen.prim;
+    const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
+    if (!prim->two_sided || (sphere && !call->walk.seen.near))
         return false;
-    const uint32_t highlight = light->highlights ? light->materials[prim->material].highlight : GLINT_HIGHLIGHT_NONE;
-    unsigned back = 0;
-    point->phong = highlight == GLINT_HIGHLIGHT_PHONG ? 0xffff : 0;
-    point->blinn = highlight == GLINT_HIGHLIGHT_BLINN ? 0xffff : 0;
-    point->directions = R(directions_of)(surface->camera, place.x, place.y);
-    for (int i = 0; i < GLINT_GROUP; i += VR) {
-        R(found) found;
-        R(find_lanes)(surface, &walk->seen, point->directions, at, i, false, &found);
-        if (surface->box)
-            R(enclose)(&walk->box, found.point, true, rm_from_bits(0));
-        back |= rm_bits(found.back) << i;
-        for (int k = 0; k < 3; k++) {
-            r_store((real *)surface->point[k] + at + i, found.point[k]);
-            point->point[k] = found.point[k];
-            point->normal[k] = found.normal[k];
-            point->direction[k] = found.direction[k];
-        }
-        point->aimed = true;
-        point->viewed = highlight != GLINT_HIGHLIGHT_NONE;
-        if (point->viewed) {
-            point->a = DOT(found.direction, found.direction);
-            point->nv = r_select(found.back, found.away, -found.away);
-        }
-        R(light_lanes)(light, LIGHT_PLAIN, 0, NULL, at, i, 0xffff, point, group);
+    const glint_shade_material *material = &light->materials[prim->material];
+    if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
+                               (!GLINT_WITH_BLINN || material->highlight != GLINT_HIGHLIGHT_BLINN)))
+        material = NULL;
+    const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
+    R(lit_whole) whole = { .lit = 0 };
+#pragma GCC unroll 8
+    for (int j = 0; j < LIT_PARTS; j++) {
+        if (sphere)
+            R(lit_part)(surface, light, call, true, material, directions, at, j, box, &whole);
+        else
+            R(lit_part)(surface, light, call, false, material, directions, at, j, box, &whole);
     }
     lanes_put(surface->material + at, 0xffff, prim->material);
-    surface->back[place.g] = (uint16_t)back;
+    surface->back[place.g] = (uint16_t)whole.back;
     surface->dark[place.g] = 0;
-    walk->turned = walk->turned || back;
+    light->lit[0][place.g] = (uint16_t)whole.lit;
+    call->walk.turned = call->walk.turned || whole.back;
+    if (whole.lit)
+        R(finish_whole)(light, &whole, at, brightest);
     return true;
 }
 
 static void R(lit_surface)(const glint_surface_args *surface, const glint_light_args *light)
 {
-    R(surface_walk) walk;
+    R(lit_call) call;
+    R(point_box) box;
     R(lit_point) point = { 0 };
     R(lit_group) group;
-    R(begin_walk)(&walk);
+    R(begin_walk)(&call.walk);
+    R(empty_box)(&box);
+    for (int k = 0; k < 3; k++) {
+        call.eye[k] = surface->camera ? (real)surface->camera->eye[k] : 0;
+        call.position[k] = (real)light->position[k];
+    }
+    call.scale = (real)light->scale;
     group.brightest = f_set(GLINT_NO_SPECULAR);
     for (R(group_place) place = { 0 }; place.g < surface->group_count; R(next_group)(surface->camera, &place)) {
         const uint32_t g = place.g;
-        group.lit = group.shiny = 0;
         if (!surface->hits[g]) {
             surface->back[g] = surface->dark[g] = 0;
-        } else if (!R(lit_whole)(surface, light, &walk, place, &point, &group)) {
-            R(surface_group)(surface, &walk, place, false);
+            light->lit[0][g] = 0;
+        } else if (!R(light_whole)(surface, light, &call, place, &box, &group.brightest)) {
+            R(surface_group)(surface, &call.walk, &box, place, false);
             R(light_group)(light, LIGHT_PLAIN, 1, NULL, place, &point, &group);
+            light->lit[0][g] = (uint16_t)group.lit;
+            if (group.lit)
+                R(finish_light)(light, LIGHT_PLAIN, 0, (size_t)g * GLINT_GROUP, &group);
         }
-        light->lit[0][g] = (uint16_t)group.lit;
-        if (group.lit)
-            R(finish_light)(light, LIGHT_PLAIN, 0, (size_t)g * GLINT_GROUP, &group);
     }
-    R(end_walk)(surface, &walk);
+    R(end_walk)(surface, &call.walk, &box);
     R(say_brightest)(light, 0, &group);
 }

@@ -91,6 +91,15 @@
 
 /// VF lanes of real as floats. What is stored as real and read as float comes by this: a wide load of what narrower
 /// stores left would wait until they are in the cache.
+static inline vr R(load_wide)(const float *p)
+{
+#if GLINT_REAL == 64
+    return d_load_f(p);
+#else
+    return f_load(p);
+#endif
+}
+
 static inline vf R(load_narrow)(const real *p)
 {
 #if GLINT_REAL == 64

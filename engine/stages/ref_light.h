@@ -1,7 +1,8 @@
 // The reference of the light stage, and of lit surfaces: included by ref_real.h for each type of real.
 
 /// log2 of r.v (Phong) or n.h (Blinn-Phong).
-static float NAME(highlight)(uint32_t kind, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal, NAME(vec3) direction)
+static float NAME(highlight)(uint32_t kind, REAL least, REAL l2, REAL nl, NAME(vec3) l, NAME(vec3) normal,
+                             NAME(vec3) direction)
 {
     REAL a = NAME(length2)(direction);
     REAL nv = -NAME(dot)(normal, direction);
@@ -9,12 +10,12 @@ static float NAME(highlight)(uint32_t kind, REAL l2, REAL nl, NAME(vec3) l, NAME
     REAL x;
     if (kind == GLINT_HIGHLIGHT_PHONG) {
         REAL rv = (2 * nl) * nv - lv;
-        x = rv > 0 ? NAME(min)((rv * rv) / (l2 * a), 1) : 0;
+        x = rv > 0 && !(rv * rv < least * (l2 * a)) ? NAME(min)((rv * rv) / (l2 * a), 1) : 0;
     } else {
         REAL w = NAME(square_root)(l2 * a);
         REAL num = ((nl * nl) * a + (nv * nv) * l2) + ((2 * nl) * nv) * w;
         REAL den = (2 * w) * (w + lv);
-        x = num > 0 && den > 0 ? NAME(min)(num / den, 1) : 0;
+        x = num > 0 && den > 0 && !(num < least * den) ? NAME(min)(num / den, 1) : 0;
     }
     return x >= (REAL)0x1p-126 ? 0.5f * log2_of((float)x, (float)(x - 1)) : GLINT_NO_SPECULAR;
 }
@@ -113,11 +114,13 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_
     if (args->attenuated)
         args->attenuation[s][i] = NAME(attenuation)(args, lamp, l, i);
     if (args->highlights) {
-        uint32_t kind = args->materials[args->material[i]].highlight;
+        const glint_shade_material *material = &args->materials[args->material[i]];
+        uint32_t kind = material->highlight;
+        REAL least = args->sparing ? (REAL)material->least : 0;
         args->log2_specular[s][i] =
             kind == GLINT_HIGHLIGHT_NONE || kind == GLINT_HIGHLIGHT_FACETS
                 ? GLINT_NO_SPECULAR
-                : NAME(highlight)(kind, l2, nl, l, normal, NAME(direction_of)(args->camera, args->direction, i));
+                : NAME(highlight)(kind, least, l2, nl, l, normal, NAME(direction_of)(args->camera, args->direction, i));
     }
 }
 

@@ -29,24 +29,6 @@ typedef struct R(soft_call) {
     _Alignas(64) real scaled[GLINT_LIGHT_CHUNK][3][GLINT_GROUP]; ///< positions in the light's units
 } R(soft_call);
 
-INNER vf R(join)(const vr x[SOFT_PARTS])
-{
-#if GLINT_REAL == 64
-    return f_join(x[0], x[1]);
-#else
-    return x[0];
-#endif
-}
-
-INNER vr R(load_wide)(const float *p)
-{
-#if GLINT_REAL == 64
-    return d_load_f(p);
-#else
-    return f_load(p);
-#endif
-}
-
 INNER unsigned R(join_bits)(const rm mask[SOFT_PARTS])
 {
     unsigned bits = 0;
@@ -162,9 +144,7 @@ static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned left
         else
             continue;
         gloss->cosine |= material->lobe == GLINT_LOBE_POWER_COSINE ? lanes : 0;
-        // exp2's argument is half the logarithm times the shininess; a share of 1e-4 is far above all rounding
-        const float lowest = 2 * GLINT_EXP2_LOWEST / material->shininess;
-        const vf least = f_exp2_above(f_set(lowest), GLINT_EXP2_LEAST) * f_set(1 - 1e-4f);
+        const vf least = f_set(args->sparing ? material->least : 0);
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
             f_store(gloss->shininess + i, f_select(mask, f_set(material->shininess), f_load(gloss->shininess + i)));

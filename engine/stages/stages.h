@@ -138,6 +138,7 @@ typedef struct glint_shade_material {
     double diffuse[3], specular[3];
     double ambient[3]; ///< ka * Ia
     float shininess;
+    float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is 0 for certain; 0: wherever that is not known
     uint32_t highlight; ///< glint_highlight: what its specular term is of
     uint32_t lobe; ///< glint_lobe
     float alpha; ///< width of the distribution of microfacets, 1e-18 .. 1
@@ -374,7 +375,7 @@ typedef struct glint_light_args {
     const glint_camera_args *camera; ///< the rays, of a perspective camera; NULL: their directions are in direction
     const void *point[3], *normal[3], *direction[3];
     const uint32_t *material;
-    const glint_shade_material *materials; ///< of which `highlight` is read
+    const glint_shade_material *materials; ///< of which `highlight` and `least` are read
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
@@ -385,6 +386,7 @@ typedef struct glint_light_args {
     bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written
+    bool sparing; ///< highlights that are 0 whatever their strength are left out
     // out, for each sample:
     uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< a bit a lane where the light is above the surface's horizon and shines there
     float *cosine[GLINT_LIGHT_CHUNK]; ///< n.l in 0 .. 1; 0 where unlit
@@ -411,6 +413,7 @@ typedef struct glint_light_args {
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
 //              x = min(num / den, 1);  there is one where num > 0 and den > 0
+//   sparing    num = rv rv and den = l2 a of Phong;  there is none where num < least den
 //   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
 // In --precision float all of this is float, l2 a included.
 

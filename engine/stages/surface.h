@@ -199,7 +199,6 @@ static inline void R(clear_surface)(const glint_surface_args *args, size_t at)
 /// What is known while the groups of a tile are gone through.
 typedef struct R(surface_walk) {
     R(seen_prim) seen; ///< the last primitive
-    R(point_box) box;
     uint32_t only; ///< the only primitive so far, GLINT_MISS: none
     bool several, turned; ///< there are others; some lane is seen from behind
 } R(surface_walk);
@@ -209,28 +208,34 @@ INNER void R(begin_walk)(R(surface_walk) * walk)
     walk->seen = (R(seen_prim)) { .id = GLINT_MISS };
     walk->only = GLINT_MISS;
     walk->several = walk->turned = false;
-    R(empty_box)(&walk->box);
 }
 
-INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, uint32_t id)
+/// Not inlined, so that what is seen stays in memory, from where arithmetic takes it in all lanes at once.
+static __attribute__((noinline)) void R(look_at_other)(const glint_surface_args *args, R(surface_walk) * walk,
+                                                       uint32_t id)
 {
-    if (walk->seen.id == id)
-        return;
     walk->seen = R(see_prim)(args, id);
     walk->several = walk->several || (walk->only != GLINT_MISS && walk->only != id);
     walk->only = id;
 }
 
-INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * walk)
+INNER void R(look_at)(const glint_surface_args *args, R(surface_walk) * walk, uint32_t id)
+{
+    if (walk->seen.id != id)
+        R(look_at_other)(args, walk, id);
+}
+
+INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * walk, const R(point_box) * box)
 {
     if (!args->box)
         return;
-    R(write_box)(walk->box, args->box);
+    R(write_box)(*box, args->box);
     args->box->only = walk->several || walk->turned ? GLINT_MISS : walk->only;
 }
 
 /// One group that is hit, primitive by primitive.
-INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(group_place) place, bool mixed)
+INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
+                            R(group_place) place, bool mixed)
 {
     const uint32_t g = place.g;
     const size_t at = (size_t)g * GLINT_GROUP;
@@ -245,9 +250,9 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
         R(look_at)(args, walk, id);
         for (int i = 0; i < GLINT_GROUP; i += VR)
             if (lanes >> i & ((1u << VR) - 1))
-                behind |= R(surface_lanes)(args, &walk->seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed,
-                                           &walk->box)
-                          << i;
+                behind |=
+                    R(surface_lanes)(args, &walk->seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed, box)
+                    << i;
         lanes_put(args->material + at, lanes, walk->seen.prim->material);
         back |= behind;
         if (!walk->seen.prim->two_sided)
@@ -262,14 +267,16 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
 INNER void R(surface_groups)(const glint_surface_args *args, bool mixed)
 {
     R(surface_walk) walk;
+    R(point_box) box;
     R(begin_walk)(&walk);
+    R(empty_box)(&box);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         if (args->hits[place.g])
-            R(surface_group)(args, &walk, place, mixed);
+            R(surface_group)(args, &walk, &box, place, mixed);
         else
             args->back[place.g] = args->dark[place.g] = 0;
     }
-    R(end_walk)(args, &walk);
+    R(end_walk)(args, &walk, &box);
 }
 
 /// Each way is compiled for its constant.
