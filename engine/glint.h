@@ -629,8 +629,8 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
 /// Whether `path` is a whole PNG (every chunk's CRC right, IEND at the end) whose tEXt "glint:key" equals key.
 bool glint_file_has_key(const char *path, const char *key);
 
-/// Writes images on threads of its own, in the order submitted, so that encoding overlaps rendering. It remembers the
-/// last picture deflated, about the size of its file, so as not to deflate again what has not changed.
+/// Writes images on threads of its own, in the order submitted, so that rendering, encoding and the disk overlap. It
+/// remembers the last picture deflated, about the size of its file, so as not to deflate again what has not changed.
 typedef struct glint_writer glint_writer;
 
 typedef struct glint_write_result {
@@ -653,7 +653,7 @@ glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const
                                  glint_error *error);
 /// Takes the next result, in the order submitted; waits for it when `wait`. False: none (left).
 bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result);
-/// Drops what is queued and not begun (their results read GLINT_ERR_CANCELLED); a file being written is finished.
+/// Drops what is queued and not begun (their results read GLINT_ERR_CANCELLED); files that are begun are finished.
 void glint_writer_cancel(glint_writer *writer);
 
 typedef struct glint_compare_result {

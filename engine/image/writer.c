@@ -1,5 +1,5 @@
-/// glint_writer: one thread that encodes (with a pool of its own, if it may use several) and writes, and one list of
-/// jobs in the order they were submitted.
+/// glint_writer: one list of jobs in the order they were submitted. A thread encodes them (with a pool of its own, if it may
+/// use several), another brings them to disk, so that nobody computes less while a file is synced.
 #include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/image/file.h"
@@ -12,24 +12,28 @@
 #include <string.h>
 #include <time.h>
 
-typedef enum job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE } job_state;
+typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
 
 typedef struct job {
     struct job *next;
     job_state state;
-    glint_image *image; ///< owned until the job is done
+    glint_image *image; ///< owned until it is encoded
     glint_write_desc desc; ///< its strings follow the job in memory
+    glint_bytes bytes; ///< of the file, from then until they are in it; owned
     glint_write_result result;
 } job;
 
 struct glint_writer {
-    pthread_t thread;
-    glint_bands *bands; ///< the thread's
-    pthread_mutex_t lock; ///< over all below; a running job's desc, image and result are the thread's meanwhile
+    pthread_t encoder, filer;
+    glint_bands *bands; ///< the encoder's
+    pthread_mutex_t
+        lock; ///< over all below; what is being encoded or filed is the thread's meanwhile, but for `next`, `state`
     pthread_cond_t changed;
     job *first, **end; ///< submitted and not collected
-    int queued, queue_depth;
-    bool closing;
+    int waiting[JOB_DONE]; ///< jobs that are queued, and that are encoded
+    int queue_depth; ///< the most of either
+    bool closing; ///< no more are submitted
+    bool encoded_all; ///< and none of them is left to the encoder
 };
 
 static double now_ms(void)
@@ -39,55 +43,100 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-// ---- The thread ---------------------------------------------------------------------------------------------------
+// ---- The threads --------------------------------------------------------------------------------------------------
 
-static void do_job(job *j, glint_bands *bands)
+static void finish(job *j, glint_status status, const glint_error *error)
 {
-    glint_error error = { 0 };
-    glint_bytes bytes = { 0 };
-    double start = now_ms();
-    glint_status status = glint_image_encode(j->image, &j->desc, bands, &bytes, &j->result.reused, &error);
-    double encoded = now_ms();
-    j->result.encode_ms = encoded - start;
-    if (!status) {
-        status = glint_file_write(j->desc.path, bytes.data, bytes.size, &error);
-        j->result.write_ms = now_ms() - encoded;
-    }
-    free(bytes.data);
     j->result.status = status;
-    memcpy(j->result.message, error.message, sizeof j->result.message);
+    memcpy(j->result.message, error->message, sizeof j->result.message);
 }
 
-static job *first_queued(glint_writer *writer)
+/// Returns whether there is something to be filed.
+static bool encode(job *j, glint_bands *bands)
+{
+    glint_error error = { 0 };
+    const double start = now_ms();
+    const glint_status status = glint_image_encode(j->image, &j->desc, bands, &j->bytes, &j->result.reused, &error);
+    j->result.encode_ms = now_ms() - start;
+    glint_image_release(j->image);
+    j->image = NULL;
+    finish(j, status, &error);
+    return status == GLINT_OK;
+}
+
+static void file(job *j)
+{
+    glint_error error = { 0 };
+    const double start = now_ms();
+    finish(j, glint_file_write(j->desc.path, j->bytes.data, j->bytes.size, &error), &error);
+    j->result.write_ms = now_ms() - start;
+}
+
+/// The first job that waits for its next step, which begins; NULL: none does.
+static job *take(glint_writer *writer, job_state waiting)
 {
     job *j = writer->first;
-    while (j && j->state != JOB_QUEUED)
+    while (j && j->state != waiting)
         j = j->next;
+    if (j) {
+        j->state = waiting + 1;
+        writer->waiting[waiting]--;
+        pthread_cond_broadcast(&writer->changed);
+    }
     return j;
 }
 
-static void *run_writer(void *user)
+static void move_on(glint_writer *writer, job *j, job_state state)
+{
+    if (state != JOB_ENCODED) {
+        free(j->bytes.data);
+        j->bytes = (glint_bytes) { 0 };
+    } else {
+        writer->waiting[state]++;
+    }
+    j->state = state;
+    pthread_cond_broadcast(&writer->changed);
+}
+
+static void *run_encoder(void *user)
 {
     glint_writer *writer = user;
     pthread_mutex_lock(&writer->lock);
     for (;;) {
-        job *j = first_queued(writer);
-        if (!j && writer->closing)
+        job *j = writer->waiting[JOB_ENCODED] < writer->queue_depth ? take(writer, JOB_QUEUED) : NULL;
+        if (!j && writer->closing && !writer->waiting[JOB_QUEUED])
             break;
         if (!j) {
             pthread_cond_wait(&writer->changed, &writer->lock);
             continue;
         }
-        j->state = JOB_RUNNING;
-        writer->queued--;
-        pthread_cond_broadcast(&writer->changed);
         pthread_mutex_unlock(&writer->lock);
-        do_job(j, writer->bands);
-        glint_image_release(j->image);
+        const bool encoded = encode(j, writer->bands);
         pthread_mutex_lock(&writer->lock);
-        j->image = NULL;
-        j->state = JOB_DONE;
-        pthread_cond_broadcast(&writer->changed);
+        move_on(writer, j, encoded ? JOB_ENCODED : JOB_DONE);
+    }
+    writer->encoded_all = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    return NULL;
+}
+
+static void *run_filer(void *user)
+{
+    glint_writer *writer = user;
+    pthread_mutex_lock(&writer->lock);
+    for (;;) {
+        job *j = take(writer, JOB_ENCODED);
+        if (!j && writer->encoded_all)
+            break;
+        if (!j) {
+            pthread_cond_wait(&writer->changed, &writer->lock);
+            continue;
+        }
+        pthread_mutex_unlock(&writer->lock);
+        file(j);
+        pthread_mutex_lock(&writer->lock);
+        move_on(writer, j, JOB_DONE);
     }
     pthread_mutex_unlock(&writer->lock);
     return NULL;
@@ -96,14 +145,34 @@ static void *run_writer(void *user)
 // ---- Making and ending --------------------------------------------------------------------------------------------
 
 /// Starts a thread with every signal blocked: signals are the main thread's.
-static bool start_thread(glint_writer *writer)
+static bool start_thread(glint_writer *writer, pthread_t *thread, void *(*run)(void *))
 {
     sigset_t all, old;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &old);
-    const bool started = pthread_create(&writer->thread, NULL, run_writer, writer) == 0;
+    const bool started = pthread_create(thread, NULL, run, writer) == 0;
     pthread_sigmask(SIG_SETMASK, &old, NULL);
     return started;
+}
+
+/// Lets the encoder end what is queued.
+static void close_encoder(glint_writer *writer)
+{
+    pthread_mutex_lock(&writer->lock);
+    writer->closing = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    pthread_join(writer->encoder, NULL);
+}
+
+static bool start_threads(glint_writer *writer)
+{
+    if (!start_thread(writer, &writer->encoder, run_encoder))
+        return false;
+    if (start_thread(writer, &writer->filer, run_filer))
+        return true;
+    close_encoder(writer);
+    return false;
 }
 
 static void free_writer(glint_writer *writer)
@@ -129,7 +198,7 @@ glint_status glint_writer_create(int queue_depth, int threads, glint_writer **ou
     pthread_mutex_init(&writer->lock, NULL);
     pthread_cond_init(&writer->changed, NULL);
     status = glint_bands_create(threads ? threads : glint_pool_processors(), &writer->bands, error);
-    if (!status && !start_thread(writer))
+    if (!status && !start_threads(writer))
         status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer");
     if (status) {
         free_writer(writer);
@@ -143,11 +212,8 @@ void glint_writer_destroy(glint_writer *writer)
 {
     if (!writer)
         return;
-    pthread_mutex_lock(&writer->lock);
-    writer->closing = true;
-    pthread_cond_broadcast(&writer->changed);
-    pthread_mutex_unlock(&writer->lock);
-    pthread_join(writer->thread, NULL);
+    close_encoder(writer);
+    pthread_join(writer->filer, NULL);
     for (job *j = writer->first; j;) {
         job *next = j->next;
         free(j);
@@ -201,11 +267,11 @@ glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const
     j->image = glint_image_retain(image);
     j->result.user = user;
     pthread_mutex_lock(&writer->lock);
-    while (writer->queued >= writer->queue_depth)
+    while (writer->waiting[JOB_QUEUED] >= writer->queue_depth)
         pthread_cond_wait(&writer->changed, &writer->lock);
     *writer->end = j;
     writer->end = &j->next;
-    writer->queued++;
+    writer->waiting[JOB_QUEUED]++;
     pthread_cond_broadcast(&writer->changed);
     pthread_mutex_unlock(&writer->lock);
     return GLINT_OK;
@@ -241,7 +307,7 @@ void glint_writer_cancel(glint_writer *writer)
         snprintf(j->result.message, sizeof j->result.message, "cancelled");
         j->state = JOB_DONE;
     }
-    writer->queued = 0;
+    writer->waiting[JOB_QUEUED] = 0;
     pthread_cond_broadcast(&writer->changed);
     pthread_mutex_unlock(&writer->lock);
 }
