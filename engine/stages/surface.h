@@ -87,12 +87,22 @@ typedef struct R(found) {
     rm back;
 } R(found);
 
+/// n: the outward normal.
+INNER void R(face_viewer)(const vr n[3], R(found) * found)
+{
+    found->away = DOT(n, found->direction);
+    found->back = r_lt(r_set(0), found->away);
+    for (int k = 0; k < 3; k++)
+        found->normal[k] = r_select(found->back, -n[k], n[k]);
+}
+
 INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
                          size_t at, int i, bool mixed, R(found) * found)
 {
     const glint_prim *prim = seen->prim;
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
+    vr corner[3][3];
     found->slack = r_set(0);
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
@@ -110,19 +120,42 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             n[k] = r_set(seen->normal[k]);
             p[k] = from[k] + t * d[k];
         }
-        if (mixed && prim->kind == GLINT_PRIM_TRIANGLE)
-            R(triangle_point)(prim, args->scale, from, d, w, p, &found->slack);
-        else if (mixed && prim->kind == GLINT_PRIM_SOLID)
+        if (mixed && prim->kind == GLINT_PRIM_TRIANGLE) {
+            R(corners_of)(prim, corner);
+            R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
+        } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
-    found->away = DOT(n, d);
-    found->back = r_lt(r_set(0), found->away);
-    for (int k = 0; k < 3; k++)
-        found->normal[k] = r_select(found->back, -n[k], n[k]);
+    R(face_viewer)(n, found);
     if (smooth) {
         const vr facing[3] = { found->normal[0], found->normal[1], found->normal[2] };
-        R(smooth_normal)(&args->corner_normals[prim->item], w, n, facing, found->normal);
+        for (int j = 0; j < 9; j++)
+            corner[j / 3][j % 3] = r_set(args->corner_normals[prim->item].normal[j / 3][j % 3]);
+        R(smooth_normal)(corner, w, n, facing, found->normal);
     }
+}
+
+/// Of a vector of a group that shows several triangles.
+INNER void R(find_mesh_lanes)(const glint_surface_args *args, R(mesh_group) * mesh, R(group_directions) directions,
+                              size_t at, int i, R(found) * found)
+{
+    vr corner[3][3], from[3], n[3], w[3];
+    R(load_direction)(directions, args->direction, at, i, found->direction);
+    R(load_corners)(mesh->corner, i, corner);
+    for (int k = 0; k < 3; k++) {
+        from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
+        n[k] = R(load_rounded)(mesh->normal[k] + i);
+    }
+    R(triangle_point)(corner, args->scale, from, found->direction, w, found->point, &found->slack);
+    R(face_viewer)(n, found);
+    const unsigned smooth = mesh->smooth >> i & ((1u << VR) - 1);
+    if (!smooth)
+        return;
+    vr curved[3];
+    R(load_corners)(mesh->corner_normal, i, corner);
+    R(smooth_normal)(corner, w, n, found->normal, curved);
+    for (int k = 0; k < 3; k++)
+        found->normal[k] = r_select(rm_from_bits(smooth), curved[k], found->normal[k]);
 }
 
 /// A box around points. What is not a number stays outside.
@@ -162,25 +195,21 @@ static void R(write_box)(R(point_box) box, glint_point_box *out)
     }
 }
 
-/// Works out one primitive in some lanes of a vector and leaves the others as they are. Returns the lanes in which it
-/// is seen from behind.
-INNER unsigned R(surface_lanes)(const glint_surface_args *args, const R(seen_prim) * seen,
-                                R(group_directions) directions, size_t at, int i, unsigned lanes, bool mixed,
-                                R(point_box) * box)
+/// Writes some lanes of a vector and leaves the others as they are. Returns the lanes that are seen from behind.
+INNER unsigned R(put_found)(const glint_surface_args *args, const R(found) * found, size_t at, unsigned lanes,
+                            bool mixed, R(point_box) * box)
 {
     const bool whole = lanes == (1u << VR) - 1;
     const rm mask = rm_from_bits(lanes);
-    R(found) found;
-    R(find_lanes)(args, seen, directions, at, i, mixed, &found);
     for (int k = 0; k < 3; k++) {
-        R(put)(args->point[k], at + i, whole, mask, found.point[k]);
-        R(put)(args->normal[k], at + i, whole, mask, found.normal[k]);
+        R(put)(args->point[k], at, whole, mask, found->point[k]);
+        R(put)(args->normal[k], at, whole, mask, found->normal[k]);
     }
     if (args->box)
-        R(enclose)(box, found.point, whole, mask);
+        R(enclose)(box, found->point, whole, mask);
     if (mixed && args->slack)
-        R(put)(args->slack, at + i, whole, mask, found.slack);
-    return rm_bits(found.back) & lanes;
+        R(put)(args->slack, at, whole, mask, found->slack);
+    return rm_bits(found->back) & lanes;
 }
 
 /// Zeroes the lanes of a group that is hit in part.
@@ -233,7 +262,26 @@ INNER void R(end_walk)(const glint_surface_args *args, const R(surface_walk) * w
     args->box->only = walk->several || walk->turned ? GLINT_MISS : walk->only;
 }
 
-/// One group that is hit, primitive by primitive.
+/// The lanes of a group that show several triangles. Returns those that are seen from behind.
+INNER unsigned R(surface_mesh)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
+                               R(group_directions) directions, size_t at, unsigned lanes)
+{
+    R(mesh_group) mesh;
+    unsigned back = 0;
+    walk->several = true;
+    R(load_mesh)(args, at, lanes, &mesh);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned here = lanes >> i & ((1u << VR) - 1);
+        if (!here)
+            continue;
+        R(found) found;
+        R(find_mesh_lanes)(args, &mesh, directions, at, i, &found);
+        back |= R(put_found)(args, &found, at + (size_t)i, here, true, box) << i;
+    }
+    return back;
+}
+
+/// One group that is hit: its triangles together, where there are several, and the rest primitive by primitive.
 INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * walk, R(point_box) * box,
                             R(group_place) place, bool mixed)
 {
@@ -243,16 +291,25 @@ INNER void R(surface_group)(const glint_surface_args *args, R(surface_walk) * wa
     unsigned left = args->hits[g], back = 0, dark = 0;
     if (left != 0xffff)
         R(clear_surface)(args, at);
+    const unsigned mesh = mixed ? R(mesh_lanes)(args, at, left) : 0;
+    if (mesh) {
+        back = R(surface_mesh)(args, walk, box, directions, at, mesh);
+        dark = back & R(put_materials)(args, at, mesh);
+        left &= ~mesh;
+    }
     while (left) {
         const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(left)];
         const unsigned lanes = lanes_equal(args->prim + at, id);
         unsigned behind = 0;
         R(look_at)(args, walk, id);
-        for (int i = 0; i < GLINT_GROUP; i += VR)
-            if (lanes >> i & ((1u << VR) - 1))
-                behind |=
-                    R(surface_lanes)(args, &walk->seen, directions, at, i, lanes >> i & ((1u << VR) - 1), mixed, box)
-                    << i;
+        for (int i = 0; i < GLINT_GROUP; i += VR) {
+            const unsigned here = lanes >> i & ((1u << VR) - 1);
+            if (!here)
+                continue;
+            R(found) found;
+            R(find_lanes)(args, &walk->seen, directions, at, i, mixed, &found);
+            behind |= R(put_found)(args, &found, at + (size_t)i, here, mixed, box) << i;
+        }
         lanes_put(args->material + at, lanes, walk->seen.prim->material);
         back |= behind;
         if (!walk->seen.prim->two_sided)

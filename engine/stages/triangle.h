@@ -164,30 +164,28 @@ static inline void R(triangle_normal)(const glint_prim *prim, double scale, doub
 static inline vr R(largest)(const vr v[3]) { return r_max(r_max(R(abs)(v[0]), R(abs)(v[1])), R(abs)(v[2])); }
 
 /// The point where rays from `from` meet a triangle, the weights of its corners there, and what rounding made of it.
-static inline void R(triangle_point)(const glint_prim *prim, double scale, const vr from[3], const vr d[3], vr w[3],
+static inline void R(triangle_point)(vr corner[3][3], double scale, const vr from[3], const vr d[3], vr w[3],
                                      vr point[3], vr *slack)
 {
     vr p[3][3], f[3], g[3];
-    R(corners_from)(from, prim, scale, p);
+    R(corners_seen)(corner, from, scale, p);
     const R(seen_edges) edges = R(see_edges)(p, d, false);
     const vr inverse = r_set(1) / R(det)(&edges);
     for (int j = 0; j < 3; j++)
         w[j] = edges.e[j] * inverse;
     for (int k = 0; k < 3; k++) {
-        f[k] = r_set(prim->corner[1][k]) - r_set(prim->corner[0][k]);
-        g[k] = r_set(prim->corner[2][k]) - r_set(prim->corner[0][k]);
-        point[k] = r_set(prim->corner[0][k]) + (w[1] * f[k] + w[2] * g[k]);
+        f[k] = corner[1][k] - corner[0][k];
+        g[k] = corner[2][k] - corner[0][k];
+        point[k] = corner[0][k] + (w[1] * f[k] + w[2] * g[k]);
     }
     *slack = r_set(GLINT_POINT_SLACK) * ((R(largest)(f) + R(largest)(g)) + R(largest)(point));
 }
 
 /// The normal between those of the corners, on the side of `facing`, the geometric one turned to the viewer.
-static inline void R(smooth_normal)(const glint_corner_normals *corners, const vr w[3], const vr flat[3],
-                                    const vr facing[3], vr out[3])
+static inline void R(smooth_normal)(vr corner[3][3], const vr w[3], const vr flat[3], const vr facing[3], vr out[3])
 {
     for (int k = 0; k < 3; k++)
-        out[k] = (w[0] * r_set(corners->normal[0][k]) + w[1] * r_set(corners->normal[1][k])) +
-                 w[2] * r_set(corners->normal[2][k]);
+        out[k] = (w[0] * corner[0][k] + w[1] * corner[1][k]) + w[2] * corner[2][k];
     const vr l = DOT(out, out), length = r_sqrt(l);
     const rm defined = r_lt(r_set(0), l);
     for (int k = 0; k < 3; k++)

@@ -25,11 +25,12 @@ static inline void R(vertex_lanes)(const glint_vertex_args *args, const glint_pr
     for (int i = 0; i < GLINT_GROUP && !face; i += VR) {
         if (!(lanes >> i & ((1u << VR) - 1)))
             continue;
-        vr from[3], d[3], weight[3], point[3], slack;
+        vr corner[3][3], from[3], d[3], weight[3], point[3], slack;
+        R(corners_of)(prim, corner);
         R(load_direction)(directions, args->direction, at, i, d);
         for (int k = 0; k < 3; k++)
             from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
-        R(triangle_point)(prim, args->scale, from, d, weight, point, &slack);
+        R(triangle_point)(corner, args->scale, from, d, weight, point, &slack);
         for (int j = 0; j < 3; j++)
             r_store(w[j] + i, weight[j]);
     }
