@@ -1,5 +1,5 @@
 /// Meshes whose triangles are as small as pixels, or seen edge-on, or about the eye or the light: every instruction set
-/// against the reference, which asks every triangle about every ray. Neither eye nor light loses one.
+/// against the reference, which asks every triangle about every ray. Neither eye nor light loses one, and each pixel is shaded as its own.
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +39,8 @@ static void put(const place *at, const double x[3], double out[3])
         out[c] = x[c] * at->scale + at->move[c];
 }
 
-/// A sheet of SIDE x SIDE quadrangles from `corner` along `across` and `down`, with bumps: two triangles each.
+/// A sheet of SIDE x SIDE quadrangles from `corner` along `across` and `down`, with bumps: two triangles each. Sheets have
+/// a material, a shading and one side or two of their own.
 static void add_sheet(glint_scene *scene, const place *at, const double corner[3], const double across[3],
                       const double down[3], double bumps)
 {
@@ -61,7 +62,16 @@ static void add_sheet(glint_scene *scene, const place *at, const double corner[3
             sizes[count++] = 3;
             sizes[count++] = 3;
         }
+    glint_material *material;
+    glint_material_desc m = glint_material_desc_default();
+    for (int c = 0; c < 3; c++)
+        m.diffuse[c] = uniform(0, 1);
+    assert_int_equal(glint_material_create(&m, &material, NULL), GLINT_OK);
     glint_mesh_desc d = glint_mesh_desc_default();
+    d.material = material;
+    d.two_sided = draw(3) > 0;
+    d.has_shading = true;
+    d.shading = draw(2) ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED;
     d.vertices = &vertices[0][0];
     d.vertex_count = (SIDE + 1) * (SIDE + 1);
     d.corners = corners;
@@ -70,6 +80,7 @@ static void add_sheet(glint_scene *scene, const place *at, const double corner[3
     assert_int_equal(glint_mesh_create(&d, &shape, NULL), GLINT_OK);
     assert_int_equal(glint_scene_add_shape(scene, shape, NULL), GLINT_OK);
     glint_shape_release(shape);
+    glint_material_release(material);
 }
 
 /// A ball among the triangles.
