@@ -79,7 +79,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
 static void drop_spares(glint_renderer *renderer)
 {
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
-        if (renderer->spare[i])
+        if (renderer->spare[i] && renderer->reuse.on)
             glint_reuse_unreserve(&renderer->reuse, glint_image_bytes(renderer->spare[i]));
         glint_image_release(renderer->spare[i]);
         renderer->spare[i] = NULL;
@@ -339,7 +339,7 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
         within_budget = within_budget || renderer->spare[i] == image;
     glint_image_release(renderer->last);
-    renderer->last = within_budget ? glint_image_retain(image) : NULL;
+    renderer->last = within_budget && renderer->reuse.on ? glint_image_retain(image) : NULL;
     renderer->last_key = picture_key(plan);
     renderer->last_stats = *stats;
 }
@@ -363,7 +363,8 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
     for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
         free_slot = renderer->spare[i] ? free_slot : i;
     glint_status status = glint_image_create_for(desc, out, error);
-    if (!status && free_slot >= 0 && glint_reuse_reserve(&renderer->reuse, glint_image_bytes(*out)))
+    if (!status && free_slot >= 0 &&
+        (!renderer->reuse.on || glint_reuse_reserve(&renderer->reuse, glint_image_bytes(*out))))
         renderer->spare[free_slot] = glint_image_retain(*out);
     return status;
 }
