@@ -88,9 +88,11 @@ say  = $(if $(V)$(findstring s,$(firstword -$(MAKEFLAGS))),,@echo "  $(1)	$@")
 all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/glint and the Lua module build/glint.so
 
 # Only isa_*.c is compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in these files alone.
+# Processors with AVX2 have instructions for masks too; select.c asks.
+X86_BITS := -mbmi -mbmi2 -mpopcnt
 $(BUILD)/engine/stages/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
-$(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) -mavx2 -mfma
-$(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma
+$(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
+$(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/image/flip.o:         ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 

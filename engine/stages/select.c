@@ -18,10 +18,12 @@ bool glint_stages_usable(const glint_stages *stages)
 {
 #if defined(__x86_64__)
     __builtin_cpu_init();
+    const bool bits =
+        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
     if (stages == &glint_stages_avx2)
-        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+        return bits && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     if (stages == &glint_stages_avx512)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        return bits && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                __builtin_cpu_supports("fma");
 #endif
