@@ -1,7 +1,7 @@
 // beam: the points of a tile as their light sees them, a screen (screen.h) of their own. Segments from points to one light
 // are a bundle as a camera's rays are.
 
-#define BEAM_DOWN 32 ///< rows of cells
+#define BEAM_DOWN SCREEN_DOWN ///< rows of cells
 #define BEAM_NEAREST 0.25f ///< least k of a point: nearer to the light a place is not worth much
 #define BEAM_WIDEST 1.0f ///< largest tangent of an angle to the axis
 #define BEAM_BACK 0x80000000u ///< of a point's own surface: it is seen from behind

@@ -193,13 +193,14 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
     const screen_cells cells = seen->cells[slot];
     const float depth = seen->near[slot];
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+    const unsigned columns = bit_range(first_column(cells), last_column(cells));
     bool shaped = false, placed = false;
     shape_on_screen shape;
     R(candidate) candidate;
     for (int y = first_row(cells); y <= last_row(cells); y++)
-        for (int x = first_column(cells); x <= last_column(cells); x++) {
-            if (tile->far[y][x] < depth)
-                continue;
+        for (unsigned left = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, depth, columns); left;
+             left &= left - 1) {
+            const int x = __builtin_ctz(left);
             if (!shaped)
                 shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
             shaped = true;
@@ -244,11 +245,13 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         const glint_node *node = &geometry->nodes[top.node];
         int order[GLINT_NODE_WIDTH];
         unsigned mask = 0, prims = 0;
-        if (any_behind((const float(*)[SCREEN_ACROSS])tile->far, top.near, top.cells)) {
+        rows_behind behind;
+        if (find_behind((const float(*)[SCREEN_ACROSS])tile->far, top, &behind)) {
             mask = boxes_on_screen(node, &tile->view, &seen[turn]);
-            prims = mask & prims_of_node(node);
+            const unsigned all = prims_of_node(node);
+            prims = slots_before(&behind, &seen[turn], mask & all);
             prefetch_prims(geometry, node, prims);
-            for (int i = sort_slots(mask & ~prims, seen[turn].near, order); i-- > 0;)
+            for (int i = sort_slots(mask & ~all, seen[turn].near, order); i-- > 0;)
                 stack[height++] = entry_of(node, &seen[turn], order[i]);
         }
         if (height > 0)

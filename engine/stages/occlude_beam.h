@@ -60,7 +60,7 @@ typedef struct R(beam_blocker) {
 } R(beam_blocker);
 
 /// Tests the points from `i` on and before `end`. Its own are dark for that only where they are seen from behind, see blocked.h.
-static void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
+INNER void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, uint32_t end)
 {
     for (; i < end; i += VF) {
         const vf u = f_load_any(beam->place[0] + i), v = f_load_any(beam->place[1] + i), w = f_load_any(beam->w + i);
@@ -90,11 +90,10 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
     const int first = first_column(cells), end = last_column(cells) + 1;
-    if (end - first == SCREEN_ACROSS)
+    if (end - first == SCREEN_ACROSS) // the cells of all rows are one run
         R(block_run)(beam, &b, *top, bottom[SCREEN_ACROSS]);
-    else
-        for (; top <= bottom; top += SCREEN_ACROSS)
-            R(block_run)(beam, &b, top[first], top[end]);
+    for (; end - first < SCREEN_ACROSS && top <= bottom; top += SCREEN_ACROSS)
+        R(block_run)(beam, &b, top[first], top[end]);
     R(decide_batch)(beam, b.prim);
 }
 
@@ -124,11 +123,12 @@ static void R(walk_beam)(R(beam) * beam)
         const screen_entry top = stack[--height];
         const glint_node *node = &geometry->nodes[top.node];
         unsigned prims = 0;
-        if (any_behind((const float(*)[SCREEN_ACROSS])beam->far, top.near, top.cells)) {
-            const unsigned mask = boxes_on_screen(node, &beam->view, &seen[turn]);
-            prims = mask & prims_of_node(node);
+        rows_behind behind;
+        if (find_behind((const float(*)[SCREEN_ACROSS])beam->far, top, &behind)) {
+            const unsigned mask = boxes_on_screen(node, &beam->view, &seen[turn]), all = prims_of_node(node);
+            prims = slots_before(&behind, &seen[turn], mask & all);
             prefetch_prims(geometry, node, prims);
-            for (unsigned left = mask & ~prims; left; left &= left - 1)
+            for (unsigned left = mask & ~all; left; left &= left - 1)
                 stack[height++] = entry_of(node, &seen[turn], __builtin_ctz(left));
         }
         if (height > 0)
