@@ -116,6 +116,12 @@ typedef struct glint_tile {
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
 } glint_tile;
 
+/// The current sample's own memory for the light in a slot.
+static inline const glint_tile_light *glint_tile_own_light(const glint_tile *tile, uint32_t slot)
+{
+    return &tile->lights[tile->own_lights + slot];
+}
+
 static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 {
     return atomic_load_explicit(frame->cancelled, memory_order_relaxed);

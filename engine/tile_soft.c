@@ -14,8 +14,8 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
         frame->time_stages)
         return false;
     for (uint32_t i = slot; i < slot + count; i++)
-        if (tile->at.light[i].cosine != tile->lights[tile->own_lights + i].cosine ||
-            (light->shadows && tile->at.light[i].open != tile->lights[tile->own_lights + i].open))
+        if (tile->at.light[i].cosine != glint_tile_own_light(tile, i)->cosine ||
+            (light->shadows && tile->at.light[i].open != glint_tile_own_light(tile, i)->open))
             return false;
     return true;
 }

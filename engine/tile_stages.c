@@ -205,7 +205,7 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
 static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, const uint32_t *slot, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)
-        if (tile->at.light[slot[i]].log2_specular != tile->lights[slot[i]].log2_specular)
+        if (tile->at.light[slot[i]].log2_specular != glint_tile_own_light(tile, slot[i])->log2_specular)
             return false;
     return !frame->count_work;
 }

@@ -59,13 +59,14 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
     const bool specular = frame->sample->highlights && material->highlight;
     light_factors factors;
     factors.count = 0;
+    factors.shiny = false;
     for (uint32_t k = 0; k < frame->count; k++)
         add_factors(&frame->sample[k], material, specular, g, &factors);
     for (int c = 0; c < 3; c++) {
         const vf ambient = f_set(mean_of_equal(frame, material->ambient[c]));
         for (int i = 0; i < GLINT_GROUP; i += VF) {
             vf beauty = ambient + mean_share(frame, &factors, material, 0, c, i);
-            if (specular)
+            if (specular && factors.shiny)
                 beauty = beauty + mean_share(frame, &factors, material, 1, c, i);
             f_store(frame->sample->beauty[c] + (size_t)g * GLINT_GROUP + i, beauty);
         }

@@ -8,6 +8,7 @@ typedef struct light_factors {
     _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
     uint32_t count;
+    bool shiny; ///< false: the specular factors are 0
 } light_factors;
 
 static inline bool has_facets(const glint_shade_material *material)
@@ -15,11 +16,13 @@ static inline bool has_facets(const glint_shade_material *material)
     return GLINT_WITH_FACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
 }
 
-/// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to.
-static inline void put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
+/// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to. Returns
+/// whether w S may be more than 0 anywhere.
+static inline bool put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
                                size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
+    bool any = false;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         vf w = f_set(1);
         if (light->attenuation)
@@ -30,15 +33,19 @@ static inline void put_factors(const glint_shade_light *light, const glint_shade
             share = f_load(diffuse + i) + share;
         f_store(diffuse + i, share);
         if (specular) {
-            vf log2 = f_load(light->log2_specular + at + i);
-            vf s = w * f_exp2(f_set(material->shininess) * log2);
-            const fm shiny = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
-            share = f_select(shiny, s, f_set(0));
+            const vf log2 = f_load(light->log2_specular + at + i), y = f_set(material->shininess) * log2;
+            const fm there = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
+            share = f_set(0);
+            if (fm_bits(fm_andnot(there, f_lt(y, f_set(GLINT_EXP2_LOWEST))))) {
+                share = f_select(there, w * f_exp2(y), f_set(0));
+                any = true;
+            }
             if (add)
                 share = f_load(highlight + i) + share;
             f_store(highlight + i, share);
         }
     }
+    return any;
 }
 
 /// Smith's masking by Beckmann's distribution as Heitz gives Walter's fit: x times Lambda at the cosine x.
@@ -133,14 +140,18 @@ static inline void add_factors(const glint_shade_args *args, const glint_shade_m
         if (!light->lit[g])
             continue;
         const uint32_t slot = begun ? factors->count - 1 : factors->count++;
+        bool shiny = specular;
         if (light->summed)
             put_sums(light, specular, at, factors->diffuse[slot], factors->specular[slot]);
         else if (begun)
-            put_factors(light, material, power, at, true, factors->diffuse[slot], factors->specular[slot]);
+            shiny = put_factors(light, material, power, at, true, factors->diffuse[slot], factors->specular[slot]);
         else
-            put_factors(light, material, power, at, false, factors->diffuse[slot], factors->specular[slot]);
-        if (specular && !power && !light->summed)
+            shiny = put_factors(light, material, power, at, false, factors->diffuse[slot], factors->specular[slot]);
+        if (specular && !power && !light->summed) {
             put_lobe(args, light, material, at, begun, factors->specular[slot], factors->grazing[slot]);
+            shiny = true;
+        }
+        factors->shiny = factors->shiny || shiny;
         factors->light[slot] = light;
         begun = true;
     }
@@ -150,6 +161,7 @@ static inline void find_factors(const glint_shade_args *args, const glint_shade_
                                 uint32_t g, light_factors *factors)
 {
     factors->count = 0;
+    factors->shiny = false;
     add_factors(args, material, specular, g, factors);
 }
 
@@ -264,7 +276,7 @@ static inline void add_material(const glint_shade_args *args, const glint_shade_
     for (int c = 0; c < 3; c++) {
         for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
             add_where(to->sum[GLINT_TERM_AMBIENT][c] + to->at, i, whole, lanes, d_set(material->ambient[c]));
-        for (int kind = 0; kind < (specular ? 2 : 1); kind++)
+        for (int kind = 0; kind < (specular && factors->shiny ? 2 : 1); kind++)
             for (uint32_t k = 0; k < factors->count; k++) {
                 const light_share share = share_of(factors, material, k, kind, c);
                 for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -348,7 +360,7 @@ static inline void shade_whole(const glint_shade_args *args, const glint_shade_m
             if (light)
                 sum =
                     sum + f_load(factors->diffuse[0] + i) * f_set(share_color(material->diffuse[c], light->diffuse[c]));
-            if (light && specular)
+            if (light && specular && factors->shiny)
                 sum = sum +
                       f_load(factors->specular[0] + i) * f_set(share_color(material->specular[c], light->specular[c]));
             f_store(args->beauty[c] + at + i, sum);
