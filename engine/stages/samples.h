@@ -17,23 +17,27 @@ static inline float mean_of_equal(const samples_frame *frame, double term)
     return (float)(frame->inverse > 0 ? sum * frame->inverse : sum / (double)frame->count);
 }
 
-/// One vector of a term that lights make, in a channel: the mean of all shares.
-static inline vf mean_share(const samples_frame *frame, const light_factors *factors,
-                            const glint_shade_material *material, int term, int c, int i)
+/// One vector of a term that lights make, in each channel: the mean of all shares.
+static inline void mean_shares(const samples_frame *frame, const light_factors *factors,
+                               const glint_shade_material *material, int term, int i, vf mean[3])
 {
-    vd total[VF / VD];
-    for (int h = 0; h < VF / VD; h++)
-        total[h] = d_set(0);
-    for (uint32_t k = 0; k < factors->count; k++) {
-        const light_share share = share_of(factors, material, k, term, c);
-        vd halves[VF / VD];
-        f_split(share_lanes(&share, i), halves);
+    vd total[3][VF / VD];
+    for (int c = 0; c < 3; c++)
         for (int h = 0; h < VF / VD; h++)
-            total[h] = total[h] + halves[h];
+            total[c][h] = d_set(0);
+    for (uint32_t k = 0; k < factors->count; k++)
+        for (int c = 0; c < 3; c++) {
+            const light_share share = share_of(factors, material, k, term, c);
+            vd halves[VF / VD];
+            f_split(share_lanes(&share, i), halves);
+            for (int h = 0; h < VF / VD; h++)
+                total[c][h] = total[c][h] + halves[h];
+        }
+    for (int c = 0; c < 3; c++) {
+        for (int h = 0; h < VF / VD; h++)
+            total[c][h] = mean_of(total[c][h], frame->count, frame->inverse);
+        mean[c] = f_join(total[c][0], total[c][1]);
     }
-    for (int h = 0; h < VF / VD; h++)
-        total[h] = mean_of(total[h], frame->count, frame->inverse);
-    return f_join(total[0], total[1]);
 }
 
 /// The material that every sample shows in every lane; NULL: there is none.
@@ -58,16 +62,22 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
 {
     const bool specular = frame->sample->highlights && material->highlight;
     light_factors factors;
+    float ambient[3];
     factors.count = 0;
     factors.shiny = false;
     for (uint32_t k = 0; k < frame->count; k++)
         add_factors(&frame->sample[k], material, specular, g, &factors);
-    for (int c = 0; c < 3; c++) {
-        const vf ambient = f_set(mean_of_equal(frame, material->ambient[c]));
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vf beauty = ambient + mean_share(frame, &factors, material, 0, c, i);
+    for (int c = 0; c < 3; c++)
+        ambient[c] = mean_of_equal(frame, material->ambient[c]);
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf diffuse[3], highlight[3];
+        mean_shares(frame, &factors, material, 0, i, diffuse);
+        if (specular && factors.shiny)
+            mean_shares(frame, &factors, material, 1, i, highlight);
+        for (int c = 0; c < 3; c++) {
+            vf beauty = f_set(ambient[c]) + diffuse[c];
             if (specular && factors.shiny)
-                beauty = beauty + mean_share(frame, &factors, material, 1, c, i);
+                beauty = beauty + highlight[c];
             f_store(frame->sample->beauty[c] + (size_t)g * GLINT_GROUP + i, beauty);
         }
     }
