@@ -77,7 +77,7 @@ static bool R(aim_beam)(const R(shadow_tile) * tile, screen_view *view)
     view->slack = 4 * GLINT_FILTER_SLACK * (float)size + 2 * R(walk_slack)(geometry);
     // what a point on a triangle's plane may be beside it, and less
     view->corner_slack = (float)(16 * GLINT_POINT_SLACK * geometry->extent * geometry->scale);
-    view->drift = 16 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // k of a point is above BEAM_NEAREST
+    view->drift = 2 * GLINT_FILTER_SLACK * (float)width + 4 * view->corner_slack; // k of a point is above BEAM_NEAREST
     return true;
 }
 

@@ -4,17 +4,18 @@
 // A ray at place (u, v) is (u, v, 1) in the coordinates (a, b, k) of the screen. It meets a triangle whose corners are P_j
 // there where its dot products with P_1 x P_2, P_2 x P_0 and P_0 x P_1 all have the sign of the corners' determinant.
 
-#define LEAF_SLACK 0x1p-20f ///< of a corner's numbers: what rounding may have moved it by, on the way to its place
+/// Of a corner's numbers: what rounding may have moved it by, on the way to its place; where float decides, twice that.
+#define LEAF_SLACK 0x1p-20f
 
 typedef struct leaf_on_screen {
     /// In: of each corner and axis, from the view's exact origin, in the index's units.
     _Alignas(64) float corner[3][3][GLINT_NODE_WIDTH];
-    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= -doubt.
+    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite where nobody knows on which side the
+    /// corners run.
     _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
-    _Alignas(64) float doubt[GLINT_NODE_WIDTH]; ///< infinite where nobody knows on which side the corners run
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
     _Alignas(64) float least[2][GLINT_NODE_WIDTH], most[2][GLINT_NODE_WIDTH]; ///< the places between which it shows
-    unsigned certain, turned; ///< slots whose doubt is finite; of them, those whose determinant is negative
+    unsigned certain, turned; ///< slots whose edges are finite; of them, those whose determinant is negative
 } leaf_on_screen;
 
 /// The slots of `mask`, which hold primitives, that hold triangles.
@@ -57,11 +58,12 @@ static inline leaf_lanes place_leaf(const leaf_on_screen *leaf, const screen_vie
     return out;
 }
 
-/// What corners and rays may be off by, as a length at the corners: 6 roundings of a corner across the way, as many along
-/// it, which lean by the screen's stretch, a few of the place and of k, and what the view says.
-static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view)
+/// What corners and rays may be off by, as a length across the way at the corners: 5 roundings of a corner along each axis,
+/// which lean by the screen's stretch, a few of the place and of k, and what the view says.
+static inline vf slack_of_leaf(const leaf_lanes *at, const screen_view *view, bool is_float)
 {
-    return f_set(view->root_stretch) * (f_set(LEAF_SLACK) * at->numbers + f_set(view->corner_slack)) +
+    const float slack = is_float ? 2 * LEAF_SLACK : LEAF_SLACK;
+    return f_set(view->root_stretch) * (f_set(slack) * at->numbers + f_set(view->corner_slack)) +
            f_set(0x1p-21f * view->spread + view->drift) * at->highest;
 }
 
@@ -87,17 +89,22 @@ static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view 
     }
 }
 
-/// The edges, as seen from the ray through the triangle's middle, which spares digits. A ray that meets the triangle is at
-/// most `wide` from each corner, where that is; all products are of lengths below that, each off by no more than `slack`.
+/// Edges as seen from a ray near the triangle's middle, which spares digits, x and y being across the way from there.
+///
+/// An edge is the product (x_p y_q - x_q y_p) as seen from the ray it is asked about. A ray that meets the triangle is at most
+/// `wide / 2` from each corner, all of these are off by no more than `off`, and the sums below add up to 22 roundings of
+/// products of k, place and x, and 12 of x and y. The volume is the sum of edges times k, as seen from the middle.
 static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)
 {
     const vf depth = (at->k[0] + at->k[1]) + at->k[2];
     const vf per_k = f_select(f_lt(f_set(0), depth), f_set(1) / depth, f_set(0));
-    const vf u = ((at->a[0] + at->a[1]) + at->a[2]) * per_k, v = ((at->b[0] + at->b[1]) + at->b[2]) * per_k;
-    vf x[3], y[3], n[3][3], most = f_set(0), volume = f_set(0);
+    const vf sum[2] = { (at->a[0] + at->a[1]) + at->a[2], (at->b[0] + at->b[1]) + at->b[2] };
+    vf middle[2], x[3], y[3], n[3][3], most = f_set(0), volume = f_set(0);
+    for (int c = 0; c < 2; c++)
+        middle[c] = f_min(f_max(sum[c] * per_k, f_set(view->first[c])), f_set(view->last[c]));
     for (int j = 0; j < 3; j++) {
-        x[j] = at->a[j] - u * at->k[j];
-        y[j] = at->b[j] - v * at->k[j];
+        x[j] = at->a[j] - middle[0] * at->k[j];
+        y[j] = at->b[j] - middle[1] * at->k[j];
         most = f_max(most, f_max(f_abs(x[j]) * f_set(view->unit[0]), f_abs(y[j]) * f_set(view->unit[1])));
     }
     for (int j = 0; j < 3; j++) {
@@ -106,18 +113,22 @@ static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_vi
         n[j][1] = x[q] * at->k[p] - x[p] * at->k[q];
         n[j][2] = x[p] * y[q] - x[q] * y[p];
         volume = volume + at->k[j] * n[j][2];
-        n[j][2] = n[j][2] - (n[j][0] * u + n[j][1] * v);
+        n[j][2] = n[j][2] - (n[j][0] * middle[0] + n[j][1] * middle[1]);
     }
-    const vf wide = (f_set(2 * view->root_stretch) * at->size + most) + slack;
-    const vf off = (f_set(6) * slack + f_set(0x1p-18f) * wide) + f_set(0x1p-19f * view->spread) * at->highest;
-    const vf doubt = (wide * off) * f_set(1 / view->area) + f_set(16 * FLT_MIN),
-             unsure = f_set(4) * at->highest * doubt;
-    const fm certain = fm_and(f_lt(unsure, f_abs(volume)), f_lt(unsure, f_set(0x1p100f)));
+    const vf wide = f_set(2 * view->root_stretch) * at->size, off = slack + f_set(0x1p-22f) * most, most2 = most * most,
+             per_area = f_set(1 / view->area);
+    const vf sums = f_set(0x1p-19f * view->spread) * (at->highest * most) + f_set(0x1p-20f) * most2;
+    const vf doubt = (off * (wide + off) + sums) * per_area + f_set(16 * FLT_MIN);
+    const vf turn = off * (f_set(9) * most + f_set(3) * off) + f_set(0x1p-19f) * most2;
+    const vf unsure = (at->highest * turn + f_set(2 * view->inverse) * (most2 * off)) * per_area + f_set(16 * FLT_MIN);
+    const fm certain = fm_and(f_lt(unsure, f_abs(volume)), f_lt(unsure + doubt, f_set(0x1p100f)));
     const fm turned = fm_and(certain, f_lt(volume, f_set(0)));
     for (int j = 0; j < 3; j++)
-        for (int c = 0; c < 3; c++)
-            f_store(leaf->edge[j][c] + i, f_select(turned, -n[j][c], n[j][c]));
-    f_store(leaf->doubt + i, f_select(certain, doubt, f_set(HUGE_VALF)));
+        for (int c = 0; c < 3; c++) {
+            const vf edge = f_select(turned, -n[j][c], n[j][c]);
+            f_store(leaf->edge[j][c] + i,
+                    c < 2 ? f_select(certain, edge, f_set(0)) : f_select(certain, edge + doubt, f_set(HUGE_VALF)));
+        }
     leaf->certain |= fm_bits(certain) << i;
     leaf->turned |= fm_bits(turned) << i;
 }
@@ -129,11 +140,11 @@ static void show_leaf(const screen_view *view, const node_on_screen *seen, bool 
     leaf->certain = leaf->turned = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
         const leaf_lanes at = place_leaf(leaf, view, i);
-        const vf slack = slack_of_leaf(&at, view);
+        const vf slack = slack_of_leaf(&at, view, is_float);
         bound_leaf(&at, slack, view, i, leaf);
         edges_of_leaf(&at, slack, view, i, leaf);
         const vf near = f_min(f_min(at.w[0], at.w[1]), at.w[2]) - slack, box = f_load(seen->near + i);
-        const fm known = is_float ? fm_from_bits(0) : f_lt(f_load(leaf->doubt + i), f_set(HUGE_VALF));
+        const fm known = fm_from_bits(is_float ? 0 : leaf->certain >> i & ((1u << VF) - 1));
         f_store(leaf->near + i, f_select(known, f_max(near, box), box));
     }
 }
@@ -144,5 +155,5 @@ static inline unsigned between_edges(const leaf_on_screen *leaf, int slot, vf u,
     vf e[3];
     for (int j = 0; j < 3; j++)
         e[j] = (f_set(leaf->edge[j][0][slot]) * u + f_set(leaf->edge[j][1][slot]) * v) + f_set(leaf->edge[j][2][slot]);
-    return ~fm_bits(f_lt(f_min(f_min(e[0], e[1]), e[2]), f_set(-leaf->doubt[slot]))) & ((1u << VF) - 1);
+    return ~fm_bits(f_lt(f_min(f_min(e[0], e[1]), e[2]), f_set(0))) & ((1u << VF) - 1);
 }
