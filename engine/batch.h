@@ -31,11 +31,6 @@ typedef struct glint_batch {
     _Alignas(64) double reflected[3][GLINT_TILE_SAMPLES], refracted[3][GLINT_TILE_SAMPLES];
 } glint_batch;
 
-static inline bool glint_has_lane(const uint16_t *mask, uint32_t i)
-{
-    return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-}
-
 /// Before the first batch of a sample of `to`.
 void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame);
 /// Puts the active rays into the arrays; the other lanes do nothing.

@@ -6,16 +6,8 @@
 
 #define TIMED_TILES 17 ///< one in so many; no divisor of a picture's width in tiles that is common
 
-static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row)
+void glint_tile_activate(glint_tile *tile)
 {
-    const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
-    tile->x0 = column * GLINT_TILE_WIDTH;
-    tile->y0 = row * GLINT_TILE_HEIGHT;
-    tile->transparent = plan->desc.alpha;
-    tile->width = width - tile->x0 < GLINT_TILE_WIDTH ? width - tile->x0 : GLINT_TILE_WIDTH;
-    tile->height = height - tile->y0 < GLINT_TILE_HEIGHT ? height - tile->y0 : GLINT_TILE_HEIGHT;
-    tile->groups_across = (tile->width + 3) / 4;
-    tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
     memset(tile->active, 0xff, sizeof tile->active);
     if (tile->width == GLINT_TILE_WIDTH && tile->height == GLINT_TILE_HEIGHT)
         return;
@@ -26,6 +18,19 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
         const uint32_t in_rows = rows < 4 ? (1u << 4 * rows) - 1 : 0xffff;
         tile->active[g] = (uint16_t)(in_row * 0x1111 & in_rows);
     }
+}
+
+static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row)
+{
+    const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
+    tile->x0 = column * GLINT_TILE_WIDTH;
+    tile->y0 = row * GLINT_TILE_HEIGHT;
+    tile->transparent = plan->desc.alpha;
+    tile->width = width - tile->x0 < GLINT_TILE_WIDTH ? width - tile->x0 : GLINT_TILE_WIDTH;
+    tile->height = height - tile->y0 < GLINT_TILE_HEIGHT ? height - tile->y0 : GLINT_TILE_HEIGHT;
+    tile->groups_across = (tile->width + 3) / 4;
+    tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
+    glint_tile_activate(tile);
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is

@@ -116,6 +116,11 @@ typedef struct glint_tile {
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
 } glint_tile;
 
+static inline bool glint_has_lane(const uint16_t *mask, uint32_t i)
+{
+    return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
+
 /// The current sample's own memory for the light in a slot.
 static inline const glint_tile_light *glint_tile_own_light(const glint_tile *tile, uint32_t slot)
 {
@@ -130,6 +135,9 @@ static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
 /// tile_memory.c: makes what this plan's stages need beside the tile. False: out of memory.
 bool glint_tile_extend(glint_tile *tile, const glint_plan *plan);
 void glint_tile_destroy(glint_tile *tile); ///< NULL: nothing
+
+/// All pixels of the tile that the image has are active.
+void glint_tile_activate(glint_tile *tile);
 
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);

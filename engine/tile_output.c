@@ -10,9 +10,13 @@ static void store_plane(const glint_tile *tile, const float *groups, float *plan
         const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
         const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
         const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
-        for (uint32_t r = 0; r < rows; r++) {
-            float *to = plane + (size_t)(tile->y0 + y + r) * (size_t)stride + tile->x0 + x;
-            memcpy(to, groups + g * GLINT_GROUP + 4 * r, columns * sizeof *to);
+        float *to = plane + (size_t)(tile->y0 + y) * (size_t)stride + tile->x0 + x;
+        for (uint32_t r = 0; r < rows; r++, to += stride) {
+            const float *from = groups + g * GLINT_GROUP + 4 * r;
+            if (columns == 4)
+                memcpy(to, from, 4 * sizeof *to);
+            else
+                memcpy(to, from, columns * sizeof *to);
         }
     }
 }
@@ -42,32 +46,65 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
     return plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
 }
 
-void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
+static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    const glint_plan *plan = frame->plan;
-    const glint_precision precision = plan->desc.precision;
-    float depth[GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES], id[GLINT_TILE_SAMPLES];
+    return plan->glow_count && glint_tile_sees_light(tile, i);
+}
+
+static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    float depth[GLINT_TILE_SAMPLES];
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool hit = tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+        double d[3];
         depth[i] = HUGE_VALF;
-        id[i] =
-            hit ? (float)(glint_geometry_object(plan->geometry, frame->geometry.prims[tile->at.prim[i]].id) + 1) : 0;
-        double d[3] = { 0 };
-        double n[3] = { 0 };
-        const bool light = plan->glow_count && glint_tile_sees_light(tile, i);
-        if (light)
-            glint_tile_glow_normal(tile, frame, i, n);
-        for (int c = 0; c < 3; c++) {
-            normal[c][i] = hit ? (float)glint_real_at(tile->normal[c], precision, i) : (float)n[c];
-            if (hit || light)
-                d[c] = glint_tile_direction(tile, precision, c, i);
-        }
-        if (hit || light)
-            depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
+        if (!glint_has_lane(tile->at.hits, i) && !sees_light(tile, frame->plan, i))
+            continue;
+        for (int c = 0; c < 3; c++)
+            d[c] = glint_tile_direction(tile, precision, c, i);
+        depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
     }
     store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
+}
+
+static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float normal[3][GLINT_TILE_SAMPLES];
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        double n[3] = { 0 };
+        if (!hit && sees_light(tile, frame->plan, i))
+            glint_tile_glow_normal(tile, frame, i, n);
+        for (int c = 0; c < 3; c++)
+            normal[c][i] = (float)(hit ? glint_real_at(tile->normal[c], frame->plan->desc.precision, i) : n[c]);
+    }
     store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
+}
+
+static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float id[GLINT_TILE_SAMPLES], object = 0;
+    uint32_t last = GLINT_MISS;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        if (hit && tile->at.prim[i] != last) {
+            last = tile->at.prim[i];
+            object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[last].id) + 1);
+        }
+        id[i] = hit ? object : 0;
+    }
     store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
+}
+
+void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t passes = frame->plan->desc.passes;
+    if (passes >> GLINT_PASS_DEPTH & 1)
+        store_depth(tile, frame);
+    if (passes >> GLINT_PASS_NORMAL & 1)
+        store_normal(tile, frame);
+    if (passes >> GLINT_PASS_OBJECT_ID & 1)
+        store_object_id(tile, frame);
 }
 
 // ---- Coverage -----------------------------------------------------------------------------------------------------
