@@ -71,7 +71,7 @@ static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e)
     REAL low = NAME(min)(far, other), high = NAME(max)(far, other);
     if (a < 0 || a == 0) {
         REAL end = a == 0 ? c / (2 * b) : e.z > 0 ? high : low;
-        return (NAME(passage)) { .hit = true,
+        return (NAME(passage)) { .hit = a < 0 || (e.z > 0 ? b > 0 : b < 0),
                                  .in = { .t = (e.z > 0 ? end : -INFINITY) + move },
                                  .out = { .t = (e.z > 0 ? INFINITY : end) + move } };
     }

@@ -92,12 +92,13 @@ static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
     const vr far = q / a, other = c / q;
     const vr low = r_min(far, other), high = r_max(far, other), single = c / (r_set(2) * b);
     const rm up = r_lt(zero, e[2]);
-    // steeper than the side: one end is within the other half of the double cone
+    // steeper than the side: one end is within the other half of the double cone; along the side: there is but one, of either
+    const rm ours = rm_or(rm_and(up, r_lt(zero, b)), rm_andnot(r_lt(b, zero), up));
     const vr end = r_select(level, single, r_select(up, high, low));
     const rm open = rm_or(steep, level);
     span->t[0] = r_select(open, r_select(up, end, r_set(-HUGE_VAL)), low) + move;
     span->t[1] = r_select(open, r_select(up, r_set(HUGE_VAL), end), high) + move;
-    span->hit = rm_or(open, r_le(zero, disc));
+    span->hit = rm_or(rm_or(steep, rm_and(level, ours)), rm_andnot(r_le(zero, disc), level));
 }
 
 /// Takes the faces of a cylinder or cone away: what went through one meets the side once or not at all.

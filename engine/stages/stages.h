@@ -232,7 +232,7 @@ typedef struct glint_cast_args {
 //                 to in and out; then a = (e.x^2 + e.y^2) - e.z^2, c = (f.x^2 + f.y^2) - f.z^2, b = f.z e.z - (f.x e.x + f.y e.y)
 //                 disc = (x.x^2 + x.y^2) - x.z^2 with x = cross(f, e); s, q, far, other as above; low, high = min, max of them
 //                 a > 0: in, out = low, high; hits where disc >= 0
-//                 else hits; end = a = 0 ? c / (2 b) : e.z > 0 ? high : low; in, out = e.z > 0 ? (end, inf) : (-inf, end)
+//                 else hits where a < 0 or b and e.z have one sign; end = a = 0 ? c / (2 b) : e.z > 0 ? high : low; in, out = e.z > 0 ? (end, inf) : (-inf, end)
 //                 box: in = -inf, out = inf, hits
 //                 then, cylinder and cone: slab of z, from -1 or (cone) 0; box: slabs of x, y, z, from -1
 //                 slab from low, of axis i: where e_i = 0: hits only where not (f_i < low or f_i > 1), else
