@@ -20,6 +20,8 @@ typedef struct glint_refine {
     uint8_t *chosen; ///< a byte a pixel: whether it gets all samples
     uint8_t *below; ///< likewise: chosen for the sake of the row before
     size_t capacity; ///< of each
+    float *rows; ///< codes of two rows for each thread
+    size_t row_capacity; ///< of these
     uint64_t count; ///< pixels chosen
 } glint_refine;
 
