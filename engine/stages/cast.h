@@ -254,8 +254,7 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
             for (int i = sort_slots(mask & ~all, seen[turn].near, order); i-- > 0;)
                 stack[height++] = entry_of(node, &seen[turn], order[i]);
         }
-        if (height > 0)
-            prefetch_node(&geometry->nodes[stack[height - 1].node]);
+        prefetch_nodes(geometry, stack, height);
         if (waiting_prims)
             R(cast_prims)(tile, &leaf, waiting, &seen[!turn], waiting_prims);
         waiting = node;

@@ -84,8 +84,6 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     const screen_cells cells = seen->cells[slot];
     R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
-    if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, b.near, cells))
-        return;
     b.shape = shape_of(node, seen, slot, b.prim, &beam->view);
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
@@ -131,8 +129,7 @@ static void R(walk_beam)(R(beam) * beam)
             for (unsigned left = mask & ~all; left; left &= left - 1)
                 stack[height++] = entry_of(node, &seen[turn], __builtin_ctz(left));
         }
-        if (height > 0)
-            prefetch_node(&geometry->nodes[stack[height - 1].node]);
+        prefetch_nodes(geometry, stack, height);
         if (waiting_prims)
             R(block_prims)(beam, waiting, &seen[!turn], waiting_prims);
         waiting = node;

@@ -192,7 +192,7 @@ static inline unsigned prims_of_node(const glint_node *node)
     return prims;
 }
 
-/// Has the memory of primitives, and of the node to be looked into next, on its way.
+/// Has the memory of primitives, and of the two nodes to be looked into next, on its way.
 static inline void prefetch_prims(const glint_geometry_table *geometry, const glint_node *node, unsigned mask)
 {
     for (; mask; mask &= mask - 1) {
@@ -202,10 +202,11 @@ static inline void prefetch_prims(const glint_geometry_table *geometry, const gl
     }
 }
 
-static inline void prefetch_node(const glint_node *node)
+static inline void prefetch_nodes(const glint_geometry_table *geometry, const screen_entry *stack, int height)
 {
-    for (size_t i = 0; i < sizeof *node; i += 64)
-        __builtin_prefetch((const char *)node + i);
+    for (int entry = height > 2 ? height - 2 : 0; entry < height; entry++)
+        for (size_t i = 0; i < sizeof(glint_node); i += 64)
+            __builtin_prefetch((const char *)&geometry->nodes[stack[entry].node] + i);
 }
 
 // ---- Surfaces ----
