@@ -216,8 +216,9 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 	@$(MAKE) --no-print-directory soak-run
 
 # Other seeds than the check's, so that both see something new.
-soak-run: $(HARD_BIN) $(BUILD)/tests/test_reuse
+soak-run: $(HARD_BIN) $(BUILD)/tests/test_reuse $(BUILD)/tests/test_carry
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_reuse
+	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_carry
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
 
 gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render

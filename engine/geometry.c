@@ -400,6 +400,7 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
         status = find_repeats(geometry, error);
     if (status)
         return status;
+    geometry->id_count = geometry->table.prim_count;
     make_keys(geometry);
     choose_frame(geometry);
     status = index_create(geometry, error);

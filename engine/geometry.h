@@ -50,6 +50,7 @@ struct glint_geometry {
     glint_bvh others; ///< of what is neither triangle nor plane, once asked for
     bool has_others; ///< it has been asked for
     uint32_t triangle_count;
+    uint32_t id_count; ///< primitives that were described, repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
     glint_key where, look; ///< of the places; of materials and sides
 };

@@ -140,6 +140,7 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
         return status;
     choose_stages(plan);
     choose_visibility(plan);
+    plan->where = plan->geometry->where;
     status = glint_plan_keys(plan, error);
     return status ? status : glint_plan_explain(plan, scene, error);
 }

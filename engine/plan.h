@@ -144,6 +144,7 @@ struct glint_plan {
     double brightest; ///< bound of what any ray can bring; may be infinite
 
     bool runs[GLINT_STAGE_COUNT];
+    glint_key where; ///< the geometry's, of its places
     glint_key keys[GLINT_STAGE_COUNT];
     glint_key *material_keys, *matte_keys; ///< of each row of materials; of what it reads where it has no highlight
     glint_key all_materials_key, all_lights_key, background_key;
@@ -194,6 +195,16 @@ glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_
 bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
+
+/// A plan's keys as they would be if its surfaces were elsewhere: a copy that owns nothing of the plan's.
+typedef struct glint_plan_twin {
+    glint_plan plan; ///< of which all keys, and those of the lights, differ
+} glint_plan_twin;
+
+/// where: see glint_geometry. False: no memory. To be freed either way.
+bool glint_plan_twin_make(glint_plan_twin *twin, const glint_plan *plan, glint_key where);
+void glint_plan_twin_free(glint_plan_twin *twin);
+
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 
 #endif

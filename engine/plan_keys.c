@@ -5,6 +5,9 @@
 #include "engine/base/status.h"
 #include "engine/plan.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 /// What there is to read, described or derived.
 typedef enum input {
     INPUT_VIEW, ///< camera, picture size, samples
@@ -174,7 +177,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     if (which & READS(VIEW))
         key = view_key(plan, key);
     if (which & READS(PLACES))
-        ADD(key, geometry->where);
+        ADD(key, plan->where);
     if (which & READS(LOOKS))
         ADD(key, geometry->look);
     if (which & READS(HIGHLIGHTS))
@@ -269,4 +272,25 @@ glint_status glint_plan_keys(glint_plan *plan, glint_error *error)
         plan->keys[id] = key = add_inputs(plan, stages[id], key);
     plan->vertex_key = vertex_key(plan);
     return part_keys(plan, error);
+}
+
+bool glint_plan_twin_make(glint_plan_twin *twin, const glint_plan *plan, glint_key where)
+{
+    glint_error error;
+    twin->plan = *plan;
+    twin->plan.where = where;
+    twin->plan.material_keys = twin->plan.matte_keys = NULL;
+    twin->plan.lights = malloc((plan->light_count + 1) * sizeof *plan->lights);
+    if (!twin->plan.lights)
+        return false;
+    if (plan->light_count)
+        memcpy(twin->plan.lights, plan->lights, plan->light_count * sizeof *plan->lights);
+    return glint_plan_keys(&twin->plan, &error) == GLINT_OK;
+}
+
+void glint_plan_twin_free(glint_plan_twin *twin)
+{
+    free(twin->plan.lights);
+    free(twin->plan.material_keys);
+    free(twin->plan.matte_keys);
 }

@@ -228,10 +228,12 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
                                            : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
     if (status)
         return status;
-    if (shared->base) // other pixels in every frame
+    if (shared->base) { // other pixels in every frame
         glint_reuse_clear(&renderer->reuse);
-    else
+    } else {
+        glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
         glint_reuse_begin(&renderer->reuse, plan, tile_count);
+    }
     renderer->scan.ms = 0;
     if (!plan->scan || !casts(&renderer->reuse, plan))
         return GLINT_OK;

@@ -38,6 +38,7 @@ void glint_reuse_clear(glint_reuse *reuse)
 void glint_reuse_destroy(glint_reuse *reuse)
 {
     glint_reuse_clear(reuse);
+    free(reuse->places);
     pthread_mutex_destroy(&reuse->lock);
 }
 
@@ -87,9 +88,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
-/// Whether the tile's pixels may show what it does not hit itself: by mirrors, through what is transparent, by its
-/// light, or as light that was worked out at points beside it.
-static bool shows_more(const glint_kept_tile *tile, const glint_plan *plan)
+bool glint_reuse_shows_more(const glint_kept_tile *tile, const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->sites))
         return true;
@@ -128,7 +127,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
         parts[count++] = plan->background_key;
     if (tile->shown_count == 0)
         return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
-    if (shows_more(tile, plan)) {
+    if (glint_reuse_shows_more(tile, plan)) {
         const glint_key all[] = { plan->all_materials_key, plan->all_lights_key, plan->background_key };
         return glint_key_add(glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts), all, sizeof all);
     }

@@ -5,10 +5,15 @@
 /// where its key equals the plan's, so the reused frame has the fresh frame's bits.
 ///
 /// A tile as a whole has a key too, of what its pixels were made from: the materials it shows and the lights that reach
-/// it, and no others; of a material that no highlight shows on, its highlight neither. Where that is the last frame's, its pixels are copied from the last picture.
+/// it, and no others; of a material that no highlight shows on, its highlight neither. Where that is the last frame's, its
+/// pixels are copied from the last picture.
+///
+/// Keys of what follows the geometry hold all of it. Where little of it has changed, reuse_carry.c finds what that cannot
+/// have touched, and gives it the new keys.
 #ifndef GLINT_REUSE_H
 #define GLINT_REUSE_H
 
+#include "engine/image/image.h"
 #include "engine/plan.h"
 
 #include <pthread.h>
@@ -45,11 +50,18 @@ typedef struct glint_kept_tile {
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
     uint32_t only; ///< the primitive of all hits; GLINT_MISS: they have several, or there are none
     glint_key boxed; ///< the surfaces' key when `box` was found; all zero: never
-    glint_point_box box; ///< of the points, in frames of one sample a pixel
+    glint_point_box box; ///< of the points of all samples
     bool background; ///< some sample hits nothing
     bool sites; ///< some sample has the light of a face or of vertices, which are not all in the tile
     uint64_t clipped, nonfinite; ///< pixels, when the tile was last run
 } glint_kept_tile;
+
+/// Where a primitive of the last frame was.
+typedef struct glint_kept_place {
+    glint_key key; ///< of its place
+    double center[3], radius; ///< a ball around it; infinite: it has no end
+    uint32_t at; ///< in the geometry's table; GLINT_MISS: it was like another
+} glint_kept_place;
 
 typedef struct glint_reuse {
     bool on;
@@ -67,6 +79,9 @@ typedef struct glint_reuse {
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
     glint_key cast, view, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    glint_key where; ///< of the places of the last frame's surfaces, and
+    glint_kept_place *places; ///< these, by id; owned; NULL: there were too many
+    uint32_t place_count;
     // which results this frame has in common with the last, and therefore keeps
     bool keep_cast, keep_view, keep_light[GLINT_KEPT_LIGHTS];
 } glint_reuse;
@@ -81,6 +96,15 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
 /// Takes `bytes` of the budget for a picture that is kept as a whole; at most half of it goes to pictures.
 bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes);
 void glint_reuse_unreserve(glint_reuse *reuse, size_t bytes);
+
+/// reuse_carry.c, before glint_reuse_begin: where a few primitives have moved since the last frame, gives the new plan's keys
+/// to what that cannot have changed, in the tiles and in the `film` of pictures of their size (NULL among them are passed
+/// over). The geometry is arranged.
+void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count);
+
+/// Whether the tile's pixels may show what it does not hit itself: by mirrors, through what is transparent, by its
+/// light, or as light that was worked out at points beside it.
+bool glint_reuse_shows_more(const glint_kept_tile *tile, const glint_plan *plan);
 
 /// The key of a tile's pixels, from what is known of it; all zero where that is not of this plan's surfaces.
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan);

@@ -233,6 +233,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         glint_tile_book(tile, frame, GLINT_STAGE_GLOW, false);
     }
     const bool any = any_hit(tile);
+    if (!any)
+        glint_tile_keep_box(tile, frame, NULL);
     if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
         if (any)
             note_surfaces(tile, frame, w->sample);
@@ -384,6 +386,7 @@ static void find_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, b
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     walk w = { .sample = k };
+    tile->boxed = k ? tile->boxed : 0;
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     const bool any = find_hits(tile, frame, &w);

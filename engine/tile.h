@@ -92,6 +92,7 @@ typedef struct glint_tile {
     glint_cast_view view; ///< of the frame's cameras
     glint_point_box box; ///< what at.box points to
     uint32_t sample; ///< which it is
+    uint32_t boxed; ///< samples so far whose points are in the kept box
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
     glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
@@ -153,6 +154,8 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// What is not in sight needs no rays.
 void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
+/// Adds the points of the current sample to the box that is kept of all; NULL: it has none.
+void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
 /// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
 /// One light, or samples of one: light `first + slot[i]` of the plan, for each of `count` slots of the chunk.

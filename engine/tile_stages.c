@@ -132,21 +132,37 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
 }
 
-/// Whether the box of the tile's points is known from an earlier frame.
+/// Whether the box of the tile's points is known from an earlier frame: of the only sample of each pixel, since others have
+/// boxes of their own, less wide than that of all.
 static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    return tile->kept && glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
+    return tile->kept && frame->plan->desc.samples == 1 &&
+           glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
 }
 
-/// The box that a call of the stage filled in, or the known one; of the only sample of each pixel it is kept.
-static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
+void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
 {
     glint_kept_tile *kept = tile->kept;
-    if (filled && kept && frame->plan->desc.samples == 1) {
-        kept->box = *filled;
-        kept->boxed = frame->plan->keys[GLINT_STAGE_SURFACE];
+    const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];
+    if (!kept || tile->boxed != tile->sample || glint_key_equal(kept->boxed, surface))
+        return;
+    if (tile->sample == 0)
+        kept->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
+    for (int c = 0; c < 3 && box; c++) {
+        kept->box.lower[c] = fmin(kept->box.lower[c], box->lower[c]);
+        kept->box.upper[c] = fmax(kept->box.upper[c], box->upper[c]);
     }
-    tile->at.box = filled ? filled : &kept->box;
+    kept->box.only = box && frame->plan->desc.samples == 1 ? box->only : GLINT_MISS;
+    if (++tile->boxed == (uint32_t)frame->plan->desc.samples)
+        kept->boxed = surface;
+}
+
+/// The box that a call of the stage filled in, or the known one.
+static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
+{
+    if (filled)
+        glint_tile_keep_box(tile, frame, filled);
+    tile->at.box = filled ? filled : &tile->kept->box;
 }
 
 static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)

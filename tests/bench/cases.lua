@@ -30,6 +30,7 @@ local measurements = {
 
   -- render only, in one process, frame after frame of a job
   { "g.moved", "glint", "reuse change=light" },
+  { "g.ball", "glint", "reuse change=sphere" },
   { "g.shiny", "glint", "reuse change=shininess" },
 
   -- 60 frames to 60 PNG files
@@ -110,6 +111,7 @@ local rows = {
   { "frame", "double / float, full frame", "g.frame:render", "g.float:render", bar = 1.30 },
   { "jobs", "double / float, 60-frame light job", "g.light.2:job", "g.light.float:job", bar = 1.10 },
   { "reuse", "moved light / full frame", "g.moved:kept", "g.moved:fresh", bar = 0.65 },
+  { "reuse", "moved sphere / full frame", "g.ball:kept", "g.ball:fresh" },
   { "reuse", "changed shininess / full frame", "g.shiny:kept", "g.shiny:fresh", bar = 0.15 },
   { "jobs", "60-frame light job, two threads / one", "g.light.2:job", "g.light.1:job", bar = 0.55 },
   { "jobs", "60-frame shininess job, two threads / one", "g.shininess.2:job", "g.shininess.1:job", bar = 0.55 },

@@ -3,8 +3,8 @@
 ///   glint_side frame scene=workshop|1k|1M [threads=N] [samples=N] [shadows=0] [isa=NAME] [float=1]
 ///   glint_side build scene=1M [threads=N]                ms of the index, and of a scene's first (small) frame
 ///   glint_side stages [isa=NAME]                         ns a pixel
-///   glint_side reuse change=light|shininess              ms of a frame anew, and of one from what was kept
-///   glint_side job change=light|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
+///   glint_side reuse change=light|sphere|shininess       ms of a frame anew, and of one from what was kept
+///   glint_side job change=light|sphere|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
 ///   glint_side encode out=FOLDER
 ///   glint_side picture out=FILE [scene=...]
 ///   glint_side isa                                       the best this machine has

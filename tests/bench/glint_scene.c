@@ -64,6 +64,7 @@ static void add_spheres(side_scene *s)
         d.material = s->materials[p->sphere_material[i]];
         side_must(glint_shape_create(&d, &shape, &error), &error);
         add_shape(s, shape);
+        s->ball = shape;
     }
 }
 
@@ -147,6 +148,12 @@ void side_scene_set_frame(side_scene *s, const char *change, int frame)
         glint_light_desc l = *glint_light_get(s->lamp);
         bench_job_light(frame, l.position);
         side_must(glint_light_set(s->lamp, &l, &error), &error);
+        return;
+    }
+    if (strcmp(change, "sphere") == 0) {
+        glint_shape_desc d = *glint_shape_get(s->ball);
+        d.center[1] += 0.02 * (frame % 2 ? 1 : -1);
+        side_must(glint_shape_set(s->ball, &d, &error), &error);
         return;
     }
     for (int m = 0; m < s->plain.material_count; m++) {

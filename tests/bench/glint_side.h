@@ -12,6 +12,7 @@ typedef struct side_scene {
     glint_scene *scene;
     glint_light *lamp;
     glint_material *materials[BENCH_MATERIALS];
+    glint_shape *ball; ///< the last sphere of few; the scene's
 } side_scene;
 
 /// Ends the program with the message unless the status is GLINT_OK.
@@ -19,7 +20,8 @@ void side_must(glint_status status, const glint_error *error);
 
 side_scene side_scene_create(const bench_options *options);
 void side_scene_free(side_scene *scene);
-/// Frame `frame` of a job: moves the lamp, or changes the shininess of every material that shines.
+/// Frame `frame` of a job: moves the lamp, lifts the last of few spheres, or changes the shininess of every material that
+/// shines.
 void side_scene_set_frame(side_scene *scene, const char *change, int frame);
 
 /// NULL when this machine lacks the instruction set the options name.
