@@ -104,7 +104,7 @@ typedef struct glint_tile {
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce *bounce; ///< memory of tile_bounce.c and of tile_tint.c; NULL until a frame needs it
     struct glint_tint *tint;
-    struct glint_samples *samples; ///< memory of tile_samples.c; likewise
+    struct glint_samples *samples; ///< memory of tile_shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
     const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile_vertex.c
@@ -180,7 +180,7 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
                            float *beauty[3]);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
-/// tile_samples.c: for plans whose samples are shaded together. Remembers what the current sample needs for that, and
+/// tile_shade.c: for plans whose samples are shaded together. Remembers what the current sample needs for that, and
 /// after the last shades and resolves all.
 struct glint_samples *glint_samples_create(void);
 void glint_samples_destroy(struct glint_samples *samples);
