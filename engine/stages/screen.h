@@ -7,7 +7,7 @@
 // running away from the light from 0 in the middle of the points; of parallel light k is 1.
 
 #define SCREEN_ACROSS 16 ///< most columns
-#define SCREEN_DOWN 32 ///< and rows
+#define SCREEN_DOWN 20 ///< and rows
 
 typedef struct screen_view {
     float origin[3], axis[3][3]; ///< of the frame, in the index's; at right angles but for rounding
