@@ -156,6 +156,32 @@ static void test_bands_tone(void **state)
     glint_bands_destroy(bands);
 }
 
+/// Nor is one with an alpha that one without, whatever its stamps say.
+static void test_bands_alpha(void **state)
+{
+    (void)state;
+    glint_bands *bands = NULL;
+    glint_image *image[2];
+    glint_render_desc desc = glint_render_desc_default();
+    desc.width = 300;
+    desc.height = 200;
+    desc.codes = true;
+    assert_int_equal(glint_bands_create(1, &bands, NULL), GLINT_OK);
+    for (int i = 0; i < 2; i++) {
+        desc.alpha = i;
+        assert_int_equal(glint_image_create_for(&desc, &image[i], NULL), GLINT_OK);
+        for (size_t row = 0; row < glint_image_stamps(image[i]); row++) {
+            paint(image[i], row);
+            image[i]->row_stamp[row] = row + 1;
+        }
+    }
+    for (int i = 0; i < 4; i++)
+        assert_true(check_same(image[i % 2], GLINT_ENCODE_FAST, bands) == 0);
+    for (int i = 0; i < 2; i++)
+        glint_image_release(image[i]);
+    glint_bands_destroy(bands);
+}
+
 /// A pass without stamps in between neither takes from what is kept nor displaces it.
 static void test_bands_other_pass(void **state)
 {
@@ -221,9 +247,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bands_places), // first, while the heap has no room for its blocks
-        cmocka_unit_test(test_bands_repeat),
-        cmocka_unit_test(test_bands_tone),
-        cmocka_unit_test(test_bands_other_pass),
+        cmocka_unit_test(test_bands_repeat), cmocka_unit_test(test_bands_tone),
+        cmocka_unit_test(test_bands_alpha),  cmocka_unit_test(test_bands_other_pass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

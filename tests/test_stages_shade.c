@@ -137,7 +137,7 @@ static void shade_case(int precision, bool odd)
                               .first = !before || one_in(2) };
     random_color(args.background);
     make_shade_hits(&args, COUNT_OF(material_table));
-    make_shade_lights(&args, lights, below(GLINT_LIGHT_CHUNK + 1), sums);
+    make_shade_lights(&args, lights, one_in(3) ? 1 : below(GLINT_LIGHT_CHUNK + 1), sums);
     FOR_EACH_TESTED
     {
         make_shade_outputs(&args, before, args.highlights ? passes : passes & 7);
