@@ -122,8 +122,7 @@ void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame,
     *shade = glint_tile_shade_args(tile, frame, 0, light_count, &samples->lights[tile->own_lights]);
     memcpy(samples->hits[k], tile->at.hits, tile->group_count * sizeof *samples->hits[k]);
     shade->hits = samples->hits[k];
-    if (!shade->only)
-        memcpy(samples->material[k], tile->material, tile->group_count * GLINT_GROUP * sizeof *samples->material[k]);
+    memcpy(samples->material[k], tile->material, tile->group_count * GLINT_GROUP * sizeof *samples->material[k]);
     shade->material = samples->material[k];
     glint_tile_count_powers(tile, frame, 0, light_count);
 }

@@ -187,7 +187,9 @@ local function picture(environment, options, ending)
   for frame = 1, 31, 10 do all[#all + 1] = read(("%s_%04d.%s"):format(path, frame, ending)) end
   return all, said
 end
-for ending, options in pairs { pfm = "", png = "--bits 16 --alpha", ["0.png"] = "--outline black" } do
+for ending, options in pairs {
+  pfm = "", png = "--bits 16 --alpha", ["0.png"] = "--outline black", ["all.pfm"] = "--adaptive 0",
+} do
   local usual = picture("", options, ending)
   check(#usual == 4, "%d pictures", #usual)
   for _, way in ipairs {
