@@ -272,6 +272,8 @@ static void occlude_case(int precision, bool odd)
                                 .slack = input(real_kind(precision), n) };
     args.lit[0] = masks(groups);
     lattice_way(args.position);
+    if (one_in(3)) // out of a plane by next to nothing
+        args.position[below(3)] += either_sign(unit * power_of_ten(-17, -12));
     if (!args.directional)
         args.scale = ldexp(1, -ilogb(length3(args.position)));
     input3(args.point, real_kind(precision), n);
