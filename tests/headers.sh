@@ -8,7 +8,7 @@ for header in engine/*.h engine/*/*.h bindings/*.h; do
     case $header in
     *simd_avx2.h) flags=(-mavx2 -mfma) ;;
     *simd_avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
-    *simd_*.h | engine/stages/stages.h | engine/stages/coefficients.h) ;;
+    *simd_*.h | engine/stages/stages.h | engine/stages/contract_*.h | engine/stages/coefficients.h) ;;
     engine/stages/*.h) continue ;;
     esac
     # Twice: the guard holds.
