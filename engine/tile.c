@@ -1,7 +1,6 @@
 /// The walk of a tile: which stages run, in what order, and where their results go.
 #include "engine/tile.h"
 
-#include <math.h>
 #include <string.h>
 
 #define TIMED_TILES 17 ///< one in so many; no divisor of a picture's width in tiles that is common
@@ -31,151 +30,6 @@ static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uin
     tile->groups_across = (tile->width + 3) / 4;
     tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
     glint_tile_activate(tile);
-}
-
-/// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
-/// asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
-static bool find_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
-{
-    glint_reuse *reuse = frame->reuse;
-    glint_kept_tile *kept = tile->kept;
-    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    const bool known = kept && glint_key_equal(kept->cast, frame->plan->keys[GLINT_STAGE_CAST]);
-    tile->at.box = NULL;
-    tile->at.t = tile->t;
-    tile->at.prim = tile->prim;
-    tile->at.hits = tile->hits;
-    tile->at.sampled = tile->hits;
-    if (known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
-        tile->at.t = (char *)kept->t + first * reuse->real_size;
-        tile->at.prim = kept->prim + first;
-        tile->at.hits = kept->hits + first / GLINT_GROUP;
-        tile->at.sampled = tile->at.hits;
-    }
-    return known;
-}
-
-static bool has_occlude(const glint_kept_light *kept, const glint_plan_light *light)
-{
-    return kept->open && (kept->visible || !light->cap);
-}
-
-static void find_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
-                              uint32_t slot, bool *light_known, bool *occlude_known)
-{
-    const glint_plan_light *l = &frame->plan->lights[light];
-    glint_reuse *reuse = frame->reuse;
-    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
-    glint_tile_light *own = &tile->lights[tile->own_lights + slot];
-    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    *light_known = kept && glint_key_equal(kept->light, l->key);
-    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
-    tile->at.light[slot].cosine = own->cosine;
-    tile->at.light[slot].attenuation = own->attenuation;
-    tile->at.light[slot].log2_specular = own->log2_specular;
-    tile->at.light[slot].lit = own->lit;
-    tile->at.light[slot].open = own->open;
-    tile->at.light[slot].visible = own->visible;
-    tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
-    tile->at.light[slot].summed = false;
-    if (*light_known ||
-        (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
-        tile->at.light[slot].cosine = kept->cosine + first;
-        tile->at.light[slot].attenuation = kept->attenuation + first;
-        tile->at.light[slot].log2_specular = kept->log2_specular + first;
-        tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
-        tile->at.light[slot].brightest = kept->kept_brightest;
-    }
-    if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
-                           (k ? has_occlude(kept, l) : glint_reuse_hold_occlude(reuse, kept, l->cap)))) {
-        tile->at.light[slot].open = kept->open + first / GLINT_GROUP;
-        if (l->cap)
-            tile->at.light[slot].visible = kept->visible + first;
-    }
-}
-
-/// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
-static void sign_kept(glint_tile *tile, const glint_tile_frame *frame)
-{
-    const glint_plan *plan = frame->plan;
-    const glint_reuse *reuse = frame->reuse;
-    glint_kept_tile *kept = tile->kept;
-    if (!kept)
-        return;
-    if (reuse->keep_cast && kept->t)
-        kept->cast = plan->keys[GLINT_STAGE_CAST];
-    for (uint32_t i = 0; i < reuse->light_count; i++) {
-        if (reuse->keep_light[i] && kept->lights[i].cosine) {
-            kept->lights[i].light = plan->lights[i].key;
-            kept->lights[i].kept_brightest = kept->lights[i].brightest;
-        }
-        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&kept->lights[i], &plan->lights[i]))
-            kept->lights[i].occlude = plan->lights[i].key;
-    }
-    if (plan->runs[GLINT_STAGE_FACET])
-        glint_tile_sign_facets(tile, frame);
-}
-
-// ---- What the tile shows ----
-
-/// Whether light is worked out for the faces or vertices of what is there.
-static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
-
-static void note_material(glint_kept_tile *kept, uint32_t material)
-{
-    for (uint32_t i = 0; i < kept->shown_count && i < GLINT_SHOWN_MAX; i++)
-        if (kept->shown[i] == material)
-            return;
-    if (kept->shown_count < GLINT_SHOWN_MAX)
-        kept->shown[kept->shown_count] = material;
-    if (kept->shown_count <= GLINT_SHOWN_MAX)
-        kept->shown_count++;
-}
-
-/// Notes a sample's materials, and whether there is background among it.
-static void note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
-{
-    glint_kept_tile *kept = tile->kept;
-    if (k == 0) {
-        kept->shown_count = 0;
-        kept->background = kept->sites = false;
-    }
-    uint32_t last = k ? kept->only : GLINT_MISS;
-    bool several = k && kept->only == GLINT_MISS;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const uint32_t prim = tile->at.prim[i];
-        if (prim == last || prim == GLINT_MISS)
-            continue;
-        note_material(kept, frame->geometry.prims[prim].material);
-        kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
-        several = several || last != GLINT_MISS;
-        last = prim;
-    }
-    kept->only = several ? GLINT_MISS : last;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        kept->background = kept->background || tile->at.hits[g] != tile->active[g];
-}
-
-/// Notes whether a light reaches any point of a sample, and the most that its highlights may be there.
-static void note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
-{
-    glint_kept_light *kept = &tile->kept->lights[index];
-    const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
-    unsigned any = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= lanes[g];
-    kept->reaches = (k && kept->reaches) || any;
-    kept->brightest = fmaxf(k ? kept->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
-}
-
-/// The same where nothing is hit.
-static void note_nothing(const glint_tile *tile, uint32_t k)
-{
-    if (k == 0) {
-        tile->kept->shown_count = 0;
-        tile->kept->only = GLINT_MISS;
-    }
-    tile->kept->background = true;
 }
 
 // ---- A sample ----
@@ -215,7 +69,7 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     const glint_plan *plan = frame->plan;
-    const bool known = find_hit_memory(tile, frame, w->sample);
+    const bool known = glint_tile_hit_memory(tile, frame, w->sample);
     if (!plan->runs[GLINT_STAGE_CAST]) {
         memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
     } else if (known) {
@@ -237,9 +91,9 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
         glint_tile_keep_box(tile, frame, NULL);
     if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
         if (any)
-            note_surfaces(tile, frame, w->sample);
+            glint_tile_note_surfaces(tile, frame, w->sample);
         else
-            note_nothing(tile, w->sample);
+            glint_tile_note_nothing(tile, w->sample);
     }
     tile->at.only = tile->kept && tile->kept->only != GLINT_MISS ? &tile->kept->only : NULL;
     if (glint_tile_wants_coverage(plan))
@@ -297,7 +151,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining = 0, occluding = 0;
     for (uint32_t i = slot; i < slot + count; i++) {
         bool light_known, occlude_known;
-        find_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
+        glint_tile_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
         if (light_known)
             glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, true);
         else
@@ -325,7 +179,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
         find_facets(tile, frame, w, first, slot, count);
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->kept && first + i < frame->reuse->light_count)
-            note_light(tile, first + i, i, light->shadows, w->sample);
+            glint_tile_note_light(tile, first + i, i, light->shadows, w->sample);
 }
 
 /// A chunk of lights; the samples of one are found together.
@@ -425,59 +279,6 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         glint_tile_cue(tile, frame);
 }
 
-static bool is_per_light(glint_stage_id id)
-{
-    return id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_FACET || id == GLINT_STAGE_OCCLUDE;
-}
-
-static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
-
-/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
-/// from before.
-static bool unchanged(glint_tile *tile, const glint_tile_frame *frame)
-{
-    const glint_plan *plan = frame->plan;
-    const glint_image *last = frame->last;
-    if (!tile->kept || !last || !last->film)
-        return false;
-    const glint_key key = glint_reuse_film_key(frame->reuse, tile->kept, plan);
-    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
-        return false;
-    if (!glint_key_equal(key, frame->image->film[tile->index].key))
-        glint_tile_copy(tile, frame);
-    frame->image->film[tile->index] = last->film[tile->index];
-    tile->counts.clipped += tile->kept->clipped;
-    tile->counts.nonfinite += tile->kept->nonfinite;
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        if (plan->runs[id])
-            tile->counts.reuses[id] += is_per_light((glint_stage_id)id) ? plan->light_count : 1;
-    return true;
-}
-
-/// What the worker had counted before a tile.
-typedef struct film_counts {
-    uint64_t clipped, nonfinite;
-    uint64_t lights; ///< calls of the stage light
-} film_counts;
-
-/// Writes down what the tile shows now.
-static void sign_film(glint_tile *tile, const glint_tile_frame *frame, film_counts before)
-{
-    glint_kept_tile *kept = tile->kept;
-    if (!kept)
-        return;
-    kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
-    for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
-        kept->lights[i].place = frame->plan->lights[i].place_key;
-    const glint_key key = glint_reuse_film_key(frame->reuse, kept, frame->plan);
-    const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
-    const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
-    const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
-    frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
-    kept->clipped = tile->counts.clipped - before.clipped;
-    kept->nonfinite = tile->counts.nonfinite - before.nonfinite;
-}
-
 /// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
 static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -488,9 +289,9 @@ static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
 static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const film_counts before = { .clipped = tile->counts.clipped,
-                                 .nonfinite = tile->counts.nonfinite,
-                                 .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
+    const glint_film_counts before = { .clipped = tile->counts.clipped,
+                                       .nonfinite = tile->counts.nonfinite,
+                                       .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
     if (tile->kept)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
@@ -502,7 +303,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         if (glint_tile_cancelled(frame))
             return;
     }
-    sign_kept(tile, frame);
+    glint_tile_sign_kept(tile, frame);
     if (plan->runs[GLINT_STAGE_CUE] && refined)
         glint_tile_take_cued(tile, plan);
     if (plan->together && refined)
@@ -518,7 +319,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         tile->counts.runs[GLINT_STAGE_TONE]++;
     }
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
-    sign_film(tile, frame, before);
+    glint_tile_sign_film(tile, frame, before);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
@@ -530,7 +331,7 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
     tile->clock = start;
     tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
     place(tile, plan, column, row);
-    if (!unchanged(tile, frame))
+    if (!glint_tile_is_unchanged(tile, frame))
         run_stages(tile, frame);
     tile->counts.tile_ns += clock_of(tile, frame) - start;
 }

@@ -143,6 +143,33 @@ void glint_tile_activate(glint_tile *tile);
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
+/// tile_kept.c: points the results of sample k at kept memory where this frame keeps them or has them, else at the tile's
+/// own. Memory is asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are
+/// known.
+bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// The same of light `light` of the plan, in `slot`.
+void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
+                             bool *light_known, bool *occlude_known);
+/// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
+void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame);
+/// Notes a sample's materials, and whether there is background among it; the latter where nothing is hit; whether a light
+/// reaches any point of a sample, and the most that its highlights may be there.
+void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
+void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k);
+/// Adds the points of the current sample to the box that is kept of all; NULL: it has none.
+void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
+/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
+/// from before.
+bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame);
+/// What the worker had counted before a tile.
+typedef struct glint_film_counts {
+    uint64_t clipped, nonfinite;
+    uint64_t lights; ///< calls of the stage light
+} glint_film_counts;
+/// Writes down what the tile shows now.
+void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
+
 /// tile_stages.c: where sample k of a pixel lies, 0 .. 1 across and down.
 void glint_tile_offset(const glint_plan *plan, uint32_t k, double out[2]);
 
@@ -154,8 +181,6 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// What is not in sight needs no rays.
 void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
 void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
-/// Adds the points of the current sample to the box that is kept of all; NULL: it has none.
-void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
 /// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
 void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
 /// One light, or samples of one: light `first + slot[i]` of the plan, for each of `count` slots of the chunk.

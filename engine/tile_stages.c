@@ -140,23 +140,6 @@ static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
            glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
 }
 
-void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
-{
-    glint_kept_tile *kept = tile->kept;
-    const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];
-    if (!kept || tile->boxed != tile->sample || glint_key_equal(kept->boxed, surface))
-        return;
-    if (tile->sample == 0)
-        kept->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
-    for (int c = 0; c < 3 && box; c++) {
-        kept->box.lower[c] = fmin(kept->box.lower[c], box->lower[c]);
-        kept->box.upper[c] = fmax(kept->box.upper[c], box->upper[c]);
-    }
-    kept->box.only = box && frame->plan->desc.samples == 1 ? box->only : GLINT_MISS;
-    if (++tile->boxed == (uint32_t)frame->plan->desc.samples)
-        kept->boxed = surface;
-}
-
 /// The box that a call of the stage filled in, or the known one.
 static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
 {
