@@ -302,8 +302,26 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
         }
 }
 
+/// Leaves those lanes of a group from whose surface the light's middle is not behind.
+static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, const double middle[3], uint32_t g,
+                             unsigned lanes)
+{
+    uint16_t facing = 0;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        double way[3], normal[3];
+        for (int c = 0; c < 3; c++) {
+            way[c] = middle[c] - glint_real_at(tile->point[c], plan->desc.precision, i);
+            normal[c] = glint_real_at(tile->normal[c], plan->desc.precision, i);
+        }
+        if (!(vec_dot(normal, way) < 0))
+            facing |= (uint16_t)(lanes & -lanes);
+    }
+    return facing;
+}
+
 /// One ray to the middle of an area light decides for all samples of the call.
-static void occlude_middle(const glint_tile_frame *frame, const glint_occlude_args *samples)
+static void occlude_middle(const glint_tile *tile, const glint_tile_frame *frame, const glint_occlude_args *samples)
 {
     uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
     glint_occlude_args args = *samples;
@@ -314,6 +332,8 @@ static void occlude_middle(const glint_tile_frame *frame, const glint_occlude_ar
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
             lit[g] |= samples->lit[s][g];
+    for (uint32_t g = 0; g < args.group_count; g++)
+        lit[g] = facing_lanes(tile, frame->plan, samples->position, g, lit[g]);
     frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
@@ -362,7 +382,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         args.overlaps = &tile->counts.work.overlaps;
     }
     if (light->hard)
-        occlude_middle(frame, &args);
+        occlude_middle(tile, frame, &args);
     else
         frame->stages->geometry[plan->desc.precision].occlude(&args);
     if (light->cap)

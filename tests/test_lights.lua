@@ -255,6 +255,23 @@ function tests.extreme_radii()
   end
 end
 
+-- A light whose middle is below a face that some of it is above: one ray to the middle decides, whatever the face is of.
+function tests.the_middle_behind_a_face()
+  local function faces(shape)
+    return glint.scene { camera = glint.camera { eye = { 2, 3, 4 }, at = { 0, 0, 0 }, fov = 40 }, shape,
+      glint.sphere_light { position = { 3, 0.8, 0 }, radius = 0.6, samples = 16, shadow = "hard" } }
+  end
+  local corners = {}
+  for i = 0, 7 do corners[i + 1] = { i & 1 == 0 and -1 or 1, i & 2 == 0 and -1 or 1, i & 4 == 0 and -1 or 1 } end
+  local mesh = glint.mesh { vertices = corners, material = WHITE,
+    faces = { { 1, 3, 4, 2 }, { 5, 6, 8, 7 }, { 1, 2, 6, 5 }, { 3, 7, 8, 4 }, { 1, 5, 7, 3 }, { 2, 4, 8, 6 } } }
+  local box = glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = WHITE }
+  local a, b, top = render(faces(mesh), 64), render(faces(box), 64), 0
+  check(bits(a) == bits(b), "a box and its mesh")
+  for x = 28, 36 do top = top + a:pixel(x, 20) end
+  check(top == 0, "the face that the middle is below")
+end
+
 -- ---- Same picture whatever renders it ----
 
 function tests.seeds_and_blocks()
