@@ -280,7 +280,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
-    if (base && image->film)
+    if (image->film && (base || !renderer->reuse.tile_count)) // nobody signs what is put there
         memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
     if (!status)
         status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);

@@ -82,6 +82,7 @@ typedef struct glint_reuse {
     glint_key where; ///< of the places of the last frame's surfaces, and
     glint_kept_place *places; ///< these, by id; owned; NULL: there were too many
     uint32_t place_count;
+    double scale; ///< of the geometry's table
     // which results this frame has in common with the last, and therefore keeps
     bool keep_cast, keep_view, keep_light[GLINT_KEPT_LIGHTS];
 } glint_reuse;

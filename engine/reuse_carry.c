@@ -192,7 +192,8 @@ static bool carry_lights(const carry *c, glint_kept_tile *tile, bool boxed)
     for (uint32_t i = 0; i < c->reuse->light_count; i++) {
         const glint_plan_light *was = &c->before->lights[i], *is = &c->plan->lights[i];
         glint_kept_light *light = &tile->lights[i];
-        const bool open = !is->shadows || (boxed && !shades(c, is, &tile->box));
+        const bool ordered = is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
+        const bool open = !is->shadows || (boxed && !ordered && !shades(c, is, &tile->box));
         renew(&light->light, was->key, is->key);
         if (open) {
             renew(&light->occlude, was->key, is->key);
@@ -268,12 +269,14 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
 {
     const glint_geometry *geometry = plan->geometry;
     const uint32_t count = geometry->id_count, lights = plan->light_count;
-    if (!reuse->on || glint_key_equal(reuse->where, geometry->where))
+    const bool plain = reuse->plain == geometry->index->plain; // else the same places may have another order
+    if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
     const bool few = count <= CARRY_PRIMS && count * sizeof(glint_kept_place) < reuse->budget / 64;
     glint_kept_place *places = few ? find_places(geometry, count) : NULL;
-    const bool alike = reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
+    const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
+                       reuse->scale == geometry->table.scale && // another underflows elsewhere
                        reuse->light_count == (lights < GLINT_KEPT_LIGHTS ? lights : GLINT_KEPT_LIGHTS);
     if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic)
         carry_changes(&c, places, count);
@@ -281,4 +284,5 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
     reuse->places = places;
     reuse->place_count = count;
     reuse->where = geometry->where;
+    reuse->scale = geometry->table.scale;
 }

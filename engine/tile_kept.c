@@ -154,8 +154,10 @@ void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const 
     const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];
     if (!kept || tile->boxed != tile->sample || glint_key_equal(kept->boxed, surface))
         return;
-    if (tile->sample == 0)
+    if (tile->sample == 0) {
+        kept->boxed = (glint_key) { 0 }; // until all samples are in it: others may not be asked for their points
         kept->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
+    }
     for (int c = 0; c < 3 && box; c++) {
         kept->box.lower[c] = fmin(kept->box.lower[c], box->lower[c]);
         kept->box.upper[c] = fmax(kept->box.upper[c], box->upper[c]);
