@@ -66,7 +66,8 @@ static void make_keys(glint_geometry *geometry)
             numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
             const bool sites = triangle && prim->sites != GLINT_MISS;
-            const uint32_t *part = geometry->prim_part + i + n; // where a mesh follows another, the places do not say it
+            const uint32_t *part =
+                geometry->prim_part + i + n; // where a mesh follows another, the places do not say it
             const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
             look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (sites ? 4u : 0) | (other ? 8u : 0);
             look[n][1] = prim->material;

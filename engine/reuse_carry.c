@@ -192,7 +192,8 @@ static bool carry_lights(const carry *c, glint_kept_tile *tile, bool boxed)
     for (uint32_t i = 0; i < c->reuse->light_count; i++) {
         const glint_plan_light *was = &c->before->lights[i], *is = &c->plan->lights[i];
         glint_kept_light *light = &tile->lights[i];
-        const bool ordered = is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
+        const bool ordered =
+            is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
         const bool open = !is->shadows || (boxed && !ordered && !shades(c, is, &tile->box));
         renew(&light->light, was->key, is->key);
         if (open) {

@@ -10,7 +10,7 @@
 #include "engine/image/image.h"
 #include "tests/random.h"
 
-enum { MESHES = 12, LAMPS = 60 };
+enum { MESHES = 12, LAMPS = 60, BALLS = 30, MOVES = 60 };
 
 typedef struct stand {
     glint_scene *scene;
@@ -307,11 +307,53 @@ static void other_objects(void **unused)
     free_stand(&s);
 }
 
+/// What balls leave of a light, one times the other in the order of the index, is next to halfway between two floats: these of
+/// thirty were searched for. Another ball, far away, changes the order.
+static void shares_in_another_order(void **unused)
+{
+    (void)unused;
+    const uint32_t chosen = 0x0d558b81;
+    stand s;
+    make_stand(&s, 0);
+    glint_light *light;
+    glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_SPHERE);
+    glint_camera_desc view = *glint_camera_get(s.camera);
+    view.eye[2] = 0;
+    view.has_direction = true;
+    view.direction[0] = view.direction[2] = 0;
+    view.direction[1] = -1;
+    assert_int_equal(glint_camera_set(s.camera, &view, NULL), GLINT_OK);
+    s.render.width = s.render.height = 1;
+    s.render.passes = 1u << GLINT_PASS_DIFFUSE;
+    lamp.position[1] = 16;
+    lamp.radius = 4;
+    lamp.shadow = GLINT_SHADOW_CAPS;
+    assert_int_equal(glint_light_create(&lamp, &light, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_light(s.scene, light, NULL), GLINT_OK);
+    paint(s.paint[0], 1);
+    add_ground(&s);
+    random_state = 9;
+    for (int i = 0; i < BALLS; i++) {
+        const double radius = between(0.02, 0.15), z = between(-1, 1), y = between(4, 7), x = between(-1, 1);
+        if (chosen >> i & 1)
+            add_ball(s.scene, x, y, z, radius, s.paint[0]);
+    }
+    glint_shape *ball = add_ball(s.scene, 300, 0, 300, 1, s.paint[0]);
+    for (int i = 0; i < MOVES; i++) {
+        check(&s, s.scene);
+        const double z = one_in(2) ? 300 : -300, y = between(0, 400);
+        move(ball, between(-400, 400), y, z);
+    }
+    glint_light_release(light);
+    free_stand(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_begun),         cmocka_unit_test(another_order), cmocka_unit_test(far_beyond),
-        cmocka_unit_test(no_room_for_a_while), cmocka_unit_test(other_objects),
+        cmocka_unit_test(a_box_begun),   cmocka_unit_test(another_order),
+        cmocka_unit_test(far_beyond),    cmocka_unit_test(no_room_for_a_while),
+        cmocka_unit_test(other_objects), cmocka_unit_test(shares_in_another_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
