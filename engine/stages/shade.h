@@ -18,8 +18,8 @@ static inline bool has_facets(const glint_shade_material *material)
 
 /// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to. Returns
 /// whether w S may be more than 0 anywhere.
-static inline bool put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular,
-                               size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
+INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular, size_t at,
+                       bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
     bool any = false;
@@ -157,8 +157,8 @@ static inline void add_factors(const glint_shade_args *args, const glint_shade_m
     }
 }
 
-static inline void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                                uint32_t g, light_factors *factors)
+INNER void find_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular, uint32_t g,
+                        light_factors *factors)
 {
     factors->count = 0;
     factors->shiny = false;
@@ -299,7 +299,7 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
 }
 
 /// A group of one sample, added to sums.
-static inline void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)
+static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)
 {
     const unsigned hits = args->hits[g], empty = args->active[g] & ~hits;
     light_factors factors;
@@ -350,8 +350,8 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
 
 /// A group that shows one material in every lane and is lit by one light at most, with no term asked for: the common
 /// case, in registers.
-static inline void shade_whole(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                               const light_factors *factors, size_t at)
+INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, bool specular,
+                       const light_factors *factors, size_t at)
 {
     const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
     for (int c = 0; c < 3; c++)
@@ -383,8 +383,8 @@ static inline bool wants_terms(const glint_shade_args *args)
     return false;
 }
 
-/// A group whose terms are final.
-static inline void shade_group(const glint_shade_args *args, bool simple, uint32_t g)
+/// A group whose terms are final; `simple` is a constant.
+INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t g)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     unsigned left = args->hits[g];
@@ -421,7 +421,9 @@ static void shade(const glint_shade_args *args)
         const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
         if (GLINT_WITH_SAMPLES && args->sum[0][0])
             shade_sums(args, g, &sums);
+        else if (simple)
+            shade_group(args, true, g);
         else
-            shade_group(args, simple, g);
+            shade_group(args, false, g);
     }
 }
