@@ -128,8 +128,8 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
 }
 
 /// Those of the lights that reach a group, after what is there.
-static inline void add_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular,
-                               uint32_t g, light_factors *factors)
+INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular, uint32_t g,
+                       light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
@@ -396,8 +396,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         store_background(args, background, at);
         return;
     }
-    if (left != 0xffff)
-        start_direct(args, g, &terms);
+    bool begun = false;
     for (unsigned lanes; left; left &= ~lanes) {
         lanes = left;
         const glint_shade_material *material = material_of(args, at, &lanes);
@@ -407,23 +406,29 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
             shade_whole(args, material, specular, &factors, at);
             return;
         }
-        if (left == 0xffff)
+        if (!begun)
             start_direct(args, g, &terms);
+        begun = true;
         shade_direct(material, specular, &factors, lanes, &terms);
     }
+    if (!begun)
+        start_direct(args, g, &terms);
     finish_terms(&terms, args->film, args->beauty, at);
 }
 
 static void shade(const glint_shade_args *args)
 {
     const bool simple = !wants_terms(args);
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
-        if (GLINT_WITH_SAMPLES && args->sum[0][0])
+    if (GLINT_WITH_SAMPLES && args->sum[0][0]) {
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            const group_sums sums = { args->sum, (size_t)g * GLINT_GROUP };
             shade_sums(args, g, &sums);
-        else if (simple)
+        }
+    } else if (simple) {
+        for (uint32_t g = 0; g < args->group_count; g++)
             shade_group(args, true, g);
-        else
+    } else {
+        for (uint32_t g = 0; g < args->group_count; g++)
             shade_group(args, false, g);
     }
 }
