@@ -71,6 +71,7 @@ static void print_counters(const cost_case *c, FILE *out)
             ",\"refraction\":%" PRIu64 ",\"indirect\":%" PRIu64,
             rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
     fprintf(out, ",\"refined\":%" PRIu64, c->stats.refined);
+    print_number(out, "tests", c->is_counted ? (double)c->work.tests : unknown);
     print_number(out, "light_samples", c->is_counted ? (double)c->work.light_samples : unknown);
     print_number(out, "powers", c->is_counted ? (double)c->work.powers : unknown);
     print_number(out, "sites", c->is_counted ? (double)c->work.sites : unknown);

@@ -78,6 +78,7 @@ static void write_errors(const cost_study *study, const cost_row *row, FILE *out
     write_cell(out, object, "%.0f", object);
     write_cell(out, shadow, "%.0f", shadow);
     write_cell(out, all_rays(c), "%.0f", all_rays(c));
+    write_cell(out, c->is_counted ? (double)c->work.tests : NAN, "%.0f", (double)c->work.tests);
     write_cell(out, c->is_counted ? (double)c->work.light_samples : NAN, "%.0f", (double)c->work.light_samples);
     write_cell(out, c->is_counted ? (double)c->work.powers : NAN, "%.0f", (double)c->work.powers);
 }

@@ -552,6 +552,7 @@ double glint_renderer_progress(const glint_renderer *renderer);
 
 /// Work that a frame took: free of noise, unlike time.
 typedef struct glint_work {
+    uint64_t tests; ///< pairs of a ray and a primitive that were decided: what index and filters could not rule out
     uint64_t light_samples; ///< pairs of a point and a light, or a sample of an area light, looked at
     uint64_t powers; ///< highlights raised to their exponent
     uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading

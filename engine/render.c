@@ -163,6 +163,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.tile_ns += part->tile_ns;
         sum.primary += part->primary;
         sum.shadow += part->shadow;
+        sum.work.tests += part->work.tests;
         sum.work.light_samples += part->work.light_samples;
         sum.work.powers += part->work.powers;
         sum.work.sites += part->work.sites;
@@ -406,6 +407,7 @@ static void add_stats(glint_frame_stats *to, const glint_frame_stats *base, cons
     to->rays.mirror += base->rays.mirror;
     to->rays.refraction += base->rays.refraction;
     to->rays.indirect += base->rays.indirect;
+    to->work.tests += base->work.tests;
     to->work.light_samples += base->work.light_samples;
     to->work.powers += base->work.powers;
     to->work.sites += base->work.sites;

@@ -221,6 +221,11 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
 /// tile_work.c: when work is counted, adds what the last call of a stage took.
 /// Every hit looks at one light, or at `count` samples of it.
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
+/// Where kernels count what they decide; NULL: nobody asks.
+static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_frame *frame)
+{
+    return frame->count_work ? &tile->counts.work.tests : NULL;
+}
 void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
 
 /// tile_bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.

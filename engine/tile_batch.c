@@ -38,6 +38,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.shadow += batch->tile.counts.shadow;
     to->counts.work.light_samples += batch->tile.counts.work.light_samples;
     to->counts.work.powers += batch->tile.counts.work.powers;
+    to->counts.work.tests += batch->tile.counts.work.tests;
     to->counts.work.sites += batch->tile.counts.work.sites;
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
     to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
@@ -73,7 +74,8 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
                              .inward = batch->inward,
                              .t = tile->at.t,
                              .prim = tile->at.prim,
-                             .hits = tile->at.hits };
+                             .hits = tile->at.hits,
+                             .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
         args.direction[c] = tile->direction[c];

@@ -85,7 +85,8 @@ static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint
                                 .parallel = frame->plan->camera.orthographic,
                                 .t = tile->at.t,
                                 .prim = tile->at.prim,
-                                .hits = tile->at.hits };
+                                .hits = tile->at.hits,
+                                .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
         args->origin[c] = tile->origin[c];
         args->direction[c] = tile->direction[c];
@@ -356,7 +357,8 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->slack,
                                 .box = tile->at.box,
-                                .rays = &tile->counts.shadow };
+                                .rays = &tile->counts.shadow,
+                                .tests = glint_tile_tests_of(tile, frame) };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
         args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);

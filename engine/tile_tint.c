@@ -152,7 +152,7 @@ static void dim(struct glint_tint *tint, const glint_tile *tile, const glint_til
         }
 }
 
-static void cast(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame)
+static void cast(struct glint_tint *tint, glint_tile *tile, const glint_tile_frame *frame)
 {
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
     glint_cast_args rays = { .group_count = tile->group_count,
@@ -163,7 +163,8 @@ static void cast(struct glint_tint *tint, const glint_tile *tile, const glint_ti
                              .inward = tint->inward,
                              .t = tint->t,
                              .prim = tint->prim,
-                             .hits = tint->hits };
+                             .hits = tint->hits,
+                             .tests = glint_tile_tests_of(tile, frame) };
     glint_surface_args surfaces = { .group_count = tile->group_count,
                                     .hits = tint->hits,
                                     .prim = tint->prim,

@@ -198,6 +198,9 @@ for _, samples in ipairs { 1, 4, 16, 64 } do
   check(row.counters.primary == 64 * 48 * samples, "%d samples: %d rays", samples, row.counters.primary)
   check(row.counters.powers > 0 and row.counters.powers < row.counters.light_samples
     and row.counters.light_samples <= row.counters.primary, "%d samples: work", samples)
+  check(row.counters.tests >= row.counters.light_samples
+    and row.counters.tests < 4 * (row.counters.primary + row.counters.shadow), "%d samples: %d tests", samples,
+    row.counters.tests)
   check(row.wrong_object == 0 and row.wrong_shadow == 0, "%d samples decide as one does", samples)
   check(row.default == (samples == 4), "%d samples: default", samples)
   before = row.rmse
@@ -211,6 +214,7 @@ for _, same in ipairs { { "encode", "small" }, { "encode", "fast" }, { "reuse", 
   check(row.rmse == own.rmse and row.flip == own.flip, "%s %s: the same picture", same[1], same[2])
 end
 check(find(rows, "reuse", "on").counters.primary == 0, "a kept cast casts no rays")
+check(find(rows, "reuse", "on").counters.tests < own.counters.tests, "nor does it test them")
 check(find(rows, "reuse", "on").default and not find(rows, "reuse", "off").default, "reuse is on by default")
 local off = find(rows, "shadows", "off")
 check(off.wrong_shadow > 20 and off.wrong_object == 0 and off.counters.shadow == 0 and off.rmse > own.rmse,
@@ -254,6 +258,7 @@ local plain, plain_advice = study("plain", still("plain.lua", matt .. "glint.poi
 check_rows("plain", plain, plain_advice.reference)
 check(knobs_of(plain) == "samples precision bits encode", "matt, without shadows: %s", knobs_of(plain))
 local counted = find(plain, "samples", 1).counters
+check(counted.tests >= counted.light_samples and counted.tests <= counted.primary, "one sphere: %d tests", counted.tests)
 check(counted.powers == 0 and counted.shadow == 0 and counted.light_samples > 100, "matt: %d powers", counted.powers)
 local bare, bare_advice = study("bare", still("bare.lua", ""))
 check_rows("bare", bare, bare_advice.reference)

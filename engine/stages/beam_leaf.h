@@ -95,6 +95,9 @@ static unsigned R(pairs_blocked)(const R(beam) * beam, int i)
 static void R(decide_beam_pairs)(R(beam) * beam)
 {
     R(beam_leaf) *leaf = &beam->leaf;
+    uint64_t *tests = beam->tile->args->tests;
+    if (tests)
+        *tests += (unsigned)leaf->count;
     for (int n = leaf->count; n % VR; n++) {
         leaf->slot[n] = leaf->slot[0];
         leaf->slack[n] = leaf->slack[0];

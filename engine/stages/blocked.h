@@ -184,6 +184,7 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     const vr zero = r_set(0);
     vr corner[3][3];
     unsigned blocked = 0;
+    count_tests(args->tests, wanted);
     R(corners_of)(prim, corner);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1), own_lanes = own >> i & lanes;
@@ -217,6 +218,7 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     const unsigned back = own & args->back[at / GLINT_GROUP], within = is_open(solid) ? back : 0;
     unsigned blocked = solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
     wanted &= ~(own & ~within);
+    count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr p[3], d[3];
@@ -274,6 +276,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         R(make_shadow_rays)(tile, group);
     if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is asked
         wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
+    count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr d[3];

@@ -290,6 +290,7 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
+    count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))
             continue;

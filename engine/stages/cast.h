@@ -12,6 +12,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     unsigned hits = 0;
     near &= args->active[g];
+    count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = near >> i & ((1u << VR) - 1);
         vr d[3], t = r_set(HUGE_VAL);
@@ -42,6 +43,8 @@ static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candi
     const vr f[3] = { r_set(-candidate->f[0]), r_set(-candidate->f[1]), r_set(-candidate->f[2]) };
     const vr c = r_set(candidate->c), r2 = r_set(candidate->prim->r2), scale = r_set(candidate->prim->scale);
     const bool distant = candidate->distant;
+    if (args->tests)
+        *args->tests += GLINT_GROUP * (unsigned)__builtin_popcountll(groups);
     for (; groups; groups &= groups - 1) {
         const int slot = __builtin_ctzll(groups), x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
         const uint32_t g = (uint32_t)(y * tile->across + x);

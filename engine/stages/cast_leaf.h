@@ -91,6 +91,8 @@ static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
 {
     const real scale = (real)tile->args->geometry->scale;
     uint64_t moved = 0;
+    if (tile->args->tests)
+        *tile->args->tests += (unsigned)leaf->count;
     for (int n = leaf->count; n % VR; n++) {
         leaf->slot[n] = leaf->slot[0];
         for (int k = 0; k < 3; k++)

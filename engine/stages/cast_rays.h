@@ -64,6 +64,7 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
     const size_t at = (size_t)g * GLINT_GROUP;
     const unsigned near = R(near_rays)(rays, prim);
     const unsigned leave = args->leaving ? lanes_equal(args->leaving + at, id) : 0;
+    count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned own = leave >> i & ((1u << VR) - 1);
         if (!(near >> i & ((1u << VR) - 1)))

@@ -46,6 +46,8 @@ typedef struct glint_cast_args {
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
+    uint64_t *tests; ///< added to: pairs of a ray and a primitive that are decided, by the formulas below; how many these
+        ///< are is up to index and filter. NULL: nobody counts
 } glint_cast_args;
 #define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
 // in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then

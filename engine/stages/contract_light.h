@@ -147,6 +147,8 @@ typedef struct glint_occlude_args {
     ///< see any. There are spheres and planes alone, and lamp[0] is the light, whose samples mean nothing, around
     ///< `position`. NULL: no caps
     uint64_t *overlaps; ///< caps: added to: pairs of a point and a primitive that were looked at
+    uint64_t *tests; ///< added to: pairs of a point, or of a point and a sample, and a primitive that are decided, as in
+        ///< glint_cast_args
 } glint_occlude_args;
 // `position` stands for each lane's own in what follows.
 // light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1

@@ -51,6 +51,7 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     whole->l2[j] = l2;
     whole->lit |= rm_bits(ahead) << i;
     whole->back |= rm_bits(back) << i;
+    whole->num[j] = whole->den[j] = r_set(0);
     if (!material)
         return;
     const vr a = DOT(d, d), nv = r_select(back, away, -away), lv = -DOT(l, d);
@@ -90,6 +91,7 @@ INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
 /// The float part.
 INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, size_t at, vf *brightest)
 {
+#pragma GCC unroll 4
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const fm lit = fm_from_bits(whole->lit >> i & ((1u << VF) - 1));
         vf cosine = R(join)(whole->nl + i / VR);
@@ -132,7 +134,8 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
                                (!GLINT_WITH_BLINN || material->highlight != GLINT_HIGHLIGHT_BLINN)))
         material = NULL;
     const R(group_directions) directions = R(directions_of)(surface->camera, place.x, place.y);
-    R(lit_whole) whole = { .lit = 0 };
+    R(lit_whole) whole;
+    whole.lit = whole.back = whole.some = 0;
 #pragma GCC unroll 8
     for (int j = 0; j < LIT_PARTS; j++) {
         if (sphere)

@@ -13,6 +13,7 @@ static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, u
         return R(blocked_by_solid)(&batch->args, prim, tile->position, 0, own, wanted, sides.outside);
     unsigned blocked = own & batch->back & sides.outside;
     wanted &= ~own;
+    count_tests(batch->args.tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr d[3];

@@ -54,6 +54,13 @@ static float exp2_of(float y)
     return p * power;
 }
 
+/// Counts a decision about a ray and a primitive; `tests` NULL: nobody asks.
+static void note_test(uint64_t *tests)
+{
+    if (tests)
+        ++*tests;
+}
+
 /// x^exponent from log2(x) <= 0.
 static float highlight_strength(float shininess, float log2_specular)
 {

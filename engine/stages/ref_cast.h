@@ -83,6 +83,7 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
             REAL t;
+            note_test(args->tests);
             if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
                 t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
             bool first = t == best && best_prim != GLINT_MISS &&
@@ -123,6 +124,7 @@ static void NAME(scan)(const glint_scan_args *args)
         for (uint32_t k = 0; active && k < args->entry_count; k++) {
             uint32_t prim = args->entries[k].prim;
             REAL t = NAME(triangle_t)(&prims[prim], cast->geometry->scale, origin, direction);
+            note_test(cast->tests);
             bool first = t == best && best_prim != GLINT_MISS && prims[prim].id < prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
                 best = t;

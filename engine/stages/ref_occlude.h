@@ -58,8 +58,10 @@ static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uin
     bool blocked = !(args->lit[s][i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
     if (!blocked)
         ++*args->rays;
-    for (uint32_t k = 0; k < args->geometry->prim_count && !blocked; k++)
+    for (uint32_t k = 0; k < args->geometry->prim_count && !blocked; k++) {
+        note_test(args->tests);
         blocked = NAME(prim_blocks)(args, &args->geometry->prims[k], position, i);
+    }
     if (!blocked)
         args->open[s][i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }

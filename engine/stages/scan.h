@@ -123,6 +123,7 @@ static inline bool R(decide_scan)(const R(scan_tile) * tile, const R(scan_triang
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const R(group_directions) directions = R(directions_of)(bundle ? args->camera : NULL, (uint32_t)x, (uint32_t)y);
     bool any = false;
+    count_tests(args->tests, lanes);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(lanes >> i & ((1u << VR) - 1)))
             continue;

@@ -234,6 +234,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             const unsigned outside = sides.outside >> i & all, inside = sides.inside >> i & all;
             if (!(lanes >> i & all))
                 continue;
+            count_tests(args->tests, lanes >> i & all);
             R(directions_to)(args, light->lamps.lamp[s].position, at, i, d);
             const rm hit =
                 sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);

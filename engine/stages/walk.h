@@ -188,6 +188,13 @@ static inline bool is_stopped(const atomic_bool *stop)
     return stop && atomic_load_explicit(stop, memory_order_relaxed);
 }
 
+/// Counts the lanes that are decided about a primitive.
+static inline void count_tests(uint64_t *tests, unsigned lanes)
+{
+    if (tests)
+        *tests += (unsigned)__builtin_popcount(lanes);
+}
+
 // ---- On which side of a solid a light is ----
 
 /// Whether it is a side alone.
