@@ -25,33 +25,12 @@ typedef struct hull {
     double lower[3], upper[3];
 } hull;
 
-/// The unit shapes are those of glint_form.
-static bool solid_holds(const glint_solid *solid, const double offset[3])
-{
-    double k[3];
-    for (int c = 0; c < 3; c++)
-        k[c] = vec_dot(solid->inverse[c], offset);
-    const double round = k[0] * k[0] + k[1] * k[1];
-    switch (solid->form) {
-    case GLINT_FORM_BALL:
-        return round + k[2] * k[2] < 1;
-    case GLINT_FORM_BOX:
-        return fabs(k[0]) < 1 && fabs(k[1]) < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CYLINDER:
-        return round < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CONE:
-        return k[2] > 0 && k[2] < 1 && round < k[2] * k[2];
-    default: // disk, tube, funnel
-        return false;
-    }
-}
-
 static bool holds(const glint_geometry *geometry, const glint_prim *prim, const double point[3])
 {
     double e[3];
     vec_sub(e, point, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID)
-        return solid_holds(&geometry->solids[prim->item], e);
+        return glint_solid_holds(&geometry->solids[prim->item], e);
     if (prim->kind == GLINT_PRIM_PLANE)
         return vec_dot(prim->normal, e) < 0;
     return sqrt(vec_dot(e, e)) < prim->radius;

@@ -143,7 +143,9 @@ void glint_tile_activate(glint_tile *tile);
 /// Renders tile (column, row) into the frame's image, and adds to tile->counts.
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
 
-/// tile_kept.c: points the results of sample k at kept memory where this frame keeps them or has them, else at the tile's
+/// tile_kept.c: points the results of the light in `slot` at the tile's own memory.
+void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
+/// Points the results of sample k at kept memory where this frame keeps them or has them, else at the tile's
 /// own. Memory is asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are
 /// known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);

@@ -19,16 +19,9 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
     tile->at = (glint_tile_sample) { .t = tile->t, .prim = tile->prim, .hits = tile->hits, .sampled = tile->hits };
-    for (int i = 0; i < GLINT_LIGHT_CHUNK; i++) {
-        glint_tile_light *own = &tile->lights[i];
-        tile->at.light[i].cosine = own->cosine;
-        tile->at.light[i].attenuation = own->attenuation;
-        tile->at.light[i].log2_specular = own->log2_specular;
-        tile->at.light[i].lit = own->lit;
-        tile->at.light[i].open = own->open;
-        tile->at.light[i].visible = own->visible;
-        tile->at.light[i].summed = false;
-    }
+    tile->own_lights = 0;
+    for (uint32_t i = 0; i < GLINT_LIGHT_CHUNK; i++)
+        glint_tile_use_own_light(tile, i);
     if (frame->plan->facets)
         glint_tile_lend_facets(tile, to);
 }

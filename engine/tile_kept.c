@@ -30,16 +30,9 @@ static bool has_occlude(const glint_kept_light *kept, const glint_plan_light *li
     return kept->open && (kept->visible || !light->cap);
 }
 
-void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
-                             bool *light_known, bool *occlude_known)
+void glint_tile_use_own_light(glint_tile *tile, uint32_t slot)
 {
-    const glint_plan_light *l = &frame->plan->lights[light];
-    glint_reuse *reuse = frame->reuse;
-    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
     glint_tile_light *own = &tile->lights[tile->own_lights + slot];
-    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    *light_known = kept && glint_key_equal(kept->light, l->key);
-    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
     tile->at.light[slot].cosine = own->cosine;
     tile->at.light[slot].attenuation = own->attenuation;
     tile->at.light[slot].log2_specular = own->log2_specular;
@@ -48,6 +41,18 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
     tile->at.light[slot].visible = own->visible;
     tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
     tile->at.light[slot].summed = false;
+}
+
+void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
+                             bool *light_known, bool *occlude_known)
+{
+    const glint_plan_light *l = &frame->plan->lights[light];
+    glint_reuse *reuse = frame->reuse;
+    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
+    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
+    *light_known = kept && glint_key_equal(kept->light, l->key);
+    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
+    glint_tile_use_own_light(tile, slot);
     if (*light_known ||
         (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
         tile->at.light[slot].cosine = kept->cosine + first;

@@ -48,7 +48,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     if (prim->kind == GLINT_PRIM_TRIANGLE)
         return 0; // asked for each lane
     if (prim->kind == GLINT_PRIM_SOLID)
-        return args->directional || !within_solid(&args->geometry->solids[prim->item], f) ? 1 : -1;
+        return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], f) ? 1 : -1;
     if (prim->kind == GLINT_PRIM_PLANE) {
         height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {

@@ -89,6 +89,29 @@ typedef struct glint_solid {
     uint32_t form;
 } glint_solid;
 
+/// Whether a place at `offset` from the centre is inside, not on, the solid; no place is inside a disk, tube or funnel.
+static inline bool glint_solid_holds(const glint_solid *solid, const double offset[3])
+{
+    double k[3];
+    for (int c = 0; c < 3; c++) {
+        const double *row = solid->inverse[c];
+        k[c] = (row[0] * offset[0] + row[1] * offset[1]) + row[2] * offset[2];
+    }
+    const double round = k[0] * k[0] + k[1] * k[1], z = k[2];
+    switch (solid->form) {
+    case GLINT_FORM_BALL:
+        return round + z * z < 1;
+    case GLINT_FORM_BOX:
+        return -1 < k[0] && k[0] < 1 && -1 < k[1] && k[1] < 1 && -1 < z && z < 1;
+    case GLINT_FORM_CYLINDER:
+        return round < 1 && -1 < z && z < 1;
+    case GLINT_FORM_CONE:
+        return round < z * z && 0 < z && z < 1;
+    default:
+        return false;
+    }
+}
+
 /// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory

@@ -195,33 +195,12 @@ static inline void count_tests(uint64_t *tests, unsigned lanes)
         *tests += (unsigned)__builtin_popcount(lanes);
 }
 
-// ---- On which side of a solid a light is ----
+// ---- Solids ----
 
 /// Whether it is a side alone.
 static inline bool is_open(const glint_solid *solid)
 {
     return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
-}
-
-/// Whether a place at `offset` from the centre is inside, not on, the solid. Double, whatever the precision.
-static inline bool within_solid(const glint_solid *solid, const double offset[3])
-{
-    double k[3];
-    for (int c = 0; c < 3; c++)
-        k[c] = DOT(solid->inverse[c], offset);
-    const double round = k[0] * k[0] + k[1] * k[1];
-    switch (solid->form) {
-    case GLINT_FORM_BALL:
-        return round + k[2] * k[2] < 1;
-    case GLINT_FORM_BOX:
-        return fabs(k[0]) < 1 && fabs(k[1]) < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CYLINDER:
-        return round < 1 && fabs(k[2]) < 1;
-    case GLINT_FORM_CONE:
-        return round < k[2] * k[2] && k[2] > 0 && k[2] < 1;
-    default:
-        return false;
-    }
 }
 
 // ---- The order of a walk ----
