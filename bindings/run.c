@@ -8,7 +8,7 @@
 
 #include "bindings/film.h"
 
-#define QUEUE_DEPTH 3 // files that may wait while the next frame renders
+#define QUEUE_DEPTH 2 // pictures that wait to be encoded, and files to be written; a renderer holds on to as many (render.c)
 #define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
 
 static const char RUN; // its address is the registry's key of the run

@@ -643,7 +643,8 @@ typedef struct glint_write_result {
     void *user; ///< as submitted
 } glint_write_result;
 
-/// queue_depth  images that may wait, >= 1; a further submit blocks.
+/// queue_depth  images that may wait, >= 1; a further submit blocks. With more than 2 a renderer that is faster than the
+///              encoder runs out of pictures whose memory it can use again.
 /// threads      that encode an image together, 1 .. 1024; 0: one per processor; 1: the writer's own. Files do not
 ///              depend on it.
 glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error);

@@ -14,7 +14,8 @@
 #include <string.h>
 #include <time.h>
 
-/// Pictures whose memory a renderer holds on to: as many as wait in a job's queue.
+/// Pictures whose memory a renderer holds on to, for a job with two in its queue: these, the one that is encoded and the one
+/// that is rendered. A fifth would be new memory and a whole picture to copy or make each time.
 #define GLINT_SPARE_IMAGES 4
 
 struct glint_renderer {
