@@ -14,19 +14,26 @@ struct worker {
 };
 
 struct glint_pool {
-    pthread_mutex_t turn; ///< held by the caller whose items run
-    pthread_mutex_t mutex;
+    pthread_mutex_t turn; ///< held by the caller whose items run; it is worker 0
+    pthread_mutex_t mutex; ///< over all below; what is run stays as it is while workers are busy
     pthread_cond_t work, done;
     unsigned long round; ///< counts the calls of glint_pool_run
-    int busy; ///< workers that have not finished this round
+    int busy; ///< threads that work on this round's items: who comes when none is left is not waited for
     bool stop;
     size_t count;
     glint_pool_item *item;
     void *context;
     atomic_size_t next;
-    int threads;
-    struct worker workers[];
+    int threads; ///< with the caller's
+    struct worker workers[]; ///< of all but that
 };
+
+static void run_items(glint_pool *pool, int number)
+{
+    size_t index;
+    while ((index = atomic_fetch_add(&pool->next, 1)) < pool->count)
+        pool->item(pool->context, index, number);
+}
 
 static void *work(void *argument)
 {
@@ -40,10 +47,11 @@ static void *work(void *argument)
         if (pool->stop)
             break;
         seen = pool->round;
+        if (atomic_load(&pool->next) >= pool->count)
+            continue; // late: the round is over, or its last items run
+        pool->busy++;
         pthread_mutex_unlock(&pool->mutex);
-        size_t index;
-        while ((index = atomic_fetch_add(&pool->next, 1)) < pool->count)
-            pool->item(pool->context, index, self->number);
+        run_items(pool, self->number);
         pthread_mutex_lock(&pool->mutex);
         if (--pool->busy == 0)
             pthread_cond_signal(&pool->done);
@@ -59,7 +67,7 @@ static int start_workers(glint_pool *pool, int threads)
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &old);
     while (pool->threads < threads) {
-        struct worker *worker = &pool->workers[pool->threads];
+        struct worker *worker = &pool->workers[pool->threads - 1];
         *worker = (struct worker) { .pool = pool, .number = pool->threads };
         if (pthread_create(&worker->thread, NULL, work, worker))
             break;
@@ -73,9 +81,10 @@ glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error
 {
     if (threads < 1 || threads > 1024)
         return glint_fail(error, GLINT_ERR_INVALID, "threads: whole number 1 .. 1024 expected, got %d", threads);
-    glint_pool *pool = calloc(1, sizeof *pool + (size_t)threads * sizeof *pool->workers);
+    glint_pool *pool = calloc(1, sizeof *pool + (size_t)(threads - 1) * sizeof *pool->workers);
     if (!pool)
         return glint_fail_nomem(error);
+    pool->threads = 1;
     pthread_mutex_init(&pool->turn, NULL);
     pthread_mutex_init(&pool->mutex, NULL);
     pthread_cond_init(&pool->work, NULL);
@@ -96,7 +105,7 @@ void glint_pool_destroy(glint_pool *pool)
     pool->stop = true;
     pthread_cond_broadcast(&pool->work);
     pthread_mutex_unlock(&pool->mutex);
-    for (int i = 0; i < pool->threads; i++)
+    for (int i = 0; i < pool->threads - 1; i++)
         pthread_join(pool->workers[i].thread, NULL);
     pthread_cond_destroy(&pool->done);
     pthread_cond_destroy(&pool->work);
@@ -115,9 +124,12 @@ void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void 
     pool->item = item;
     pool->context = context;
     atomic_store(&pool->next, 0);
-    pool->busy = pool->threads;
     pool->round++;
-    pthread_cond_broadcast(&pool->work);
+    if (count > 1)
+        pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->mutex);
+    run_items(pool, 0);
+    pthread_mutex_lock(&pool->mutex);
     while (pool->busy)
         pthread_cond_wait(&pool->done, &pool->mutex);
     pthread_mutex_unlock(&pool->mutex);

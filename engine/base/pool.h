@@ -13,8 +13,8 @@ typedef void glint_pool_item(void *context, size_t index, int worker);
 glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error);
 void glint_pool_destroy(glint_pool *pool);
 int glint_pool_threads(const glint_pool *pool);
-/// Runs items 0 .. count - 1, in any order, and returns when all have run. The caller waits and does not work, so that
-/// `threads` is what computes. Callers of several threads take turns.
+/// Runs items 0 .. count - 1, in any order, and returns when all have run. The caller is worker 0, so that `threads` is what
+/// computes; one is the caller's alone. Callers of several threads take turns.
 void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void *context);
 /// Processors this process may use.
 int glint_pool_processors(void);
