@@ -80,10 +80,23 @@ void glint_transform_linear(const glint_transform *t, double out[3][3])
             out[i][j] = t->m[i][j];
 }
 
+/// a b - c d to two units of 2^-53 of itself, however much of it cancels (Kahan; Jeannerod, Louvet, Muller, Math. Comp. 82,
+/// 2013).
+static double difference_of_products(double a, double b, double c, double d)
+{
+    const double product = c * d, lost = fma(-c, d, product);
+    return fma(a, b, -product) + lost;
+}
+
+/// Differences rounded plainly would be off by a share of the largest squared, which of a map that flattens in two
+/// directions is far more than a share of its condition.
 double glint_linear_cofactors(double m[3][3], double out[3][3])
 {
-    for (int i = 0; i < 3; i++)
-        vec_cross(out[i], m[(i + 1) % 3], m[(i + 2) % 3]);
+    for (int i = 0; i < 3; i++) {
+        const double *u = m[(i + 1) % 3], *v = m[(i + 2) % 3];
+        for (int c = 0; c < 3; c++)
+            out[i][c] = difference_of_products(u[(c + 1) % 3], v[(c + 2) % 3], u[(c + 2) % 3], v[(c + 1) % 3]);
+    }
     return vec_dot(m[0], out[0]);
 }
 
