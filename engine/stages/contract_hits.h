@@ -89,9 +89,12 @@ typedef struct glint_cast_args {
 //                 disc = b*b < a ? b*b - a*c : a - w; s = sqrt(max(disc, 0)); q = b >= 0 ? b + s : b - s
 //                 far = q / a, other = c / q; in, out = b >= 0 ? (other, far) : (far, other); hits where disc >= 0
 //                 where a = 0: in = -inf, out = inf, hits where c <= 0
-//                 cone: from afar, 16 < length2(f), the ray is begun at f + m e with m = -dot(f, e) / length2(e), which is added
-//                 to in and out; then a = (e.x^2 + e.y^2) - e.z^2, c = (f.x^2 + f.y^2) - f.z^2, b = f.z e.z - (f.x e.x + f.y e.y)
-//                 disc = (x.x^2 + x.y^2) - x.z^2 with x = cross(f, e); s, q, far, other as above; low, high = min, max of them
+//                 cone: the ray is begun nearest to the apex, at f + m e with m = -dot(f, e) / length2(e), which is added to in
+//                 and out, where it starts anew: 16 < length2(f), or dot(f, e)^2 > 0.875 (length2(f) length2(e)) and not on the
+//                 side: f.z > 0 and |(f.x^2 + f.y^2) - f.z^2| <= point_slack length2(f)
+//                 then a = (e.x^2 + e.y^2) - e.z^2, c = (f.x^2 + f.y^2) - f.z^2, b = f.z e.z - (f.x e.x + f.y e.y)
+//                 disc = (x.x^2 + x.y^2) - x.z^2 with x = cross(f, e); s, q, far, other as above, but where q = 0,
+//                 through the apex, other = far; low, high = min, max of them
 //                 a > 0: in, out = low, high; hits where disc >= 0
 //                 else hits where a < 0 or b and e.z have one sign; end = a = 0 ? c / (2 b) : e.z > 0 ? high : low; in, out = e.z > 0 ? (end, inf) : (-inf, end)
 //                 box: in = -inf, out = inf, hits

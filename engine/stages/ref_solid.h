@@ -58,16 +58,24 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
         NAME(passage)) { .hit = disc >= 0, .in = { .t = b >= 0 ? other : far }, .out = { .t = b >= 0 ? far : other } };
 }
 
+static bool NAME(starts_anew)(NAME(vec3) from, NAME(vec3) e)
+{
+    REAL toward = NAME(dot)(from, e), away2 = NAME(length2)(from),
+         side = (from.x * from.x + from.y * from.y) - from.z * from.z;
+    bool on = from.z > 0 && NAME(abs)(side) <= NAME(POINT_SLACK) * away2;
+    return away2 > 16 || (toward * toward > (REAL)0.875 * (away2 * NAME(length2)(e)) && !on);
+}
+
 static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e)
 {
-    REAL move = NAME(dot)(from, from) > 16 ? -NAME(dot)(from, e) / NAME(dot)(e, e) : 0;
+    REAL move = NAME(starts_anew)(from, e) ? -NAME(dot)(from, e) / NAME(dot)(e, e) : 0;
     NAME(vec3) f = NAME(add)(from, NAME(times)(e, move));
     REAL a = (e.x * e.x + e.y * e.y) - e.z * e.z, c = (f.x * f.x + f.y * f.y) - f.z * f.z;
     REAL b = f.z * e.z - (f.x * e.x + f.y * e.y);
     NAME(vec3) across = NAME(cross)(f, e);
     REAL disc = (across.x * across.x + across.y * across.y) - across.z * across.z;
     REAL s = NAME(square_root)(NAME(max)(disc, 0));
-    REAL q = b >= 0 ? b + s : b - s, far = q / a, other = c / q;
+    REAL q = b >= 0 ? b + s : b - s, far = q / a, other = q == 0 ? far : c / q;
     REAL low = NAME(min)(far, other), high = NAME(max)(far, other);
     if (a < 0 || a == 0) {
         REAL end = a == 0 ? c / (2 * b) : e.z > 0 ? high : low;

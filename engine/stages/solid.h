@@ -75,12 +75,24 @@ static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bo
     span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
 }
 
-/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin. Rays from far away are begun anew next to the apex: what
-/// follows takes differences of squares.
+/// Rays that are begun anew where they are nearest to a cone's apex: what cut_cone takes are differences of squares, and
+/// where those of the start are far greater than those of any hit, too little is left. So it is with rays from afar, and
+/// with rays that pass the apex at about a third of how far from it they start, or less: down the side of either half. But what
+/// starts on the side, as far as rounding lets us know, stays: whether that is within is the same for all its rays.
+static inline rm R(starts_anew)(const vr from[3], vr toward, vr e2)
+{
+    const vr zero = r_set(0), away2 = DOT(from, from);
+    const vr side = (from[0] * from[0] + from[1] * from[1]) - from[2] * from[2];
+    const rm passes = r_lt(r_set(0.875) * (away2 * e2), toward * toward);
+    const rm on = rm_and(r_lt(zero, from[2]), r_le(r_max(side, -side), r_set(GLINT_POINT_SLACK) * away2));
+    return rm_or(r_lt(r_set(16), away2), rm_andnot(passes, on));
+}
+
+/// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
 static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
 {
-    const vr zero = r_set(0);
-    const vr move = r_select(r_lt(r_set(16), DOT(from, from)), -DOT(from, e) / DOT(e, e), zero);
+    const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e);
+    const vr move = r_select(R(starts_anew)(from, toward, e2), -toward / e2, zero);
     const vr f[3] = { from[0] + move * e[0], from[1] + move * e[1], from[2] + move * e[2] };
     const vr a = (e[0] * e[0] + e[1] * e[1]) - e[2] * e[2], c = (f[0] * f[0] + f[1] * f[1]) - f[2] * f[2];
     const vr b = f[2] * e[2] - (f[0] * e[0] + f[1] * e[1]);
@@ -89,7 +101,7 @@ static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
     const vr s = r_sqrt(r_max(disc, zero));
     const rm ahead = r_le(zero, b), steep = r_lt(a, zero), level = rm_andnot(r_le(a, zero), steep);
     const vr q = r_select(ahead, b + s, b - s);
-    const vr far = q / a, other = c / q;
+    const vr far = q / a, other = r_select(r_eq(q, zero), far, c / q); // through the apex both are 0
     const vr low = r_min(far, other), high = r_max(far, other), single = c / (r_set(2) * b);
     const rm up = r_lt(zero, e[2]);
     // steeper than the side: one end is within the other half of the double cone; along the side: there is but one, of either
