@@ -27,6 +27,32 @@ static glint_transform random_map(double move)
     return glint_transform_product(&next, &map);
 }
 
+/// A map that undoes what its shape, a cylinder or cone, is flattened by: what is under it is as wide as high, of about the
+/// same size, and turned.
+static glint_transform undoing_map(const glint_shape_desc *d, double size)
+{
+    double n[3], x[3], away[3], turn[3], length = 0;
+    glint_transform map = glint_transform_identity();
+    random_direction(away);
+    random_direction(turn);
+    for (int c = 0; c < 3; c++)
+        length = hypot(length, n[c] = d->base[c] - d->top[c]);
+    for (int c = 0; c < 3; c++)
+        n[c] /= length;
+    for (int c = 0; c < 3; c++)
+        x[c] = n[(c + 1) % 3] * away[(c + 2) % 3] - n[(c + 2) % 3] * away[(c + 1) % 3];
+    const double across = hypot(hypot(x[0], x[1]), x[2]);
+    for (int c = 0; c < 3; c++)
+        x[c] /= across;
+    for (int c = 0; c < 3; c++) {
+        map.m[0][c] = size / d->radius * x[c];
+        map.m[1][c] = size / d->radius * (n[(c + 1) % 3] * x[(c + 2) % 3] - n[(c + 2) % 3] * x[(c + 1) % 3]);
+        map.m[2][c] = size / length * n[c];
+    }
+    const glint_transform turned = glint_transform_rotate(turn, uniform(0, 360));
+    return glint_transform_product(&turned, &map);
+}
+
 static void place(double v[3], double at, double size)
 {
     for (int c = 0; c < 3; c++)
@@ -56,8 +82,15 @@ hard_solid solid_random(int kind, double *size)
         s.desc.min[c] = s.desc.center[c] - *size * log_uniform(0.05, 1);
         s.desc.max[c] = s.desc.center[c] + *size * log_uniform(0.05, 1);
     }
-    if (kind == 0 || chance(0.6))
+    const bool pillar = kinds[kind] == GLINT_SHAPE_CYLINDER || kinds[kind] == GLINT_SHAPE_CONE;
+    if (pillar && chance(0.3)) {
+        const double flat = log_uniform(1e-5, 1);
+        for (int c = 0; c < 3; c++)
+            s.desc.base[c] = s.desc.top[c] + flat * (s.desc.base[c] - s.desc.top[c]);
+        s.desc.transform = undoing_map(&s.desc, *size);
+    } else if (kind == 0 || chance(0.6)) {
         s.desc.transform = random_map(chance(0.5) ? 0 : at);
+    }
     return s;
 }
 
@@ -98,7 +131,11 @@ glint_scene *solid_alone(const hard_solid *s, glint_material *material)
 /// A point of the shape as described: of its surface, its silhouette, an edge or a corner, and next to it.
 static void some_point(const hard_solid *s, double p[3])
 {
-    const double turn = uniform(0, 6.3), w = chance(0.3) ? 0 : uniform(0, 1), v = chance(0.3) ? 0 : uniform(0, 1 - w);
+    const double turn = uniform(0, 6.3),
+                 w = chance(0.3)   ? 0
+                     : chance(0.1) ? 1 - log_uniform(1e-8, 1) // of a cone, next to the apex
+                                   : uniform(0, 1),
+                 v = chance(0.3) ? 0 : uniform(0, 1 - w);
     double k[3], a[3], b[3], along[3];
     const glint_shape_desc *d = &s->desc;
     random_direction(k);
@@ -148,6 +185,15 @@ static void to_world(const hard_solid *s, double p[3])
             s->desc.transform.m[i][3];
 }
 
+/// Next to the line from a point of a cone through its apex: beyond that, for a ray down the side of the other half of the
+/// double cone, or on this side of it.
+static void along_side(const hard_solid *s, const double p[3], double size, double out[3])
+{
+    const double way = (chance(0.3) ? -1 : 1) * log_uniform(0.1, 10), nudge = size * log_uniform(1e-9, 0.1);
+    for (int c = 0; c < 3; c++)
+        out[c] = s->desc.top[c] + way * (s->desc.top[c] - p[c]) + nudge * uniform(-1, 1);
+}
+
 hard_ray solid_aim(const hard_solid *s, double size)
 {
     hard_ray ray;
@@ -155,12 +201,15 @@ hard_ray solid_aim(const hard_solid *s, double size)
     const double by = chance(0.3) ? 0 : size * log_uniform(1e-16, 1e-2);
     some_point(s, p);
     some_point(s, q);
+    const bool along = !s->is_triangle && s->desc.kind == GLINT_SHAPE_CONE && chance(0.2);
+    if (along)
+        along_side(s, p, size, q);
     to_world(s, p);
     to_world(s, q);
     random_direction(away);
     // points of what is flat are in one plane with each other
     const bool flat = s->is_triangle || s->desc.kind == GLINT_SHAPE_DISK;
-    const int way = flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
+    const int way = along ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
     for (int c = 0; c < 3; c++) {
         p[c] += by * uniform(-1, 1);
         const double far = q[c] + (q[c] - p[c]) * log_uniform(1e-3, 1e3);

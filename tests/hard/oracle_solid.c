@@ -1,22 +1,26 @@
 #include "tests/hard/oracle_solid.h"
+#include "tests/hard/oracle_unit.h"
 
 #include <math.h>
-
-__extension__ typedef _Float128 quad;
 
 typedef struct frame_of {
     quad m[3][3], inverse[3][3], center[3]; ///< x = center + m k
     quad normals[3][3]; ///< transpose of inverse
+    quad extent, place; ///< norms of m and center as if nothing in their sums cancelled
+    quad condition; ///< extent times the norm of inverse
 } frame_of;
-
-/// A ray in the unit shape's frame.
-typedef struct unit_ray {
-    quad f[3], e[3];
-} unit_ray;
 
 static quad size_of(quad x) { return x < 0 ? -x : x; }
 
 static quad dot(const quad u[3], const quad v[3]) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
+
+static quad norm_of(quad m[3][3])
+{
+    quad sum = 0;
+    for (int i = 0; i < 3; i++)
+        sum += dot(m[i], m[i]);
+    return sqrtf128(sum);
+}
 
 // ---- The map from the unit shape ----
 
@@ -81,15 +85,22 @@ static void described(const glint_shape_desc *desc, frame_of *frame)
 static void transformed(const glint_transform *map, frame_of *frame)
 {
     const frame_of from = *frame;
+    quad sums[3][3] = { { 0 } }, places[3];
     for (int i = 0; i < 3; i++) {
         frame->center[i] = map->m[i][3];
+        places[i] = size_of(map->m[i][3]);
         for (int k = 0; k < 3; k++) {
             frame->center[i] += map->m[i][k] * from.center[k];
+            places[i] += size_of(map->m[i][k] * from.center[k]);
             frame->m[i][k] = 0;
-            for (int j = 0; j < 3; j++)
+            for (int j = 0; j < 3; j++) {
                 frame->m[i][k] += map->m[i][j] * from.m[j][k];
+                sums[i][k] += size_of(map->m[i][j] * from.m[j][k]);
+            }
         }
     }
+    frame->extent = norm_of(sums);
+    frame->place = sqrtf128(dot(places, places));
 }
 
 static void invert(frame_of *frame)
@@ -107,6 +118,7 @@ static void invert(frame_of *frame)
             frame->normals[i][k] /= determinant;
             frame->inverse[k][i] = frame->normals[i][k];
         }
+    frame->condition = frame->extent * norm_of(frame->inverse);
 }
 
 static void to_unit(const frame_of *frame, const hard_ray *ray, unit_ray *out)
@@ -122,183 +134,62 @@ static void to_unit(const frame_of *frame, const hard_ray *ray, unit_ray *out)
     }
 }
 
-static quad norm_of(quad m[3][3])
+static void add_normal(solid_truth *out, const quad n[3], quad turn)
 {
-    quad sum = 0;
-    for (int i = 0; i < 3; i++)
-        sum += dot(m[i], m[i]);
-    return sqrtf128(sum);
-}
-
-// ---- The unit shapes, grown by g (shrunk where it is below 0) ----
-
-typedef struct span {
-    bool hit;
-    quad t[2];
-} span;
-
-static void cut(span *s, quad from, quad to)
-{
-    s->t[0] = from > s->t[0] ? from : s->t[0];
-    s->t[1] = to < s->t[1] ? to : s->t[1];
-    s->hit = s->hit && s->t[0] <= s->t[1];
-}
-
-static void cut_slab(span *s, quad f, quad e, quad low, quad high)
-{
-    if (e == 0) {
-        s->hit = s->hit && f >= low && f <= high;
-        return;
-    }
-    const quad a = (low - f) / e, b = (high - f) / e;
-    cut(s, a < b ? a : b, a < b ? b : a);
-}
-
-/// a t^2 + 2 b t + c <= 0
-static void cut_quadric(span *s, quad a, quad b, quad c)
-{
-    const quad disc = b * b - a * c;
-    if (a == 0) {
-        s->hit = s->hit && c <= 0;
-        return;
-    }
-    if (disc < 0) {
-        s->hit = false;
-        return;
-    }
-    const quad root = sqrtf128(disc), q = b > 0 ? -b - root : -b + root, t0 = q / a, t1 = q == 0 ? t0 : c / q;
-    cut(s, t0 < t1 ? t0 : t1, t0 < t1 ? t1 : t0);
-}
-
-/// x^2 + y^2 <= (z + g)^2 for z >= -g: the half of the double cone.
-static void cut_cone(span *s, const unit_ray *r, quad g, quad base)
-{
-    const quad z = r->f[2] + g, ez = r->e[2];
-    const quad a = r->e[0] * r->e[0] + r->e[1] * r->e[1] - ez * ez, b = r->f[0] * r->e[0] + r->f[1] * r->e[1] - z * ez,
-               c = r->f[0] * r->f[0] + r->f[1] * r->f[1] - z * z, disc = b * b - a * c;
-    cut_slab(s, z, ez, 0, base + g);
-    if (!s->hit)
-        return;
-    if (a == 0 && b == 0) {
-        s->hit = c <= 0;
-    } else if (a == 0) {
-        const quad t = -c / (2 * b);
-        if (b > 0)
-            cut(s, s->t[0], t);
-        else
-            cut(s, t, s->t[1]);
-    } else if (a > 0 || disc < 0) {
-        if (disc < 0)
-            s->hit = s->hit && a < 0;
-        else
-            cut_quadric(s, a, b, c);
-    } else { // steeper than the side: outside between the roots; within z >= 0 one of the two ends is left
-        const quad root = sqrtf128(disc), q = b > 0 ? -b - root : -b + root, t0 = q / a, t1 = q == 0 ? t0 : c / q;
-        if (ez > 0)
-            cut(s, t0 < t1 ? t1 : t0, s->t[1]);
-        else
-            cut(s, s->t[0], t0 < t1 ? t0 : t1);
-    }
-}
-
-static span meet(const glint_shape_desc *desc, const unit_ray *r, quad g)
-{
-    const quad huge = (quad)HUGE_VAL;
-    quad one = 1 + g;
-    const quad aa = r->e[0] * r->e[0] + r->e[1] * r->e[1], bb = r->f[0] * r->e[0] + r->f[1] * r->e[1],
-               cc = r->f[0] * r->f[0] + r->f[1] * r->f[1];
-    span s = { true, { -huge, huge } };
-    switch (desc->kind) {
-    case GLINT_SHAPE_SPHERE:
-        cut_quadric(&s, aa + r->e[2] * r->e[2], bb + r->f[2] * r->e[2], cc + r->f[2] * r->f[2] - one * one);
-        break;
-    case GLINT_SHAPE_BOX:
-        for (int c = 0; c < 3; c++)
-            cut_slab(&s, r->f[c], r->e[c], -one, one);
-        break;
-    case GLINT_SHAPE_CYLINDER:
-        cut_quadric(&s, aa, bb, cc - one * one);
-        cut_slab(&s, r->f[2], r->e[2], -one, one);
-        break;
-    case GLINT_SHAPE_CONE:
-        cut_cone(&s, r, g, 1 + g);
-        break;
-    default: { // a disk: a plane off by g moves the point on it by as much, times how flat the ray is
-        if (r->e[2] == 0)
-            return (span) { false, { 0, 0 } };
-        const quad t = -r->f[2] / r->e[2], x = r->f[0] + t * r->e[0], y = r->f[1] + t * r->e[1];
-        one += g * sqrtf128(aa) / size_of(r->e[2]);
-        if (one < 0)
-            one = 0;
-        s = (span) { x * x + y * y <= one * one, { t, t } };
-    }
-    }
-    return s;
-}
-
-/// The end of the span that is the first ahead: 0, 1; 2: none.
-static int first_ahead(const span *s) { return !s->hit ? 2 : s->t[0] > 0 ? 0 : s->t[1] > 0 ? 1 : 2; }
-
-/// The outward normal of the unit shape at a point of its surface, by which of its parts the point is nearest; *edge: two
-/// are as near.
-static void unit_normal(const glint_shape_desc *desc, const quad k[3], quad margin, quad n[3], bool *edge)
-{
-    const quad round = sqrtf128(k[0] * k[0] + k[1] * k[1]);
-    quad off[4] = { 0, 0, 0, 0 };
-    int parts = 0, best = 0;
-    n[0] = n[1] = n[2] = 0;
-    *edge = false;
-    if (desc->kind == GLINT_SHAPE_SPHERE) {
-        for (int c = 0; c < 3; c++)
-            n[c] = k[c];
-        return;
-    }
-    if (desc->kind == GLINT_SHAPE_DISK) {
-        n[2] = 1;
-        return;
-    }
-    if (desc->kind == GLINT_SHAPE_BOX) {
-        for (; parts < 3; parts++)
-            off[parts] = size_of(size_of(k[parts]) - 1);
-    } else {
-        off[parts++] = size_of(size_of(k[2]) - 1); // an end
-        off[parts++] = size_of(round - (desc->kind == GLINT_SHAPE_CONE ? k[2] : 1));
-    }
-    for (int i = 1; i < parts; i++)
-        best = off[i] < off[best] ? i : best;
-    for (int i = 0; i < parts; i++)
-        *edge = *edge || (i != best && off[i] < 16 * margin);
-    *edge = *edge || (desc->kind == GLINT_SHAPE_CONE && round < 16 * margin); // its apex
-    if (desc->kind == GLINT_SHAPE_BOX) {
-        n[best] = k[best] > 0 ? 1 : -1;
-    } else if (best == 0) {
-        n[2] = k[2] > 0 ? 1 : -1;
-    } else {
-        n[0] = k[0] / round;
-        n[1] = k[1] / round;
-        n[2] = desc->kind == GLINT_SHAPE_CONE ? -1 : 0;
-    }
-}
-
-static void set_normal(const hard_ray *ray, const quad n[3], solid_truth *out)
-{
-    const quad d[3] = { ray->d[0], ray->d[1], ray->d[2] }, length = sqrtf128(dot(n, n));
+    const quad length = sqrtf128(dot(n, n));
+    solid_normal *next = &out->normal[out->normals++];
     for (int c = 0; c < 3; c++)
-        out->n[c] = (double)(n[c] / length);
-    out->cosine = (double)(size_of(dot(n, d)) / (length * sqrtf128(dot(d, d))));
+        next->n[c] = (double)(n[c] / length);
+    next->turn = (double)turn;
 }
 
-static void bracket(const span *exact, const span *grown, const span *shrunk, solid_truth *out)
+/// The normals that will do where the ray meets the shape, at t.
+static void add_normals(const glint_shape_desc *desc, const frame_of *frame, const unit_ray *r, quad margin,
+                        const unit_span *grown, int end, quad t, solid_truth *out)
 {
-    const int end = first_ahead(exact);
+    const quad moved = (out->most - out->least) * sqrtf128(dot(r->e, r->e)) + margin;
+    const quad x = r->f[0] + t * r->e[0], y = r->f[1] + t * r->e[1];
+    if (desc->kind == GLINT_SHAPE_CONE && sqrtf128(x * x + y * y) < 16 * margin)
+        return; // its apex
+    for (int part = 0; part < unit_parts(desc); part++) {
+        quad g[3], n[3];
+        if (!unit_may_end(desc, part, r, margin, end, grown))
+            continue;
+        unit_normal(desc, part, r, end, t, g);
+        for (int c = 0; c < 3; c++)
+            n[c] = dot(frame->normals[c], g);
+        add_normal(out, n, 4 * unit_bend(desc, part, r, t) * moved * frame->condition);
+    }
+}
+
+static void bracket(const unit_span *exact, const unit_span *grown, const unit_span *shrunk, solid_truth *out)
+{
+    const int end = unit_first_ahead(exact);
     out->hit = end < 2;
-    out->close = first_ahead(grown) != end || first_ahead(shrunk) != end;
+    out->close = unit_first_ahead(grown) != end || unit_first_ahead(shrunk) != end;
     if (out->close || end == 2)
         return;
     const quad a = grown->t[end], b = shrunk->t[end];
     out->t = (double)exact->t[end];
     out->least = (double)(a < b ? a : b);
     out->most = (double)(a < b ? b : a);
+}
+
+/// How far rounding may move each part of the unit shape: `rounding` times 2^-53 of what it is a share of.
+///
+/// Let x = c + M k, M = T F: the shape's frame F under its transform T. The engine knows M to some roundings of the sums in
+/// |T| |F|, each of the columns of F being a few roundings off itself: nine of them. These move k by |M^-1| |T||F| |k|, the
+/// condition times |k|. The numbers of the inverse are cofactors (two roundings, whatever cancels) over the determinant (three
+/// of |row| |cofactors|, so three of the condition, common to all) and one more: six. Its products with x - c are of size
+/// |M^-1| |M k|, and so is what their sums lose: three roundings of the condition times |k|, one in x - c. What is lost in c,
+/// four roundings of |T| |c| and the translation, comes in by |M^-1|. So at both ends of the ray's way to the shape, at f and at
+/// a |k| below 2, it is off by some twenty roundings of the condition times the reach below. Solving adds a few of the reach
+/// alone, if it squares nothing that is much longer than what is left. Norms here are Frobenius's: their product, the
+/// condition, is 3 or more where maps keep angles. Eight times it are two dozen roundings.
+static quad margin_of(const frame_of *frame, const unit_ray *r, double rounding)
+{
+    const quad reach = sqrtf128(dot(r->f, r->f)) + 2 + frame->condition / frame->extent * frame->place;
+    return rounding * (quad)0x1p-53 * frame->condition * reach;
 }
 
 static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, double rounding)
@@ -310,9 +201,8 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
     transformed(&desc->transform, &frame);
     invert(&frame);
     to_unit(&frame, ray, &r);
-    const quad reach = sqrtf128(dot(r.f, r.f)) + 2 + norm_of(frame.inverse) * sqrtf128(dot(frame.center, frame.center));
-    const quad margin = rounding * (quad)0x1p-53 * norm_of(frame.m) * norm_of(frame.inverse) * reach;
-    const span s = meet(desc, &r, 0), more = meet(desc, &r, margin), less = meet(desc, &r, -margin);
+    const quad margin = margin_of(&frame, &r, rounding);
+    const unit_span s = unit_meet(desc, &r, 0), more = unit_meet(desc, &r, margin), less = unit_meet(desc, &r, -margin);
     bracket(&s, &more, &less, &out);
     if (desc->kind == GLINT_SHAPE_DISK) {
         out.least -= (double)(margin / size_of(r.e[2]));
@@ -320,22 +210,9 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
     }
     if (margin > 1e-3 || (desc->kind == GLINT_SHAPE_DISK && size_of(r.f[2]) < 4 * margin))
         out.close = true; // nothing to hold on to; or in the disk's plane
-    if (out.hit && !out.close) {
-        const quad t = s.t[first_ahead(&s)];
-        quad k[3], g[3], n[3];
-        for (int c = 0; c < 3; c++)
-            k[c] = r.f[c] + t * r.e[c];
-        unit_normal(desc, k, margin, g, &out.edge);
-        for (int c = 0; c < 3; c++)
-            n[c] = dot(frame.normals[c], g);
-        set_normal(ray, n, &out);
-        const quad moved = (out.most - out.least) * sqrtf128(dot(r.e, r.e)) + margin;
-        const quad bend =
-            desc->kind == GLINT_SHAPE_SPHERE || (desc->kind != GLINT_SHAPE_BOX && g[0] * g[0] + g[1] * g[1] > 0)
-                ? 4 / (desc->kind == GLINT_SHAPE_CONE ? k[2] : 1)
-                : 0;
-        out.turn = (double)(bend * moved * norm_of(frame.m) * norm_of(frame.inverse));
-    }
+    const int end = unit_first_ahead(&s);
+    if (out.hit && !out.close)
+        add_normals(desc, &frame, &r, margin, &more, end, s.t[end], &out);
     return out;
 }
 
@@ -374,7 +251,7 @@ static solid_truth of_triangle(const hard_ray *ray, const double corner[3][3], d
     out.t = (double)t;
     out.least = (double)(t - moved);
     out.most = (double)(t + moved);
-    set_normal(ray, n, &out);
+    add_normal(&out, n, 0);
     return out;
 }
 
