@@ -11,7 +11,8 @@ static bool listing; ///< each test is a line of the table
 uint64_t hard_rays = 1000000;
 
 static struct {
-    const char *id, *what;
+    const char *id;
+    char what[96];
     uint64_t checks, failures;
 } test;
 
@@ -59,7 +60,7 @@ void hard_test(const char *id, const char *what)
 {
     end_test();
     test.id = id;
-    test.what = what;
+    snprintf(test.what, sizeof test.what, "%s", what);
     test.checks = test.failures = 0;
 }
 
