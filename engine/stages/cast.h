@@ -80,7 +80,7 @@ static inline void R(clear_groups)(R(tile_cast) * tile, uint64_t groups)
 }
 
 /// A group whose pixels decide, and the candidates that it may show.
-static inline void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
+INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
                                  const uint64_t may[], const uint64_t sure[], int slot)
 {
     const int x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
