@@ -298,6 +298,25 @@ function tests.corner_normals()
   check(shared ~= picture { vertices = corners, faces = faces }, "is not one of smooth corners")
 end
 
+-- A vertex's normal may lean so far from the eye that it looks away from what lies halfway to the lamp: (n.h) < 0 and no
+-- highlight, however broad.
+function tests.normals_that_look_away()
+  local lean, v = unit { 2, 0, 1 }, unit { -8, 0, 1 }
+  for _, lamp in ipairs { { -0.4, 0, 1 }, { 1, 0, 1 } } do
+    local l = unit(lamp)
+    local want = math.max(dot(lean, unit(plus(l, v, 1))), 0)
+    for _, precision in ipairs { "double", "float" } do
+      local image = glint.scene { camera = glint.camera { eye = times(v, 8), at = { 0, 0, 0 } },
+        glint.mesh { vertices = { { -9, -9, 0 }, { 9, -9, 0 }, { 0, 9, 0 } }, faces = { { 1, 2, 3 } },
+          normals = { lean, lean, lean }, shading = "phong",
+          material = glint.material { diffuse = 0, specular = 1, shininess = 1, model = "blinn_phong" } },
+        glint.directional_light { direction = times(l, -1), shadows = false },
+      }:render { width = 1, height = 1, output = "none", precision = precision }
+      check(math.abs(image:pixel(0, 0) - want) < 1e-6, "%g, expected %g", image:pixel(0, 0), want)
+    end
+  end
+end
+
 -- Passes add up, samples meet in the mean, and one-sided backs have ambient light alone.
 function tests.terms()
   local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 10, shading = "gouraud",

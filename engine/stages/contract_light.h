@@ -85,8 +85,8 @@ typedef struct glint_light_args {
 //              lit where m > 0;  radiant: min((float)(A (m / (l2 sqrt(l2)))), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
-//   Blinn      w = sqrt(l2 a);  num = ((nl nl) a + (nv nv) l2) + ((2 nl) nv) w;  den = (2 w) (w + lv);
-//              x = min(num / den, 1);  there is one where num > 0 and den > 0
+//   Blinn      w = sqrt(l2 a);  h = l a - direction w (component by component);  nh = dot(normal, h);  num = nh nh;
+//              den = length2(h);  x = min(num / den, 1);  there is one where nh > 0 and den > 0
 //   sparing    num = rv rv and den = l2 a of Phong;  there is none where num < least den
 //   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
 // In --precision float all of this is float, l2 a included.

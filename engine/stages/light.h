@@ -20,13 +20,16 @@ INNER rm R(phong_parts)(vr nl, vr nv, vr lv, vr l2a, vr *num, vr *den)
     return r_lt(r_set(0), rv);
 }
 
-/// (n.h)^2 likewise.
-INNER rm R(blinn_parts)(vr nl, vr nv, vr lv, vr l2, vr a, vr *num, vr *den)
+/// (n.h)^2 likewise, of one h for both: at grazing light h is what is left of a difference, and another rounding of it below
+/// than above the line would count 1 / |h|^2 times, and then shininess times.
+INNER vr R(blinn_parts)(const vr n[3], const vr l[3], const vr d[3], vr l2, vr a, vr *num, vr *den)
 {
-    vr w = r_sqrt(l2 * a);
-    *num = ((nl * nl) * a + (nv * nv) * l2) + ((r_set(2) * nl) * nv) * w;
-    *den = (r_set(2) * w) * (w + lv);
-    return rm_and(r_lt(r_set(0), *num), r_lt(r_set(0), *den));
+    const vr w = r_sqrt(l2 * a);
+    const vr h[3] = { a * l[0] - w * d[0], a * l[1] - w * d[1], a * l[2] - w * d[2] };
+    const vr nh = DOT(n, h);
+    *num = nh * nh;
+    *den = DOT(h, h);
+    return nh;
 }
 
 /// What the samples of a light have in common: the surfaces of one group, and one vector of its lanes.
@@ -101,7 +104,8 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     if (blinn) {
         vr blinn_num, blinn_den;
         const rm mask = rm_from_bits(blinn);
-        some = rm_or(some, rm_and(mask, R(blinn_parts)(nl, nv, lv, l2, a, &blinn_num, &blinn_den)));
+        const vr nh = R(blinn_parts)(surface->normal, l, surface->direction, l2, a, &blinn_num, &blinn_den);
+        some = rm_or(some, rm_and(mask, rm_and(r_lt(zero, nh), r_lt(zero, blinn_den))));
         num = r_select(mask, blinn_num, num);
         den = r_select(mask, blinn_den, den);
     }

@@ -54,10 +54,15 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     whole->num[j] = whole->den[j] = r_set(0);
     if (!material)
         return;
-    const vr a = DOT(d, d), nv = r_select(back, away, -away), lv = -DOT(l, d);
-    const rm some = !GLINT_WITH_BLINN || material->highlight == GLINT_HIGHLIGHT_PHONG
-                        ? R(phong_parts)(nl, nv, lv, l2 * a, &whole->num[j], &whole->den[j])
-                        : R(blinn_parts)(nl, nv, lv, l2, a, &whole->num[j], &whole->den[j]);
+    const vr a = DOT(d, d);
+    rm some;
+    if (!GLINT_WITH_BLINN || material->highlight == GLINT_HIGHLIGHT_PHONG) {
+        const vr nv = r_select(back, away, -away), lv = -DOT(l, d);
+        some = R(phong_parts)(nl, nv, lv, l2 * a, &whole->num[j], &whole->den[j]);
+    } else {
+        const vr nh = R(blinn_parts)(n, l, d, l2, a, &whole->num[j], &whole->den[j]);
+        some = rm_and(r_lt(r_set(0), r_select(back, -nh, nh)), r_lt(r_set(0), whole->den[j]));
+    }
     const rm spared = r_lt(whole->num[j], r_set(light->sparing ? material->least : 0) * whole->den[j]);
     whole->some |= rm_bits(rm_and(ahead, rm_andnot(some, spared))) << i;
 }

@@ -5,17 +5,17 @@ static float NAME(highlight)(uint32_t kind, REAL least, REAL l2, REAL nl, NAME(v
                              NAME(vec3) direction)
 {
     REAL a = NAME(length2)(direction);
-    REAL nv = -NAME(dot)(normal, direction);
-    REAL lv = -NAME(dot)(l, direction);
     REAL x;
     if (kind == GLINT_HIGHLIGHT_PHONG) {
+        REAL nv = -NAME(dot)(normal, direction);
+        REAL lv = -NAME(dot)(l, direction);
         REAL rv = (2 * nl) * nv - lv;
         x = rv > 0 && !(rv * rv < least * (l2 * a)) ? NAME(min)((rv * rv) / (l2 * a), 1) : 0;
     } else {
         REAL w = NAME(square_root)(l2 * a);
-        REAL num = ((nl * nl) * a + (nv * nv) * l2) + ((2 * nl) * nv) * w;
-        REAL den = (2 * w) * (w + lv);
-        x = num > 0 && den > 0 && !(num < least * den) ? NAME(min)(num / den, 1) : 0;
+        NAME(vec3) h = NAME(sub)(NAME(times)(l, a), NAME(times)(direction, w));
+        REAL nh = NAME(dot)(normal, h), num = nh * nh, den = NAME(length2)(h);
+        x = nh > 0 && den > 0 && !(num < least * den) ? NAME(min)(num / den, 1) : 0;
     }
     return x >= (REAL)0x1p-126 ? 0.5f * log2_of((float)x, (float)(x - 1)) : GLINT_NO_SPECULAR;
 }

@@ -66,8 +66,8 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
         some[j] = R(phong_parts)(nl[j], p->nv[j], lv, l2[j] * p->a[j], &num[j], &den[j]);
         if (blinn_lanes) {
             vr blinn_num, blinn_den;
-            const rm mask = rm_from_bits(blinn_lanes),
-                     bright = R(blinn_parts)(nl[j], p->nv[j], lv, l2[j], p->a[j], &blinn_num, &blinn_den);
+            const vr nh = R(blinn_parts)(p->normal[j], l[j], p->direction[j], l2[j], p->a[j], &blinn_num, &blinn_den);
+            const rm mask = rm_from_bits(blinn_lanes), bright = rm_and(r_lt(r_set(0), nh), r_lt(r_set(0), blinn_den));
             some[j] = rm_or(rm_and(mask, bright), rm_andnot(some[j], mask));
             num[j] = r_select(mask, blinn_num, num[j]);
             den[j] = r_select(mask, blinn_den, den[j]);

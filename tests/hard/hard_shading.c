@@ -77,15 +77,68 @@ static const reflection_case cases[] = {
       { -1.5, 0.86602540378443865, 1 },
       NAN,
       0.5 },
+    // grazing light, which the eye looks into: h is what is left of l + v
+    { "P15",
+      "Blinn, h of length 2e-5",
+      true,
+      1e6,
+      Z,
+      { 1, 0, 1e-5 },
+      { -1, 2e-8, 1e-5 },
+      0.60653081134522,
+      9.9999999995e-06 },
+    { "P15",
+      "Blinn, h of length 0.011",
+      true,
+      4577707.932090342,
+      { -0x1.a414c7b8b5cb8p-1, 0x1.2128e8ff86085p-1, -0x1.6b4f8397a7f78p-4 },
+      { -0x1.6e1a531c34f83p-2, -0x1.80b48c4dbf491p-2, 0x1.b5c362ec1726fp-1 },
+      { 0x1.64d81a4d52babp-2, 0x1.865cbe1bf50c7p-2, -0x1.b5bfe959cb6f7p-1 },
+      0.98684941986345,
+      0.00532264927254788 },
+    { "P15",
+      "Blinn, h of length 0.0045",
+      true,
+      6918397.1812005276,
+      { 0x1.d14aaf2408c54p-5, 0x1.5b6a8a8e45f4ep-1, 0x1.76f7928ebf813p-1 },
+      { 0x1.ef146646bafbp-1, -0x1.c1049034d27dap-3, 0x1.0a8129a5a1372p-3 },
+      { -0x1.ee110faf506dfp-1, 0x1.c68120adbfd6dp-3, -0x1.0341c642f5ec9p-3 },
+      0.0095981263796176,
+      0.001452918168518683 },
+    { "P15",
+      "Blinn, h of length 0.0023",
+      true,
+      1303785.3051670482,
+      { -0x1.ce5935c6b4a9ep-1, -0x1.a1fde03918535p-6, -0x1.b71f8062379a6p-2 },
+      { 0x1.3b64d9fdfe47ap-4, 0x1.f1e1f4829c56bp-1, -0x1.c2d2ca4c9b4b6p-3 },
+      { -0x1.4398af3af5de8p-4, -0x1.f154c32b929efp-1, 0x1.c03bfc8507d64p-3 },
+      3.767886623798e-8,
+      5.594805650890779e-05 },
 };
 
 /// log2 of the cosine is a float, off by at most 2.75 ulp, times a rounded exponent, rounded: 3.75 ulp of y; exp2 adds 1.5,
 /// the material's and the light's strengths 1.5. What the vectors' own rounding does to the cosine counts s times.
-static double allowed(const reflection *want, double shininess)
+/// Blinn's h, of length `half`, besides turns with l and v. In units of 2^-53, each, l and v of length 1: the components of l and v are 1 off by
+/// their division, those of a l and of w d 1 each by the product; a is 3 off, w is half of what a and l^2 are, and 1.5: the two
+/// lengths are 4.5 apart; n turns by 1, at most 2 / |h|. That makes 11 / |h|, by which (n.h)^s moves s tan(n, h) times.
+static double allowed(const reflection *want, double shininess, double half)
 {
-    const double y = want->specular > 0 ? fabs(want->log2_specular) : 0;
-    return want->specular * (0x1p-23 * (0.6931471805599453 * 3.75 * y + 3) + shininess * 8 * 0x1p-53) +
-           0x1p-40; // below it a highlight is 0
+    if (want->specular == 0)
+        return 0x1p-40; // below it a highlight is 0
+    const double y = fabs(want->log2_specular), ln2 = 0.6931471805599453;
+    const double tangent = shininess > 0 ? sqrt(expm1(2 * ln2 * y / shininess)) : 0; // (n.h)^s = 2^-y
+    const double turn = tangent * (11 * 0x1p-53) / half;
+    return want->specular * (0x1p-23 * (ln2 * 3.75 * y + 3) + shininess * (8 * 0x1p-53 + turn)) + 0x1p-40;
+}
+
+/// The length of l + v, both of length 1, which Blinn's highlight is made of; Phong's is not.
+static double half_length(bool blinn, const double l[3], const double v[3])
+{
+    const double l_length = hypot(hypot(l[0], l[1]), l[2]), v_length = hypot(hypot(v[0], v[1]), v[2]);
+    double half = 0;
+    for (int c = 0; c < 3; c++)
+        half = hypot(half, l[c] / l_length + v[c] / v_length);
+    return blinn ? half : HUGE_VAL;
 }
 
 static glint_reflection evaluate(bool blinn, double shininess, const double n[3], const double l[3], const double v[3])
@@ -130,7 +183,8 @@ static double compare(bool blinn, double shininess, const double n[3], const dou
 {
     const reflection want = oracle_reflection(blinn, shininess, n, l, v);
     const glint_reflection got = evaluate(blinn, shininess, n, l, v);
-    const double error = fabs(got.specular[1] - want.specular), limit = allowed(&want, shininess);
+    const double error = fabs(got.specular[1] - want.specular),
+                 limit = allowed(&want, shininess, half_length(blinn, l, v));
     hard_check(error <= limit && got.specular[1] <= 1, "specular %.10g, truth %.10g, off by %g where %g is allowed",
                got.specular[1], want.specular, error, limit);
     hard_check(fabs(got.diffuse[1] - want.diffuse) <= 0x1p-23, "diffuse %.10g, truth %.10g", got.diffuse[1],
@@ -149,7 +203,7 @@ static void show(const reflection_case *k, const reflection *want, bool right)
                                 naive_double(k->blinn, k->shininess, k->n, k->l, k->v),
                                 naive_float(k->blinn, k->shininess, k->n, k->l, k->v) };
     glint_material_release(material);
-    const double limit = 2 * allowed(want, k->shininess);
+    const double limit = 2 * allowed(want, k->shininess, half_length(k->blinn, k->l, k->v));
     right = right & hard_check(fabs(shown.in_double - want->specular) <= limit, "a frame: specular %.10g, truth %.10g",
                                shown.in_double, want->specular);
     hard_row(k->id, k->what, &shown, right);
@@ -178,7 +232,8 @@ static void check_reflection(const reflection_case *k)
         }
 }
 
-/// Shininess 0 and 1e-3 .. 1e7; v as far from the mirror direction as makes the highlight anything from 1 to 2^-45.
+/// Shininess 0 and 1e-3 .. 1e7; v as far from the mirror direction as makes the highlight anything from 1 to 2^-45. Of some,
+/// light that the surface hardly rises to.
 static void sweep_shininess(uint64_t count)
 {
     hard_test("P", "shininess 0 .. 1e7");
@@ -192,10 +247,11 @@ static void sweep_shininess(uint64_t count)
         random_direction(off);
         for (int c = 0; c < 3; c++)
             nl += n[c] * l[c];
-        const double angle = fmin(1, sqrt(uniform(0, 90) / (shininess + 1e-9))) * (blinn ? 2 : 1);
+        const double rise = chance(0.2) ? log_uniform(1e-7, 1) : 1;
+        const double angle = fmin(1, sqrt(uniform(0, 90) / (shininess + 1e-9))) * (blinn ? 2 * rise : 1);
         for (int c = 0; c < 3; c++) {
-            l[c] = nl < 0 ? -l[c] : l[c];
-            v[c] = 2 * fabs(nl) * n[c] - l[c] + angle * off[c];
+            l[c] = (nl < 0 ? -1 : 1) * (l[c] - (1 - rise) * nl * n[c]);
+            v[c] = 2 * rise * fabs(nl) * n[c] - l[c] + angle * off[c];
         }
         worst = fmax(worst, compare(blinn, shininess, n, l, v));
     }
