@@ -73,50 +73,78 @@ static inline real R(point_slack_of)(const R(flat) * flat, const real o[3])
     return (real)GLINT_POINT_SLACK * ((f + g) + p);
 }
 
-/// Whether the ray passes all edges on one side, give or take what its beginning is off by.
-static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real slack, double scale)
+/// Whether the ray is at the triangle after `way`, give or take what its beginning is off by: on one side of all edges, and
+/// within its bounds; seen edge-on, all edges are near.
+static inline bool R(passes_near)(const R(flat) * flat, const real o[3], const real d[3], real way, real slack,
+                                  double scale)
 {
     vr p[3][3], direction[3];
-    real r = 0;
-    for (int j = 0; j < 3; j++)
-        for (int k = 0; k < 3; k++) {
+    real r = 0, low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        direction[k] = r_set(d[k]);
+        for (int j = 0; j < 3; j++) {
             const real from = (flat->corner[j][k] - o[k]) * (real)scale;
             r = r < R(size_of)(from) ? R(size_of)(from) : r;
+            low[k] = j == 0 || from < low[k] ? from : low[k];
+            high[k] = j == 0 || high[k] < from ? from : high[k];
             p[j][k] = r_set(from);
-            direction[j] = r_set(d[j]);
         }
+    }
+    const real loose = 2 * (slack * (real)scale) + (real)GLINT_POINT_SLACK * r;
+    for (int k = 0; k < 3; k++) {
+        const real at = (way * d[k]) * (real)scale;
+        if (!(low[k] <= at + loose && at - loose <= high[k]))
+            return false;
+    }
     const R(seen_edges) edges = R(see_edges)(p, direction, true);
-    const vr move = R(abs)(edges.dz) * r_set(2 * (slack * (real)scale) + (real)GLINT_POINT_SLACK * r);
-    return rm_bits(R(within)(&edges, move * (edges.reach + r_set(2) * move))) & 1;
+    const vr move = R(abs)(edges.dz) * r_set(loose);
+    return rm_bits(rm_and(R(within)(&edges, move * (edges.reach + r_set(2) * move)),
+                          R(between_corners)(p, direction, move))) &
+           1;
 }
 
-/// Whether a ray that starts on `from`, in the plane of `other` as far as rounding lets us know, goes through `other`: it
-/// reaches to the side that the ray goes to, and the ray leaves the side of it that `from` is on.
+/// Whether a ray that starts on `from`, and after `way` is in the planes of both at once as far as rounding lets us know, goes
+/// through `other`: it reaches to the side that the ray goes to, and the ray leaves the side of it that `from` is on.
 static inline bool R(goes_through)(const R(flat) * from, const R(flat) * other, const real o[3], const real d[3],
-                                   real slack, double scale)
+                                   real way, real slack, double scale)
 {
     return R(reaches)(from, DOT(from->m, d), other) && R(reaches)(other, -DOT(other->m, d), from) &&
-           R(passes_near)(other, o, d, slack, scale);
+           R(passes_near)(other, o, d, way, slack, scale);
 }
 
-/// Decides anew for the lanes that leave a triangle in the plane of this one. `at`: the first lane of the vector.
-static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, const vr o[3], const glint_prim *prim, rm hit,
-                                vr *t)
+/// Whether a ray is in the plane of `from`, on which it starts, still or only as far as rounding lets us know, when it comes to
+/// another plane after `way`: rays that rise slowly may begin on the wrong side of `from` and get by its edge there.
+static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real slack, real way)
+{
+    return way * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
+}
+
+/// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once. `at`: the first
+/// lane of the vector; `own`: those that leave this one.
+static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
+                                const R(flat) * flat, rm hit, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
-    const R(flat) flat = R(flat_of)(prim, table->scale);
-    const real *const m = flat.m;
-    const real spread = R(spread_of)(&flat);
+    const real *const m = flat->m;
+    const real spread = R(spread_of)(flat);
     const real far = (real)(2 * GLINT_POINT_SLACK * table->extent);
     // above every bound: points, corners and differences of them are at most 2 extents
-    const real most = far * (5 * spread + 2 * ((flat.size[0] + flat.size[1]) + flat.size[2]));
+    const real most = far * (5 * spread + 2 * ((flat->size[0] + flat->size[1]) + flat->size[2]));
     vr q[3];
     for (int k = 0; k < 3; k++)
-        q[k] = o[k] - r_set(flat.corner[0][k]);
+        q[k] = o[k] - r_set(flat->corner[0][k]);
     const vr h = (r_set(m[0]) * q[0] + r_set(m[1]) * q[1]) + r_set(m[2]) * q[2];
-    unsigned anew = 0, through = 0;
-    for (unsigned left = ~rm_bits(r_lt(r_set(most), R(abs)(h))) & ((1u << VR) - 1); left; left &= left - 1) {
-        const size_t i = at + (size_t)__builtin_ctz(left);
+    const real near = (real)(GLINT_NEAR_BESIDE * table->extent);
+    const rm soon = rm_and(r_lt(r_set(0), *t), r_le(*t, r_set(near)));
+    _Alignas(64) real way[VR];
+    unsigned begins = 0, anew = 0, through = 0;
+    unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon)) & ~own & ((1u << VR) - 1);
+    if (left)
+        r_store(way, *t);
+    for (; left; left &= left - 1) {
+        const unsigned lane = left & -left;
+        const int j = __builtin_ctz(left);
+        const size_t i = at + (size_t)j;
         const uint32_t from_id = args->leaving[i];
         if (from_id == GLINT_MISS || table->prims[from_id].kind != GLINT_PRIM_TRIANGLE)
             continue;
@@ -126,13 +154,17 @@ static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, const vr
             d[k] = ((const real *)args->direction[k])[i];
         }
         const R(flat) from = R(flat_of)(&table->prims[from_id], table->scale);
-        const real slack = R(point_slack_of)(&from, origin), height = R(height_over)(&flat, origin, &rounding);
-        if (spread * slack + rounding < R(size_of)(height))
+        const real slack = R(point_slack_of)(&from, origin), height = R(height_over)(flat, origin, &rounding);
+        if (!(spread * slack + rounding < R(size_of)(height))) {
+            begins |= lane;
+            way[j] = 0;
+        } else if (!(0 < way[j] && way[j] <= near && R(is_still_on)(&from, d, slack, way[j]))) {
             continue;
-        anew |= left & -left;
-        if (R(goes_through)(&from, &flat, origin, d, slack, table->scale))
-            through |= left & -left;
+        }
+        anew |= lane;
+        if (R(goes_through)(&from, flat, origin, d, way[j], slack, table->scale))
+            through |= lane;
     }
-    *t = r_select(rm_from_bits(anew), r_set(GLINT_LEAST_WAY), *t);
+    *t = r_select(rm_from_bits(begins), r_set(GLINT_LEAST_WAY), *t);
     return rm_or(rm_andnot(hit, rm_from_bits(anew)), rm_from_bits(through));
 }

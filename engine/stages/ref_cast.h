@@ -45,7 +45,8 @@ static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim 
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
 
-/// Whether ray i starts on the primitive, or on a triangle in whose plane this one is; then *t is where it meets it, or 0.
+/// Whether ray i starts on the primitive, or on a triangle that it has not left for certain when it comes to this one's plane;
+/// then *t is where it meets it, or 0.
 static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
                          uint32_t i, REAL *t)
 {
@@ -53,8 +54,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     if (!args->leaving || args->leaving[i] == GLINT_MISS)
         return false;
     if (args->leaving[i] != index)
-        return NAME(starts_beside)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction,
-                                   t);
+        return NAME(is_beside)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction, t);
     *t = 0;
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_SOLID && inward) {

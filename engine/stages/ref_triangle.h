@@ -67,13 +67,19 @@ static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double s
         out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
 }
 
+/// The distance at which a ray crosses the plane of what it sees.
+static REAL NAME(way_to_plane)(NAME(seen_edges) seen, double scale)
+{
+    return seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
+}
+
 /// The distance at which a ray meets a triangle; 0 stands for a miss.
 static REAL NAME(triangle_t)(const glint_prim *prim, double scale, NAME(vec3) origin, NAME(vec3) direction)
 {
     NAME(vec3) corner[3];
     NAME(corners_seen)(prim, origin, scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    REAL t = seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
+    REAL t = NAME(way_to_plane)(seen, scale);
     return NAME(passes)(seen) && t > 0 ? t : 0;
 }
 
@@ -138,6 +144,18 @@ static NAME(parted) NAME(part)(const glint_occlude_args *args, const glint_prim 
     return out;
 }
 
+/// Whether a place is within a triangle's bounds, give or take `loose`.
+static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) place, REAL loose)
+{
+    for (int k = 0; k < 3; k++) {
+        REAL a = NAME(component)(corner[0], k), b = NAME(component)(corner[1], k), c = NAME(component)(corner[2], k);
+        REAL at = NAME(component)(place, k);
+        if (!(NAME(min)(NAME(min)(a, b), c) <= at + loose && NAME(max)(NAME(max)(a, b), c) >= at - loose))
+            return false;
+    }
+    return true;
+}
+
 static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(parted) plane, NAME(seen_edges) seen,
                                           const NAME(vec3) corner[3], REAL slack, NAME(vec3) ray)
 {
@@ -150,12 +168,8 @@ static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(p
     REAL reach = move * (seen.sum_of_sizes + 2 * move);
     REAL away = NAME(dot)(plane.m, ray);
     bool other_side = (away < 0 && plane.light < 0) || (away > 0 && plane.light > 0);
-    bool in_box = true;
-    for (int k = 0; k < 3; k++) {
-        REAL a = NAME(component)(corner[0], k), b = NAME(component)(corner[1], k), c = NAME(component)(corner[2], k);
-        in_box = in_box && NAME(min)(NAME(min)(a, b), c) <= loose && NAME(max)(NAME(max)(a, b), c) >= -loose;
-    }
-    return other_side && NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move) && in_box;
+    return other_side && NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move) &&
+           NAME(in_box)(corner, NAME(vec)(0, 0, 0), loose);
 }
 
 /// Sample i, of another surface.
@@ -190,24 +204,28 @@ static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) 
     return NAME(dot)(plane.m, q);
 }
 
+static REAL NAME(spread)(NAME(parted) plane)
+{
+    return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
+}
+
 /// Whether a corner of `other` is for certain on that side of the plane to which `way` points.
 static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL way, const glint_prim *other)
 {
     for (int j = 0; j < 3; j++) {
         NAME(vec3) corner = NAME(rounded)(other->corner[j]);
         REAL rounding, h = NAME(height)(plane, prim, corner, &rounding);
-        REAL spread = (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
-        if (NAME(abs)(h) > rounding + spread * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
+        if (NAME(abs)(h) > rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
             ((h > 0 && way > 0) || (h < 0 && way < 0)))
             return true;
     }
     return false;
 }
 
-/// Whether the ray starts on triangle `from` in the plane of triangle `prim`, as far as rounding lets us know; then *t is
-/// least_way where it goes through `prim`, else 0.
-static bool NAME(starts_beside)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
-                                NAME(vec3) origin, NAME(vec3) direction, REAL *t)
+/// Whether the ray, which starts on triangle `from`, is in the planes of both triangles at once, as far as rounding lets us
+/// know; then *t is where it goes through `prim`, else 0.
+static bool NAME(is_beside)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
+                            NAME(vec3) origin, NAME(vec3) direction, REAL *t)
 {
     if (from->kind != GLINT_PRIM_TRIANGLE || prim->kind != GLINT_PRIM_TRIANGLE)
         return false;
@@ -218,19 +236,24 @@ static bool NAME(starts_beside)(const glint_geometry_table *table, const glint_p
                                        NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[2]), v0))) +
                                       NAME(largest)(origin));
     REAL rounding, h = NAME(height)(here, prim, origin, &rounding);
-    REAL spread = (NAME(abs)(here.m.x) + NAME(abs)(here.m.y)) + NAME(abs)(here.m.z);
-    if (NAME(abs)(h) > spread * slack + rounding)
-        return false;
+    bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
     NAME(corners_seen)(prim, origin, table->scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL way = NAME(way_to_plane)(seen, table->scale);
+    bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_BESIDE * table->extent);
+    bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
+    if (!begins && !(soon && still_on))
+        return false;
     REAL r = 0;
     for (int j = 0; j < 3; j++)
         r = NAME(max)(r, NAME(largest)(corner[j]));
-    REAL move = NAME(abs)(seen.dz) * (2 * (slack * (REAL)table->scale) + NAME(POINT_SLACK) * r);
-    REAL reach = move * (seen.sum_of_sizes + 2 * move);
+    REAL loose = 2 * (slack * (REAL)table->scale) + NAME(POINT_SLACK) * r;
+    REAL move = NAME(abs)(seen.dz) * loose, reach = move * (seen.sum_of_sizes + 2 * move);
+    NAME(vec3) at = NAME(times)(NAME(times)(direction, begins ? 0 : way), (REAL)table->scale);
     bool through = NAME(has_corner)(there, from, there.light, prim) &&
-                   NAME(has_corner)(here, prim, -here.light, from) && NAME(all_on_one_side)(seen, reach);
-    *t = through ? (REAL)GLINT_LEAST_WAY : 0;
+                   NAME(has_corner)(here, prim, -here.light, from) && NAME(in_box)(corner, at, loose) &&
+                   NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move);
+    *t = !through ? 0 : begins ? (REAL)GLINT_LEAST_WAY : way;
     return true;
 }
 

@@ -1,6 +1,6 @@
 /// Triangles: rays at the edges and corners that two or more share, triangles of no area, and texture coordinates, of which
 /// there are none. The textbook's triangle is Moller and Trumbore's.
-#include "tests/hard/point.h"
+#include "tests/hard/shell.h"
 
 #include <string.h>
 
@@ -34,89 +34,6 @@ NAIVE(naive_float, float)
 NAIVE(naive_double, double)
 
 // ---- A closed mesh ----
-
-#define SIDE 4 ///< quadrangles along an edge of the box
-#define VERTICES (6 * (SIDE + 1) * (SIDE + 1))
-#define QUADS (6 * SIDE * SIDE)
-
-typedef struct shell {
-    double vertex[VERTICES][3];
-    uint32_t corner[QUADS][4], size[QUADS];
-    double middle[3];
-} shell;
-
-/// A box, or a ball, made of quadrangles that need not be flat, somewhere; its seams have the same numbers on both sides.
-static void make_shell(shell *s, bool ball, double size, double away)
-{
-    uint32_t n = 0, q = 0;
-    double shear[3];
-    random_direction(shear);
-    for (int c = 0; c < 3; c++)
-        s->middle[c] = uniform(-1, 1) * away;
-    for (int face = 0; face < 6; face++) {
-        const uint32_t first = n;
-        for (int i = 0; i <= SIDE; i++)
-            for (int j = 0; j <= SIDE; j++) {
-                double p[3];
-                p[face % 3] = face < 3 ? 1 : -1;
-                p[(face + 1) % 3] = 2.0 * i / SIDE - 1;
-                p[(face + 2) % 3] = 2.0 * j / SIDE - 1;
-                // an order of its own, so that seams round alike
-                const double length = ball ? sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) : 1;
-                const double lean = 0.1 * (p[0] * shear[0] + p[1] * shear[1] + p[2] * shear[2]);
-                for (int c = 0; c < 3; c++)
-                    s->vertex[n][c] = s->middle[c] + size * (p[c] / length + lean);
-                n++;
-            }
-        for (uint32_t i = 0; i < SIDE; i++)
-            for (uint32_t j = 0; j < SIDE; j++) {
-                const uint32_t at = first + i * (SIDE + 1) + j;
-                const uint32_t round[4] = { at, at + SIDE + 1, at + SIDE + 2, at + 1 };
-                for (int k = 0; k < 4; k++) // the outside is in front
-                    s->corner[q][k] = round[face < 3 ? k : 3 - k];
-                s->size[q++] = 4;
-            }
-    }
-}
-
-static glint_shape *shell_shape(const shell *s, glint_material *material)
-{
-    glint_mesh_desc desc = glint_mesh_desc_default();
-    glint_shape *shape;
-    glint_error error;
-    desc.vertices = s->vertex[0];
-    desc.vertex_count = VERTICES;
-    desc.corners = s->corner[0];
-    desc.face_sizes = s->size;
-    desc.face_count = QUADS;
-    desc.material = material;
-    must(glint_mesh_create(&desc, &shape, &error), &error);
-    return shape;
-}
-
-static void add_shell(glint_scene *scene, const shell *s, glint_material *material)
-{
-    glint_error error;
-    glint_shape *shape = shell_shape(s, material);
-    must(glint_scene_add_shape(scene, shape, &error), &error);
-    glint_shape_release(shape);
-}
-
-/// A ray from within at a corner, at a place on an edge or diagonal, or next to one.
-static hard_ray aim_at_seam(const shell *s, double size)
-{
-    const uint32_t *quad = s->corner[random_bits() % QUADS];
-    const double *a = s->vertex[quad[random_bits() % 4]], *b = s->vertex[quad[random_bits() % 4]];
-    const double w = chance(0.2) ? 0 : chance(0.3) ? 0.5 : uniform(0, 1);
-    hard_ray ray;
-    for (int c = 0; c < 3; c++) {
-        ray.o[c] = s->middle[c] + size * uniform(-0.3, 0.3);
-        ray.d[c] = (a[c] + w * (b[c] - a[c])) - ray.o[c];
-    }
-    if (chance(0.3))
-        ray.d[random_bits() % 3] *= 1 + log_uniform(1e-16, 1e-12);
-    return ray;
-}
 
 static bool naive_hit(const shell *s, const hard_ray *ray, bool (*meets)(const double corner[3][3], const hard_ray *))
 {
@@ -170,89 +87,6 @@ static void seams(uint64_t rays)
                  (unsigned long long)count, (unsigned long long)asked);
         hard_row("G2", what, &shown, shown.in_double == 0);
     }
-}
-
-/// A ray from outside, at a seam.
-static hard_ray aim_from_outside(const shell *s, double size)
-{
-    hard_ray ray = aim_at_seam(s, size);
-    double place[3], side[3];
-    random_direction(side);
-    for (int c = 0; c < 3; c++) {
-        place[c] = ray.o[c] + ray.d[c];
-        ray.o[c] = s->middle[c] + side[c] * size * 3;
-        ray.d[c] = place[c] - ray.o[c];
-    }
-    return ray;
-}
-
-/// The way of a ray through the shell, by casting it from both ends; 0: it misses.
-static double way_through(const glint_scene *scene, const hard_ray *ray)
-{
-    glint_hit in, out;
-    hard_ray back = *ray;
-    double length = 0, way = 0;
-    if (!cast(scene, ray, &in))
-        return 0;
-    for (int c = 0; c < 3; c++) {
-        length = hypot(length, ray->d[c]);
-        back.o[c] = in.point[c] + 3 * (ray->d[c]);
-        back.d[c] = -ray->d[c];
-    }
-    if (!cast(scene, &back, &out))
-        return 0;
-    for (int c = 0; c < 3; c++)
-        way = hypot(way, out.point[c] - in.point[c]);
-    return way;
-}
-
-/// Rays that start on seams, in a white world: a mirror's go away; in glass none gets out without meeting the inside; and
-/// through glass that does not bend but dims they lose what the way takes.
-static void leaving_seams(uint64_t rays)
-{
-    static shell s;
-    const double white[3] = { 1, 1, 1 };
-    double wrong[3] = { 0 };
-    uint64_t count = 0;
-    hard_test("G2", "rays that leave by seams");
-    while (count < rays) {
-        const double size = log_uniform(1e-3, 1e3);
-        glint_error error;
-        glint_material *mirror = point_glass(0, 1, 0, 1.5, false), *glass = point_glass(0, 0, 1, 1.5, false),
-                       *dim = point_glass(0, 0, 1, 1, false);
-        glint_material_desc desc = *glint_material_get(dim);
-        for (int c = 0; c < 3; c++)
-            desc.absorption[c] = 1 / size;
-        must(glint_material_set(dim, &desc, &error), &error);
-        make_shell(&s, false, size, chance(0.5) ? 0 : size * log_uniform(1, 1e4));
-        glint_scene *scenes[3] = { scene_new(), scene_new(), scene_new() };
-        add_shell(scenes[0], &s, mirror);
-        add_shell(scenes[1], &s, glass);
-        add_shell(scenes[2], &s, dim);
-        for (int i = 0; i < 3; i++)
-            scene_light_up(scenes[i], 0, white);
-        for (int i = 0; i < 100; i++, count++) {
-            const hard_ray ray = aim_from_outside(&s, size);
-            const double way = way_through(scenes[0], &ray);
-            if (way < 1e-13 * (size + fabs(s.middle[0]) + fabs(s.middle[1]) + fabs(s.middle[2])))
-                continue; // by the silhouette: a hit or a miss, of the front or of the back
-            const double shown = point_seen(scenes[0], &ray, GLINT_DOUBLE, 1, GLINT_PASS_MIRROR);
-            const double leaked = point_seen(scenes[1], &ray, GLINT_DOUBLE, 1, GLINT_PASS_TRANSMISSION);
-            const double left = point_seen(scenes[2], &ray, GLINT_DOUBLE, 64, GLINT_PASS_TRANSMISSION);
-            wrong[0] += !hard_check(shown == 1, "a mirror shows %g of a white world", shown);
-            wrong[1] += !hard_check(leaked == 0, "%g got in and out at one place", leaked);
-            wrong[2] +=
-                !hard_check(fabs(left - exp(-way / size)) < 1e-6, "%.9g is left, truth %.9g", left, exp(-way / size));
-        }
-        for (int i = 0; i < 3; i++)
-            glint_scene_release(scenes[i]);
-        glint_material_release(mirror);
-        glint_material_release(glass);
-        glint_material_release(dim);
-    }
-    static const char *const names[] = { "mirror: hits itself", "glass: out at once", "dim glass: other light" };
-    for (int i = 0; i < 3; i++)
-        hard_row("G2", names[i], &(hard_values) { 0, wrong[i], HARD_BLANK, HARD_BLANK, HARD_BLANK }, wrong[i] == 0);
 }
 
 /// G2: three corners on one line are no face; where a polygon has such a triangle it is left out, and nothing is hit twice
@@ -380,7 +214,6 @@ int main(int argc, char **argv)
     hard_begin(argc, argv);
     hard_columns("Triangles.");
     seams(hard_rays / 100);
-    leaving_seams(hard_rays / 200);
     no_area(1000);
     in_plane(hard_rays / 50);
     hard_absent("G3", "there are no textures, and so no texture coordinates");
