@@ -119,10 +119,18 @@ static inline bool R(is_still_on)(const R(flat) * from, const real d[3], real sl
     return way * R(size_of)(DOT(from->m, d)) <= R(spread_of)(from) * slack;
 }
 
-/// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once. `at`: the first
-/// lane of the vector; `own`: those that leave this one.
+/// Lanes that may be at the triangle, give or take what their beginning is off by.
+static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R(seen_edges) * edges, vr t)
+{
+    // above every `loose`: the sizes it is made of are at most 12 extents
+    const vr move = R(abs)(edges->dz) * r_set((real)(13 * GLINT_POINT_SLACK * table->extent * table->scale));
+    return rm_bits(rm_and(r_lt(r_set(0), t), R(within)(edges, move * (edges->reach + r_set(2) * move))));
+}
+
+/// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once, and for those that
+/// get by this one's edge. `at`: the first lane of the vector; `own`: those that leave this one; `edges`: with reach.
 static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
-                                const R(flat) * flat, rm hit, vr *t)
+                                const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const real *const m = flat->m;
@@ -138,7 +146,8 @@ static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned
     const rm soon = rm_and(r_lt(r_set(0), *t), r_le(*t, r_set(near)));
     _Alignas(64) real way[VR];
     unsigned begins = 0, anew = 0, through = 0;
-    unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon)) & ~own & ((1u << VR) - 1);
+    const unsigned by_edge = R(may_be_near)(table, edges, *t) & ~rm_bits(hit);
+    unsigned left = (~rm_bits(r_lt(r_set(most), R(abs)(h))) | rm_bits(soon) | by_edge) & ~own & ((1u << VR) - 1);
     if (left)
         r_store(way, *t);
     for (; left; left &= left - 1) {
@@ -158,7 +167,7 @@ static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned
         if (!(spread * slack + rounding < R(size_of)(height))) {
             begins |= lane;
             way[j] = 0;
-        } else if (!(0 < way[j] && way[j] <= near && R(is_still_on)(&from, d, slack, way[j]))) {
+        } else if (!(by_edge & lane) && !(0 < way[j] && way[j] <= near && R(is_still_on)(&from, d, slack, way[j]))) {
             continue;
         }
         anew |= lane;

@@ -81,9 +81,10 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         rm hit;
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
-            hit = R(meet_triangle)(p, d, r_set(args->geometry->scale), &t);
+            const R(seen_edges) edges = R(see_edges)(p, d, beside);
+            hit = R(meet_seen)(&edges, p, d, r_set(args->geometry->scale), &t);
             if (beside)
-                hit = R(meet_beside)(args, at + (size_t)i, own, o, &flat, hit, &t);
+                hit = R(meet_beside)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
         } else if (prim->kind == GLINT_PRIM_SOLID) {
             const glint_solid *solid = &args->geometry->solids[prim->item];
             R(unit_offset)(solid, prim, o, f);

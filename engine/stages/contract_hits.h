@@ -111,12 +111,13 @@ typedef struct glint_cast_args {
 // lane is inward (and starts on them or within): these surely, at t = max((b + b) / (a scale), least_way) and max(out, least_way) (tube, funnel: where the span
 // hits, `out` is not by a face and 0 < out, there).
 // A ray that leaves triangle A meets another, B, as above unless it is in the planes of both at once as far as rounding lets us
-// know: it starts in B's plane, or crosses that, at t as above, before it is off A's for certain:
+// know: it starts in B's plane, or crosses that, at t as above, before it is off A's for certain; or unless it does not pass B,
+// and 0 < t: what it begins off by may have brought it by an edge:
 //                 m_P and M_P of triangle P as m and M in occlude; over_P(x) = dot(m_P, x - corner_0 of P), give or take
 //                 off_P(x) = point_slack dot(M_P, |x - corner_0 of P|); slack as in surface, of A and with the origin as point:
 //                 |over_B(origin)| <= ((|m_B.x| + |m_B.y|) + |m_B.z|) slack + off_B(origin), or
 //                 0 < t <= near_beside extent and t |dot(m_A, direction)| <= ((|m_A.x| + |m_A.y|) + |m_A.z|) slack
-// Then it meets B, at least_way in the former case and at t in the latter, where a corner of B is over A on the side of
+// Then it meets B, at least_way if it starts there and else at t, where a corner of B is over A on the side of
 // dot(m_A, direction), a corner of A over B on that of -dot(m_B, direction), and the ray is at B by `loose`, `move` and `reach` of
 // occlude, with `on`; for its bounds at (t direction) scale in place of 0. A corner c is over P by over_P(c), if that is
 // more than off_P(c) + ((|m_P.x| + |m_P.y|) + |m_P.z|) (point_slack |c|_max). So of two faces that share an edge the other is met

@@ -242,7 +242,8 @@ static bool NAME(is_beside)(const glint_geometry_table *table, const glint_prim 
     REAL way = NAME(way_to_plane)(seen, table->scale);
     bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_BESIDE * table->extent);
     bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
-    if (!begins && !(soon && still_on))
+    bool by_edge = way > 0 && !NAME(passes)(seen);
+    if (!begins && !(soon && still_on) && !by_edge)
         return false;
     REAL r = 0;
     for (int j = 0; j < 3; j++)

@@ -112,12 +112,17 @@ static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3
     return rm_and(inside, rm_or(sure, R(between_corners)(p, d, zero)));
 }
 
-/// p: the corners from the ray's origin, in units of the table.
+/// A triangle as the ray sees it; p: the corners from the ray's origin, in units of the table.
+static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr d[3], vr scale, vr *t)
+{
+    *t = edges->depth / ((R(det)(edges) * edges->dz) * scale);
+    return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));
+}
+
 static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
-    *t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
-    return rm_and(R(passes)(&edges, p, d), r_lt(r_set(0), *t));
+    return R(meet_seen)(&edges, p, d, scale, t);
 }
 
 /// A triangle's corners, in every lane.
