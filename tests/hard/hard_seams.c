@@ -6,7 +6,7 @@
 // ---- Two faces ----
 
 /// Two triangles of a convex mesh, and a ray that meets the first next to the second, by grazing light: where it begins anew,
-/// rounding has moved it further off the first one's plane than it rises on its way to the second.
+/// rounding has moved it further off the first one's plane, or a third one's, than it rises over that on its way to the second.
 typedef struct grazing_case {
     const char *what;
     bool mirrors;
@@ -35,6 +35,16 @@ static const grazing_case cases[] = {
         { 0x1.b8b7c6517a7edp-6, -0x1.13cebff52ecf8p-5, 0x1.231642ced75f6p-4 } },
       { { 0x1.c120a38d6e4b6p-6, -0x1.328ff91cb085fp-5, 0x1.11e256a9c226ep-4 },
         { -0x1.ea6a9d8cc19e6p-12, 0x1.80d3f28789377p-9, 0x1.163b8d67d4cfap-8 } } },
+    { "glass let one out along a third face's plane",
+      false,
+      { { -0x1.705597046c13cp+8, -0x1.badb881926d5ep+8, 0x1.dbce85655fc42p+5 },
+        { -0x1.7043272bbd3fcp+8, -0x1.bad972a879296p+8, 0x1.dc62042ad663fp+5 },
+        { -0x1.704421d4bd81bp+8, -0x1.bada6d51796b5p+8, 0x1.dbd75ba2cb18cp+5 },
+        { -0x1.705597046c13cp+8, -0x1.badb881926d5ep+8, 0x1.dbce85655fc42p+5 },
+        { -0x1.704421d4bd81bp+8, -0x1.bada6d51796b5p+8, 0x1.dbd75ba2cb18cp+5 },
+        { -0x1.70436da69638cp+8, -0x1.baea138b5349ep+8, 0x1.dbdcfd1405602p+5 } },
+      { { -0x1.7042fa07858eep+8, -0x1.ba95221c33ae7p+8, 0x1.de02d285ef51ap+5 },
+        { -0x1.2781502687c06p-8, -0x1.154733fb64eecp-2, -0x1.15ba41f2eb3a4p-2 } } },
 };
 
 /// Of a white world, the mirror shows all; the glass, which does not bend and of which there is but one surface to go
