@@ -8,7 +8,9 @@
 
 #include "bindings/film.h"
 
-#define QUEUE_DEPTH 2 // pictures that wait to be encoded, and files to be written; a renderer holds on to as many (render.c)
+// Pictures that wait to be encoded, and files to be written. With the picture that is encoded and the one that is rendered
+// these are the four whose memory a renderer holds on to (render.c).
+#define QUEUE_DEPTH 2
 #define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
 
 static const char RUN; // its address is the registry's key of the run

@@ -119,6 +119,7 @@ static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr 
     return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));
 }
 
+/// The same of its corners alone.
 static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
