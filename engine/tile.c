@@ -292,8 +292,10 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_film_counts before = { .clipped = tile->counts.clipped,
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
-    if (tile->kept)
+    if (tile->kept) {
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
+        glint_tile_foresee(tile, frame);
+    }
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);
