@@ -107,13 +107,15 @@ static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
 }
 
 /// The power of two that brings the largest distance from here to a surface that has an end near 1: then no square of a
-/// distance overflows a float, and none that is 2^-60 of it vanishes.
+/// distance overflows a float, and none that is 2^-60 of it vanishes. Distances that are not far from 1 stay as they are:
+/// the kernels leave out a product by 1.
 static double distance_scale(const double position[3], const glint_geometry_table *geometry)
 {
     double away[3];
     vec_sub(away, position, geometry->reference);
     const double distance = fmax(vec_max_abs(away), 1 / geometry->scale);
-    return distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
+    const double scale = distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
+    return 0x1p-20 < scale && scale < 0x1p20 ? 1 : scale;
 }
 
 /// The mean of a polygon's corners, which is within it.

@@ -296,6 +296,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
         glint_tile_foresee(tile, frame);
     }
+    if (plan->runs[GLINT_STAGE_TONE])
+        glint_tile_foresee_codes(tile, frame->image);
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);

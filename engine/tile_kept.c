@@ -1,16 +1,8 @@
 /// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
+#include "engine/base/alloc.h"
 #include "engine/tile.h"
 
 #include <math.h>
-
-#define CACHE_LINE 64
-
-/// Into the second level of the caches: the first is this tile's.
-static void prefetch(const void *memory, size_t bytes)
-{
-    for (size_t i = 0; i < bytes; i += CACHE_LINE)
-        __builtin_prefetch((const char *)memory + i, 0, 2);
-}
 
 void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -20,24 +12,24 @@ void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
     const size_t left = reuse->tile_count - tile->index - 1;
     bool points = false;
     if (left > 1)
-        prefetch(next + 1, sizeof *next);
+        glint_prefetch(next + 1, sizeof *next);
     if (left == 0 || !glint_key_equal(next->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
-    prefetch(next->hits, GLINT_TILE_GROUPS * sizeof *next->hits);
+    glint_prefetch(next->hits, GLINT_TILE_GROUPS * sizeof *next->hits);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_kept_light *light = &next->lights[i];
         if (!glint_key_equal(light->light, plan->lights[i].key)) {
             points = true;
             continue;
         }
-        prefetch(light->cosine, GLINT_TILE_SAMPLES * sizeof *light->cosine);
+        glint_prefetch(light->cosine, GLINT_TILE_SAMPLES * sizeof *light->cosine);
         if (plan->powers)
-            prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
+            glint_prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
     }
     if (points)
-        prefetch(next->t, GLINT_TILE_SAMPLES * reuse->real_size);
+        glint_prefetch(next->t, GLINT_TILE_SAMPLES * reuse->real_size);
     if (points && next->only == GLINT_MISS)
-        prefetch(next->prim, GLINT_TILE_SAMPLES * sizeof *next->prim);
+        glint_prefetch(next->prim, GLINT_TILE_SAMPLES * sizeof *next->prim);
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is

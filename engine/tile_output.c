@@ -1,4 +1,5 @@
 #include "engine/tile.h"
+#include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 
 #include <string.h>
@@ -200,6 +201,13 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
         glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);
     }
+}
+
+void glint_tile_foresee_codes(const glint_tile *tile, const glint_image *image)
+{
+    const size_t pixel = glint_image_pixel_bytes(image), stride = (size_t)image->width * pixel;
+    for (size_t y = 0; y < tile->height; y++)
+        glint_prefetch((const char *)image->codes + (tile->y0 + y) * stride + tile->x0 * pixel, tile->width * pixel);
 }
 
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)

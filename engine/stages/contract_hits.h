@@ -173,7 +173,9 @@ typedef struct glint_surface_args {
 // and material = 0. Where it is asked, `slack` of lanes that hit no triangle is 0.
 // sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
 //         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
-//         where length2(f) < 2^40: n = n (1.5 - 0.5 length2(n))
+//         where length2(f) < GLINT_SPHERE_CLOSE: that is n. The error of t at a point that is seen at an angle i goes along the
+//         ray, and grows as 1 / cos i does: n is as long as it should be but for F^2 roundings, F = |f| / r
+//         else where length2(f) < GLINT_SPHERE_NEAR: n = n (1.5 - 0.5 length2(n))
 //         elsewhere: a = length2(direction), b = -dot(f, direction), w = b / a, l = f + w direction,
 //                 h = sqrt(max(r2 - length2(l), 0) / a), n = b >= 0 and c >= 0 ? l - h direction : l + h direction
 //                 with c = length2(f) - r2;  m = length2(n); n = n / sqrt(m) (each component divided);
@@ -193,6 +195,10 @@ typedef struct glint_surface_args {
 //         through a face: g = its outward normal (disk: +z), k's component there = the face's
 //         n = transpose(inverse) g (each column's dot product), over sqrt(length2(n)); point = center + forward k
 // then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
+
+#define GLINT_SPHERE_NEAR 0x1p40
+#define GLINT_SPHERE_CLOSE_DOUBLE 0x1p8
+#define GLINT_SPHERE_CLOSE_FLOAT 2.0f
 
 /// Sixteen roundings. Four move a point off its triangle, eight are in the height of a point over a plane (three in m, one in
 /// q, four in products and sums); the rest is for products of roundings and for the rounding of the bounds themselves.

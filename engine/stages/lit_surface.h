@@ -14,6 +14,7 @@ typedef struct R(lit_whole) {
 typedef struct R(lit_call) {
     R(surface_walk) walk;
     real eye[3], position[3], scale;
+    bool scaled;
 } R(lit_call);
 
 /// VR lanes of it, of a sphere near the eye or of a plane; `sphere` is a constant.
@@ -28,7 +29,10 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     const vr t = r_load((const real *)surface->t + at + i);
     if (sphere) {
         const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
-        R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, true, n, p);
+        if (seen->range == R(RANGE_CLOSE))
+            R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, R(RANGE_CLOSE), n, p);
+        else
+            R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, R(RANGE_NEAR), n, p);
     }
     for (int k = 0; k < 3; k++) {
         if (!sphere) {
@@ -38,7 +42,9 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
         r_store((real *)surface->point[k] + at + i, p[k]);
         l[k] = r_set(call->position[k]);
         if (!light->directional)
-            l[k] = (l[k] - p[k]) * r_set(call->scale);
+            l[k] = l[k] - p[k];
+        if (call->scaled)
+            l[k] = l[k] * r_set(call->scale);
     }
     if (surface->box)
         R(enclose)(box, p, true, rm_from_bits(0));
@@ -132,7 +138,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     R(look_at)(surface, &call->walk, id);
     const glint_prim *prim = call->walk.seen.prim;
     const bool sphere = prim->kind == GLINT_PRIM_SPHERE;
-    if (!prim->two_sided || (sphere && !call->walk.seen.near))
+    if (!prim->two_sided || (sphere && call->walk.seen.range == R(RANGE_ANY)))
         return false;
     const glint_shade_material *material = &light->materials[prim->material];
     if (!light->highlights || (material->highlight != GLINT_HIGHLIGHT_PHONG &&
@@ -171,6 +177,7 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
         call.position[k] = (real)light->position[k];
     }
     call.scale = (real)light->scale;
+    call.scaled = !light->directional && light->scale != 1;
     group.brightest = f_set(GLINT_NO_SPECULAR);
     for (R(group_place) place = { 0 }; place.g < surface->group_count; R(next_group)(surface->camera, &place)) {
         const uint32_t g = place.g;

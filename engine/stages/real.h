@@ -28,6 +28,7 @@
 #undef GLINT_PARALLEL
 #undef GLINT_POINT_SLACK
 #undef GLINT_ROUNDER
+#undef GLINT_SPHERE_CLOSE
 
 #if GLINT_REAL == 64
 #define real double
@@ -58,6 +59,7 @@
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
 #define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE
+#define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_DOUBLE
 #else
 #define real float
 #define vr vf
@@ -87,6 +89,7 @@
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
 #define GLINT_ROUNDER GLINT_ROUNDER_FLOAT
+#define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_FLOAT
 #endif
 
 /// VF lanes of real as floats. What is stored as real and read as float comes by this: a wide load of what narrower

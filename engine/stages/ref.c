@@ -175,6 +175,8 @@ static double square_root_double(double x) { return sqrt(x); }
 #define PLANE_GRAZING_double 1e-60
 #define POINT_SLACK_float ((float)GLINT_POINT_SLACK_FLOAT)
 #define POINT_SLACK_double GLINT_POINT_SLACK_DOUBLE
+#define SPHERE_CLOSE_float GLINT_SPHERE_CLOSE_FLOAT
+#define SPHERE_CLOSE_double GLINT_SPHERE_CLOSE_DOUBLE
 
 #define REAL float
 #define ROUNDER GLINT_ROUNDER_FLOAT

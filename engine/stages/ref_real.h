@@ -131,12 +131,15 @@ static NAME(vec3) NAME(far_normal)(NAME(vec3) f, NAME(vec3) direction, REAL r2)
 
 static NAME(vec3) NAME(sphere_normal)(NAME(vec3) f, NAME(vec3) direction, REAL t, const glint_prim *prim)
 {
-    if (!(NAME(length2)(f) < (REAL)0x1p40))
+    REAL ff = NAME(length2)(f);
+    if (!(ff < (REAL)GLINT_SPHERE_NEAR))
         return NAME(far_normal)(f, direction, (REAL)prim->r2);
     REAL ts = t * (REAL)prim->scale;
     REAL r = (REAL)prim->radius * (REAL)prim->scale;
     NAME(vec3) n = NAME(add)(f, NAME(times)(direction, ts));
     n = NAME(times)(n, 1 / r);
+    if (ff < NAME(SPHERE_CLOSE))
+        return n;
     return NAME(times)(n, (REAL)1.5 - (REAL)0.5 * NAME(length2)(n));
 }
 

@@ -18,23 +18,35 @@ static inline void R(far_normal)(const vr f[3], const vr d[3], vr r2, vr n[3])
         n[k] = r_select(defined, n[k] / length, -d[k] / ray);
 }
 
-/// `near`: the origin is known to be within 2^20 radii in every lane.
-INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius, bool near,
-                             vr n[3], vr p[3])
+/// Where the origin is known to be in every lane.
+typedef enum R(sphere_range) { R(RANGE_ANY), R(RANGE_NEAR), R(RANGE_CLOSE) } R(sphere_range);
+
+/// f: of a camera.
+static R(sphere_range) R(range_of)(const real f[3])
+{
+    const real ff = DOT(f, f);
+    return ff < GLINT_SPHERE_CLOSE ? R(RANGE_CLOSE) : ff < (real)GLINT_SPHERE_NEAR ? R(RANGE_NEAR) : R(RANGE_ANY);
+}
+
+INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius,
+                             R(sphere_range) range, vr n[3], vr p[3])
 {
     const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
     vr ts = t * scale;
     for (int k = 0; k < 3; k++)
         n[k] = (f[k] + ts * d[k]) * r_set(inverse_radius);
-    vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
-    for (int k = 0; k < 3; k++)
-        n[k] = n[k] * newton;
-    if (!near) {
-        const rm close = r_lt(DOT(f, f), r_set(0x1p40));
+    if (range != R(RANGE_CLOSE)) {
+        const vr newton = r_set(1.5) - r_set(0.5) * DOT(n, n);
+        const rm close = range == R(RANGE_NEAR) ? rm_from_bits(0) : r_lt(DOT(f, f), r_set(GLINT_SPHERE_CLOSE));
+        for (int k = 0; k < 3; k++)
+            n[k] = r_select(close, n[k], n[k] * newton);
+    }
+    if (range == R(RANGE_ANY)) {
+        const rm near = r_lt(DOT(f, f), r_set(GLINT_SPHERE_NEAR));
         vr far[3];
         R(far_normal)(f, d, r_set(prim->r2), far);
         for (int k = 0; k < 3; k++)
-            n[k] = r_select(close, n[k], far[k]);
+            n[k] = r_select(near, n[k], far[k]);
     }
     for (int k = 0; k < 3; k++)
         p[k] = r_set(prim->center[k]) + radius * n[k];
@@ -54,7 +66,7 @@ typedef struct R(seen_prim) {
     uint32_t id; ///< GLINT_MISS: none yet
     const glint_prim *prim;
     real inverse_radius; ///< of a sphere, in its own units
-    bool near; ///< see sphere_surface
+    R(sphere_range) range; ///< of the eye from a sphere
     real f[3];
     real normal[3]; ///< of a plane or triangle
 } R(seen_prim);
@@ -76,7 +88,7 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
         return seen;
     for (int k = 0; k < 3; k++)
         seen.f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
-    seen.near = (seen.f[0] * seen.f[0] + seen.f[1] * seen.f[1]) + seen.f[2] * seen.f[2] < (real)0x1p40;
+    seen.range = R(range_of)(seen.f);
     return seen;
 }
 
@@ -113,7 +125,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             R(load3)(args->origin, at + i, from);
             R(offset)(from, prim, f);
         }
-        R(sphere_surface)(f, d, t, prim, seen->inverse_radius, seen->near, n, p);
+        R(sphere_surface)(f, d, t, prim, seen->inverse_radius, seen->range, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
             from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
