@@ -174,7 +174,7 @@ typedef struct glint_surface_args {
 // sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
 //         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
 //         where length2(f) < GLINT_SPHERE_CLOSE: that is n. The error of t at a point that is seen at an angle i goes along the
-//         ray, and grows as 1 / cos i does: n is as long as it should be but for F^2 roundings, F = |f| / r
+//         ray, and grows as 1 / cos i does: n is as long as it should be but for F^2 + 8 roundings, F = |f| / r
 //         else where length2(f) < GLINT_SPHERE_NEAR: n = n (1.5 - 0.5 length2(n))
 //         elsewhere: a = length2(direction), b = -dot(f, direction), w = b / a, l = f + w direction,
 //                 h = sqrt(max(r2 - length2(l), 0) / a), n = b >= 0 and c >= 0 ? l - h direction : l + h direction

@@ -53,7 +53,8 @@ typedef struct glint_light_args {
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
-    double scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1
+    double scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1; 1 where that is
+        ///< near enough already
     const glint_spot *spot; ///< NULL: light in all directions
     uint32_t sample_count; ///< of an area light; else 1
     const glint_lamp *lamp[GLINT_LIGHT_CHUNK]; ///< the samples; lamp[0] is NULL when it is no area light
