@@ -172,7 +172,7 @@ typedef struct glint_film_counts {
 /// Writes down what the tile shows now.
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// tile_kept.c: asks memory for what the next tile has kept, as far as a sample of it goes.
+/// tile_kept.c: asks memory for what the tile has kept and will read, of its first sample.
 void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile_stages.c: where sample k of a pixel lies, 0 .. 1 across and down.

@@ -8,16 +8,15 @@ void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
-    const glint_kept_tile *next = tile->kept + 1;
-    const size_t left = reuse->tile_count - tile->index - 1;
+    const glint_kept_tile *kept = tile->kept;
     bool points = false;
-    if (left > 1)
-        glint_prefetch(next + 1, sizeof *next);
-    if (left == 0 || !glint_key_equal(next->cast, plan->keys[GLINT_STAGE_CAST]))
+    if (tile->index + 1 < reuse->tile_count)
+        glint_prefetch(kept + 1, sizeof *kept); // asked for, not read: it may be another worker's
+    if (!glint_key_equal(kept->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
-    glint_prefetch(next->hits, GLINT_TILE_GROUPS * sizeof *next->hits);
+    glint_prefetch(kept->hits, GLINT_TILE_GROUPS * sizeof *kept->hits);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        const glint_kept_light *light = &next->lights[i];
+        const glint_kept_light *light = &kept->lights[i];
         if (!glint_key_equal(light->light, plan->lights[i].key)) {
             points = true;
             continue;
@@ -27,9 +26,9 @@ void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
             glint_prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
     }
     if (points)
-        glint_prefetch(next->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (points && next->only == GLINT_MISS)
-        glint_prefetch(next->prim, GLINT_TILE_SAMPLES * sizeof *next->prim);
+        glint_prefetch(kept->t, GLINT_TILE_SAMPLES * reuse->real_size);
+    if (points && kept->only == GLINT_MISS)
+        glint_prefetch(kept->prim, GLINT_TILE_SAMPLES * sizeof *kept->prim);
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
