@@ -67,7 +67,8 @@ typedef struct glint_material_desc {
     bool has_mirror; ///< false: `mirror` is 1 with `fresnel` and 0 without
     double mirror[3]; ///< share of the light from where a mirrored ray leads; >= 0, default 0
     double transmission[3]; ///< share of the light from where a refracted ray leads; >= 0, default 0. Shadows of the
-        ///< object have its colour, once for each surface that the light crosses
+        ///< object have its colour, once for each surface that the light crosses. Where a ray is totally reflected it
+        ///< has crossed none: all of its light goes on, max(mirror, 1) of it with `mirror`
     double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or that of the object around
     bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
     double absorption[3]; ///< per world unit of way inside, >= 0; default 0: of light, exp(-absorption way) is left

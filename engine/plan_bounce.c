@@ -32,13 +32,19 @@ static void bounce_material_init(glint_bounce_material *out, const glint_materia
     out->transmits = brightest_of(out->transmission) > 0;
 }
 
-/// A bound of what a material sends on of the light its rays bring.
+/// A bound of what a material sends on of the light its rays bring, where they are not totally reflected.
 static double gain(const glint_bounce_material *m)
 {
     double most = 0;
     for (int c = 0; c < 3; c++)
         most = fmax(most, m->fresnel ? fmax(m->mirror[c], m->transmission[c]) : m->mirror[c] + m->transmission[c]);
     return most;
+}
+
+/// The same of any ray: total reflection dims none.
+static double gain_anywhere(const glint_bounce_material *m)
+{
+    return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
 }
 
 /// A bound of the light that surfaces of a material themselves give to any ray.
@@ -95,7 +101,7 @@ static void bound_light(glint_plan *plan)
 {
     double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
     for (uint32_t i = 0; i < plan->material_count; i++)
-        most = fmax(most, (plan->bouncing ? gain(&plan->bouncing[i]) : 0) +
+        most = fmax(most, (plan->bouncing ? gain_anywhere(&plan->bouncing[i]) : 0) +
                               (plan->indirect.samples ? brightest_of(plan->materials[i].diffuse) : 0));
     plan->brightest = brightest_surface(plan) * geometric(most, depth);
     if (plan->bouncing && !plan->indirect.samples && most <= 1)

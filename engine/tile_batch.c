@@ -235,6 +235,14 @@ glint_batch_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile
     return ray;
 }
 
+/// What is totally reflected has not crossed the surface: all of it goes on, of which a mirror sends its part already.
+/// What lets nothing through is a mirror alone.
+static void total_share(const glint_bounce_material *m, double share[3])
+{
+    for (int c = 0; c < 3; c++)
+        share[c] = m->transmits ? fmax(1 - m->mirror[c], 0) : 0;
+}
+
 /// Points a ray along `way`, and weighs it.
 static void send(glint_batch_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], glint_precision precision, uint32_t i,
                  const double share[3], double factor)
@@ -252,12 +260,14 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
     const glint_bounce_material *m = &frame->plan->bouncing[tile->material[i]];
     const bool back = glint_has_lane(tile->back, i), total = glint_has_lane(batch->total, i);
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
+    double rest[3];
+    total_share(m, rest);
     *mirror = glint_batch_start_ray(batch, tile, frame, i);
     mirror->depth++;
     *through = *mirror;
     send(mirror, batch->reflected, precision, i, m->mirror, mirrored);
     mirror->inward = back;
-    send(through, total ? batch->reflected : batch->refracted, precision, i, m->transmission,
+    send(through, total ? batch->reflected : batch->refracted, precision, i, total ? rest : m->transmission,
          m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;
     if (!total)

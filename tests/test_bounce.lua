@@ -120,6 +120,35 @@ do -- energy: nothing is lost or won in a white world, by mirrors, by glass, by 
   end
 end
 
+do -- what is totally reflected has not crossed the surface: a prism takes `transmission` twice, however often it reflects
+  local function prism(of) -- a triangle of legs 1 along x and y
+    local vertices = {}
+    for _, z in ipairs { -1, 1 } do
+      for _, p in ipairs { { 0, 0 }, { 1, 0 }, { 0, 1 } } do vertices[#vertices + 1] = { p[1], p[2], z } end
+    end
+    return glint.mesh { vertices = vertices, material = of,
+      faces = { { 1, 3, 2 }, { 4, 5, 6 }, { 1, 2, 5, 4 }, { 2, 3, 6, 5 }, { 3, 1, 4, 6 } } }
+  end
+  local function seen(of, more)
+    local fields = { background = 1, max_depth = 40 }
+    for name, value in pairs(more or {}) do fields[name] = value end
+    return look({ -1, 0.3, 0 }, { 1, 0, 0 }, { prism(of) }, fields)
+  end
+  local off = LOSS + ROUNDING
+  near(seen(glass(1.5, { transmission = 0.5 })), 0.25, off, "prism of 45 degrees")
+  near(seen(glass(1.5, { transmission = 0.5 }), { precision = "float" }), 0.25, off, "and in float")
+  near(seen(glass(1.4, { transmission = 0.5 })), 0.25, off, "below the critical angle, two surfaces as well")
+  local red, green, blue = select(2, seen(glass(1.5, { transmission = { 0.5, 0, 1 } }))):pixel(0, 0)
+  check(math.abs(red - 0.25) <= off and green == 0 and math.abs(blue - 1) <= off, "each channel its own: %g %g %g", red, green, blue)
+  -- between the legs the rest goes to and fro: a + r a r' + ..., r of each leg
+  local both = seen(glass(1.5, { transmission = 0.5, mirror = 0.2 }))
+  near(both, 0.2 + (0.25 + 0.2 * 0.25) / (1 - 0.2 ^ 2), off, "a mirror beside it")
+  near(seen(glass(1.5, { transmission = 0.5, fresnel = true })), 0.04 + (0.48 ^ 2 + 0.04 * 0.48 ^ 2) / (1 - 0.04 ^ 2), off, "and with fresnel")
+  local guide = glint.box { min = { 0, 0, -1 }, max = { 10, 1, 1 }, material = glass(1.5, { transmission = 0.8 }) }
+  near(look({ -0.5, 0, 0 }, { 1, 1, 0 }, { guide }, { background = 1, max_depth = 7 }), 0.64, off, "five reflections in a rod")
+  near(look({ -0.5, 0, 0 }, { 1, 1, 0 }, { guide }, { background = 1, max_depth = 6 }), 0, 0, "seven surfaces are needed")
+end
+
 do -- absorption by the way inside, and the same in the shadow: twice the transmission, a diameter of glass
   local dense = glass(1, { transmission = 0.9, absorption = { 0.5, 0, 2 } })
   local through = 0.81 * math.exp(-0.5 * 2 * 1.5)

@@ -53,7 +53,7 @@ function vector:unpack() end
 ---@field specular? glint.color  strength >= 0 of the highlight. Default 0; with "cook_torrance" 1, nil: follows again
 ---@field shininess? number  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
 ---@field mirror? glint.color  share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: follows again
----@field transmission? glint.color  share >= 0 of the light that a refracted ray brings, at each surface. Default 0
+---@field transmission? glint.color  share >= 0 of the light that a refracted ray brings, at each surface; where it is totally reflected it crosses none, and all of its light goes on. Default 0
 ---@field ior? number  refractive index inside, > 0; outside is 1 or that of the object around. Default 1.5. Where `f0` follows it, that is ((ior - 1)/(ior + 1))^2
 ---@field fresnel? boolean  true: `mirror` times what a dielectric reflects at that angle, `transmission` times the rest. Default false
 ---@field absorption? glint.color  >= 0 per world unit: exp(-absorption * way) of the light is left inside. Default 0

@@ -1,5 +1,5 @@
 /// The named cases of mirrors and glass: Fresnel and Snell at and about the critical angle, mirrors that face each other, and
-/// chains as long as a million.
+/// chains as long as a million; what total reflection leaves.
 #include "tests/hard/oracle_light.h"
 #include "tests/hard/point.h"
 
@@ -236,6 +236,55 @@ static void depth(void)
     hard_row("depth 1e6", "mirrors of 1 that glow 1e-6", &shown, right);
 }
 
+// ---- Total reflection ----
+
+/// What comes through a rod of glass along x, one unit thick, into which a ray goes at 45 degrees by one end: out by the
+/// other, after `reflections`.
+static double through_rod(int reflections, double transmission, double mirror, glint_precision precision)
+{
+    static const double white[3] = { 1, 1, 1 };
+    const double rise = 1 / sqrt(2 * 1.5 * 1.5 - 1); // the tangent inside, of the sine sqrt(1/2) / 1.5
+    const hard_ray ray = { { -0.5, 0, 0 }, { 1, 1, 0 } }; // it enters half way up
+    glint_shape_desc rod = glint_shape_desc_default(GLINT_SHAPE_BOX);
+    glint_scene *scene = scene_new();
+    glint_shape *shape;
+    glint_error error;
+    rod.min[0] = rod.min[1] = 0;
+    rod.max[0] = reflections / rise;
+    rod.material = point_glass(0, mirror, transmission, 1.5, false);
+    must(glint_shape_create(&rod, &shape, &error), &error);
+    must(glint_scene_add_shape(scene, shape, &error), &error);
+    glint_material_release(rod.material);
+    glint_shape_release(shape);
+    scene_light_up(scene, 0, white);
+    const double seen = point_seen(scene, &ray, precision, reflections + 2, GLINT_PASS_TRANSMISSION);
+    glint_scene_release(scene);
+    return seen;
+}
+
+/// The light that is totally reflected has not crossed the surface. The textbook's columns: dimmed there as well.
+static void total(void)
+{
+    static const struct {
+        int reflections;
+        double transmission;
+    } rods[] = { { 1, 0.5 }, { 5, 0.9 }, { 5, 0.5 }, { 12, 0.8 }, { 100, 0.99 } };
+    hard_test("total", "total reflection keeps all of the light");
+    for (size_t i = 0; i < sizeof rods / sizeof *rods; i++) {
+        char what[80];
+        const double t = rods[i].transmission, dimmed = t * t * pow(t, rods[i].reflections);
+        hard_values shown = { .truth = t * t, .naive_double = dimmed, .naive_float = dimmed };
+        double *const got[2] = { &shown.in_double, &shown.in_float };
+        bool right = true;
+        for (int p = 0; p < 2; p++) {
+            *got[p] = through_rod(rods[i].reflections, t, 0, (glint_precision)p);
+            right &= hard_check(fabs(*got[p] - t * t) <= 0x1p-23, "%.9g, truth %.9g", *got[p], t * t);
+        }
+        snprintf(what, sizeof what, "%d total reflections in glass of transmission %g", rods[i].reflections, t);
+        hard_row("total", what, &shown, right);
+    }
+}
+
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
@@ -244,5 +293,6 @@ int main(int argc, char **argv)
     snell();
     mirrors();
     depth();
+    total();
     return hard_end();
 }

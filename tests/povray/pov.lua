@@ -13,7 +13,8 @@
 --   directional  light_source { far * -travel  rgb c  parallel  point_at 0 }
 --   mirror       finish { reflection m }: m times what the mirrored ray brings is added
 --   transmission pigment { rgb 0 transmit t } diffuse 0, interior { ior n }: t times what the refracted ray brings; where it
---                is totally reflected, t times what the mirrored ray brings. Shadows: t at each surface, and no bending.
+--                is totally reflected, all that the mirrored ray brings, and no `reflection` beside it. Shadows: t at each
+--                surface, and no bending.
 --   absorption   interior { fade_power 1001 fade_distance 1 fade_color 1 - a }: exp(-a way). Only what is refracted
 --                is absorbed there: a highlight on the inside of the far surface comes to the eye whole. Here that is absorbed
 --                as all light on that way; so what absorbs has no highlight in the test
@@ -42,7 +43,7 @@ local up = cross(right, forward)
 local extent = projection == "perspective" and 2 * math.tan(math.rad(w.fov) / 2) or w.height
 
 line "#version 3.7;"
-line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", w.max_depth + 1)
+line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", (w.depths[surfaces] or w.max_depth) + 1)
 line("background { rgb %s }", vector(w.background))
 line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
   vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
@@ -112,8 +113,7 @@ for i, sphere in ipairs(w.spheres) do
   line("%s pigment { %s } finish { ambient %.17g diffuse %.17g %s } %s }",
     shape((w.shapes[surfaces] or {})[i], center, sphere[2]), pigment, ambient, diffuse, finish, interior)
 end
-local a = w.around[surfaces]
-if a then
+for _, a in ipairs(w.more[surfaces] or {}) do
   line("sphere { %s, %.17g pigment { rgb 0 transmit %.17g } finish { ambient 0 diffuse 0 %s }", vector(a.center), a.radius,
     a.transmission, highlight(a))
   line("interior { ior %.17g fade_power 1001 fade_distance 1 fade_color rgb %.17g } }", a.ior, 1 - a.absorption)

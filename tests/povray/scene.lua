@@ -3,7 +3,7 @@ local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
-  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open", "faceted", "smooth" } },
+  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open", "faceted", "smooth", "prism", "nested" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -72,9 +72,8 @@ for i, sphere in ipairs(w.spheres) do
     diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },
   })))
 end
-local around = w.around[P.surfaces]
-if around then
-  scene:add(glint.sphere { center = around.center, radius = around.radius, material = glint.material { ambient = 0, diffuse = 0,
-    specular = around.specular, transmission = around.transmission, ior = around.ior, absorption = around.absorption } })
+for _, more in ipairs(w.more[P.surfaces] or {}) do
+  scene:add(glint.sphere { center = more.center, radius = more.radius, material = glint.material { ambient = 0, diffuse = 0,
+    specular = more.specular, transmission = more.transmission, ior = more.ior, absorption = more.absorption } })
 end
-scene:render { width = 1280, height = 720, bits = 16, transfer = "linear", max_depth = w.max_depth }
+scene:render { width = 1280, height = 720, bits = 16, transfer = "linear", max_depth = w.depths[P.surfaces] or w.max_depth }

@@ -50,6 +50,10 @@ return {
       [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 6, 3.5, 2 }, radius = 1.8, open = true },
       [5] = { kind = "cone", base = { 0.2, 3.9, 5.6 }, top = { 0.9, 0.25, 4.2 }, radius = 1.9, open = true },
     },
+    prism = {
+      [2] = { kind = "box", min = { -4.5, 0.5, -6 }, max = { 0.5, 4.5, -2.5 } },
+      [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 7, 5, -2 }, radius = 1.8 },
+    },
     faceted = { [4] = { kind = "mesh", mesh = sheet() } },
     smooth = { [4] = { kind = "mesh", mesh = sheet(), smooth = true } },
   },
@@ -58,10 +62,19 @@ return {
     plain = {},
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
+    prism = { [2] = { transmission = 0.9, ior = 1.5, specular = 0 }, [3] = { transmission = 0.8, ior = 1.7, mirror = 0.1, specular = 0 } },
+    nested = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, specular = 0 } },
     absorbing = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 }, [2] = { mirror = 0.4 } },
     fresnel = { [5] = { lift = 0.5, transmission = 1, ior = 1.5, fresnel = true }, [3] = { lift = 0.5, transmission = 1, ior = 1.2, fresnel = true } },
   },
-  around = { inside = { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- it holds the eye
+  more = { -- spheres of glass besides
+    inside = { { center = { 0.4, 5.9, 21 }, radius = 1.5, transmission = 0.9, ior = 1.5, absorption = 0.2, specular = 0 } }, -- it holds the eye
+    nested = { -- in the fifth sphere, one in the other, each of another index
+      { center = { 0.8, 2.5, 4.3 }, radius = 1.3, transmission = 0.95, ior = 1.1, absorption = 0, specular = 0 },
+      { center = { 0.7, 2.4, 4.5 }, radius = 0.7, transmission = 0.9, ior = 1.8, absorption = 0.1, specular = 0 },
+    },
+  },
+  depths = { nested = 14, prism = 14 }, -- other values of max_depth
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
     { { -1.0, 4.0, -4.5 }, 4.0, { 0.70, 0.12, 0.10 } },
