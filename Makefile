@@ -41,7 +41,7 @@ ifeq ($(call have,libseccomp),yes)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
 
-# WITHOUT=MESH leaves a part of the kernels out, see engine/stages/with.h.
+# WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -59,20 +59,20 @@ LINK       := $(SAN_FLAGS) $(LDFLAGS) -Wl,--as-needed
 
 # ---- Sources ----
 
-ENGINE_SRC   := $(sort $(wildcard engine/*.c engine/base/*.c engine/image/*.c engine/stages/*.c))
-BINDINGS_SRC := $(sort $(wildcard bindings/*.c))
+ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
+BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 ifeq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
-  ENGINE_SRC := $(filter-out engine/stages/isa_%.c,$(ENGINE_SRC))
+  ENGINE_SRC := $(filter-out engine/stages/simd/isa_%.c,$(ENGINE_SRC))
 endif
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
-COMMAND_OBJ  := $(BUILD)/bindings/main.o $(BUILD)/bindings/untrusted.o # the command has them, the module has not
+COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
-TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/test_*.c)))
+TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/engine/test_*.c)))
 TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
-HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(filter-out tests/hard/hard_%.c,$(sort $(wildcard tests/hard/*.c))))
-KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref.o $(BUILD)/engine/stages/isa_%.o,$(ENGINE_OBJ))
+HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/hard/oracle/*.c)))
+KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref/ref.o $(BUILD)/engine/stages/simd/isa_%.o,$(ENGINE_OBJ))
 
 # ---- Build ----
 
@@ -90,14 +90,14 @@ all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/g
 # Only isa_*.c is compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in these files alone.
 # Processors with AVX2 have instructions for masks too; select.c asks.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
-$(BUILD)/engine/stages/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
-$(BUILD)/engine/stages/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
-$(BUILD)/engine/stages/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
-$(BUILD)/engine/image/flip.o:         ISA := $(KERNEL_CFLAGS)
+$(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
+$(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
+$(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
+$(BUILD)/engine/compare/flip.o: ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
-# Files that the command carries with it, as C: bindings/watch_page.html.h has the bytes of bindings/watch_page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*.html bindings/watch_*.lua scripts/lib/gr.lua scripts/lib/gr/*.lua))
+# Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/watch/*.lua scripts/lib/gr.lua scripts/lib/gr/*.lua))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@
@@ -119,7 +119,7 @@ $(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
 $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	@rm -f $@
 	$(call say,AR)
-	$(Q)$(AR) rcs $@ $(ENGINE_OBJ)
+	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
@@ -146,8 +146,8 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
-SCRIPTED := $(wildcard tests/test_*.lua tests/hard/*.lua tests/check_*.lua \
-              $(addprefix tests/,$(addsuffix .sh,cli completion effects films gallery golden install povray readme untrusted warnings watch)))
+SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects films gallery golden install povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -158,10 +158,10 @@ check-run: tests
 	@T="$(T)" $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(SCRIPTED) make:check-layers make:check-symbols make:check-headers make:lint
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
-SANITIZED := $(filter-out tests/povray.sh tests/gallery.sh tests/install.sh,$(SCRIPTED))
+SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
 # popen (test_api.lua, test_cost.lua, test_data.lua, test_gr.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/cli.sh tests/films.sh $(addprefix tests/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
+WATCHED   := $(filter-out tests/command/cli.sh tests/command/films.sh $(addprefix tests/lua/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
@@ -179,21 +179,21 @@ tsan: ## the tests under ThreadSanitizer, in build-tsan/
 check-films: ## films by the real ffmpeg, and what Chromium makes of them; installs both through apt
 	@tests/deps.sh build test films
 	@$(MAKE) --no-print-directory all
-	@$(RUNNER) tests/real_films.sh
+	@$(RUNNER) tests/command/real_films.sh
 
 check-report: all ## the page of glint cost --report in headless Chromium, where that is installed
-	@$(RUNNER) tests/report.sh
+	@$(RUNNER) tests/command/report.sh
 
 check-watch: all ## the page of glint watch in headless Chromium, where that is installed
-	@$(RUNNER) tests/watch_page.sh
+	@$(RUNNER) tests/command/watch_page.sh
 
 check-rock: ## luarocks make into a folder of its own; installs luarocks through apt
 	@tests/deps.sh build rock
-	@$(RUNNER) tests/rock.sh
+	@$(RUNNER) tests/command/rock.sh
 
 check-farm: all ## scripts/farm with GNU parallel, and on a Slurm that SLURM_CLUSTER=PROGRAM starts
 	@tests/deps.sh farm
-	@$(RUNNER) tests/farm.sh
+	@$(RUNNER) tests/command/farm.sh
 
 .PHONY: san-run
 san-run: tests
@@ -216,16 +216,16 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 	@$(MAKE) --no-print-directory soak-run
 
 # Other seeds than the check's, so that both see something new.
-soak-run: $(HARD_BIN) $(BUILD)/tests/test_reuse $(BUILD)/tests/test_carry
-	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_reuse
-	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/test_carry
+soak-run: $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine/test_carry
+	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_reuse
+	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_carry
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
 
 gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render
-	@BUILD=$(BUILD) tests/gallery.sh update
+	@BUILD=$(BUILD) tests/command/gallery.sh update
 
 golden-update: all ## writes the golden pictures anew, and prints which moved and by how much
-	@BUILD=$(BUILD) tests/golden.sh update
+	@BUILD=$(BUILD) tests/command/golden.sh update
 
 check-layers: ## the engine names no Lua, the stages no scene
 	@tests/layers.sh

@@ -1,15 +1,15 @@
 #!/bin/bash
 # headers.sh FLAGS...: each header compiles alone. A stage's header is written in the vector vocabulary and is included
-# by the isa_*.c files only; simd_avx2.h and simd_avx512.h need their instruction sets.
+# by the isa_*.c files only; simd/avx2.h and simd/avx512.h need their instruction sets.
 set -u
 bad=0
-for header in engine/*.h engine/*/*.h bindings/*.h; do
+for header in engine/*.h engine/*/*.h engine/stages/*/*.h bindings/*/*.h; do
     flags=()
     case $header in
-    *simd_avx2.h) flags=(-mavx2 -mfma) ;;
-    *simd_avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
-    *simd_*.h | engine/stages/stages.h | engine/stages/contract_*.h | engine/stages/coefficients.h) ;;
-    engine/stages/*.h) continue ;;
+    *simd/avx2.h) flags=(-mavx2 -mfma) ;;
+    *simd/avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
+    */simd/sse2.h | engine/stages/stages.h | engine/stages/contract/*.h | */simd/coefficients.h) ;;
+    engine/stages/*/*.h) continue ;;
     esac
     # Twice: the guard holds.
     if ! printf '#include "%s"\n#include "%s"\nextern int not_empty;\n' "$header" "$header" |

@@ -1,6 +1,6 @@
 ---@meta glint
 
--- The whole API of glint for editors (LuaLS). tests/check_meta.lua holds it equal to what the module registers.
+-- The whole API of glint for editors (LuaLS). tests/lua/check_meta.lua holds it equal to what the module registers.
 --
 -- Lengths are in world units, the world is right-handed, angles are in degrees. Colours are linear, 1 = display white.
 -- A wrong name, type or value raises an error such as

@@ -1,5 +1,5 @@
 /// The contract of every stage: what it reads, what it writes, and the exact order of its arithmetic. What holds for all stands
-/// here, each stage in one of contract_tables.h, contract_hits.h, contract_light.h and contract_film.h, in the order of work.
+/// here, each stage in one of contract/tables.h, contract/hits.h, contract/light.h and contract/film.h, in the order of work.
 ///
 /// A stage takes plain arrays in and gives plain arrays out; it has never heard of a scene. Each is written once in
 /// the vector vocabulary (simd_*.h) and compiled for every instruction set, and once more, on its own, as the scalar
@@ -16,10 +16,10 @@
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
-#include "engine/stages/contract_film.h"
-#include "engine/stages/contract_hits.h"
-#include "engine/stages/contract_light.h"
-#include "engine/stages/contract_tables.h"
+#include "engine/stages/contract/film.h"
+#include "engine/stages/contract/hits.h"
+#include "engine/stages/contract/light.h"
+#include "engine/stages/contract/tables.h"
 
 /// One instruction set's stages. The object file defines this table and nothing else that can be seen.
 typedef struct glint_stages {

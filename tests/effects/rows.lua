@@ -1,6 +1,6 @@
 --- The effects that a scene may call for, a row each:
 ---   name       of the parameter `effect` in scene.lua
----   part       of engine/stages/with.h: what a build without the effect leaves out; nil: it has no kernel of its own
+---   part       of engine/stages/contract/with.h: what a build without the effect leaves out; nil: it has no kernel of its own
 ---   stage, rays    its counter: the stage's name or the kind of ray in the events of --json; nil: it has none
 ---   functions  Lua patterns of the names of its functions; with the effect at least one is called. {}: what it does is
 ---              compiled into functions of all

@@ -1,5 +1,5 @@
 -- A plain renderer of the gr dialect, written from its formulas alone: one ray a pixel, every shape tried, one after the
--- other. It knows nothing of glint and checks no arguments; tests/test_gr.lua sets its pictures beside the engine's.
+-- other. It knows nothing of glint and checks no arguments; tests/lua/test_gr.lua sets its pictures beside the engine's.
 --
 --   witness.run(path, order, options) -> list of pictures { file, width, height, codes = function(x, y, dx, dy) }
 --   order "pre"|"post"; options.pixel, options.specular, options.background (three codes)

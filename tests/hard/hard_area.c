@@ -1,7 +1,7 @@
 /// The named cases of lights that have a surface: no radius, a point within them, so small that float loses them, what they
 /// give to a point in closed form and how fast it is approached, and where their shadows begin and end.
-#include "tests/hard/oracle_light.h"
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/oracle_light.h"
+#include "tests/hard/oracle/point.h"
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
 /// The named cases of one ray and one object, and what lies near them: each case again with axes swapped and turned,
 /// scaled, moved and with other lengths of the direction. --table prints one line a case: what is true, what the engine
 /// finds in double and in float, and what the textbook's formula finds.
-#include "tests/hard/drive.h"
-#include "tests/hard/judge.h"
-#include "tests/hard/naive.h"
-#include "tests/hard/ray_cases.h"
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/judge.h"
+#include "tests/hard/oracle/naive.h"
+#include "tests/hard/oracle/ray_cases.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /// Microfacets, roughness 1 down to 1e-4, against multiple precision; the textbook's float loses the lobe of a smooth
 /// surface in 1 - cos^2.
-#include "tests/hard/oracle_light.h"
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/oracle_light.h"
+#include "tests/hard/oracle/point.h"
 
 #include <string.h>
 

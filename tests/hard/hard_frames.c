@@ -1,10 +1,10 @@
 /// Pictures that are hard to get right, against the truth: spheres tangent to pixels' rays, through the filters and the
 /// index that a frame uses and a single ray does not; random still lifes with their shadows; and rays that leave a
 /// surface towards a light, which nothing may stop.
-#include "tests/hard/aim.h"
-#include "tests/hard/drive.h"
-#include "tests/hard/judge.h"
-#include "tests/hard/still.h"
+#include "tests/hard/oracle/aim.h"
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/judge.h"
+#include "tests/hard/oracle/still.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /// Adversarial rays: the engine's answers against the oracle's. 1e6 rays when run as a test, as many as --rays says in
 /// the soak. Spheres and planes one at a time, many spheres in one place, pictures of tangent spheres through the
 /// frame's own kernels, and rays that leave surfaces towards a light.
-#include "tests/hard/aim.h"
-#include "tests/hard/drive.h"
-#include "tests/hard/judge.h"
-#include "tests/hard/still.h"
+#include "tests/hard/oracle/aim.h"
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/judge.h"
+#include "tests/hard/oracle/still.h"
 
 #include <math.h>
 #include <string.h>

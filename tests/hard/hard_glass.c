@@ -1,7 +1,7 @@
 /// The named cases of mirrors and glass: Fresnel and Snell at and about the critical angle, mirrors that face each other, and
 /// chains as long as a million; what total reflection leaves.
-#include "tests/hard/oracle_light.h"
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/oracle_light.h"
+#include "tests/hard/oracle/point.h"
 
 #include <string.h>
 #include <sys/resource.h>

@@ -1,7 +1,7 @@
 /// Rays that leave a surface: nothing convex stands in the way of its own light, sees itself in a mirror of its own, or lets a
 /// ray that has gone in out anywhere but through its far side.
-#include "tests/hard/aim_solid.h"
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/aim_solid.h"
+#include "tests/hard/oracle/point.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /// The named cases of lights: at the point, inside, far away, spots, lights with a surface, sums of very many. Each through
 /// frames in double and in float, beside the textbook's formula, and again with other numbers.
-#include "tests/hard/oracle_light.h"
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/oracle_light.h"
+#include "tests/hard/oracle/point.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /// Pictures at the edge of what may be asked for: scenes scaled by powers of two, numbers near the largest, the longest
 /// sides, the most lights, the most spheres, nothing at all; each instruction set and number of threads.
-#include "tests/hard/drive.h"
-#include "tests/hard/still.h"
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/still.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /// Triangles: rays at the edges and corners that two or more share, triangles of no area, and texture coordinates, of which
 /// there are none. The textbook's triangle is Moller and Trumbore's.
-#include "tests/hard/shell.h"
+#include "tests/hard/oracle/shell.h"
 
 #include <string.h>
 

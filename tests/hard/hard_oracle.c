@@ -1,8 +1,8 @@
 /// The oracle itself, where the answer is known without it.
-#include "tests/hard/aim.h"
-#include "tests/hard/drive.h"
-#include "tests/hard/oracle_light.h"
-#include "tests/hard/ray_cases.h"
+#include "tests/hard/oracle/aim.h"
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/oracle_light.h"
+#include "tests/hard/oracle/ray_cases.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /// Whole pictures against 113-bit arithmetic: nine still lifes that differ in how far apart their numbers are. In double
 /// no pixel may show a wrong object, a wrong shadow or a colour more than one 8-bit code off; what float and the
 /// textbook's formulas get wrong is printed beside it.
-#include "tests/hard/still.h"
+#include "tests/hard/oracle/still.h"
 
 #include <math.h>
 #include <stdlib.h>

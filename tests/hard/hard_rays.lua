@@ -1,6 +1,6 @@
 -- One ray, one reflection, as scripts ask for them. The whole list of hard cases, with what lies near them, is in
 -- hard_cases.c and hard_shading.c; here are those that would show a number bent on its way through Lua.
-local tally = dofile "tests/tally.lua"
+local tally = dofile "tests/lua/tally.lua"
 local check = tally.check
 local glint = require "glint"
 

@@ -1,7 +1,7 @@
 /// Rays that leave a triangle by an edge or corner: mirrored, they do not meet the face beyond it from inside; in glass, none
 /// gets by that face.
-#include "tests/hard/point.h"
-#include "tests/hard/shell.h"
+#include "tests/hard/oracle/point.h"
+#include "tests/hard/oracle/shell.h"
 
 // ---- Two faces ----
 

@@ -1,6 +1,6 @@
 /// The named cases of reflections, of sums of lights and of codes, each also turned and scaled; shininess from 0 to 1e7;
 /// codes as they come out of a PNG file.
-#include "tests/hard/point.h"
+#include "tests/hard/oracle/point.h"
 
 #include <math.h>
 #include <png.h>

@@ -1,7 +1,7 @@
 /// Adversarial rays at ellipsoids, boxes, disks, cylinders, cones and triangles, under maps that turn, stretch, shear and
 /// mirror, against 113 bits.
-#include "tests/hard/aim_solid.h"
-#include "tests/hard/solid_cases.h"
+#include "tests/hard/oracle/aim_solid.h"
+#include "tests/hard/oracle/solid_cases.h"
 
 #define ROUNDING 8 ///< of 2^-53: what the engine's arithmetic may be off by, times the map's condition and the distance
 

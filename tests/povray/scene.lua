@@ -1,4 +1,4 @@
--- tests/povray.sh renders this and compares it with POV-Ray's picture of the same numbers.
+-- tests/command/povray.sh renders this and compares it with POV-Ray's picture of the same numbers.
 local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },

@@ -1,0 +1,288 @@
+// The command line: words and options in any order.
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/command/cli.h"
+#include "bindings/run/film.h"
+
+#define MESSAGE GLINTL_MESSAGE_SIZE
+
+bool cli_add_set(glintL_asked *asked, const char *name, const char *text)
+{
+    glintL_set *grown = realloc(asked->sets, (asked->set_count + 1) * sizeof *grown);
+    if (!grown)
+        return false;
+    asked->sets = grown;
+    grown[asked->set_count++] = (glintL_set) { .name = name, .text = text };
+    return true;
+}
+
+static bool complain_unknown(const char *text, char *message)
+{
+    char name[64];
+    const char *near = NULL;
+    if (strncmp(text, "--", 2) != 0 || strlen(text) > 60) {
+        snprintf(message, MESSAGE, "%.100s: no such option; --help lists them", text);
+        return false;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 2, "="), text + 2);
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        near = glintL_nearer(name, near, cli_option_list[i].name);
+    if (near)
+        snprintf(message, MESSAGE, "--%s: no such option; did you mean '--%s'?", name, near);
+    else
+        snprintf(message, MESSAGE, "--%s: no such option; --help lists them", name);
+    return false;
+}
+
+// getopt_long returned '?' or ':'.
+static bool complain(int what, const char *given, int code, char *message)
+{
+    if (code > 0xff) { // one of ours: its text is missing, or it takes none
+        const char *name = cli_option_list[code - 0x100].name;
+        snprintf(message, MESSAGE, "--%s: %s", name, what == ':' ? "a value is missing" : "it takes no value");
+        return false;
+    }
+    if (what == ':') {
+        snprintf(message, MESSAGE, "-%c: a value is missing", code);
+        return false;
+    }
+    if (code && strncmp(given, "--", 2) != 0) {
+        snprintf(message, MESSAGE, "-%c: no such option; --help lists them", code);
+        return false;
+    }
+    return complain_unknown(given, message);
+}
+
+static const cli_option *find_option(int code)
+{
+    if (code > 0xff)
+        return &cli_option_list[code - 0x100];
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        if (cli_option_list[i].letter == code)
+            return &cli_option_list[i];
+    return NULL;
+}
+
+static int argument_of(const cli_option *option)
+{
+    return option->has_text == CLI_MAY_HAVE_NUMBER ? optional_argument
+           : option->has_text                      ? required_argument
+                                                   : no_argument;
+}
+
+static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
+
+// Reads the options wherever they stand; `used` marks those given. getopt_long moves the other words to the end.
+static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI_OPTION_COUNT], char *message)
+{
+    struct option list[CLI_OPTION_COUNT + 1] = { 0 };
+    char letters[2 * CLI_OPTION_COUNT + 2] = ":", *letter = letters + 1, wrong[MESSAGE];
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
+        list[i] = (struct option) { cli_option_list[i].name, argument_of(&cli_option_list[i]), NULL, 0x100 + (int)i };
+        if (cli_option_list[i].letter) {
+            *letter++ = cli_option_list[i].letter;
+            if (cli_option_list[i].has_text)
+                *letter++ = ':';
+        }
+    }
+    *letter = '\0';
+    opterr = 0;
+    for (;;) {
+        int at = optind, code = getopt_long(argc, argv, letters, list, NULL);
+        if (code == -1)
+            return true;
+        if (code == '?' || code == ':')
+            return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
+        const cli_option *option = find_option(code);
+        used[option - cli_option_list] = true;
+        if (option->has_text == CLI_MAY_HAVE_NUMBER && !optarg && optind < argc && is_number(argv[optind]))
+            optarg = argv[optind++];
+        if (!option->read(options, option, optarg, wrong)) {
+            snprintf(message, MESSAGE, "--%s: %.1000s", option->name, wrong);
+            return false;
+        }
+    }
+}
+
+// ---- What the words and the options say together ----
+
+const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
+    { "render", CLI_RENDER, CLI_SCRIPT, "render the frames of a script" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "what a frame needs, and who called for it" },
+    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "the parameters of a script" },
+    { "compare", CLI_COMPARE, CLI_FILES, "compare two pictures" },
+    { "sheet", CLI_SHEET, CLI_FILES, "a contact sheet of finished frames" },
+    { "assemble", CLI_ASSEMBLE, CLI_FILES, "a film of finished frames" },
+    { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "render a finished frame again" },
+    { "new", CLI_NEW, CLI_FILES, "write a scene to begin with" },
+    { "cost", CLI_COST, CLI_SCRIPT, "what accuracy costs in time" },
+    { "watch", CLI_WATCH, CLI_SCRIPT, "render at every save" },
+    { "completion", CLI_COMPLETION, CLI_SCRIPT, "what a shell completes" },
+};
+
+static bool read_command(const char *word, cli_command *command, cli_words *words)
+{
+    for (size_t i = 0; i < CLI_COMMAND_COUNT; i++) {
+        if (strcmp(word, cli_command_list[i].name) == 0) {
+            *command = cli_command_list[i].command;
+            *words = cli_command_list[i].words;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool read_words(int count, char **words, cli_options *options, char *message)
+{
+    const char *near = NULL;
+    cli_words kind = CLI_SCRIPT;
+    int used = count > 0 && read_command(words[0], &options->command, &kind) ? 1 : 0;
+    if (kind == CLI_FILES) {
+        options->arguments = words + used;
+        options->argument_count = count - used;
+        return true;
+    }
+    if (kind == CLI_FILE_SCRIPT && used < count)
+        options->file = words[used++];
+    if (used < count)
+        options->script = words[used++];
+    if (used == count)
+        return true;
+    for (size_t i = 0; i < CLI_COMMAND_COUNT && used == 1; i++)
+        near = glintL_nearer(words[0], near, cli_command_list[i].name);
+    if (near)
+        snprintf(message, MESSAGE, "%.200s: no such command; did you mean '%s'?", words[0], near);
+    else
+        snprintf(message, MESSAGE, "'%.200s' is one word too many; arguments of the script follow --", words[used]);
+    return false;
+}
+
+// -o is checked here for the commands that take a picture's or a film's name.
+static bool check_output(cli_options *options, char *message)
+{
+    char wrong[MESSAGE];
+    glintL_render scratch = glintL_render_default();
+    int field = glintL_render_find("output");
+    if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
+        return true;
+    if (options->asked.fps > 0 && glintL_film_kind_of(options->output, options->asked.apng) == GLINTL_FILM_NONE) {
+        snprintf(message, MESSAGE, "--fps: it means something to films alone; -o '%.200s' is a picture",
+                 options->output);
+        return false;
+    }
+    options->asked.render_text[field] = options->output;
+    if (glintL_render_set_text(&scratch, field, options->output, wrong))
+        return true;
+    snprintf(message, MESSAGE, "--output: %.1000s", wrong);
+    return false;
+}
+
+// An untrusted script writes pictures into one folder.
+static bool check_untrusted(const cli_options *options, char *message)
+{
+    const char *output = options->output;
+    if (!options->untrusted_s || !output || strcmp(output, "none") == 0)
+        return true;
+    const char *slash = strrchr(output, '/');
+    if (glintL_film_kind_of(output, options->asked.apng) != GLINTL_FILM_NONE)
+        snprintf(message, MESSAGE, "--untrusted: pictures expected, got '%.200s'; glint assemble makes a film of them",
+                 output);
+    else if (slash && memchr(output, '%', (size_t)(slash - output)))
+        snprintf(message, MESSAGE, "--untrusted: a folder without a place for the number expected, got '%.200s'",
+                 output);
+    else if (glintL_name_is_special(output))
+        snprintf(message, MESSAGE, "--untrusted: a file expected, got '%.200s'", output);
+    else
+        return true;
+    return false;
+}
+
+static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
+{
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
+        if (used[i] && !(cli_option_list[i].commands & options->command)) {
+            snprintf(message, MESSAGE, "--%s: it means nothing to this command", cli_option_list[i].name);
+            return false;
+        }
+    }
+    if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {
+        snprintf(message, MESSAGE, "--frames: either it or --start, --end and --jump, not both");
+        return false;
+    }
+    if (options->end && options->end < (options->start ? options->start : 1)) {
+        snprintf(message, MESSAGE, "--end: a frame from %" PRId64 " on expected, got '%" PRId64 "'", options->start,
+                 options->end);
+        return false;
+    }
+    for (size_t i = 0; i < options->sweep_count; i++) {
+        bool twice = false;
+        for (size_t j = 0; j < options->asked.set_count; j++)
+            twice = twice || strcmp(options->asked.sets[j].name, options->sweeps[i].name) == 0;
+        for (size_t j = 0; j < i; j++)
+            twice = twice || strcmp(options->sweeps[j].name, options->sweeps[i].name) == 0;
+        if (twice) {
+            snprintf(message, MESSAGE, "--sweep %.200s: the parameter is set twice", options->sweeps[i].name);
+            return false;
+        }
+    }
+    if (cli_sweep_points(options) > GLINTL_FRAMES_MAX) {
+        snprintf(message, MESSAGE, "--sweep: at most %d points together expected", GLINTL_FRAMES_MAX);
+        return false;
+    }
+    return cli_check_dialect(options, message);
+}
+
+// Room for the swept parameters, behind those that are set; and -s -e -j as a range.
+static bool complete(cli_options *options, char *message)
+{
+    bool good = true;
+    options->asked.swept_count = options->sweep_count;
+    for (size_t i = 0; i < options->sweep_count; i++)
+        good = good && cli_add_set(&options->asked, options->sweeps[i].name, "");
+    if (options->start || options->end || options->jump) {
+        glintL_range range = { options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
+                               options->jump ? options->jump : 1 };
+        good = good && glintL_selection_add(&options->asked.selection, range);
+    }
+    if (!good)
+        snprintf(message, MESSAGE, "out of memory");
+    return good;
+}
+
+bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE])
+{
+    bool used[CLI_OPTION_COUNT] = { false };
+    memset(options, 0, sizeof *options);
+    options->command = CLI_RENDER;
+    options->asked.repeat = 1;
+    options->frame = 1;
+    options->http_port = -1;
+    options->fail = options->warn = -1;
+    int words = argc;
+    for (int i = 1; i < words; i++) {
+        if (strcmp(argv[i], "--") == 0)
+            words = i; // what follows is the script's
+        else if (strcmp(argv[i], "--json") == 0)
+            options->json = true; // so that an error here is an event, too
+    }
+    if (!read_argv(words, argv, options, used, message) ||
+        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
+        !check_output(options, message) || !check_untrusted(options, message) || !complete(options, message))
+        return false;
+    if (words < argc && !options->arguments) {
+        options->arguments = argv + words + 1;
+        options->argument_count = argc - words - 1;
+    }
+    return true;
+}
+
+void cli_free_options(cli_options *options)
+{
+    glintL_selection_clear(&options->asked.selection);
+    free(options->asked.sets);
+    free(options->asked.folder);
+    free(options->sweeps);
+}

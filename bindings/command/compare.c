@@ -1,0 +1,92 @@
+// glint compare A B: how far two pictures are apart. Exit codes as idiff's.
+#include <inttypes.h>
+#include <math.h>
+
+#include "bindings/command/cli.h"
+
+typedef enum verdict { SAME, WARN, DIFFER, SIZE, UNREADABLE } verdict;
+
+static const char *const VERDICTS[] = { "same", "warn", "differ", "size", "file" };
+
+static verdict judge(glint_status status, const glint_compare_result *result)
+{
+    if (status == GLINT_ERR_INVALID)
+        return SIZE;
+    if (status)
+        return UNREADABLE;
+    return result->failed ? DIFFER : result->warned ? WARN : SAME;
+}
+
+static void print_number(FILE *out, const char *name, double value)
+{
+    fprintf(out, ",\"%s\":", name);
+    glintL_json_number(out, value);
+}
+
+static void print_json(FILE *out, char **files, verdict found, const glint_compare_result *result, const char *message)
+{
+    fputs("{\"event\":\"compare\",\"a\":", out);
+    glintL_json_string(out, files[0]);
+    fputs(",\"b\":", out);
+    glintL_json_string(out, files[1]);
+    fprintf(out, ",\"result\":\"%s\"", VERDICTS[found]);
+    if (found >= SIZE) {
+        fputs(",\"message\":", out);
+        glintL_json_string(out, message);
+    } else {
+        fprintf(out, ",\"width\":%d,\"height\":%d,\"channels\":%d", result->width, result->height, result->channels);
+        print_number(out, "mean_error", result->mean_error);
+        print_number(out, "rms_error", result->rms_error);
+        print_number(out, "peak_snr", result->peak_snr);
+        print_number(out, "max_error", result->max_error);
+        fprintf(out, ",\"max_at\":{\"x\":%d,\"y\":%d,\"channel\":%d}", result->max_x, result->max_y,
+                result->max_channel);
+        fprintf(out, ",\"failed\":%" PRIu64 ",\"warned\":%" PRIu64 ",\"pixels\":%" PRIu64, result->failed,
+                result->warned, result->pixels);
+    }
+    fputs("}\n", out);
+}
+
+static void print_share(FILE *out, uint64_t count, uint64_t pixels, double threshold)
+{
+    if (count)
+        fprintf(out, "  %" PRIu64 " pixels (%.3g%%) over %g\n", count, 100.0 * (double)count / (double)pixels,
+                threshold);
+}
+
+static void print_for_people(FILE *out, char **files, const glint_compare_result *result,
+                             const glint_compare_desc *desc, verdict found)
+{
+    static const char *const words[] = { "same", "nearly the same", "different" };
+    fprintf(out, "%s and %s: %s\n", files[0], files[1], words[found]);
+    fprintf(out, "  mean error %g, RMS error %g, peak SNR %g dB\n", result->mean_error, result->rms_error,
+            result->peak_snr);
+    fprintf(out, "  max error %g", result->max_error);
+    if (result->max_error > 0)
+        fprintf(out, " at %d, %d, channel %d", result->max_x, result->max_y, result->max_channel);
+    fputc('\n', out);
+    print_share(out, result->failed, result->pixels, desc->fail);
+    print_share(out, result->warned, result->pixels, desc->warn);
+}
+
+int cli_compare(const cli_options *options, cli_output *output)
+{
+    glint_compare_desc desc = { .fail = 1e-6, .warn = 1e-6 };
+    glint_compare_result result = { 0 };
+    glint_error error = { .message = "" };
+    if (options->argument_count != 2) {
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, "compare: two files expected");
+        return GLINTL_EXIT_USAGE;
+    }
+    desc.fail = options->fail >= 0 ? options->fail : desc.fail;
+    desc.warn = options->warn >= 0 ? options->warn : desc.warn;
+    char **files = options->arguments;
+    verdict found = judge(glint_compare_files(files[0], files[1], &desc, &result, &error), &result);
+    if (options->json)
+        print_json(output->data, files, found, &result, error.message);
+    if (found >= SIZE)
+        cli_print_error(output, error.message);
+    else if (!options->json && !options->quiet)
+        print_for_people(output->data, files, &result, &desc, found);
+    return (int)found;
+}

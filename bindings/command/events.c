@@ -1,0 +1,252 @@
+// What a run reports: one JSON object a line under --json, else lines and a bar for people.
+#include <errno.h>
+#include <inttypes.h>
+#include <string.h>
+
+#include "bindings/command/cli.h"
+
+#define CLIPPED_HINT 0.1 // share of clipped pixels above which a picture looks washed out
+
+// Ends a line of data. A reader that has gone, or a full disk, ends the run.
+void cli_end_line(cli_output *output)
+{
+    fputc('\n', output->data);
+    errno = 0;
+    if (fflush(output->data) == 0 || output->data_failed)
+        return;
+    output->data_failed = true;
+    output->data_errno = errno;
+    if (output->run)
+        glintL_run_fail(output->run, errno == ENOSPC ? GLINTL_EXIT_LATER : GLINTL_EXIT_FAILED, 0, "stdout: %s",
+                        strerror(errno));
+}
+
+// ---- Frames as JSON ----
+
+static void print_ms(FILE *out, const char *before, double ms) { fprintf(out, "%s%.3f", before, ms); }
+
+static void print_times(FILE *out, const glintL_record *record)
+{
+    const glint_frame_stats *stats = &record->stats;
+    print_ms(out, ",\"ms\":{\"build\":", record->build_ms);
+    print_ms(out, ",\"render\":", stats->render_ms);
+    print_ms(out, ",\"tone\":", stats->tone_ms);
+    print_ms(out, ",\"encode\":", record->encode_ms);
+    print_ms(out, ",\"write\":", record->write_ms);
+    fputs(",\"stages\":{", out);
+    for (int i = 0; i < stats->stage_count; i++)
+        fprintf(out, "%s\"%s\":%.3f", i ? "," : "", stats->stage_name[i], stats->stage_ms[i]);
+    fputs("}},\"stages\":{", out);
+    for (int i = 0; i < stats->stage_count; i++)
+        fprintf(out, "%s\"%s\":\"%s\"", i ? "," : "", stats->stage_name[i],
+                stats->stage_reused[i] == 1  ? "reused"
+                : stats->stage_reused[i] > 0 ? "partial"
+                                             : "run");
+    fputc('}', out);
+}
+
+void cli_print_rays(FILE *out, const glint_ray_counts *rays)
+{
+    fprintf(out,
+            "\"rays\":{\"primary\":%" PRIu64 ",\"shadow\":%" PRIu64 ",\"mirror\":%" PRIu64 ",\"refraction\":%" PRIu64
+            ",\"indirect\":%" PRIu64 "}",
+            rays->primary, rays->shadow, rays->mirror, rays->refraction, rays->indirect);
+}
+
+static void print_file(FILE *out, const char *path)
+{
+    if (path)
+        glintL_json_string(out, path);
+    else
+        fputs("null", out);
+}
+
+static void print_pass_files(FILE *out, const glintL_record *record)
+{
+    int count = 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (pass == GLINT_PASS_BEAUTY || !record->files[pass])
+            continue;
+        fprintf(out, "%s\"%s\":", count++ ? "," : ",\"passes\":{", glint_pass_name((glint_pass)pass));
+        glintL_json_string(out, record->files[pass]);
+    }
+    if (count)
+        fputc('}', out);
+}
+
+static void print_frame_json(cli_output *output, const glintL_record *record)
+{
+    FILE *out = output->data;
+    fprintf(out, "{\"event\":\"frame\",\"index\":%" PRId64 ",\"file\":", record->index);
+    print_file(out, record->files[GLINT_PASS_BEAUTY]);
+    print_pass_files(out, record);
+    fprintf(out, ",\"status\":\"%s\"", record->kept ? "kept" : "rendered");
+    if (record->repeat)
+        fprintf(out, ",\"repeat\":%d", record->repeat);
+    print_times(out, record);
+    fputc(',', out);
+    cli_print_rays(out, &record->stats.rays);
+    fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
+    if (record->kept) { // nobody looked
+        fputs(",\"clipped\":null,\"nonfinite\":null}", out);
+    } else {
+        fputs(",\"clipped\":", out);
+        glintL_json_number(out, (double)record->stats.clipped / record->pixel_count);
+        fprintf(out, ",\"nonfinite\":%" PRIu64 "}", record->stats.nonfinite);
+    }
+    cli_end_line(output);
+}
+
+// ---- Frames for people ----
+
+// Kept frames get one line for each run of them, printed when it has ended.
+static void print_kept(cli_output *output)
+{
+    if (output->kept_first == 0)
+        return;
+    if (output->kept_first == output->kept_last)
+        fprintf(stderr, "frame %" PRId64 ": kept\n", output->kept_first);
+    else
+        fprintf(stderr, "frames %" PRId64 "-%" PRId64 ": kept\n", output->kept_first, output->kept_last);
+    output->kept_first = 0;
+}
+
+static void print_frame_line(cli_output *output, const glintL_record *record)
+{
+    const char *file = record->files[GLINT_PASS_BEAUTY];
+    double ms = record->stats.render_ms + record->stats.tone_ms + record->encode_ms + record->write_ms;
+    if (output->kept_first == 0 || record->index != output->kept_last + 1 || !record->kept)
+        print_kept(output);
+    if (record->kept) {
+        if (output->kept_first == 0)
+            output->kept_first = record->index;
+        output->kept_last = record->index;
+        return;
+    }
+    fprintf(stderr, "frame %" PRId64, record->index);
+    if (record->repeat)
+        fprintf(stderr, ", repeat %d", record->repeat);
+    fprintf(stderr, ": %s%s%.1f ms\n", file ? file : "", file ? ", " : "", ms);
+}
+
+static void report_frame(void *context, const glintL_run *run, const glintL_record *record)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_clear(output->progress);
+    if (output->json)
+        print_frame_json(output, record);
+    else if (!output->quiet && (!output->progress || record->repeat))
+        print_frame_line(output, record);
+    if (record->stats.nonfinite > 0 && !record->kept)
+        glintL_run_warn(output->run,
+                        "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",
+                        record->index, record->stats.nonfinite);
+    if (output->progress)
+        cli_progress_update(output->progress, run, false);
+}
+
+static void report_rendering(void *context, const glintL_run *run, bool begins)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_update(output->progress, run, begins);
+}
+
+static void report_warning(void *context, const char *message)
+{
+    cli_output *output = context;
+    print_kept(output);
+    cli_print_warning(output, message);
+    cli_warning_event(output, message);
+}
+
+void cli_warning_event(cli_output *output, const char *message)
+{
+    if (!output->json)
+        return;
+    fputs("{\"event\":\"warning\",\"message\":", output->data);
+    glintL_json_string(output->data, message);
+    fputc('}', output->data);
+    cli_end_line(output);
+}
+
+static void report_figure(void *context, const char *kind, const char *path, int64_t count)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_film(output->progress, NULL, 0, 0);
+    if (output->json) {
+        fprintf(output->data, "{\"event\":\"%s\",\"file\":", kind);
+        glintL_json_string(output->data, path);
+        fprintf(output->data, ",\"frames\":%" PRId64 "}", count);
+        cli_end_line(output);
+    } else if (!output->quiet) {
+        print_kept(output);
+        fprintf(stderr, "%s: %s of %" PRId64 " frame%s\n", path, kind, count, count == 1 ? "" : "s");
+    }
+}
+
+static void report_making(void *context, const char *path, size_t done, size_t count)
+{
+    cli_output *output = context;
+    if (output->progress)
+        cli_progress_film(output->progress, cli_base_name(path), done, count);
+}
+
+glintL_reporter cli_reporter(cli_output *output)
+{
+    return (glintL_reporter) { .context = output,
+                               .rendering = report_rendering,
+                               .frame = report_frame,
+                               .warn = report_warning,
+                               .figure = report_figure,
+                               .making = report_making };
+}
+
+// ---- The end ----
+
+void cli_report_error(cli_output *output, int64_t index, int exit_code, const char *message)
+{
+    print_kept(output);
+    cli_print_error(output, message);
+    output->failure_printed = output->failure_printed || output->data_failed;
+    if (!output->json || output->data_failed)
+        return;
+    fputs("{\"event\":\"error\"", output->data);
+    if (index > 0)
+        fprintf(output->data, ",\"index\":%" PRId64, index);
+    fputs(",\"message\":", output->data);
+    glintL_json_string(output->data, message);
+    fprintf(output->data, ",\"exit\":%d}", exit_code);
+    cli_end_line(output);
+}
+
+void cli_warn_clipped(glintL_run *run)
+{
+    double clipped = run->pixels ? (double)run->clipped / (double)run->pixels : 0;
+    if (clipped > CLIPPED_HINT)
+        glintL_run_warn(run,
+                        "%.0f %% of the pixels are brighter than white; dimmer lights, --exposure -1 or --tone filmic "
+                        "keep what is lost there",
+                        100 * clipped);
+}
+
+void cli_report_end(cli_output *output)
+{
+    const glintL_run *run = output->run;
+    double seconds = (glintL_now_ms() - output->start_ms) * 1e-3;
+    if (output->json) {
+        fprintf(output->data, "{\"event\":\"end\",\"frames\":%" PRId64 ",\"kept\":%" PRId64 ",\"seconds\":%.3f}",
+                run->done, run->kept, seconds);
+        cli_end_line(output);
+    }
+    if (output->quiet)
+        return;
+    if (output->progress)
+        cli_progress_clear(output->progress);
+    print_kept(output);
+    if (!output->json)
+        fprintf(stderr, "%" PRId64 " frame%s in %.2f s, %" PRId64 " kept\n", run->done, run->done == 1 ? "" : "s",
+                seconds, run->kept);
+}

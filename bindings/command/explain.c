@@ -1,0 +1,103 @@
+// glint explain SCRIPT: the plan of one frame: its effects and who called for them, its stages, the rays to expect.
+#include <inttypes.h>
+#include <string.h>
+
+#include "bindings/command/cli.h"
+
+static void print_frame(FILE *out, const glintL_run *run, const glint_render_desc *desc)
+{
+    fprintf(out, "%s, frame %" PRId64 ": %.0f x %.0f, %.0f sample%s a pixel, decided in %s\n", run->script,
+            run->explain_frame, desc->width, desc->height, desc->samples, desc->samples == 1 ? "" : "s",
+            desc->precision == GLINT_FLOAT ? "float" : "double");
+}
+
+static void print_for_people(FILE *out, const glintL_run *run)
+{
+    const glint_effect *effects;
+    const glint_stage_info *stages;
+    const glint_plan *plan = run->explain_plan;
+    size_t effect_count = glint_plan_effects(plan, &effects), stage_count = glint_plan_stages(plan, &stages);
+    glint_ray_counts rays = glint_plan_expected_rays(plan);
+    print_frame(out, run, glint_plan_render_desc(plan));
+    fputs("\neffects\n", out);
+    for (size_t i = 0; i < effect_count; i++)
+        fprintf(out, "  %-28s %s\n", effects[i].effect, effects[i].caller);
+    if (effect_count == 0)
+        fputs("  none\n", out);
+    fputs("\nstages\n", out);
+    for (size_t i = 0; i < stage_count; i++)
+        fprintf(out, "  %-9s %.12s  %s\n", stages[i].name, stages[i].key, stages[i].why);
+    fprintf(out, "\nrays\n  primary    %" PRIu64 "\n  shadow     %" PRIu64 " at most\n", rays.primary, rays.shadow);
+    if (rays.mirror)
+        fprintf(out, "  mirror     %" PRIu64 " at most\n", rays.mirror);
+    if (rays.refraction)
+        fprintf(out, "  refraction %" PRIu64 " at most\n", rays.refraction);
+    if (rays.indirect)
+        fprintf(out, "  indirect   %" PRIu64 " at most\n", rays.indirect);
+}
+
+// `"first":"...","second":"..."`
+static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
+{
+    fprintf(out, "\"%s\":", first);
+    glintL_json_string(out, value);
+    fprintf(out, ",\"%s\":", second);
+    glintL_json_string(out, other);
+}
+
+static void print_json(FILE *out, const glintL_run *run)
+{
+    const glint_effect *effects;
+    const glint_stage_info *stages;
+    const glint_plan *plan = run->explain_plan;
+    const glint_render_desc *desc = glint_plan_render_desc(plan);
+    size_t effect_count = glint_plan_effects(plan, &effects), stage_count = glint_plan_stages(plan, &stages);
+    glint_ray_counts rays = glint_plan_expected_rays(plan);
+    fputs("{\"event\":\"plan\",\"script\":", out);
+    glintL_json_string(out, run->script);
+    fprintf(out,
+            ",\"index\":%" PRId64 ",\"width\":%.0f,\"height\":%.0f,\"samples\":%.0f,\"precision\":\"%s\",\"effects\":[",
+            run->explain_frame, desc->width, desc->height, desc->samples,
+            desc->precision == GLINT_FLOAT ? "float" : "double");
+    for (size_t i = 0; i < effect_count; i++) {
+        fputs(i ? ",{" : "{", out);
+        print_pair(out, "effect", effects[i].effect, "caller", effects[i].caller);
+        fputc('}', out);
+    }
+    fputs("],\"stages\":[", out);
+    for (size_t i = 0; i < stage_count; i++) {
+        fputs(i ? ",{" : "{", out);
+        print_pair(out, "name", stages[i].name, "key", stages[i].key);
+        fputs(",\"why\":", out);
+        glintL_json_string(out, stages[i].why);
+        fputc('}', out);
+    }
+    fputs("],", out);
+    cli_print_rays(out, &rays);
+    fputs("}\n", out);
+}
+
+int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
+{
+    cli_script script;
+    run->mode = GLINTL_MODE_EXPLAIN;
+    run->explain_frame = options->frame;
+    glintL_selection_clear(&run->asked.selection); // --frame is not a selection here
+    cli_run_script(&script, options, run);
+    cli_close_script(&script);
+    if (!run->exit_code && !run->interrupted && !run->explain_plan)
+        glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                        "--frame: a frame of the script, 1 .. %" PRId64 ", expected, got '%" PRId64 "'", run->count,
+                        options->frame);
+    if (run->interrupted)
+        return GLINTL_EXIT_FAILED;
+    if (run->exit_code) {
+        cli_report_error(output, run->failed_index, run->exit_code, run->message);
+        return run->exit_code;
+    }
+    if (options->json)
+        print_json(output->data, run);
+    else
+        print_for_people(output->data, run);
+    return GLINTL_EXIT_DONE;
+}

@@ -1,0 +1,82 @@
+// glint sheet FILES -o SHEET and glint assemble FILES -o FILM: figures of finished frames.
+#include <string.h>
+
+#include "bindings/command/cli.h"
+#include "bindings/run/film.h"
+#include "bindings/run/sheet.h"
+
+static int refuse(cli_output *output, int code, const char *command, const char *message)
+{
+    char full[GLINTL_MESSAGE_SIZE + 32];
+    snprintf(full, sizeof full, "%s: %s", command, message);
+    cli_report_error(output, 0, code, full);
+    return code;
+}
+
+int cli_sheet(const cli_options *options, cli_output *output)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    cli_file_list list;
+    int code = GLINTL_EXIT_USAGE;
+    if (!options->output)
+        return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
+    if (cli_list_files(options, &options->asked.selection, &list, message)) {
+        glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
+        sheet.label = options->label;
+        sheet.title = options->title;
+        sheet.columns = options->columns;
+        sheet.difference = options->difference;
+        sheet.gain = options->gain;
+        sheet.mixes = options->asked.force;
+        code = glintL_sheet_make(&sheet, message);
+    }
+    if (code)
+        refuse(output, code, "sheet", message);
+    else
+        cli_reporter(output).figure(output, "sheet", options->output, (int64_t)list.count);
+    cli_free_list(&list);
+    return code;
+}
+
+// What is wrong with the film before its frames are looked at; NULL: nothing.
+static const char *check_film(const cli_options *options, const glintL_film *film)
+{
+    if (!options->output || film->kind == GLINTL_FILM_NONE)
+        return "-o with a film's name in .mp4, .webm, .gif, .png or .apng expected";
+    if (options->asked.apng && film->kind != GLINTL_FILM_APNG)
+        return "--apng: -o with a name in .png expected";
+    if (film->kind == GLINTL_FILM_GIF && film->fps > 50)
+        return "a GIF has at most 50 frames a second; --fps 50 or less expected";
+    return NULL;
+}
+
+int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    cli_file_list list = { 0 };
+    char *path = (char *)(uintptr_t)options->output; // read only
+    glintL_film film = { .path = path, .fps = run->asked.fps > 0 ? run->asked.fps : 24 };
+    int code = GLINTL_EXIT_USAGE;
+    film.kind = path ? glintL_film_kind_of(path, true) : GLINTL_FILM_NONE;
+    const char *wrong = check_film(options, &film);
+    if (wrong)
+        return refuse(output, code, "assemble", wrong);
+    if (!output->quiet)
+        output->progress = cli_progress_create(output->color);
+    if (cli_list_files(options, &run->asked.selection, &list, message)) {
+        film.files = list.files;
+        film.count = list.count;
+        if (glintL_film_check_files(&film, !run->asked.force, message))
+            code = glintL_film_make(run, &film, message);
+    }
+    if (run->interrupted)
+        cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
+    else if (code)
+        refuse(output, code, "assemble", message);
+    else
+        run->reporter.figure(run->reporter.context, "film", path, (int64_t)film.count);
+    cli_progress_destroy(output->progress);
+    output->progress = NULL;
+    cli_free_list(&list);
+    return code;
+}

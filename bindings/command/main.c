@@ -1,0 +1,144 @@
+// The glint command.
+#include <locale.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bindings/command/cli.h"
+#include "bindings/run/film.h"
+#include "bindings/command/untrusted.h"
+
+static int run_command(cli_options *options, cli_output *output, glintL_run *run)
+{
+    if (options->help)
+        return cli_describe(options, output, run);
+    switch (options->command) {
+    case CLI_EXPLAIN:
+        return cli_explain(options, output, run);
+    case CLI_WATCH:
+        return cli_watch(options, output, run);
+    case CLI_DESCRIBE:
+        return cli_describe(options, output, run);
+    case CLI_ASSEMBLE:
+        return cli_assemble(options, output, run);
+    case CLI_REPRODUCE:
+        return cli_reproduce(options, output, run);
+    case CLI_COST:
+        return cli_cost(options, output, run);
+    default:
+        return cli_render(options, output, run);
+    }
+}
+
+// A script that calls os.exit ends the process from inside: what it has rendered is written all the same.
+static cli_output *open_output;
+
+static void finish_early(void)
+{
+    cli_output *output = open_output;
+    glintL_run *run = output ? output->run : NULL;
+    if (!run)
+        return;
+    open_output = NULL;
+    bool good = glintL_call_settle(run);
+    good = glintL_run_collect(run, true) && good;
+    good = good && glintL_films_finish(run);
+    cli_progress_destroy(output->progress);
+    output->progress = NULL;
+    if (good)
+        cli_warn_clipped(run);
+    if (good && !run->exit_code)
+        cli_report_end(output);
+    else
+        cli_report_error(output, run->failed_index, run->exit_code, run->message);
+    int code = run->exit_code;
+    int close_code = cli_output_close(output);
+    if (code || close_code)
+        _exit(code ? code : close_code);
+}
+
+// Runs a command that a signal may interrupt. *signal_number is the signal that ended it, or 0.
+static int run_scripted(cli_options *options, cli_output *output, int *signal_number)
+{
+    glintL_run *run = glintL_run_create();
+    if (!run) {
+        cli_report_error(output, 0, GLINTL_EXIT_FAILED, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
+    run->is_command = true;
+    run->times_stages = options->json && options->command == CLI_RENDER;
+    snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
+    run->asked = options->asked; // which now owns what it points to
+    options->asked.sets = NULL;
+    options->asked.folder = NULL;
+    options->asked.selection.ranges = NULL;
+    run->reporter = cli_reporter(output);
+    output->run = run;
+    open_output = output;
+    atexit(finish_early);
+    cli_catch_signals(run);
+    int code = run_command(options, output, run);
+    cli_release_signals();
+    *signal_number = run->interrupted;
+    open_output = NULL;
+    output->run = NULL;
+    glintL_run_destroy(run);
+    return code;
+}
+
+static int dispatch(cli_options *options, cli_output *output, int *signal_number)
+{
+    if (options->version) {
+        fputs("glint " GLINT_VERSION "\n", output->data);
+        return GLINTL_EXIT_DONE;
+    }
+    if (options->help && !options->script) {
+        cli_print_usage(output->data);
+        return GLINTL_EXIT_DONE;
+    }
+    if (options->command == CLI_COMPARE)
+        return cli_compare(options, output);
+    if (options->command == CLI_SHEET)
+        return cli_sheet(options, output);
+    if (options->command == CLI_NEW)
+        return cli_new(options, output);
+    if (options->command == CLI_COMPLETION)
+        return cli_completion(options, output);
+    if (!options->script && options->command != CLI_ASSEMBLE) {
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE,
+                         options->command == CLI_REPRODUCE ? "reproduce: a finished picture and its script expected"
+                                                           : "a script expected; glint --help lists the commands");
+        return GLINTL_EXIT_USAGE;
+    }
+    int code;
+    if (options->untrusted_s > 0 && !cli_untrusted_begin(options, output, &code, signal_number))
+        return code;
+    return run_scripted(options, output, signal_number);
+}
+
+int main(int argc, char **argv)
+{
+    cli_options options;
+    cli_output output;
+    char message[GLINTL_MESSAGE_SIZE];
+    int code = GLINTL_EXIT_USAGE, signal_number = 0;
+    // A script may call os.setlocale; numbers keep their points all the same.
+    locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (numbers)
+        uselocale(numbers);
+    bool good = cli_read_options(argc, argv, &options, message);
+    if (!cli_output_open(&output, &options))
+        return GLINTL_EXIT_FAILED;
+    if (good)
+        code = dispatch(&options, &output, &signal_number);
+    else
+        cli_report_error(&output, 0, code, message);
+    int close_code = cli_output_close(&output);
+    cli_free_options(&options);
+    if (signal_number) { // so that a shell sees how it ended
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
+    return code ? code : close_code;
+}

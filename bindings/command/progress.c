@@ -1,0 +1,217 @@
+// The progress bar: one line on a terminal, drawn by a thread of its own so that a long frame shows it is alive.
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "bindings/command/cli.h"
+
+#define BAR_WIDTH 24
+#define BAR_LEAST 4 // a narrower one is left out
+#define TEXT_SIZE 160
+#define INTERVAL_MS 100
+#define DELAY_MS 300 // a run shorter than this shows no bar
+
+struct cli_progress {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t wake;
+    bool stops, is_drawn, color;
+    double start_ms;
+    int64_t done, kept, todo; // todo 0: nobody knows
+    char what[80]; // of a step of a study, or of a film; "": it is frames that are counted
+    double done_ms, step_ms, left_ms;
+    double film_ms; // when the film was begun
+    glint_renderer *renderer; // while it renders, else NULL
+};
+
+static void format_time(char out[32], double seconds)
+{
+    int64_t whole = seconds < 1e9 ? (int64_t)(seconds + 0.5) : 0;
+    if (whole >= 3600)
+        snprintf(out, 32, "%" PRId64 ":%02d:%02d", whole / 3600, (int)(whole / 60 % 60), (int)(whole % 60));
+    else
+        snprintf(out, 32, "%d:%02d", (int)(whole / 60), (int)(whole % 60));
+}
+
+// One line: the bar, as wide as the terminal has room for, and the text. What does not fit would begin a line of its own.
+static void draw_line(cli_progress *progress, double share, const char *text)
+{
+    char bar[BAR_WIDTH + 1];
+    struct winsize size = { 0 };
+    const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    int room = columns - (int)strlen(text) - 4; // brackets, a space, and the last column, which stays free
+    room = room < BAR_WIDTH ? room : BAR_WIDTH;
+    share = share < 1 ? share : 1;
+    fputs("\r\033[K", stderr);
+    if (room >= BAR_LEAST) {
+        memset(bar, '.', (size_t)room);
+        memset(bar, '#', (size_t)(share * room));
+        bar[room] = '\0';
+        fprintf(stderr, "%s[%s]%s ", progress->color ? "\033[36m" : "", bar, progress->color ? "\033[0m" : "");
+    }
+    fprintf(stderr, "%.*s", columns - 1, text);
+    fflush(stderr);
+    progress->is_drawn = true;
+}
+
+static void draw_step(cli_progress *progress)
+{
+    char left[32], text[TEXT_SIZE];
+    double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
+    double done_ms = progress->done_ms + now * progress->step_ms;
+    double left_ms = progress->left_ms + (1 - now) * progress->step_ms;
+    format_time(left, left_ms * 1e-3);
+    snprintf(text, sizeof text, "%s%s%s%s", progress->what, left_ms > 0 ? ", " : "", left_ms > 0 ? left : "",
+             left_ms > 0 ? " left" : "");
+    draw_line(progress, done_ms + left_ms > 0 ? done_ms / (done_ms + left_ms) : 0, text);
+}
+
+// The lock is held.
+static void draw(cli_progress *progress)
+{
+    char left[32] = "", total[32] = "", text[TEXT_SIZE];
+    double elapsed = (glintL_now_ms() - progress->start_ms) * 1e-3;
+    double now = progress->renderer ? glint_renderer_progress(progress->renderer) : 0;
+    double fresh = (double)(progress->done - progress->kept) + now; // kept frames say nothing of the speed
+    double rate = elapsed > 0 ? fresh / elapsed : 0, share = now;
+    if (progress->todo > 0) {
+        share = ((double)progress->done + now) / (double)progress->todo;
+        snprintf(total, sizeof total, "/%" PRId64, progress->todo);
+    }
+    if (rate > 0 && progress->todo > 0)
+        format_time(left, ((double)progress->todo - (double)progress->done - now) / rate);
+    snprintf(text, sizeof text, "%" PRId64 "%s frames, %.*f/s%s%s%s", progress->done, total, rate < 10 ? 2 : 0, rate,
+             *left ? ", " : "", left, *left ? " left" : "");
+    draw_line(progress, share, text);
+}
+
+static void *draw_until_stopped(void *argument)
+{
+    cli_progress *progress = argument;
+    struct timespec until;
+    pthread_mutex_lock(&progress->lock);
+    while (!progress->stops) {
+        clock_gettime(CLOCK_MONOTONIC, &until);
+        until.tv_nsec += INTERVAL_MS * 1000000L;
+        until.tv_sec += until.tv_nsec / 1000000000L;
+        until.tv_nsec %= 1000000000L;
+        pthread_cond_timedwait(&progress->wake, &progress->lock, &until);
+        if (progress->stops || glintL_now_ms() - progress->start_ms <= DELAY_MS)
+            continue;
+        if (*progress->what)
+            draw_step(progress);
+        else
+            draw(progress);
+    }
+    pthread_mutex_unlock(&progress->lock);
+    return NULL;
+}
+
+cli_progress *cli_progress_create(bool color)
+{
+    const char *term = getenv("TERM");
+    pthread_condattr_t attributes;
+    sigset_t stops, before;
+    if (!isatty(STDERR_FILENO) || !term || strcmp(term, "dumb") == 0)
+        return NULL;
+    cli_progress *progress = calloc(1, sizeof *progress);
+    if (!progress)
+        return NULL;
+    progress->color = color;
+    progress->start_ms = glintL_now_ms();
+    pthread_mutex_init(&progress->lock, NULL);
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&progress->wake, &attributes);
+    pthread_condattr_destroy(&attributes);
+    sigemptyset(&stops); // these are for the main thread
+    sigaddset(&stops, SIGINT);
+    sigaddset(&stops, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &stops, &before);
+    int failed = pthread_create(&progress->thread, NULL, draw_until_stopped, progress);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (!failed)
+        return progress;
+    pthread_cond_destroy(&progress->wake);
+    pthread_mutex_destroy(&progress->lock);
+    free(progress);
+    return NULL;
+}
+
+// The lock is held.
+static void clear(cli_progress *progress)
+{
+    if (progress->is_drawn)
+        fputs("\r\033[K", stderr);
+    progress->is_drawn = false;
+}
+
+void cli_progress_destroy(cli_progress *progress)
+{
+    if (!progress)
+        return;
+    pthread_mutex_lock(&progress->lock);
+    progress->stops = true;
+    clear(progress);
+    pthread_cond_signal(&progress->wake);
+    pthread_mutex_unlock(&progress->lock);
+    pthread_join(progress->thread, NULL);
+    pthread_cond_destroy(&progress->wake);
+    pthread_mutex_destroy(&progress->lock);
+    free(progress);
+}
+
+void cli_progress_update(cli_progress *progress, const glintL_run *run, bool rendering)
+{
+    pthread_mutex_lock(&progress->lock);
+    progress->done = run->done;
+    progress->kept = run->kept;
+    progress->todo = run->todo;
+    progress->renderer = rendering ? run->renderer : NULL;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_step(cli_progress *progress, const char *what, double done_ms, double step_ms, double left_ms)
+{
+    pthread_mutex_lock(&progress->lock);
+    snprintf(progress->what, sizeof progress->what, "%s", what);
+    progress->done_ms = done_ms;
+    progress->step_ms = step_ms;
+    progress->left_ms = left_ms > 0 ? left_ms : 0;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_film(cli_progress *progress, const char *film, size_t done, size_t count)
+{
+    pthread_mutex_lock(&progress->lock);
+    if (!film)
+        clear(progress);
+    if (!film || done == 0)
+        progress->film_ms = glintL_now_ms();
+    progress->renderer = NULL;
+    progress->step_ms = 0;
+    progress->done_ms = glintL_now_ms() - progress->film_ms;
+    progress->left_ms = done ? progress->done_ms / (double)done * (double)(count - done) : 0;
+    progress->what[0] = '\0';
+    if (film)
+        snprintf(progress->what, sizeof progress->what, "%s %.60s", done < count ? "making" : "finishing", film);
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_watch(cli_progress *progress, glint_renderer *renderer)
+{
+    pthread_mutex_lock(&progress->lock);
+    progress->renderer = renderer;
+    pthread_mutex_unlock(&progress->lock);
+}
+
+void cli_progress_clear(cli_progress *progress)
+{
+    pthread_mutex_lock(&progress->lock);
+    clear(progress);
+    pthread_mutex_unlock(&progress->lock);
+}

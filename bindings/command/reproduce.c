@@ -1,0 +1,310 @@
+// glint reproduce FILE SCRIPT: renders the frame of a finished file again, by what the file says of itself, and compares.
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bindings/command/cli.h"
+
+typedef enum verdict { // exit codes, beside the usual ones
+    SAME = 0, // every byte
+    SAME_PIXELS = 3, // other bytes
+    DIFFERENT = 4, // another picture
+    UNREADABLE = 5 // no whole picture with a key
+} verdict;
+
+typedef struct reproduction {
+    const char *file;
+    glint_picture *picture;
+    char *params, *options, *pass, *sweep; // cut up: the sets and render texts point into them
+    char folder[256]; // of the new file
+    char output[300]; // its pattern
+    char *made[GLINT_PASS_COUNT]; // by pass; owned
+    const char *made_path; // the one to compare
+    char reason[GLINTL_MESSAGE_SIZE];
+} reproduction;
+
+// ---- Asking for the frame ----
+
+static const char *text_of(const reproduction *r, const char *keyword)
+{
+    const char *text = glint_picture_text(r->picture, keyword);
+    return text ? text : "";
+}
+
+// Cuts "name=value" lines up and calls `take` for each. False: `take` failed.
+static bool cut_lines(char *lines, bool (*take)(void *user, char *name, char *value), void *user)
+{
+    for (char *line = lines; line && *line;) {
+        char *end = line + strcspn(line, "\n"), *equals = line + strcspn(line, "=\n");
+        char *next = *end ? end + 1 : end;
+        *end = '\0';
+        if (*equals == '=') {
+            *equals = '\0';
+            if (!take(user, line, equals + 1))
+                return false;
+        }
+        line = next;
+    }
+    return true;
+}
+
+// A parameter's line breaks are written "\n".
+static bool take_param(void *user, char *name, char *value)
+{
+    char *out = value;
+    for (const char *at = value; *at; at++) {
+        bool is_break = at[0] == '\\' && at[1] == 'n';
+        *out++ = is_break ? '\n' : *at;
+        at += is_break;
+    }
+    *out = '\0';
+    return cli_add_set(user, name, value);
+}
+
+// A parameter that --sweep set is one of the run's sweep again: files say so. They come last, in their order.
+static bool take_swept(void *user, char *name, char *value)
+{
+    glintL_asked *asked = user;
+    size_t last = asked->set_count - 1, at = 0;
+    while (at < asked->set_count && strcmp(asked->sets[at].name, name) != 0)
+        at++;
+    if (at == asked->set_count) // an axis of the script's own
+        return true;
+    memmove(asked->sets + at, asked->sets + at + 1, (last - at) * sizeof *asked->sets);
+    asked->sets[last] = (glintL_set) { .name = name, .text = value };
+    asked->swept_count++;
+    return true;
+}
+
+static bool take_option(void *user, char *name, char *value)
+{
+    glintL_asked *asked = user;
+    int field = glintL_render_find(name);
+    if (field >= 0)
+        asked->render_text[field] = value;
+    return true;
+}
+
+static bool check_options(const glintL_asked *asked, char *message)
+{
+    glintL_render scratch = glintL_render_default();
+    for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
+        if (asked->render_text[field] && !glintL_render_set_text(&scratch, field, asked->render_text[field], message))
+            return false;
+    return true;
+}
+
+// Fills what the run is asked. 0 or an exit code, with the message.
+static int ask(reproduction *r, glintL_run *run, char *message)
+{
+    const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
+    glintL_asked *asked = &run->asked;
+    if (!*text_of(r, "glint:key") || !*frame) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: it has no key and frame number of glint", r->file);
+        return UNREADABLE;
+    }
+    r->params = strdup(text_of(r, "glint:params"));
+    r->options = strdup(text_of(r, "glint:options"));
+    r->pass = strdup(text_of(r, "glint:pass"));
+    r->sweep = strdup(text_of(r, "glint:sweep"));
+    if (!r->params || !r->options || !r->pass || !r->sweep || !cut_lines(r->params, take_param, asked)) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
+    cut_lines(r->sweep, take_swept, asked);
+    cut_lines(r->options, take_option, asked);
+    if (!glintL_selection_parse(&asked->selection, frame, message) || !check_options(asked, message))
+        return UNREADABLE;
+    snprintf(r->folder, sizeof r->folder, "%.200s/glint-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    if (!mkdtemp(r->folder)) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: no folder can be made", r->folder);
+        r->folder[0] = '\0';
+        return GLINTL_EXIT_FAILED;
+    }
+    snprintf(r->output, sizeof r->output, "%s/%%04d.png", r->folder);
+    asked->render_text[glintL_render_find("output")] = r->output;
+    asked->render_text[glintL_render_find("passes")] = *r->pass ? r->pass : "none";
+    asked->force = true;
+    return 0;
+}
+
+static void take_frame(void *context, const glintL_run *run, const glintL_record *record)
+{
+    reproduction *r = context;
+    (void)run;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        free(r->made[pass]);
+        r->made[pass] = record->files[pass] ? strdup(record->files[pass]) : NULL;
+    }
+}
+
+// Renders the frame. 0 or an exit code, with the message.
+static int render(reproduction *r, cli_options *options, glintL_run *run, char *message)
+{
+    cli_script script;
+    run->no_sheets = true;
+    run->reporter.context = r;
+    run->reporter.rendering = NULL;
+    run->reporter.frame = take_frame;
+    run->reporter.warn = NULL;
+    bool good = cli_run_script(&script, options, run) && glintL_call_settle(run);
+    cli_close_script(&script);
+    good = glintL_run_collect(run, true) && good;
+    for (size_t i = 0; i < run->asked.set_count; i++)
+        if (!good && !run->asked.sets[i].is_known && strstr(run->message, "--set ")) {
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no parameter '%.100s', which %.200s was made with",
+                     run->script, run->asked.sets[i].name, r->file);
+            return GLINTL_EXIT_USAGE;
+        }
+    if (run->exit_code || run->interrupted) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", run->interrupted ? "interrupted" : run->message);
+        return run->exit_code ? run->exit_code : GLINTL_EXIT_FAILED;
+    }
+    glint_pass pass = *r->pass ? glint_pass_from_name(r->pass) : GLINT_PASS_BEAUTY;
+    r->made_path = pass < GLINT_PASS_COUNT ? r->made[pass] : NULL;
+    if (r->made_path)
+        return 0;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no frame %s", run->script, text_of(r, "glint:frame"));
+    return GLINTL_EXIT_USAGE;
+}
+
+// ---- Comparing ----
+
+static bool same_bytes(const char *a, const char *b)
+{
+    FILE *one = fopen(a, "rb"), *other = fopen(b, "rb");
+    bool same = one && other;
+    int c = 0;
+    while (same && c != EOF) {
+        c = getc(one);
+        same = getc(other) == c;
+    }
+    same = same && !ferror(one) && !ferror(other);
+    if (one)
+        fclose(one);
+    if (other)
+        fclose(other);
+    return same;
+}
+
+// Whether the texts differ; then the reason says so.
+static bool is_reason(reproduction *r, const glint_picture *made, const char *keyword, const char *name)
+{
+    const char *had = text_of(r, keyword), *has = glint_picture_text(made, keyword);
+    if (!has || strcmp(had, has) == 0)
+        return false;
+    snprintf(r->reason, sizeof r->reason, "another %s: '%.100s' then, '%.100s' now", name, *had ? had : "not noted",
+             has);
+    return true;
+}
+
+// Why the files differ, as far as their texts tell.
+static void find_reason(reproduction *r, const glint_picture *made)
+{
+    const char *source = glint_picture_text(made, "glint:source"), *key = glint_picture_text(made, "glint:key");
+    bool same_source = source && strcmp(source, text_of(r, "glint:source")) == 0;
+    bool same_key = key && strcmp(key, text_of(r, "glint:key")) == 0;
+    if (is_reason(r, made, "Software", "engine version") || is_reason(r, made, "glint:script", "script") ||
+        is_reason(r, made, "glint:encoder", "encoder"))
+        return;
+    if (same_key)
+        snprintf(r->reason, sizeof r->reason, "%s",
+                 same_source
+                     ? "the frame has the same key: the file was changed, or compressed on another kind of processor"
+                     : "another script: its text has changed, though not in what this frame reads");
+    else
+        snprintf(r->reason, sizeof r->reason, "%s",
+                 same_source ? "what the script reads describes another frame"
+                             : "another script: its text has changed");
+}
+
+static verdict compare(reproduction *r, glint_compare_result *result, char *message)
+{
+    glint_compare_desc desc = { .fail = 0, .warn = 0 };
+    glint_picture *made = NULL;
+    glint_error error;
+    if (same_bytes(r->file, r->made_path))
+        return SAME;
+    if (glint_picture_read(r->made_path, false, &made, &error) ||
+        glint_compare_files(r->file, r->made_path, &desc, result, &error)) {
+        snprintf(r->reason, sizeof r->reason, "%s", error.message);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
+        glint_picture_destroy(made);
+        return DIFFERENT;
+    }
+    find_reason(r, made);
+    glint_picture_destroy(made);
+    return result->max_error > 0 ? DIFFERENT : SAME_PIXELS;
+}
+
+static void report(const reproduction *r, cli_output *output, const cli_options *options, verdict found,
+                   const glint_compare_result *result)
+{
+    const char *word = found == SAME ? "same" : found == SAME_PIXELS ? "pixels" : "different";
+    if (output->json) {
+        fputs("{\"event\":\"reproduce\",\"file\":", output->data);
+        glintL_json_string(output->data, r->file);
+        fputs(",\"script\":", output->data);
+        glintL_json_string(output->data, options->script);
+        fprintf(output->data, ",\"frame\":%s,\"result\":\"%s\"", text_of(r, "glint:frame"), word);
+        if (found != SAME) {
+            fputs(",\"max_error\":", output->data);
+            glintL_json_number(output->data, result->max_error);
+            fputs(",\"reason\":", output->data);
+            glintL_json_string(output->data, r->reason);
+        }
+        fputs("}\n", output->data);
+        return;
+    }
+    if (found == SAME)
+        fprintf(output->data, "%s: the same, byte for byte\n", r->file);
+    else if (found == SAME_PIXELS)
+        fprintf(output->data, "%s: the same pixels, other bytes: %s\n", r->file, r->reason);
+    else
+        fprintf(output->data, "%s: different, by at most %.3g of 1: %s\n", r->file, result->max_error, r->reason);
+}
+
+// ---- The command ----
+
+static void clean_up(reproduction *r)
+{
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (r->made[pass])
+            unlink(r->made[pass]);
+        free(r->made[pass]);
+    }
+    if (*r->folder)
+        rmdir(r->folder);
+    glint_picture_destroy(r->picture);
+    free(r->params);
+    free(r->options);
+    free(r->pass);
+    free(r->sweep);
+}
+
+int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run)
+{
+    char message[GLINTL_MESSAGE_SIZE] = "";
+    glint_compare_result result = { 0 };
+    glint_error error;
+    reproduction r = { .file = options->file };
+    int code = UNREADABLE;
+    if (glint_picture_read(r.file, false, &r.picture, &error))
+        snprintf(message, sizeof message, "%s", error.message);
+    else
+        code = ask(&r, run, message);
+    if (!code)
+        code = render(&r, options, run, message);
+    if (!code) {
+        verdict found = compare(&r, &result, message);
+        report(&r, output, options, found, &result);
+        clean_up(&r);
+        return (int)found;
+    }
+    if (run->interrupted)
+        cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");
+    else
+        cli_report_error(output, 0, code, message);
+    clean_up(&r);
+    return code;
+}

@@ -1,0 +1,244 @@
+// Running a script: its Lua state, where it finds modules, and what it returns.
+#include <errno.h>
+#include <lualib.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bindings/command/untrusted.h"
+
+#define UNTRUSTED_LUA_MEMORY ((size_t)64 << 20)
+
+typedef struct task { // what the protected function works on
+    cli_script *script;
+    const cli_options *options;
+    glintL_run *run;
+} task;
+
+const char *cli_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static void set_arguments(lua_State *L, const cli_options *options)
+{
+    lua_createtable(L, options->argument_count, 1);
+    lua_pushstring(L, options->script);
+    lua_rawseti(L, -2, 0);
+    for (int i = 0; i < options->argument_count; i++) {
+        lua_pushstring(L, options->arguments[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setglobal(L, "arg");
+}
+
+// The script's folder and its lib/ come first. A ';' or '?' in the folder's name would be misread: then it stays out.
+static void set_path(lua_State *L, const char *script)
+{
+    const char *base = cli_base_name(script);
+    lua_getglobal(L, "package");
+    lua_getfield(L, -1, "path");
+    const char *old = lua_tostring(L, -1);
+    lua_pushlstring(L, script, (size_t)(base - script));
+    const char *folder = base > script ? lua_tostring(L, -1) : "./";
+    if (!strpbrk(folder, ";?")) {
+        lua_pushfstring(L, "%s?.lua;%slib/?.lua;%s", folder, folder, old);
+        lua_setfield(L, 1, "path");
+    }
+    lua_settop(L, 0);
+}
+
+static void open_libraries(lua_State *L, const task *work)
+{
+    if (work->options->untrusted_s > 0) {
+        cli_open_untrusted(L, work->run);
+        set_arguments(L, work->options);
+        return;
+    }
+    luaL_openlibs(L);
+    glintL_attach_run(L, work->run);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
+    lua_pushcfunction(L, luaopen_glint);
+    lua_setfield(L, -2, "glint");
+    lua_settop(L, 0);
+    set_arguments(L, work->options);
+    set_path(L, work->options->script);
+    cli_carry_dialect(L);
+}
+
+static int refuse_results(lua_State *L, int count)
+{
+    lua_pushfstring(L, "the script returned %d values; a list { ... } of them is expected", count);
+    return lua_error(L);
+}
+
+static int refuse_silence(lua_State *L, const cli_options *options)
+{
+    if (options->dialect)
+        lua_pushfstring(L, "%s rendered nothing; calls of %s.render expected", cli_base_name(options->script),
+                        options->dialect);
+    else
+        lua_pushfstring(L,
+                        "%s returned nothing and rendered nothing; an animation, a sweep, a scene or a list of them is "
+                        "expected, or calls of scene:render",
+                        cli_base_name(options->script));
+    return lua_error(L);
+}
+
+// What the script returned is on the stack, from 1 on.
+static void take_results(lua_State *L, const task *work)
+{
+    glintL_run *run = work->run;
+    cli_script *script = work->script;
+    if (work->options->dialect)
+        lua_settop(L, 0); // its scenes render by themselves, and may return anything
+    int count = lua_gettop(L);
+    luaL_checkstack(L, 8, "jobs");
+    if (glintL_push_unknown_set(L))
+        lua_error(L);
+    if (count > 1)
+        refuse_results(L, count);
+    if (lua_isnoneornil(L, 1)) {
+        if (run->mode != GLINTL_MODE_DESCRIBE && run->call_count == 0 && run->earlier == 0 && run->count == 0)
+            refuse_silence(L, work->options);
+        return;
+    }
+    if (!glintL_push_jobs(L, 1))
+        lua_error(L);
+    lua_replace(L, 1);
+    lua_settop(L, 1);
+    script->has_jobs = true;
+    script->frames = glintL_jobs_total(L, 1);
+}
+
+static bool check_sweep(const task *work)
+{
+    glintL_run *run = work->run;
+    int64_t frames = work->script->frames;
+    if (run->point_count == 0 || run->mode != GLINTL_MODE_RENDER)
+        return true;
+    if (run->call_count > 0)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                               "--sweep: the script both calls scene:render and returns frames; one of them expected");
+    if (frames > GLINTL_FRAMES_MAX / run->point_count)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--sweep: at most %d frames together expected",
+                               GLINTL_FRAMES_MAX);
+    if (run->count != frames * (run->point - 1))
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0,
+                               "--sweep: the script must have the same number of frames at every value");
+    return true;
+}
+
+// Runs the jobs whose list is at 1.
+static void run_results(lua_State *L, const task *work)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    if (work->run->mode == GLINTL_MODE_WATCH) {
+        work->script->jobs = luaL_ref(L, LUA_REGISTRYINDEX);
+    } else if (work->run->mode == GLINTL_MODE_EXPLAIN) {
+        glintL_jobs_explain(L, 1, work->run);
+    } else if (work->run->mode == GLINTL_MODE_RENDER) {
+        int64_t total = work->run->point_count ? work->script->frames * work->run->point_count
+                                               : work->run->count + work->script->frames;
+        if (work->run->point <= 1 && glintL_selection_outside(&work->run->asked.selection, total, message))
+            glintL_run_warn(work->run, "%s", message);
+        glintL_call_settle(work->run);
+        glintL_jobs_run(L, 1, work->run);
+    }
+}
+
+static int run_protected(lua_State *L)
+{
+    const task *work = lua_touserdata(L, 1);
+    lua_settop(L, 0);
+    open_libraries(L, work);
+    cli_set_state(L);
+    if (work->run->reporter.prepare)
+        work->run->reporter.prepare(work->run->reporter.context, L);
+    cli_open_dialect(L, work->options);
+    if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
+        return lua_error(L);
+    work->run->since_ms = glintL_now_ms();
+    lua_call(L, 0, LUA_MULTRET);
+    take_results(L, work);
+    if (work->script->has_jobs && check_sweep(work))
+        run_results(L, work);
+    if (work->run->mode == GLINTL_MODE_RENDER && !work->run->exit_code && !work->run->interrupted)
+        glintL_report_observed(L, work->run, work->options->script);
+    return 0;
+}
+
+// A scene of the dialect, run without it, stops where it first names it.
+static const char *dialect_hint(const cli_options *options, const char *message)
+{
+    return !options->dialect && strstr(message, "(global 'gr')") ? "; is it a scene for --dialect gr?" : "";
+}
+
+// The first word may have been meant for the name of a command, or for that of a script without its ending.
+static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH_SIZE + 32])
+{
+    char path[GLINTL_PATH_SIZE];
+    const char *word = options->script;
+    if (options->untrusted_s > 0 || access(word, F_OK) == 0 || errno != ENOENT || strlen(word) > sizeof path - 5)
+        return "";
+    snprintf(path, sizeof path, "%s.lua", word);
+    if (access(path, F_OK) == 0)
+        snprintf(out, GLINTL_PATH_SIZE + 32, "; did you mean %s?", path);
+    else if (options->command == CLI_RENDER && !strpbrk(word, "./"))
+        return "; no command has this name, either: glint --help lists them";
+    else
+        return "";
+    return out;
+}
+
+bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
+{
+    task work = { script, options, run };
+    *script = (cli_script) { .memory.most = UNTRUSTED_LUA_MEMORY };
+    script->state = options->untrusted_s > 0 ? cli_untrusted_state(&script->memory) : luaL_newstate();
+    lua_State *L = script->state;
+    if (!L)
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, run_protected);
+    lua_pushlightuserdata(L, &work);
+    int status = lua_pcall(L, 1, 0, 1);
+    const bool is_short = status == LUA_ERRMEM && !run->asked.is_untrusted; // such a script has a limit of its own
+    if (status != LUA_OK && !run->is_stopped && !run->interrupted) {
+        char hint[GLINTL_PATH_SIZE + 32];
+        const char *message = lua_tostring(L, -1);
+        glintL_run_fail(run, is_short ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s%s%s", message,
+                        dialect_hint(options, message), missing_hint(options, hint));
+    }
+    return status == LUA_OK && !run->exit_code && !run->interrupted;
+}
+
+static int run_jobs_protected(lua_State *L)
+{
+    const task *work = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, work->script->jobs);
+    glintL_jobs_run(L, 2, work->run);
+    return 0;
+}
+
+bool cli_run_jobs(cli_script *script, glintL_run *run)
+{
+    task work = { script, NULL, run };
+    lua_State *L = script->state;
+    lua_settop(L, 0);
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, run_jobs_protected);
+    lua_pushlightuserdata(L, &work);
+    if (lua_pcall(L, 1, 0, 1) != LUA_OK && !run->interrupted)
+        glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
+    return !run->exit_code && !run->interrupted;
+}
+
+void cli_close_script(cli_script *script)
+{
+    cli_set_state(NULL);
+    if (script->state)
+        lua_close(script->state);
+    script->state = NULL;
+}

@@ -1,0 +1,70 @@
+// SIGINT, SIGTERM and SIGHUP: the first stops the render within a tile and the script at its next instruction, so that
+// no file is left half written; the second ends the process at once.
+#include <signal.h>
+#include <string.h>
+
+#include "bindings/command/cli.h"
+
+static glintL_run *volatile caught_run;
+static lua_State *volatile caught_state;
+
+static void raise_interrupted(lua_State *L, lua_Debug *where)
+{
+    (void)where; // the hook stays: a script that catches the error meets it again
+    luaL_error(L, "interrupted");
+}
+
+static void stop(int number)
+{
+    glintL_run *run = caught_run;
+    lua_State *L = caught_state;
+    if (!run || run->interrupted) {
+        signal(number, SIG_DFL);
+        raise(number); // takes effect when this returns
+        return;
+    }
+    run->interrupted = number;
+    if (run->renderer)
+        glint_renderer_cancel(run->renderer);
+    if (L) // lua_sethook is made for this
+        lua_sethook(L, raise_interrupted, LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
+}
+
+static void ignore(int number) { (void)number; }
+
+static void handle(int number, void (*handler)(int))
+{
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(number, &action, NULL);
+}
+
+void cli_catch_signals(glintL_run *run)
+{
+    caught_run = run;
+    handle(SIGINT, stop);
+    handle(SIGTERM, stop);
+    if (signal(SIGHUP, SIG_DFL) == SIG_IGN) // nohup
+        signal(SIGHUP, SIG_IGN);
+    else
+        handle(SIGHUP, stop);
+    // A write that fails says so. Handlers, for programs that the script starts would inherit SIG_IGN.
+    handle(SIGPIPE, ignore);
+    handle(SIGXFSZ, ignore);
+}
+
+void cli_release_signals(void)
+{
+    caught_run = NULL;
+    caught_state = NULL;
+}
+
+void cli_set_state(lua_State *L)
+{
+    caught_state = L;
+    if (L && caught_run && caught_run->interrupted)
+        lua_sethook(L, raise_interrupted, LUA_MASKCOUNT, 1);
+}

@@ -1,0 +1,178 @@
+// What an untrusted script has of Lua: an environment made of a list of names, in a state whose memory is counted.
+#include "bindings/command/untrusted.h"
+
+#include <lualib.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define INSTRUCTIONS 1000 // between two looks whether the script is to end
+
+// ---- Memory ----
+
+static void *allocate(void *context, void *block, size_t old_size, size_t size)
+{
+    cli_lua_memory *memory = context;
+    if (!block)
+        old_size = 0; // it says what the block is for
+    if (size > old_size && size - old_size > memory->most - memory->used)
+        return NULL;
+    void *grown = size ? realloc(block, size) : NULL;
+    if (!size)
+        free(block);
+    if (grown || !size)
+        memory->used += size - old_size;
+    return grown;
+}
+
+lua_State *cli_untrusted_state(cli_lua_memory *memory)
+{
+    memory->used = 0;
+    return lua_newstate(allocate, memory);
+}
+
+// ---- Time ----
+
+// New coroutines inherit the hook. Once it has raised, each next instruction raises again, so that no pcall goes on.
+static void look(lua_State *L, lua_Debug *where)
+{
+    (void)where;
+    if (!glintL_get_run(L)->interrupted)
+        return;
+    lua_sethook(L, look, LUA_MASKCOUNT, 1);
+    luaL_error(L, "interrupted");
+}
+
+// ---- The functions that are not Lua's own ----
+
+// load(chunk, name, mode, env): text alone, whatever the mode; `load` of Lua is the upvalue.
+static int load_text(lua_State *L)
+{
+    const bool has_env = lua_gettop(L) >= 4;
+    lua_settop(L, 4);
+    lua_pushliteral(L, "t");
+    lua_replace(L, 3);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    if (!has_env)
+        lua_pop(L, 1);
+    lua_call(L, has_env ? 4 : 3, LUA_MULTRET);
+    return lua_gettop(L);
+}
+
+// A finalizer would run when no hook does.
+static int set_metatable(lua_State *L)
+{
+    luaL_checktype(L, 1, LUA_TTABLE);
+    luaL_argexpected(L, lua_isnoneornil(L, 2) || lua_istable(L, 2), 2, "nil or table");
+    lua_settop(L, 2);
+    if (lua_istable(L, 2)) {
+        lua_pushliteral(L, "__gc");
+        if (lua_rawget(L, 2) != LUA_TNIL)
+            return luaL_error(L, "setmetatable: an untrusted script has no finalizers (__gc)");
+        lua_settop(L, 2);
+    }
+    if (luaL_getmetafield(L, 1, "__metatable") != LUA_TNIL)
+        return luaL_error(L, "cannot change a protected metatable");
+    lua_setmetatable(L, 1);
+    return 1;
+}
+
+// The module is the upvalue.
+static int require_glint(lua_State *L)
+{
+    const char *name = luaL_checkstring(L, 1);
+    if (strcmp(name, "glint") != 0)
+        return luaL_error(L, "module '%s' not found: an untrusted script has the module glint alone", name);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    return 1;
+}
+
+// ---- The environment ----
+
+static const char *const BASE_NAMES[] = { "assert", "error",    "getmetatable", "ipairs", "next",     "pairs",
+                                          "pcall",  "print",    "rawequal",     "rawget", "rawlen",   "rawset",
+                                          "select", "tonumber", "tostring",     "type",   "_VERSION", NULL };
+static const char *const COROUTINE_NAMES[] = { "close",  "create", "isyieldable", "resume", "running",
+                                               "status", "wrap",   "yield",       NULL };
+static const char *const STRING_NAMES[] = { "byte",    "char",  "find",   "format", "gmatch",   "gsub",
+                                            "len",     "lower", "match",  "pack",   "packsize", "rep",
+                                            "reverse", "sub",   "unpack", "upper",  NULL };
+static const char *const TABLE_NAMES[] = { "concat", "insert", "move", "pack", "remove", "sort", "unpack", NULL };
+static const char *const OS_NAMES[] = { "clock", "date", "difftime", "time", NULL };
+static const char *const MATH_NAMES[] = { "abs", "acos",       "asin", "atan",      "ceil", "cos",    "deg",
+                                          "exp", "floor",      "fmod", "huge",      "log",  "max",    "maxinteger",
+                                          "min", "mininteger", "modf", "pi",        "rad",  "random", "randomseed",
+                                          "sin", "sqrt",       "tan",  "tointeger", "type", "ult",    NULL };
+static const char *const UTF8_NAMES[] = { "char", "charpattern", "codepoint", "codes", "len", "offset", NULL };
+
+typedef struct library {
+    const char *name; // "": its functions are globals
+    lua_CFunction open;
+    const char *const *names;
+} library;
+
+static const library LIBRARIES[] = {
+    { "", luaopen_base, BASE_NAMES },
+    { LUA_COLIBNAME, luaopen_coroutine, COROUTINE_NAMES },
+    { LUA_STRLIBNAME, luaopen_string, STRING_NAMES },
+    { LUA_TABLIBNAME, luaopen_table, TABLE_NAMES },
+    { LUA_OSLIBNAME, luaopen_os, OS_NAMES },
+    { LUA_MATHLIBNAME, luaopen_math, MATH_NAMES },
+    { LUA_UTF8LIBNAME, luaopen_utf8, UTF8_NAMES },
+};
+
+// Copies the names of the table on top into the table at `to`.
+static void copy_names(lua_State *L, const char *const *names, int to)
+{
+    for (; *names; names++) {
+        lua_getfield(L, -1, *names);
+        lua_setfield(L, to, *names);
+    }
+}
+
+static void open_library(lua_State *L, const library *lib, int globals)
+{
+    lua_pushcfunction(L, lib->open);
+    lua_pushstring(L, lib->name);
+    lua_call(L, 1, 1);
+    if (*lib->name) {
+        lua_newtable(L);
+        lua_insert(L, -2);
+        copy_names(L, lib->names, lua_gettop(L) - 1);
+        lua_pop(L, 1);
+        lua_setfield(L, globals, lib->name);
+    } else {
+        copy_names(L, lib->names, globals);
+        lua_getfield(L, -1, "load");
+        lua_pushcclosure(L, load_text, 1);
+        lua_setfield(L, globals, "load");
+        lua_pop(L, 1);
+    }
+}
+
+void cli_open_untrusted(lua_State *L, glintL_run *run)
+{
+    lua_settop(L, 0);
+    glintL_attach_run(L, run);
+    lua_newtable(L); // 1: the globals to be
+    for (size_t i = 0; i < sizeof LIBRARIES / sizeof *LIBRARIES; i++)
+        open_library(L, &LIBRARIES[i], 1);
+    lua_pushcfunction(L, luaopen_glint);
+    lua_call(L, 0, 1);
+    lua_pushcclosure(L, require_glint, 1);
+    lua_setfield(L, 1, "require");
+    lua_pushcfunction(L, set_metatable);
+    lua_setfield(L, 1, "setmetatable");
+    lua_pushvalue(L, 1);
+    lua_setfield(L, 1, LUA_GNAME);
+    // Strings have the methods of the small library, and a metatable that nobody reaches.
+    lua_pushliteral(L, "");
+    lua_getmetatable(L, -1);
+    lua_getfield(L, 1, LUA_STRLIBNAME);
+    lua_setfield(L, -2, "__index");
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_settop(L, 1);
+    lua_rawseti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    lua_sethook(L, look, LUA_MASKCOUNT, INSTRUCTIONS);
+}

@@ -1,0 +1,282 @@
+// What the numbers say: the Pareto front of time and error, combinations worth measuring, one sentence to act on.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cost/cost.h"
+
+#define RESOLVED 10 // times the reference's own error
+#define CANDIDATES_MAX 4096
+#define CLEARLY 0.95 // of the time guessed, or of the error, for a knob to be combined with others
+#define CHEAPER 0.8 // of the time, for a step that loses accuracy
+#define STEEP 0.8 // of the best gain an hour: the smaller step is advised
+
+static double range_of(const cost_case *a, const cost_case *b)
+{
+    return fmax(cost_quartile_range(a), cost_quartile_range(b));
+}
+
+// ---- Combinations: what each knob did alone, put together ----
+
+typedef struct candidate {
+    int choice[COST_KNOBS_MAX];
+    double ms, error; // foreseen
+} candidate;
+
+// Whether the value is clearly faster than the script's own, or clearly nearer to the truth.
+static bool is_useful(const cost_study *study, const cost_row *row)
+{
+    const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
+    return c->has_error && c->run_count > 0 &&
+           (c->guess_ms < CLEARLY * own->guess_ms || c->film.rmse < CLEARLY * own->film.rmse);
+}
+
+// Every known candidate with one more knob turned. Times multiply; errors, being independent, add as squares.
+static int extend(const cost_study *study, int knob, candidate *list, int count)
+{
+    const cost_case *base = &study->cases[0];
+    int before = count;
+    for (int r = 0; r < study->row_count; r++) {
+        const cost_row *row = &study->rows[r];
+        const cost_case *c = &study->cases[row->measured];
+        if (row->knob != knob || row->measured == 0 || !is_useful(study, row))
+            continue;
+        for (int i = 0; i < before && count < CANDIDATES_MAX; i++) {
+            candidate *new = &list[count++];
+            *new = list[i];
+            new->choice[knob] = row->value;
+            new->ms *= c->guess_ms / base->guess_ms;
+            double square = new->error *new->error + c->film.rmse * c->film.rmse - base->film.rmse * base->film.rmse;
+            new->error = sqrt(fmax(square, 0));
+        }
+    }
+    return count;
+}
+
+static int turned(const candidate *c)
+{
+    int count = 0;
+    for (int i = 0; i < COST_KNOBS_MAX; i++)
+        count += c->choice[i] >= 0;
+    return count;
+}
+
+static bool is_beaten(const candidate *list, int count, const candidate *c)
+{
+    for (int i = 0; i < count; i++)
+        if (list[i].ms <= c->ms && list[i].error <= c->error && (list[i].ms < c->ms || list[i].error < c->error))
+            return true;
+    return false;
+}
+
+static int by_time(const void *a, const void *b)
+{
+    const candidate *left = a, *right = b;
+    return (left->ms > right->ms) - (left->ms < right->ms);
+}
+
+// Moves those worth a look to the head of the list, fastest first; returns how many.
+static int choose_candidates(candidate *list, int count)
+{
+    candidate *all = malloc((size_t)count * sizeof *all);
+    int chosen = 0;
+    if (!all)
+        return -1;
+    memcpy(all, list, (size_t)count * sizeof *all);
+    for (int i = 0; i < count; i++)
+        if (turned(&all[i]) > 1 && !is_beaten(all, count, &all[i]))
+            list[chosen++] = all[i];
+    free(all);
+    qsort(list, (size_t)chosen, sizeof *list, by_time);
+    return chosen;
+}
+
+bool cost_add_combinations(cost_study *study)
+{
+    candidate *list = malloc(CANDIDATES_MAX * sizeof *list);
+    int count = 1;
+    if (!list)
+        return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    list[0] = (candidate) { .ms = study->cases[0].guess_ms, .error = study->cases[0].film.rmse };
+    for (int i = 0; i < COST_KNOBS_MAX; i++)
+        list[0].choice[i] = -1;
+    for (int knob = 0; knob < cost_knob_count; knob++)
+        if (cost_knobs[knob].combines)
+            count = extend(study, knob, list, count);
+    count = choose_candidates(list, count);
+    bool good = count >= 0 || glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    const int wanted = count < COST_COMBINATIONS_MAX ? count : COST_COMBINATIONS_MAX;
+    for (int i = 0; i < wanted && good; i++) // spread over the front
+        good = cost_add_combination(study, list[wanted > 1 ? i * (count - 1) / (wanted - 1) : 0].choice);
+    free(list);
+    return good;
+}
+
+// ---- Rows against each other ----
+
+static bool is_point(const cost_study *study, const cost_row *row)
+{
+    const cost_knob *knob = cost_row_knob(row);
+    return !(knob && knob->is_other_time) && cost_row_error(study, row) && study->cases[row->measured].run_count > 0;
+}
+
+// A row beats another when it is nearer to the truth and not slower, or as near and faster. Not slower, faster: by more
+// than both quartile ranges, since a row that was disturbed must not pass for fast; by anything where the errors are
+// equal. As near: within what the reference itself is off.
+static bool beats(const cost_study *study, const cost_row *a, const cost_row *b)
+{
+    const cost_case *ca = &study->cases[a->measured], *cb = &study->cases[b->measured];
+    const double ea = cost_row_error(study, a)->rmse, eb = cost_row_error(study, b)->rmse;
+    const double ta = ca->time[COST_TOTAL].median, tb = cb->time[COST_TOTAL].median;
+    const double noise = fmin(cost_quartile_range(ca), cost_quartile_range(cb));
+    return (ea < eb && ta <= tb + noise) || (ea == eb && ta < tb) ||
+           (ea <= eb + study->reference_error.rmse && ta < tb - noise);
+}
+
+static void judge_row(cost_study *study, cost_row *row)
+{
+    const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
+    const glint_picture_error *error = cost_row_error(study, row);
+    const double difference = c->time[COST_TOTAL].median - own->time[COST_TOTAL].median;
+    row->is_resolved = error && error->rmse >= RESOLVED * study->reference_error.rmse;
+    row->is_partial = !error || (!c->is_left_out && c->run_count < study->runs) || c->is_first_alone;
+    row->difference = fabs(difference) <= range_of(c, own) ? 0 : difference < 0 ? -1 : 1;
+    row->is_front = is_point(study, row);
+    for (int i = 0; i < study->row_count && row->is_front; i++)
+        if (is_point(study, &study->rows[i]) && beats(study, &study->rows[i], row))
+            row->is_front = false;
+}
+
+static void compare_times(cost_study *study)
+{
+    double fastest = INFINITY;
+    for (int i = 0; i < study->row_count; i++)
+        if (study->cases[study->rows[i].measured].run_count > 0)
+            fastest = fmin(fastest, study->cases[study->rows[i].measured].time[COST_TOTAL].median);
+    for (int i = 0; i < study->row_count; i++)
+        study->rows[i].x_fastest = study->cases[study->rows[i].measured].time[COST_TOTAL].median / fastest;
+}
+
+// ---- The advice ----
+
+static void spell_share(double share, char out[48])
+{
+    static const struct {
+        double share;
+        const char *words;
+    } known[] = { { 1.0 / 2, "half the" },
+                  { 1.0 / 3, "a third of the" },
+                  { 2.0 / 3, "two thirds of the" },
+                  { 1.0 / 4, "a quarter of the" },
+                  { 3.0 / 4, "three quarters of the" },
+                  { 1.0 / 5, "a fifth of the" },
+                  { 1.0 / 10, "a tenth of the" },
+                  { 1, "the same" } };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (fabs(share / known[i].share - 1) < 0.06) {
+            snprintf(out, 48, "%s", known[i].words);
+            return;
+        }
+    snprintf(out, 48, share < 0.1 ? "%.1g of the" : "%.2g times the", share);
+}
+
+// "samples 4 -> 16", "samples=16 precision=float in place of the script's setting"
+static void spell_step(const cost_study *study, const cost_row *row, char out[2 * COST_LABEL_SIZE])
+{
+    char own[32];
+    const cost_knob *knob = cost_row_knob(row);
+    if (!knob) {
+        snprintf(out, 2 * COST_LABEL_SIZE, "%s in place of the script's setting", row->label);
+        return;
+    }
+    cost_value_text(study->values[row->knob].value[study->values[row->knob].own], own);
+    snprintf(out, 2 * COST_LABEL_SIZE, "%s %s -> %s", knob->name, own, row->label);
+}
+
+// Only rows that decide no more pixels wrongly than the script's own setting are advised.
+static bool is_eligible(const cost_study *study, const cost_row *row)
+{
+    const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
+    return row->measured != 0 && is_point(study, row) &&
+           c->wrong_object + c->wrong_shadow <= own->wrong_object + own->wrong_shadow;
+}
+
+// How much a step is worth: nearer to the truth for the time, or faster for the same picture; 0: not to be advised.
+static double worth(const cost_study *study, const cost_row *row)
+{
+    const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
+    if (!is_eligible(study, row))
+        return 0;
+    const double e = own->film.rmse / cost_row_error(study, row)->rmse;
+    const double t = c->time[COST_TOTAL].median / own->time[COST_TOTAL].median;
+    if (e >= 0.98 && row->difference < 0) // the same or better, and faster
+        return 1e3 / t;
+    if (!(e >= 1.5))
+        return 0;
+    return row->difference == 0 ? 1e3 * e : log(e) / log(fmax(t, 1.01)); // 1e3: better, for nothing
+}
+
+// The smallest step among those that pay nearly best.
+static const cost_row *find_step(const cost_study *study)
+{
+    const cost_row *step = NULL;
+    double best = 0;
+    for (int i = 0; i < study->row_count; i++)
+        best = fmax(best, worth(study, &study->rows[i]));
+    for (int i = 0; i < study->row_count && best > 0; i++) {
+        const cost_row *row = &study->rows[i];
+        if (worth(study, row) >= STEEP * best && (!step || row->x_fastest < step->x_fastest))
+            step = row;
+    }
+    return step;
+}
+
+static void advise_step(cost_study *study, const cost_row *row)
+{
+    char step[2 * COST_LABEL_SIZE], error[48], time[48];
+    const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
+    spell_step(study, row, step);
+    spell_share(cost_row_error(study, row)->rmse / own->film.rmse, error);
+    spell_share(c->time[COST_TOTAL].median / own->time[COST_TOTAL].median, time);
+    if (row->difference == 0)
+        snprintf(time, sizeof time, "no difference in the");
+    snprintf(study->advice, sizeof study->advice, "%s: %s time, %s error%s", step, time, error,
+             row->is_resolved ? "" : " or less (the reference does not resolve it)");
+}
+
+// Where nothing is nearer to the truth: what is saved by the cheapest step that loses least.
+static const cost_row *find_cheaper(const cost_study *study)
+{
+    const cost_row *best = NULL;
+    for (int i = 0; i < study->row_count; i++) {
+        const cost_row *row = &study->rows[i];
+        const double share =
+            study->cases[row->measured].time[COST_TOTAL].median / study->cases[0].time[COST_TOTAL].median;
+        if (is_eligible(study, row) && row->is_resolved && row->difference < 0 && share < CHEAPER &&
+            (!best || cost_row_error(study, row)->rmse < cost_row_error(study, best)->rmse))
+            best = row;
+    }
+    return best;
+}
+
+static void advise(cost_study *study)
+{
+    const cost_row *best = study->cases[0].has_error ? find_step(study) : NULL;
+    if (!study->cases[0].has_error || study->cases[0].run_count == 0)
+        snprintf(study->advice, sizeof study->advice, "no advice: %s",
+                 study->is_complete ? "the budget left nothing to compare with"
+                                    : "the study was interrupted too early");
+    else if (best || (best = find_cheaper(study)) != NULL)
+        advise_step(study, best);
+    else
+        snprintf(study->advice, sizeof study->advice, "keep the script's setting: nothing here is faster or nearer");
+}
+
+void cost_judge(cost_study *study)
+{
+    cost_summarize(study);
+    compare_times(study);
+    for (int i = 0; i < study->row_count; i++)
+        judge_row(study, &study->rows[i]);
+    advise(study);
+}

@@ -1,0 +1,148 @@
+// When things run: one case at a time in random order, so that a slow minute of the machine meets all of them alike.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/cost/cost.h"
+
+// SplitMix64: the order of the runs needs no better, and no library's.
+static uint64_t next_random(cost_study *study)
+{
+    uint64_t z = study->random += 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+double cost_left_ms(const cost_study *study)
+{
+    return study->deadline_ms > 0 ? study->deadline_ms - glintL_now_ms() : INFINITY;
+}
+
+void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms)
+{
+    if (study->output->progress)
+        cli_progress_step(study->output->progress, what, glintL_now_ms() - study->start_ms, step_ms, left_ms);
+}
+
+// ---- What fits ----
+
+double cost_round_ms(const cost_study *study)
+{
+    double sum = 0;
+    for (int i = 0; i < study->case_count; i++)
+        sum += study->cases[i].is_left_out ? 0 : study->cases[i].estimate_ms;
+    return sum;
+}
+
+static void name_case(const cost_study *study, int index, char out[COST_LABEL_SIZE])
+{
+    for (int i = 0; i < study->row_count; i++)
+        if (study->rows[i].measured == index)
+            cost_row_name(&study->rows[i], out);
+}
+
+// Drops the slowest case but the script's own. False: no other is left.
+static bool drop_slowest(cost_study *study)
+{
+    char name[COST_LABEL_SIZE];
+    int slowest = 0;
+    for (int i = 1; i < study->case_count; i++) {
+        const cost_case *c = &study->cases[i];
+        if (!c->is_left_out && c->run_count > 0 && (slowest == 0 || c->estimate_ms > study->cases[slowest].estimate_ms))
+            slowest = i;
+    }
+    if (slowest == 0)
+        return false;
+    study->cases[slowest].is_left_out = true;
+    name_case(study, slowest, name);
+    return cost_leave_out(study, "%s: timed once, the budget leaves no time for %d runs", name, COST_RUNS_LEAST);
+}
+
+static bool fit_budget(cost_study *study)
+{
+    const int wanted = study->runs;
+    while (cost_round_ms(study) * COST_RUNS_LEAST > cost_left_ms(study) && drop_slowest(study))
+        ;
+    const double fitting = floor(cost_left_ms(study) / cost_round_ms(study));
+    if (fitting < study->runs)
+        study->runs = fitting > 1 ? (int)fitting : 1;
+    if (study->runs < wanted)
+        cost_leave_out(study, "%d of %d runs of each setting", wanted - study->runs, wanted);
+    return !study->run->exit_code;
+}
+
+// ---- The runs ----
+
+static void shuffle(cost_study *study, int *order, int count)
+{
+    for (int i = count - 1; i > 0; i--) {
+        int j = (int)(next_random(study) % ((uint64_t)i + 1)), other = order[j];
+        order[j] = order[i];
+        order[i] = other;
+    }
+}
+
+static bool run_round(cost_study *study, int *order, int count, int round)
+{
+    const double whole = cost_round_ms(study);
+    double left = whole * (study->runs - round);
+    shuffle(study, order, count);
+    for (int i = 0; i < count; i++) {
+        cost_case *c = &study->cases[order[i]];
+        const double step = c->estimate_ms;
+        left -= step;
+        cost_show(study, "timing", step, left);
+        if (cost_is_stopped(study) || !cost_run(study, c))
+            return false;
+    }
+    return true;
+}
+
+bool cost_time_cases(cost_study *study)
+{
+    int count = 0;
+    bool good = fit_budget(study);
+    int *order = malloc(((size_t)study->case_count + 1) * sizeof *order);
+    if (!order)
+        return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    for (int i = 0; i < study->case_count; i++)
+        if (!study->cases[i].is_left_out && study->cases[i].run_count > 0)
+            order[count++] = i;
+    for (int round = 0; round < study->runs && good; round++)
+        good = run_round(study, order, count, round);
+    free(order);
+    return good;
+}
+
+// ---- Quartiles ----
+
+static int by_value(const void *a, const void *b)
+{
+    double left = *(const double *)a, right = *(const double *)b;
+    return (left > right) - (left < right);
+}
+
+static double quantile(const double *sorted, int count, double share)
+{
+    double at = share * (count - 1);
+    int low = (int)at, high = low + 1 < count ? low + 1 : low;
+    return sorted[low] + (at - low) * (sorted[high] - sorted[low]);
+}
+
+void cost_summarize(cost_study *study)
+{
+    double sorted[COST_RUNS_MAX];
+    for (int i = 0; i < study->case_count; i++) {
+        cost_case *c = &study->cases[i];
+        for (int part = 0; part < COST_PART_COUNT && c->run_count > 0; part++) {
+            memcpy(sorted, c->ms[part], sizeof sorted);
+            qsort(sorted, (size_t)c->run_count, sizeof *sorted, by_value);
+            c->time[part] =
+                (cost_quartiles) { sorted[0], quantile(sorted, c->run_count, 0.25), quantile(sorted, c->run_count, 0.5),
+                                   quantile(sorted, c->run_count, 0.75) };
+        }
+    }
+}
+
+double cost_quartile_range(const cost_case *c) { return c->time[COST_TOTAL].q3 - c->time[COST_TOTAL].q1; }

@@ -1,0 +1,99 @@
+// glint.camera
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+// A camera looks at a point or along a direction: the one it does not use reads nil.
+typedef struct desc_type {
+    glint_camera_desc camera;
+    bool has_at;
+} desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, camera.member)
+
+static const char *const PROJECTIONS[] = { "perspective", "orthographic", NULL };
+
+static const glintL_field FIELDS[] = {
+    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true },
+    { .name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at) },
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction) },
+    { .name = "up", .kind = GLINTL_VECTOR, .offset = AT(up) },
+    { .name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad) },
+    { .name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS },
+    { .name = "height", .kind = GLINTL_NUMBER, .offset = AT(height) },
+    { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
+};
+
+static const glintL_variant CAMERA = { .name = "camera", .fields = FIELDS };
+
+static const glintL_variant *variant(const void *object)
+{
+    (void)object;
+    return &CAMERA;
+}
+
+static void get(const void *object, void *desc)
+{
+    desc_type *d = desc;
+    d->camera = *glint_camera_get(object);
+    d->has_at = !d->camera.has_direction;
+}
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    return glint_camera_set(object, &((const desc_type *)desc)->camera, error);
+}
+
+static void *retain(void *object) { return glint_camera_retain(object); }
+
+static void release(void *object) { glint_camera_release(object); }
+
+// The one of at and direction set last is the one used.
+static void assigned(lua_State *L, const glintL_field *field, void *desc)
+{
+    desc_type *d = desc;
+    if (field->offset == AT(at) && d->has_at)
+        d->camera.has_direction = false;
+    else if (field->offset == AT(direction) && d->camera.has_direction)
+        d->has_at = false;
+    if (!d->has_at && !d->camera.has_direction)
+        glintL_error(L, "camera.%s: {x, y, z} expected, got nil", field->name);
+}
+
+static const glintL_class CLASS = {
+    .type = GLINTL_CAMERA,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .assigned = assigned,
+};
+
+static int new_camera(lua_State *L)
+{
+    desc_type desc = { .camera = glint_camera_desc_default(), .has_at = false };
+    glint_camera *camera = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_CAMERA);
+    desc.camera.has_direction = false;
+    glintL_read_table(L, 1, "camera", FIELDS, &desc, false);
+    if (desc.has_at == desc.camera.has_direction)
+        glintL_error(L, "camera: at or direction expected, got %s", desc.has_at ? "both" : "neither");
+    glintL_check_status(L, "camera", &error, glint_camera_create(&desc.camera, &camera, &error));
+    box->object = camera;
+    glintL_remember(L, camera);
+    return 1;
+}
+
+void glintL_open_camera(lua_State *L)
+{
+    glintL_open_class(L, &CLASS);
+    glintL_list_object(L, &CAMERA, &CLASS);
+    lua_pushcfunction(L, new_camera);
+    lua_setfield(L, -2, "camera");
+}

@@ -1,0 +1,69 @@
+// glint.group: a list of shapes under one transform; its methods.
+#include <stdio.h>
+
+#include "bindings/value/glintL.h"
+
+static glint_shape *check_group(lua_State *L, int index)
+{
+    glint_shape *shape = glintL_check_object(L, index, GLINTL_SHAPE);
+    if (glint_shape_get(shape)->kind != GLINT_SHAPE_GROUP)
+        glintL_refuse(L, index, "", "group");
+    return shape;
+}
+
+// Keeps the userdata of a child as long as the group's, so that it reads as the same object.
+static void add_child(lua_State *L, int index, int value, const char *path)
+{
+    char key[32];
+    glint_error error;
+    if (!glintL_test_object(L, value, GLINTL_SHAPE))
+        glintL_refuse(L, value, path, "shape");
+    snprintf(key, sizeof key, "%p", glintL_test_object(L, value, GLINTL_SHAPE));
+    glintL_keep(L, index, key, value);
+    glint_shape *group = check_group(L, index), *child = glintL_test_object(L, value, GLINTL_SHAPE);
+    if (!child) // closed meanwhile, by a finalizer
+        glintL_refuse(L, value, path, "shape");
+    glintL_check_status(L, "", &error, glint_group_add(group, child, &error));
+}
+
+int glintL_group_add(lua_State *L)
+{
+    check_group(L, 1);
+    if (lua_gettop(L) != 2)
+        return glintL_error(L, "group.add: one shape expected, got %d", lua_gettop(L) - 1);
+    add_child(L, 1, 2, "group.add");
+    return 1;
+}
+
+int glintL_group_remove(lua_State *L)
+{
+    char key[32];
+    glint_error error;
+    glint_shape *group = check_group(L, 1), *child = glintL_test_object(L, 2, GLINTL_SHAPE);
+    if (!child)
+        glintL_refuse(L, 2, "group.remove", "shape");
+    snprintf(key, sizeof key, "%p", (void *)child);
+    glintL_check_status(L, "", &error, glint_group_remove(group, child, &error));
+    lua_settop(L, 2);
+    lua_pushnil(L);
+    glintL_keep(L, 1, key, 3);
+    return 0;
+}
+
+int glintL_group_count(lua_State *L)
+{
+    lua_pushinteger(L, (lua_Integer)glint_group_count(check_group(L, 1)));
+    return 1;
+}
+
+void glintL_group_fill(lua_State *L, int list, int index)
+{
+    const size_t count = glintL_check_list(L, list, "group", true);
+    for (size_t i = 1; i <= count; i++) {
+        char path[32];
+        lua_rawgeti(L, list, (lua_Integer)i);
+        snprintf(path, sizeof path, "group[%zu]", i);
+        add_child(L, index, lua_gettop(L), path);
+        lua_pop(L, 1);
+    }
+}

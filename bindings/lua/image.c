@@ -1,0 +1,184 @@
+// Images: what scene:render returns.
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+static const glintL_field NO_FIELDS[] = { { .name = NULL } };
+
+static int get_width(lua_State *L)
+{
+    lua_pushinteger(L, glint_image_width(glintL_check_object(L, 1, GLINTL_IMAGE)));
+    return 1;
+}
+
+static int get_height(lua_State *L)
+{
+    lua_pushinteger(L, glint_image_height(glintL_check_object(L, 1, GLINTL_IMAGE)));
+    return 1;
+}
+
+static int get_passes(lua_State *L)
+{
+    lua_Integer count = 0;
+    lua_newtable(L);
+    for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (glint_image_has_pass(glintL_check_object(L, 1, GLINTL_IMAGE), (glint_pass)pass)) {
+            lua_pushstring(L, glint_pass_name((glint_pass)pass));
+            lua_rawseti(L, -2, ++count);
+        }
+    }
+    return 1;
+}
+
+static const luaL_Reg GETTERS[] = {
+    { "width", get_width },
+    { "height", get_height },
+    { "passes", get_passes },
+    { NULL, NULL },
+};
+
+static const glintL_variant IMAGE = { .name = "image", .fields = NO_FIELDS, .getters = GETTERS };
+
+static const glintL_variant *variant(const void *object)
+{
+    (void)object;
+    return &IMAGE;
+}
+
+static void *retain(void *object) { return glint_image_retain(object); }
+
+static void release(void *object) { glint_image_release(object); }
+
+// A whole number from 0 up to `count` - 1.
+static int check_coordinate(lua_State *L, int index, const char *path, int count)
+{
+    double x = glintL_read_number(L, index, path);
+    if (!(x >= 0 && x < count && x == (int)x)) {
+        const char *got = glintL_push_spelling(L, index);
+        glintL_error(L, "%s: whole number 0 .. %d expected, got %s", path, count - 1, got);
+    }
+    return (int)x;
+}
+
+// The pass named at `index`; nil: beauty.
+static glint_pass check_pass(lua_State *L, int index, const char *path)
+{
+    if (lua_isnoneornil(L, index))
+        return GLINT_PASS_BEAUTY;
+    glint_pass pass = GLINT_PASS_COUNT;
+    if (lua_type(L, index) == LUA_TSTRING)
+        pass = glint_pass_from_name(lua_tostring(L, index));
+    if (pass == GLINT_PASS_COUNT)
+        glintL_refuse(L, index, path, "name of a pass");
+    return pass;
+}
+
+static int pixel(lua_State *L)
+{
+    float out[3];
+    glint_error error;
+    const glint_image *image = glintL_check_object(L, 1, GLINTL_IMAGE);
+    int x = check_coordinate(L, 2, "pixel.x", glint_image_width(image));
+    int y = check_coordinate(L, 3, "pixel.y", glint_image_height(image));
+    glint_pass pass = check_pass(L, 4, "pixel.pass");
+    glintL_check_status(L, "pixel", &error, glint_image_pixel(image, pass, x, y, out, &error));
+    int channels = glint_pass_channels(pass);
+    for (int c = 0; c < channels; c++)
+        lua_pushnumber(L, (lua_Number)out[c]);
+    return channels;
+}
+
+static void read_options(lua_State *L, glint_write_desc *desc)
+{
+    static const char *const transfers[] = { "srgb", "linear", "none", NULL };
+    static const char *const roundings[] = { "nearest", "truncate", NULL }, *const encodes[] = { "fast", "small",
+                                                                                                 NULL };
+    typedef struct options {
+        glint_write_desc desc;
+        double bits;
+    } options;
+    static const glintL_field fields[] = {
+        { .name = "bits", .kind = GLINTL_NUMBER, .offset = offsetof(options, bits) },
+        { .name = "transfer",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.transfer),
+          .names = transfers },
+        { .name = "rounding",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.rounding),
+          .names = roundings },
+        { .name = "tone",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.tone.curve),
+          .names = glintL_tone_curves },
+        { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
+        { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
+        { .name = "pass", .kind = GLINTL_OTHER },
+        { .name = NULL },
+    };
+    options read = { .desc = *desc, .bits = desc->tone.bits };
+    glintL_read_table(L, 3, "save", fields, &read, false);
+    if (read.bits != 8 && read.bits != 16)
+        glintL_error(L, "save.bits: 8 or 16 expected, got %f", read.bits);
+    read.desc.tone.bits = (int)read.bits;
+    lua_pushliteral(L, "pass");
+    lua_rawget(L, 3);
+    read.desc.pass = check_pass(L, -1, "save.pass");
+    lua_pop(L, 1);
+    *desc = read.desc;
+}
+
+static const char *check_path(lua_State *L)
+{
+    size_t length;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        glintL_refuse(L, 2, "save.path", "file name");
+    const char *path = lua_tolstring(L, 2, &length);
+    if (length == 0 || strlen(path) != length)
+        glintL_refuse(L, 2, "save.path", "file name without zero bytes");
+    const glintL_asked *asked = &glintL_get_run(L)->asked;
+    if (!asked->is_untrusted)
+        return path;
+    if (!asked->folder || !glintL_name_is_plain(path, length))
+        glintL_refuse(L, 2, "save.path", asked->folder ? GLINTL_PLAIN_NAME : "no file, for nothing is to be written,");
+    lua_pushfstring(L, "%s/%s", asked->folder, path);
+    lua_replace(L, 2);
+    path = lua_tostring(L, 2);
+    if (glintL_name_is_special(path))
+        glintL_refuse(L, 2, "save.path", "file that is no pipe or device");
+    return path;
+}
+
+static int save(lua_State *L)
+{
+    glint_error error;
+    glintL_check_object(L, 1, GLINTL_IMAGE);
+    glint_write_desc desc = { .path = check_path(L), .pass = GLINT_PASS_BEAUTY, .tone = glint_tone_desc_default() };
+    if (!lua_isnoneornil(L, 3))
+        read_options(L, &desc);
+    glint_status status = glint_image_write(glintL_check_object(L, 1, GLINTL_IMAGE), &desc, &error);
+    if (status == GLINT_ERR_IO || status == GLINT_ERR_NO_SPACE) { // the outside world, as io.open does
+        luaL_pushfail(L);
+        lua_pushstring(L, error.message);
+        return 2;
+    }
+    glintL_check_status(L, "save", &error, status);
+    lua_pushboolean(L, true);
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = { { "pixel", pixel }, { "save", save }, { NULL, NULL } };
+
+static const glintL_class CLASS = {
+    .type = GLINTL_IMAGE,
+    .variant = variant,
+    .retain = retain,
+    .release = release,
+    .methods = METHODS,
+};
+
+void glintL_open_image(lua_State *L)
+{
+    glintL_open_class(L, &CLASS);
+    glintL_list_object(L, &IMAGE, &CLASS);
+}

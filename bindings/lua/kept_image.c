@@ -1,0 +1,91 @@
+// The image that scene:render returns for a file that was kept: rendered when the script first looks at it.
+//
+// Most scripts never do, and a resumed loop then costs nothing. At the first look the userdata becomes an image like
+// any other: it is a glintL_box with a plan behind it.
+#include "bindings/run/run.h"
+
+#define KEPT_IMAGE "glint.kept_image"
+
+typedef struct kept_image {
+    glintL_box box; // of the image it becomes
+    glint_plan *plan; // owned; a snapshot of the scene
+} kept_image;
+
+void glintL_push_kept_image(lua_State *L)
+{
+    luaL_checkstack(L, 4, "image");
+    kept_image *kept = lua_newuserdatauv(L, sizeof *kept, 1);
+    kept->box.object = NULL;
+    kept->plan = NULL;
+    luaL_setmetatable(L, KEPT_IMAGE);
+}
+
+void glintL_set_kept_plan(lua_State *L, int index, glint_plan *plan)
+{
+    kept_image *kept = lua_touserdata(L, index);
+    kept->plan = plan;
+}
+
+static int close_kept(lua_State *L)
+{
+    kept_image *kept = luaL_checkudata(L, 1, KEPT_IMAGE);
+    glint_plan *plan = kept->plan;
+    kept->plan = NULL;
+    glint_plan_destroy(plan);
+    return 0;
+}
+
+// Renders, and turns the userdata at 1, which must be on top of the stack, into an image.
+static void become_image(lua_State *L)
+{
+    kept_image *kept = luaL_checkudata(L, 1, KEPT_IMAGE);
+    glintL_run *run = glintL_get_run(L);
+    glint_image *image = NULL;
+    glint_error error;
+    if (!kept->plan)
+        glintL_error(L, "image is closed");
+    if (!glintL_run_open(run, &error) || glint_render(run->renderer, kept->plan, &image, NULL, &error))
+        glintL_error(L, "image: %s", error.message);
+    glint_plan_destroy(kept->plan);
+    kept->plan = NULL;
+    kept->box.object = image;
+    luaL_setmetatable(L, GLINTL_IMAGE); // which releases it from now on
+}
+
+static int read_member(lua_State *L)
+{
+    lua_settop(L, 2);
+    lua_pushvalue(L, 1);
+    become_image(L);
+    lua_settop(L, 2);
+    lua_gettable(L, 1);
+    return 1;
+}
+
+static int write_member(lua_State *L)
+{
+    lua_settop(L, 3);
+    lua_pushvalue(L, 1);
+    become_image(L);
+    lua_settop(L, 3);
+    lua_settable(L, 1);
+    return 0;
+}
+
+void glintL_open_kept_image(lua_State *L)
+{
+    static const luaL_Reg meta[] = {
+        { "__index", read_member },
+        { "__newindex", write_member },
+        { "__gc", close_kept },
+        { "__close", close_kept },
+        { NULL, NULL },
+    };
+    luaL_newmetatable(L, KEPT_IMAGE);
+    luaL_setfuncs(L, meta, 0);
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pushliteral(L, GLINTL_IMAGE); // what messages call it
+    lua_setfield(L, -2, "__name");
+    lua_pop(L, 1);
+}

@@ -1,0 +1,155 @@
+// glint.material
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+typedef glint_material_desc desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, member)
+
+static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", "cook_torrance", NULL };
+static const char *const DISTRIBUTIONS[] = { "ggx", "beckmann", NULL };
+
+static const glintL_field FIELDS[] = {
+    { .name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS },
+    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient) },
+    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse) },
+    { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular), .set_offset = AT(has_specular) },
+    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess) },
+    { .name = "mirror", .kind = GLINTL_COLOR, .offset = AT(mirror), .set_offset = AT(has_mirror) },
+    { .name = "transmission", .kind = GLINTL_COLOR, .offset = AT(transmission) },
+    { .name = "ior", .kind = GLINTL_NUMBER, .offset = AT(ior) },
+    { .name = "fresnel", .kind = GLINTL_BOOLEAN, .offset = AT(fresnel) },
+    { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption) },
+    { .name = "normalized", .kind = GLINTL_BOOLEAN, .offset = AT(normalized) },
+    { .name = "matched", .kind = GLINTL_BOOLEAN, .offset = AT(matched) },
+    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness) },
+    { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
+    { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
+};
+
+static const glintL_variant MATERIAL = { .name = "material", .fields = FIELDS };
+
+static const glintL_variant *variant(const void *object)
+{
+    (void)object;
+    return &MATERIAL;
+}
+
+static void get(const void *object, void *desc) { memcpy(desc, glint_material_get(object), sizeof(desc_type)); }
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    desc_type d;
+    memcpy(&d, desc, sizeof d);
+    if (!d.has_specular) // it was set to nil
+        memset(d.specular, 0, sizeof d.specular);
+    return glint_material_set(object, &d, error);
+}
+
+static void *retain(void *object) { return glint_material_retain(object); }
+
+static void release(void *object) { glint_material_release(object); }
+
+static void follow(void *desc) { glint_material_desc_resolve(desc); }
+
+static const char WARNED; // its address is the registry's key: true once the script was warned
+
+static bool is_first(lua_State *L)
+{
+    luaL_checkstack(L, 2, "warning");
+    bool first = lua_rawgetp(L, LUA_REGISTRYINDEX, &WARNED) == LUA_TNIL;
+    lua_pushboolean(L, true);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &WARNED);
+    lua_pop(L, 1);
+    return first;
+}
+
+// kd ranges over 0 .. 1; more is allowed, and warned about once.
+static void accepted(lua_State *L, const glintL_field *field, const void *desc)
+{
+    if (field->offset == AT(specular))
+        glintL_note_specular(L, 1);
+    const double *kd = ((const desc_type *)desc)->diffuse;
+    if (field->offset == AT(diffuse) && (kd[0] > 1 || kd[1] > 1 || kd[2] > 1) && is_first(L))
+        glintL_warn(L, "material.diffuse above 1: the surface gives off more light than it gets");
+}
+
+static int evaluate(lua_State *L)
+{
+    typedef struct geometry {
+        double normal[3], to_light[3], to_eye[3];
+    } geometry;
+    static const glintL_field fields[] = {
+        { .name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },
+        { .name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },
+        { .name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },
+        { .name = NULL },
+    };
+    geometry at;
+    glint_reflection out;
+    glint_error error;
+    glintL_check_object(L, 1, GLINTL_MATERIAL);
+    glintL_read_table(L, 2, "evaluate", fields, &at, false);
+    const glint_material *material = glintL_check_object(L, 1, GLINTL_MATERIAL); // again: reading may run finalizers
+    glintL_check_status(L, "evaluate", &error,
+                        glint_material_evaluate(material, at.normal, at.to_light, at.to_eye, &out, &error));
+    lua_createtable(L, 0, 2);
+    glintL_push_vector(L, out.diffuse);
+    lua_setfield(L, -2, "diffuse");
+    glintL_push_vector(L, out.specular);
+    lua_setfield(L, -2, "specular");
+    return 1;
+}
+
+static const luaL_Reg METHODS[] = { { "evaluate", evaluate }, { NULL, NULL } };
+
+static const glintL_class CLASS = {
+    .type = GLINTL_MATERIAL,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .follow = follow,
+    .accepted = accepted,
+    .methods = METHODS,
+};
+
+// Whether the constructor's table, at 1, has the field.
+static bool is_given(lua_State *L, const char *name)
+{
+    lua_pushstring(L, name);
+    bool given = lua_rawget(L, 1) != LUA_TNIL;
+    lua_pop(L, 1);
+    return given;
+}
+
+static int new_material(lua_State *L)
+{
+    desc_type desc = glint_material_desc_default();
+    glint_material *material = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_MATERIAL);
+    glintL_read_table(L, 1, "material", FIELDS, &desc, false);
+    glintL_check_status(L, "material", &error, glint_material_create(&desc, &material, &error));
+    box->object = material;
+    glintL_remember(L, material);
+    accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
+    glintL_note_material(L, 2,
+                         (desc.model == GLINT_MODEL_PHONG || desc.model == GLINT_MODEL_BLINN_PHONG) &&
+                             is_given(L, "shininess") && !is_given(L, "specular"));
+    return 1;
+}
+
+void glintL_open_material(lua_State *L)
+{
+    glintL_open_class(L, &CLASS);
+    glintL_list_object(L, &MATERIAL, &CLASS);
+    lua_pushcfunction(L, new_material);
+    lua_setfield(L, -2, "material");
+}

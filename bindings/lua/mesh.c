@@ -1,0 +1,393 @@
+// The constructors glint.mesh and glint.sphere_mesh.
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+typedef struct arguments {
+    glint_mesh_desc desc;
+    unsigned format; // of packed numbers: 0 none, 1 f32, 2 f64
+    double center[3], radius, segments;
+} arguments;
+
+static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
+static const char *const FORMATS[] = { "f32", "f64", NULL };
+
+#define AT(member) offsetof(arguments, member)
+
+// clang-format off
+#define EVERY_MESH \
+    {.name = "shading", .kind = GLINTL_ENUM, .offset = AT(desc.shading), .set_offset = AT(desc.has_shading), \
+     .names = SHADINGS}, \
+    {.name = "material", .kind = GLINTL_OTHER}, \
+    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(desc.transform)}, \
+    {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(desc.two_sided)}, \
+    {.name = "name", .kind = GLINTL_STRING, .offset = AT(desc.name)}
+// clang-format on
+
+static const glintL_field FIELDS[] = {
+    { .name = "file", .kind = GLINTL_OTHER },
+    { .name = "vertices", .kind = GLINTL_OTHER },
+    { .name = "faces", .kind = GLINTL_OTHER },
+    { .name = "normals", .kind = GLINTL_OTHER },
+    { .name = "format", .kind = GLINTL_OTHER },
+    EVERY_MESH,
+    { .name = NULL },
+};
+
+static const glintL_field SPHERE_FIELDS[] = {
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "segments", .kind = GLINTL_NUMBER, .offset = AT(segments), .required = true },
+    EVERY_MESH,
+    { .name = NULL },
+};
+
+// The stack of the constructors: the argument, the box, then what the argument's fields hold and room for each.
+enum {
+    ARGUMENT = 1,
+    BOX,
+    VERTICES,
+    FACES,
+    NORMALS,
+    OTHER,
+    MATERIAL,
+    VERTEX_BUFFER,
+    CORNER_BUFFER,
+    SIZE_BUFFER,
+    NORMAL_BUFFER,
+    NUMBER_BUFFER
+};
+
+static void fetch(lua_State *L, const char *name, int place)
+{
+    lua_pushstring(L, name);
+    lua_rawget(L, ARGUMENT);
+    lua_replace(L, place);
+}
+
+// ---- Vertices and normals ----
+
+static void read_number(lua_State *L, int list, size_t i, const char *name, double *out)
+{
+    if (lua_rawgeti(L, list, (lua_Integer)i) != LUA_TNUMBER) {
+        const char *got = glintL_push_spelling(L, -1);
+        glintL_error(L, "mesh.%s[%I]: number expected, got %s", name, (LUAI_UACINT)i, got);
+    }
+    *out = lua_tonumber(L, -1);
+    lua_pop(L, 1);
+}
+
+static double *new_numbers(lua_State *L, size_t count, int buffer)
+{
+    double *out = lua_newuserdatauv(L, (count ? count : 1) * sizeof *out, 0);
+    lua_replace(L, buffer);
+    return out;
+}
+
+static double *read_point_list(lua_State *L, int place, const char *name, int buffer, size_t *count)
+{
+    char path[64];
+    const size_t entries = glintL_check_list(L, place, name, false);
+    const bool flat = lua_rawgeti(L, place, 1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    if (flat && entries % 3 != 0)
+        glintL_error(L, "mesh.%s: 3 numbers each expected, got %I numbers", name, (LUAI_UACINT)entries);
+    *count = flat ? entries / 3 : entries;
+    double *out = new_numbers(L, 3 * *count, buffer);
+    for (size_t i = 0; i < entries; i++) {
+        if (flat) {
+            read_number(L, place, i + 1, name, &out[i]);
+            continue;
+        }
+        lua_rawgeti(L, place, (lua_Integer)i + 1);
+        lua_pushfstring(L, "mesh.%s[%I]", name, (LUAI_UACINT)i + 1);
+        strncpy(path, lua_tostring(L, -1), sizeof path - 1);
+        path[sizeof path - 1] = 0;
+        glintL_read_three(L, -2, path, "{x, y, z}", out + 3 * i);
+        lua_pop(L, 2);
+    }
+    return out;
+}
+
+static double *read_packed_points(lua_State *L, const arguments *a, int place, const char *name, int buffer,
+                                  size_t *count)
+{
+    size_t bytes;
+    const char *packed = lua_tolstring(L, place, &bytes);
+    const size_t size = a->format == 1 ? sizeof(float) : sizeof(double);
+    if (bytes % (3 * size) != 0)
+        glintL_error(L, "mesh.%s: %d bytes each (x, y, z in %s) expected, got %I bytes", name, (int)(3 * size),
+                     FORMATS[a->format - 1], (LUAI_UACINT)bytes);
+    *count = bytes / (3 * size);
+    double *out = new_numbers(L, 3 * *count, buffer);
+    for (size_t i = 0; i < 3 * *count; i++) {
+        float f;
+        memcpy(size == sizeof f ? (void *)&f : (void *)&out[i], packed + i * size, size);
+        if (size == sizeof f)
+            out[i] = f;
+    }
+    return out;
+}
+
+static double *read_points(lua_State *L, const arguments *a, int place, const char *name, int buffer, size_t *count)
+{
+    if (lua_istable(L, place))
+        return read_point_list(L, place, name, buffer, count);
+    if (lua_type(L, place) == LUA_TSTRING)
+        return read_packed_points(L, a, place, name, buffer, count);
+    char path[32] = "mesh.";
+    strcat(path, name);
+    glintL_refuse(L, place, path, "list of {x, y, z}, flat table or packed string");
+    return NULL;
+}
+
+static void read_format(lua_State *L, arguments *a)
+{
+    static const glintL_field field = { .name = "format", .kind = GLINTL_ENUM, .offset = AT(format), .names = FORMATS };
+    const bool packed = lua_type(L, VERTICES) == LUA_TSTRING || lua_type(L, NORMALS) == LUA_TSTRING;
+    fetch(L, "format", OTHER);
+    if (packed) {
+        glintL_read_field(L, OTHER, "mesh", &field, a);
+        a->format++;
+    } else if (!lua_isnil(L, OTHER)) {
+        glintL_error(L, "mesh.format: only packed numbers have a format");
+    }
+}
+
+// ---- Faces ----
+
+// One number of a face, counted from 1.
+static uint32_t checked_vertex(lua_State *L, const arguments *a, size_t face, lua_Integer number)
+{
+    if (number < 1 || (size_t)number > a->desc.vertex_count)
+        glintL_error(L, "mesh.faces[%I]: vertex 1 .. %I expected, got %I", (LUAI_UACINT)face,
+                     (LUAI_UACINT)a->desc.vertex_count, (LUAI_UACINT)number);
+    return (uint32_t)number - 1;
+}
+
+// The i-th entry of the list on top of the stack.
+static uint32_t read_vertex_number(lua_State *L, const arguments *a, size_t face, size_t i)
+{
+    lua_rawgeti(L, -1, (lua_Integer)i);
+    int whole;
+    const lua_Integer number = lua_tointegerx(L, -1, &whole);
+    if (!whole || lua_type(L, -1) != LUA_TNUMBER) {
+        const char *got = glintL_push_spelling(L, -1);
+        glintL_error(L, "mesh.faces[%I]: number of a vertex expected, got %s", (LUAI_UACINT)face, got);
+    }
+    const uint32_t vertex = checked_vertex(L, a, face, number);
+    lua_pop(L, 1);
+    return vertex;
+}
+
+static uint32_t *new_indices(lua_State *L, size_t count, int buffer)
+{
+    uint32_t *out = lua_newuserdatauv(L, (count ? count : 1) * sizeof *out, 0);
+    lua_replace(L, buffer);
+    return out;
+}
+
+// All faces are triangles: their numbers one after the other.
+static void set_triangles(lua_State *L, arguments *a, size_t numbers, const char *what)
+{
+    if (numbers % 3 != 0)
+        glintL_error(L, "mesh.faces: 3 numbers a triangle expected, got %I %s", (LUAI_UACINT)numbers, what);
+    a->desc.face_count = numbers / 3;
+    uint32_t *sizes = new_indices(L, a->desc.face_count, SIZE_BUFFER);
+    for (size_t i = 0; i < a->desc.face_count; i++)
+        sizes[i] = 3;
+    a->desc.face_sizes = sizes;
+    a->desc.corners = new_indices(L, numbers, CORNER_BUFFER);
+}
+
+static void read_packed_faces(lua_State *L, arguments *a)
+{
+    size_t bytes;
+    const char *packed = lua_tolstring(L, FACES, &bytes);
+    if (bytes % sizeof(uint32_t) != 0)
+        glintL_error(L, "mesh.faces: 12 bytes a triangle (three u32) expected, got %I bytes", (LUAI_UACINT)bytes);
+    set_triangles(L, a, bytes / sizeof(uint32_t), "numbers");
+    uint32_t *out = lua_touserdata(L, CORNER_BUFFER);
+    for (size_t i = 0; i < 3 * a->desc.face_count; i++) {
+        uint32_t number;
+        memcpy(&number, packed + i * sizeof number, sizeof number);
+        out[i] = checked_vertex(L, a, i / 3 + 1, number);
+    }
+}
+
+static void read_flat_faces(lua_State *L, arguments *a, size_t numbers)
+{
+    set_triangles(L, a, numbers, "numbers");
+    uint32_t *out = lua_touserdata(L, CORNER_BUFFER);
+    lua_pushvalue(L, FACES);
+    for (size_t i = 0; i < numbers; i++)
+        out[i] = read_vertex_number(L, a, i / 3 + 1, i + 1);
+    lua_pop(L, 1);
+}
+
+static void read_polygons(lua_State *L, arguments *a, size_t faces)
+{
+    char path[48];
+    size_t corners = 0;
+    uint32_t *sizes = new_indices(L, faces, SIZE_BUFFER);
+    for (size_t i = 0; i < faces; i++) {
+        lua_rawgeti(L, FACES, (lua_Integer)i + 1);
+        strncpy(path, lua_pushfstring(L, "mesh.faces[%I]", (LUAI_UACINT)i + 1), sizeof path - 1);
+        path[sizeof path - 1] = 0;
+        lua_pop(L, 1);
+        if (!lua_istable(L, -1))
+            glintL_refuse(L, -1, path, "list of numbers of vertices");
+        const size_t size = glintL_check_list(L, -1, path, false);
+        if (size < 3 || size > INT32_MAX)
+            glintL_error(L, "%s: 3 vertices or more expected, got %I", path, (LUAI_UACINT)size);
+        sizes[i] = (uint32_t)size;
+        corners += size;
+        lua_pop(L, 1);
+    }
+    uint32_t *out = new_indices(L, corners, CORNER_BUFFER);
+    a->desc.corners = out;
+    a->desc.face_sizes = sizes;
+    a->desc.face_count = faces;
+    for (size_t i = 0; i < faces; i++) {
+        lua_rawgeti(L, FACES, (lua_Integer)i + 1);
+        for (size_t j = 0; j < sizes[i]; j++)
+            *out++ = read_vertex_number(L, a, i + 1, j + 1);
+        lua_pop(L, 1);
+    }
+}
+
+static void read_faces(lua_State *L, arguments *a)
+{
+    if (lua_type(L, FACES) == LUA_TSTRING) {
+        read_packed_faces(L, a);
+        return;
+    }
+    if (!lua_istable(L, FACES))
+        glintL_refuse(L, FACES, "mesh.faces", "list of faces, flat table of triangles or packed string of u32");
+    const size_t entries = glintL_check_list(L, FACES, "mesh.faces", false);
+    const bool flat = lua_rawgeti(L, FACES, 1) == LUA_TNUMBER;
+    lua_pop(L, 1);
+    if (flat)
+        read_flat_faces(L, a, entries);
+    else
+        read_polygons(L, a, entries);
+}
+
+// ---- Normals: one a vertex, or one a corner in the order of the faces ----
+
+static void read_normals(lua_State *L, arguments *a)
+{
+    size_t corners = 0;
+    if (lua_isnil(L, NORMALS))
+        return;
+    a->desc.normals = read_points(L, a, NORMALS, "normals", NORMAL_BUFFER, &a->desc.normal_count);
+    for (size_t i = 0; i < a->desc.face_count; i++)
+        corners += a->desc.face_sizes[i];
+    if (a->desc.normal_count == a->desc.vertex_count)
+        return;
+    if (a->desc.normal_count != corners)
+        glintL_error(L, "mesh.normals: one a vertex (%I) or one a corner of a face (%I) expected, got %I",
+                     (LUAI_UACINT)a->desc.vertex_count, (LUAI_UACINT)corners, (LUAI_UACINT)a->desc.normal_count);
+    uint32_t *numbers = new_indices(L, corners, NUMBER_BUFFER);
+    for (size_t i = 0; i < corners; i++)
+        numbers[i] = (uint32_t)i;
+    a->desc.normal_corners = numbers;
+}
+
+static void read_arrays(lua_State *L, arguments *a)
+{
+    fetch(L, "vertices", VERTICES);
+    fetch(L, "faces", FACES);
+    fetch(L, "normals", NORMALS);
+    read_format(L, a);
+    a->desc.vertices = read_points(L, a, VERTICES, "vertices", VERTEX_BUFFER, &a->desc.vertex_count);
+    read_faces(L, a);
+    read_normals(L, a);
+}
+
+// ---- Objects ----
+
+// Last before the engine is called, and without allocating: until then a finalizer could close the material.
+static void read_material(lua_State *L, const char *path, arguments *a)
+{
+    a->desc.material = glintL_test_object(L, MATERIAL, GLINTL_MATERIAL);
+    if (!a->desc.material && !lua_isnil(L, MATERIAL))
+        glintL_refuse(L, MATERIAL, path, "material");
+}
+
+static glintL_box *begin(lua_State *L)
+{
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
+    lua_settop(L, NUMBER_BUFFER);
+    return box;
+}
+
+static int finish(lua_State *L, glintL_box *box, glint_shape *shape)
+{
+    box->object = shape;
+    if (!lua_isnil(L, MATERIAL))
+        glintL_keep(L, BOX, "material", MATERIAL);
+    lua_settop(L, BOX);
+    glintL_remember(L, shape);
+    glintL_charge(L, glint_spheres_count(shape) * 6 * sizeof(double));
+    return 1;
+}
+
+static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_error *error)
+{
+    static const char *const arrays[] = { "vertices", "faces", "normals", "format" };
+    if (lua_type(L, OTHER) != LUA_TSTRING)
+        glintL_refuse(L, OTHER, "mesh.file", "name of a file");
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        fetch(L, arrays[i], VERTICES);
+        if (!lua_isnil(L, VERTICES))
+            glintL_error(L, "mesh: file or %s expected, got both", arrays[i]);
+    }
+    const char *path = lua_tostring(L, OTHER);
+    if (strlen(path) != lua_rawlen(L, OTHER))
+        glintL_error(L, "mesh.file: string without a zero byte expected");
+    read_material(L, "mesh.material", a);
+    const glintL_run *run = glintL_get_run(L);
+    if (run->asked.is_untrusted) // which would learn from the answers what files there are
+        glintL_error(L, "mesh.file: an untrusted script reads no files");
+    const glintL_reporter *reporter = &run->reporter;
+    if (reporter->reads)
+        reporter->reads(reporter->context, path);
+    return glint_mesh_load(path, &a->desc, shape, error);
+}
+
+int glintL_new_mesh(lua_State *L)
+{
+    arguments a = { .desc = glint_mesh_desc_default() };
+    glint_shape *shape = NULL;
+    glint_error error;
+    glint_status status;
+    glintL_box *box = begin(L);
+    glintL_read_table(L, ARGUMENT, "mesh", FIELDS, &a, false);
+    fetch(L, "material", MATERIAL);
+    fetch(L, "file", OTHER);
+    if (!lua_isnil(L, OTHER)) {
+        status = load(L, &a, &shape, &error);
+    } else {
+        read_arrays(L, &a);
+        read_material(L, "mesh.material", &a);
+        status = glint_mesh_create(&a.desc, &shape, &error);
+    }
+    glintL_check_status(L, "mesh", &error, status);
+    return finish(L, box, shape);
+}
+
+int glintL_new_sphere_mesh(lua_State *L)
+{
+    arguments a = { .desc = glint_mesh_desc_default() };
+    glint_shape *shape = NULL;
+    glint_error error;
+    glintL_box *box = begin(L);
+    glintL_read_table(L, ARGUMENT, "sphere_mesh", SPHERE_FIELDS, &a, false);
+    fetch(L, "material", MATERIAL);
+    read_material(L, "sphere_mesh.material", &a);
+    glintL_check_status(L, "sphere_mesh", &error,
+                        glint_sphere_mesh_create(a.center, a.radius, a.segments, &a.desc, &shape, &error));
+    return finish(L, box, shape);
+}

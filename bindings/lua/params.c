@@ -1,0 +1,258 @@
+// glint.params: the numbers, switches and words of a script that the command line can set.
+//
+//     local P = glint.params { radius = { 15, min = 1, max = 40, doc = "orbit radius" }, shiny = true }
+//
+// The type is the default's. What --set gives is read as a literal of that type and never evaluated.
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+static const char LIST; // its address is the registry's key of the list of every parameter
+
+typedef struct params_box {
+    void *self; // see glintL_job
+} params_box;
+
+// ---- The list of all, and what a picture says of them ----
+
+void glintL_push_params(lua_State *L)
+{
+    luaL_checkstack(L, 4, "params");
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &LIST) == LUA_TTABLE)
+        return;
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &LIST);
+}
+
+// Pushes the value of the spec at `spec` as it stands in a picture's text: a line without line breaks.
+static void push_value_text(lua_State *L, int spec)
+{
+    char number[32];
+    if (lua_getfield(L, spec, "value") == LUA_TNUMBER && !lua_isinteger(L, -1)) {
+        glintL_format_number(number, lua_tonumber(L, -1));
+        lua_pushstring(L, number);
+    } else {
+        luaL_gsub(L, luaL_tolstring(L, -1, NULL), "\n", "\\n");
+        lua_remove(L, -2);
+    }
+    lua_remove(L, -2);
+}
+
+// Writes every parameter as "name=value", a line each, into the run.
+static void write_text(lua_State *L, glintL_run *run)
+{
+    glintL_push_params(L);
+    int list = lua_gettop(L);
+    lua_Integer count = luaL_len(L, list);
+    lua_pushliteral(L, "");
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_rawgeti(L, list, i);
+        int spec = lua_gettop(L);
+        lua_pushstring(L, i > 1 ? "\n" : "");
+        lua_getfield(L, spec, "name");
+        lua_pushliteral(L, "=");
+        push_value_text(L, spec);
+        lua_remove(L, spec);
+        lua_concat(L, 5);
+    }
+    free(run->params_text);
+    run->params_text = strdup(lua_tostring(L, -1));
+    lua_settop(L, list - 1);
+}
+
+bool glintL_push_unknown_set(lua_State *L)
+{
+    const glintL_run *run = glintL_get_run(L);
+    for (size_t i = 0; i < run->asked.set_count; i++) {
+        const glintL_set *set = &run->asked.sets[i];
+        const char *near = NULL;
+        if (set->is_known)
+            continue;
+        glintL_push_params(L);
+        lua_Integer count = luaL_len(L, -1);
+        for (lua_Integer p = 1; p <= count; p++) {
+            lua_rawgeti(L, -1, p);
+            lua_getfield(L, -1, "name");
+            near = glintL_nearer(set->name, near, lua_tostring(L, -1)); // the list keeps the string
+            lua_pop(L, 2);
+        }
+        if (near)
+            lua_pushfstring(L, "--set %s: no such parameter; did you mean '%s'?", set->name, near);
+        else
+            lua_pushfstring(L, "--set %s: no such parameter%s", set->name,
+                            count ? "; --help lists them" : ": the script has none");
+        return true;
+    }
+    return false;
+}
+
+// ---- The object ----
+
+// Pushes the names of the table at 1, sorted: a table keeps no order of its own.
+static lua_Integer push_names(lua_State *L)
+{
+    lua_Integer count = 0;
+    lua_newtable(L);
+    int names = lua_gettop(L);
+    lua_pushnil(L);
+    while (lua_next(L, 1)) {
+        lua_pop(L, 1);
+        size_t length;
+        if (lua_type(L, -1) != LUA_TSTRING)
+            glintL_bad_key(L, "params", -1);
+        const char *name = lua_tolstring(L, -1, &length);
+        if (length == 0 || length > GLINT_NAME_SIZE || strcspn(name, "=\n") != length)
+            glintL_refuse(L, -1, "params", "name of 1 to 64 bytes without '='");
+        lua_Integer at = ++count;
+        for (; at > 1; at--) {
+            lua_rawgeti(L, names, at - 1);
+            if (strcmp(lua_tostring(L, -1), name) < 0) {
+                lua_pop(L, 1);
+                break;
+            }
+            lua_rawseti(L, names, at);
+        }
+        lua_pushvalue(L, -1);
+        lua_rawseti(L, names, at);
+    }
+    return count;
+}
+
+// Puts the spec on top into the list, in place of one of the same name; pops it.
+static void list_spec(lua_State *L, const char *name, int list)
+{
+    lua_Integer count = luaL_len(L, list), at = 1;
+    for (; at <= count; at++) {
+        lua_rawgeti(L, list, at);
+        lua_getfield(L, -1, "name");
+        bool same = strcmp(lua_tostring(L, -1), name) == 0;
+        lua_pop(L, 2);
+        if (same)
+            break;
+    }
+    lua_rawseti(L, list, at);
+}
+
+static int new_params(lua_State *L)
+{
+    glintL_run *run = glintL_get_run(L);
+    if (!lua_istable(L, 1))
+        glintL_refuse(L, 1, "params", "table");
+    lua_settop(L, 1);
+    luaL_checkstack(L, 12, "params");
+    params_box *box = lua_newuserdatauv(L, sizeof *box, 2); // 2: with the values, and the specs
+    box->self = box;
+    luaL_setmetatable(L, GLINTL_PARAMS);
+    lua_newtable(L);
+    lua_setiuservalue(L, 2, 2);
+    lua_newtable(L); // 3: name -> value
+    glintL_push_params(L); // 4
+    lua_Integer count = push_names(L); // 5
+    for (lua_Integer i = 1; i <= count; i++) {
+        lua_rawgeti(L, 5, i);
+        const char *name = lua_tostring(L, 6);
+        lua_getfield(L, 1, name); // 7
+        glintL_push_param_spec(L, run, name, 7);
+        lua_getfield(L, -1, "value");
+        lua_setfield(L, 3, name);
+        lua_getiuservalue(L, 2, 2);
+        lua_pushvalue(L, -2);
+        lua_setfield(L, -2, name);
+        lua_pop(L, 1);
+        list_spec(L, name, 4);
+        lua_settop(L, 5);
+    }
+    lua_settop(L, 4);
+    lua_pushvalue(L, 3);
+    lua_setiuservalue(L, 2, 1);
+    write_text(L, run);
+    lua_settop(L, 2);
+    return 1;
+}
+
+// Marks the parameter of the name at `name` as read.
+static void mark_read(lua_State *L, int params, int name)
+{
+    lua_getiuservalue(L, params, 2);
+    lua_pushvalue(L, name);
+    if (lua_rawget(L, -2) == LUA_TTABLE) {
+        lua_pushboolean(L, true);
+        lua_setfield(L, -2, "is_read");
+    }
+    lua_pop(L, 2);
+}
+
+static int read_param(lua_State *L)
+{
+    const char *near = NULL;
+    luaL_checkudata(L, 1, GLINTL_PARAMS);
+    if (lua_type(L, 2) != LUA_TSTRING)
+        glintL_bad_key(L, "params", 2);
+    lua_settop(L, 2);
+    lua_getiuservalue(L, 1, 1);
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, 3) != LUA_TNIL) {
+        mark_read(L, 1, 2);
+        return 1;
+    }
+    lua_pushnil(L);
+    lua_replace(L, 4);
+    while (lua_next(L, 3)) {
+        near = glintL_nearer(lua_tostring(L, 2), near, lua_tostring(L, -2));
+        lua_pop(L, 1);
+    }
+    return glintL_no_such_field(L, "params", lua_tostring(L, 2), near);
+}
+
+static int write_param(lua_State *L)
+{
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
+    return glintL_error(L, "params.%s: a parameter is only read; --set %s=... sets it", name, name);
+}
+
+static int next_param(lua_State *L)
+{
+    lua_settop(L, 2);
+    if (lua_next(L, 1))
+        return 2;
+    lua_pushnil(L);
+    return 1;
+}
+
+static int pairs_of_params(lua_State *L)
+{
+    luaL_checkudata(L, 1, GLINTL_PARAMS);
+    lua_pushcfunction(L, next_param);
+    lua_newtable(L); // a copy: the values cannot be changed through it
+    lua_getiuservalue(L, 1, 1);
+    lua_pushnil(L);
+    while (lua_next(L, -2)) {
+        mark_read(L, 1, lua_gettop(L) - 1);
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 1);
+    lua_pushnil(L);
+    return 3;
+}
+
+void glintL_open_params(lua_State *L)
+{
+    static const luaL_Reg meta[] = {
+        { "__index", read_param },
+        { "__newindex", write_param },
+        { "__pairs", pairs_of_params },
+        { NULL, NULL },
+    };
+    luaL_newmetatable(L, GLINTL_PARAMS);
+    luaL_setfuncs(L, meta, 0);
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pop(L, 1);
+    lua_pushcfunction(L, new_params);
+    lua_setfield(L, -2, "params");
+}

@@ -1,0 +1,285 @@
+// glint.scene
+#include <stdio.h>
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+typedef glint_scene_desc desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, member)
+
+static const char *const CAMERA[] = { GLINTL_CAMERA };
+
+static const glintL_field DEPTH_CUE[] = {
+    { .name = "color", .kind = GLINTL_COLOR, .offset = AT(depth_cue_color), .set_offset = AT(has_depth_cue_color) },
+    { .name = "near", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_near) },
+    { .name = "far", .kind = GLINTL_NUMBER, .offset = AT(depth_cue_far), .required = true },
+    { .name = NULL },
+};
+
+static void begin_depth_cue(void *desc)
+{
+    ((desc_type *)desc)->has_depth_cue_color = false;
+    ((desc_type *)desc)->depth_cue_near = 0;
+}
+
+static const glintL_field INDIRECT[] = {
+    { .name = "samples", .kind = GLINTL_NUMBER, .offset = AT(indirect_samples) },
+    { .name = "bounces", .kind = GLINTL_NUMBER, .offset = AT(indirect_bounces) },
+    { .name = NULL },
+};
+
+static void begin_indirect(void *desc)
+{
+    ((desc_type *)desc)->indirect_samples = 16;
+    ((desc_type *)desc)->indirect_bounces = 2;
+}
+
+static const glintL_field FIELDS[] = {
+    { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
+    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
+    { .name = "background", .kind = GLINTL_COLOR, .offset = AT(background) },
+    { .name = "depth_cue",
+      .kind = GLINTL_NESTED,
+      .offset = AT(depth_cue_near),
+      .set_offset = AT(has_depth_cue),
+      .nested = DEPTH_CUE,
+      .begin_nested = begin_depth_cue },
+    { .name = "indirect",
+      .kind = GLINTL_NESTED,
+      .offset = AT(indirect_samples),
+      .set_offset = AT(has_indirect),
+      .nested = INDIRECT,
+      .begin_nested = begin_indirect },
+    { .name = NULL },
+};
+
+static const glintL_variant SCENE = { .name = "scene", .fields = FIELDS };
+
+static const glintL_variant *variant(const void *object)
+{
+    (void)object;
+    return &SCENE;
+}
+
+static void get(const void *object, void *desc) { memcpy(desc, glint_scene_get(object), sizeof(desc_type)); }
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    return glint_scene_set(object, desc, error);
+}
+
+static void *retain(void *object) { return glint_scene_retain(object); }
+
+static void release(void *object) { glint_scene_release(object); }
+
+// ---- Objects in and out ----
+
+// Keeps the userdata at `value` as long as the scene at `index`, or lets go of it; by the address of its object.
+// Returns whether it was kept before.
+static bool keep_object(lua_State *L, int index, const void *object, int value)
+{
+    lua_getiuservalue(L, index, 1);
+    if (!lua_istable(L, -1)) {
+        lua_pop(L, 1);
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, index, 1);
+    }
+    bool was_kept = lua_rawgetp(L, -1, object) != LUA_TNIL;
+    lua_pop(L, 1);
+    lua_pushvalue(L, value);
+    lua_rawsetp(L, -2, object);
+    lua_pop(L, 1);
+    return was_kept;
+}
+
+static void drop_object(lua_State *L, int index, const void *object)
+{
+    if (lua_getiuservalue(L, index, 1) == LUA_TTABLE) {
+        lua_pushnil(L);
+        lua_rawsetp(L, -2, object);
+    }
+    lua_pop(L, 1);
+}
+
+// The shape or light at `value`; one of the two is NULL.
+static void check_member(lua_State *L, int value, const char *path, glint_shape **shape, glint_light **light)
+{
+    *shape = glintL_test_object(L, value, GLINTL_SHAPE);
+    *light = glintL_test_object(L, value, GLINTL_LIGHT);
+    if (!*shape && !*light)
+        glintL_refuse(L, value, path, "shape or light");
+}
+
+static void add_member(lua_State *L, int index, int value, const char *path)
+{
+    glint_shape *shape;
+    glint_light *light;
+    glint_status status;
+    glint_error error;
+    check_member(L, value, path, &shape, &light);
+    const void *object = shape ? (const void *)shape : light;
+    bool was_kept = keep_object(L, index, object, value);
+    check_member(L, value, path, &shape, &light); // again: keeping allocates, and may run finalizers
+    glint_scene *scene = glintL_check_object(L, index, GLINTL_SCENE);
+    if (shape)
+        status = glint_scene_add_shape(scene, shape, &error);
+    else
+        status = glint_scene_add_light(scene, light, &error);
+    if (status && !was_kept)
+        drop_object(L, index, object);
+    glintL_check_status(L, "scene", &error, status);
+}
+
+static int add(lua_State *L)
+{
+    glintL_check_object(L, 1, GLINTL_SCENE);
+    if (lua_gettop(L) > 2) // an object that is passed over would be missing from the picture
+        return glintL_error(L, "scene.add: one object expected, got %d", lua_gettop(L) - 1);
+    lua_settop(L, 2);
+    add_member(L, 1, 2, "scene.add");
+    return 1; // the object, for `local ball = scene:add(glint.sphere{...})`
+}
+
+static int drop(lua_State *L)
+{
+    glint_shape *shape;
+    glint_light *light;
+    glint_status status;
+    glint_error error;
+    glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
+    check_member(L, 2, "scene.remove", &shape, &light);
+    if (shape)
+        status = glint_scene_remove_shape(scene, shape, &error);
+    else
+        status = glint_scene_remove_light(scene, light, &error);
+    glintL_check_status(L, "scene", &error, status);
+    drop_object(L, 1, shape ? (const void *)shape : light);
+    return 0;
+}
+
+// ---- Rays ----
+
+typedef struct ray {
+    double origin[3], direction[3];
+} ray;
+
+// Casts the ray and pushes the shape it hits, or nil. Of a shape no userdata stands for any more the box is made
+// first and the ray cast again: making it may run a finalizer, which may change the scene.
+static bool cast_ray(lua_State *L, const ray *r, glint_hit *out)
+{
+    glintL_box *box = NULL;
+    for (;;) {
+        glint_error error;
+        bool hit = false;
+        const glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
+        glintL_check_status(L, "cast", &error, glint_scene_cast(scene, r->origin, r->direction, &hit, out, &error));
+        glintL_push_remembered(L, hit ? out->shape : NULL);
+        if (!hit || !lua_isnil(L, -1))
+            return hit;
+        lua_pop(L, 1);
+        if (box) {
+            box->object = glint_shape_retain(out->shape);
+            glintL_remember(L, out->shape);
+            return true;
+        }
+        box = glintL_new_box(L, GLINTL_SHAPE);
+    }
+}
+
+static int cast(lua_State *L)
+{
+    ray r;
+    glint_hit hit;
+    glintL_check_object(L, 1, GLINTL_SCENE);
+    glintL_read_vector(L, 2, "cast.origin", r.origin);
+    glintL_read_vector(L, 3, "cast.direction", r.direction);
+    lua_settop(L, 1);
+    if (!cast_ray(L, &r, &hit))
+        return 1; // nil
+    const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
+    const glint_shape_kind kind = shape ? glint_shape_get(shape)->kind : GLINT_SHAPE_SPHERE;
+    bool numbered = kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_MESH;
+    lua_createtable(L, 0, 5);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "object");
+    lua_pushnumber(L, hit.t);
+    lua_setfield(L, -2, "t");
+    glintL_push_vector(L, hit.point);
+    lua_setfield(L, -2, "point");
+    glintL_push_vector(L, hit.normal);
+    lua_setfield(L, -2, "normal");
+    if (numbered) {
+        lua_pushinteger(L, (lua_Integer)hit.element + 1);
+        lua_setfield(L, -2, "element");
+    }
+    return 1;
+}
+
+// A box of its own keeps the engine's scene while the call runs, whatever finalizers do.
+static int render(lua_State *L)
+{
+    glintL_check_object(L, 1, GLINTL_SCENE);
+    lua_settop(L, 2);
+    glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
+    box->object = glint_scene_retain(glintL_check_object(L, 1, GLINTL_SCENE));
+    return glintL_render_call(L, box->object, 2);
+}
+
+static const luaL_Reg METHODS[] = {
+    { "add", add }, { "remove", drop }, { "cast", cast }, { "render", render }, { NULL, NULL },
+};
+
+static const glintL_class CLASS = {
+    .type = GLINTL_SCENE,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .methods = METHODS,
+};
+
+static void add_list(lua_State *L)
+{
+    size_t count = glintL_check_list(L, 1, "scene", true);
+    for (size_t i = 1; i <= count; i++) {
+        char path[32];
+        lua_rawgeti(L, 1, (lua_Integer)i);
+        snprintf(path, sizeof path, "scene[%zu]", i);
+        add_member(L, 2, 3, path);
+        lua_pop(L, 1);
+    }
+}
+
+static int new_scene(lua_State *L)
+{
+    desc_type desc = { .camera = NULL };
+    glint_scene *scene = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
+    glintL_check_status(L, "scene", &error, glint_scene_create(&scene, &error));
+    box->object = scene;
+    glintL_read_table(L, 1, "scene", FIELDS, &desc, true);
+    glintL_check_status(L, "scene", &error, glint_scene_set(scene, &desc, &error));
+    if (desc.camera) {
+        lua_pushliteral(L, "camera");
+        lua_rawget(L, 1);
+        glintL_keep(L, 2, "camera", 3);
+        lua_settop(L, 2);
+    }
+    add_list(L);
+    glintL_remember(L, scene);
+    return 1;
+}
+
+void glintL_open_scene(lua_State *L)
+{
+    glintL_open_class(L, &CLASS);
+    glintL_list_object(L, &SCENE, &CLASS);
+    lua_pushcfunction(L, new_scene);
+    lua_setfield(L, -2, "scene");
+}

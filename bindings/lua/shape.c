@@ -1,0 +1,225 @@
+// glint.sphere, plane, box, disk, cylinder, cone and group; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+typedef glint_shape_desc desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, member)
+
+static const char *const MATERIAL[] = { GLINTL_MATERIAL };
+
+// clang-format off
+#define EVERY_SHAPE \
+    {.name = "material", .kind = GLINTL_OBJECT, .offset = AT(material), .names = MATERIAL}, \
+    {.name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform)}, \
+    {.name = "two_sided", .kind = GLINTL_BOOLEAN, .offset = AT(two_sided)}, \
+    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+// clang-format on
+
+static const glintL_field SPHERE_FIELDS[] = {
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field PLANE_FIELDS[] = {
+    { .name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true },
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field BOX_FIELDS[] = {
+    { .name = "min", .kind = GLINTL_VECTOR, .offset = AT(min), .required = true },
+    { .name = "max", .kind = GLINTL_VECTOR, .offset = AT(max), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field DISK_FIELDS[] = {
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+// Of cylinders and cones.
+static const glintL_field ROUND_FIELDS[] = {
+    { .name = "base", .kind = GLINTL_VECTOR, .offset = AT(base), .required = true },
+    { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "capped", .kind = GLINTL_BOOLEAN, .offset = AT(capped) },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field GROUP_FIELDS[] = {
+    { .name = "transform", .kind = GLINTL_TRANSFORM, .offset = AT(transform) },
+    { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
+    { .name = NULL },
+};
+
+static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_group_count }, { NULL, NULL } };
+static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
+                                          { "remove", glintL_group_remove },
+                                          { NULL, NULL } };
+
+static const glintL_field SPHERES_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
+
+static const char *const SHADINGS[] = { "faceted", "phong", "flat", "gouraud", NULL };
+
+static const glintL_field MESH_FIELDS[] = {
+    { .name = "shading", .kind = GLINTL_ENUM, .offset = AT(shading), .names = SHADINGS },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+// Pushes the list of materials given to glint.spheres{materials = ...}; nil for other shapes.
+static void push_kept_list(lua_State *L)
+{
+    if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
+        lua_getfield(L, -1, "materials");
+        lua_remove(L, -2);
+    } else {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+static int get_count(lua_State *L)
+{
+    lua_pushinteger(L, (lua_Integer)glint_spheres_count(glintL_check_object(L, 1, GLINTL_SHAPE)));
+    return 1;
+}
+
+static int get_materials(lua_State *L)
+{
+    push_kept_list(L);
+    bool several = lua_istable(L, -1);
+    lua_Integer count = several ? (lua_Integer)lua_rawlen(L, -1) : 1;
+    lua_newtable(L);
+    for (lua_Integer i = 1; i <= count; i++) {
+        if (several)
+            lua_rawgeti(L, -2, i);
+        else
+            lua_getfield(L, 1, "material");
+        lua_rawseti(L, -2, i);
+    }
+    return 1;
+}
+
+static const luaL_Reg SPHERES_GETTERS[] = { { "count", get_count }, { "materials", get_materials }, { NULL, NULL } };
+
+static const luaL_Reg MESH_GETTERS[] = { { "count", get_count }, { NULL, NULL } };
+
+static const glintL_variant VARIANTS[] = {
+    [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
+    [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
+    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS },
+    [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MESH_GETTERS },
+    [GLINT_SHAPE_BOX] = { .name = "box", .fields = BOX_FIELDS },
+    [GLINT_SHAPE_DISK] = { .name = "disk", .fields = DISK_FIELDS, .place = "center" },
+    [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
+    [GLINT_SHAPE_CONE] = { .name = "cone", .fields = ROUND_FIELDS },
+    [GLINT_SHAPE_GROUP] = { .name = "group",
+                            .fields = GROUP_FIELDS,
+                            .getters = GROUP_GETTERS,
+                            .methods = GROUP_METHODS },
+};
+
+static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
+
+static void get(const void *object, void *desc) { memcpy(desc, glint_shape_get(object), sizeof(desc_type)); }
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    return glint_shape_set(object, desc, error);
+}
+
+static void *retain(void *object) { return glint_shape_retain(object); }
+
+static void release(void *object) { glint_shape_release(object); }
+
+static void assigned(lua_State *L, const glintL_field *field, void *desc)
+{
+    (void)desc;
+    if (field->kind != GLINTL_OBJECT)
+        return;
+    push_kept_list(L);
+    if (!lua_isnil(L, -1))
+        glintL_error(L, "spheres.material: these spheres have a list of materials; change the fields of those");
+    lua_pop(L, 1);
+}
+
+static const glintL_class CLASS = {
+    .type = GLINTL_SHAPE,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .assigned = assigned,
+};
+
+static int new_shape(lua_State *L, glint_shape_kind kind)
+{
+    const glintL_variant *v = &VARIANTS[kind];
+    desc_type desc = glint_shape_desc_default(kind);
+    glint_shape *shape = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
+    glintL_read_table(L, 1, v->name, v->fields, &desc, kind == GLINT_SHAPE_GROUP);
+    glintL_check_status(L, v->name, &error, glint_shape_create(&desc, &shape, &error));
+    box->object = shape;
+    glintL_remember(L, shape);
+    if (desc.material) {
+        lua_pushliteral(L, "material");
+        lua_rawget(L, 1);
+        glintL_keep(L, 2, "material", -1);
+        lua_pop(L, 1);
+    }
+    if (kind == GLINT_SHAPE_GROUP)
+        glintL_group_fill(L, 1, 2);
+    lua_settop(L, 2);
+    return 1;
+}
+
+static int new_box(lua_State *L) { return new_shape(L, GLINT_SHAPE_BOX); }
+
+static int new_disk(lua_State *L) { return new_shape(L, GLINT_SHAPE_DISK); }
+
+static int new_cylinder(lua_State *L) { return new_shape(L, GLINT_SHAPE_CYLINDER); }
+
+static int new_cone(lua_State *L) { return new_shape(L, GLINT_SHAPE_CONE); }
+
+static int new_group(lua_State *L) { return new_shape(L, GLINT_SHAPE_GROUP); }
+
+static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
+
+static int new_plane(lua_State *L) { return new_shape(L, GLINT_SHAPE_PLANE); }
+
+void glintL_open_shape(lua_State *L)
+{
+    static const luaL_Reg constructors[] = {
+        { "sphere", new_sphere },
+        { "plane", new_plane },
+        { "spheres", glintL_new_spheres },
+        { "box", new_box },
+        { "disk", new_disk },
+        { "cylinder", new_cylinder },
+        { "cone", new_cone },
+        { "group", new_group },
+        { "mesh", glintL_new_mesh },
+        { "sphere_mesh", glintL_new_sphere_mesh },
+        { NULL, NULL },
+    };
+    glintL_open_class(L, &CLASS);
+    for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)
+        glintL_list_object(L, &VARIANTS[i], &CLASS);
+    luaL_setfuncs(L, constructors, 0);
+}

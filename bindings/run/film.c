@@ -1,0 +1,327 @@
+// Films of a run: frames go to a folder beside the film, and into it when all of them are there.
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "bindings/run/film.h"
+
+// ---- Names ----
+
+glintL_film_kind glintL_film_kind_of(const char *path, bool apng)
+{
+    static const struct {
+        const char *ending;
+        glintL_film_kind kind;
+    } kinds[] = { { ".mp4", GLINTL_FILM_MP4 },
+                  { ".webm", GLINTL_FILM_WEBM },
+                  { ".gif", GLINTL_FILM_GIF },
+                  { ".apng", GLINTL_FILM_APNG } };
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        size_t size = strlen(kinds[i].ending);
+        if (length > size && path[length - size - 1] != '/' && strcasecmp(path + length - size, kinds[i].ending) == 0)
+            return kinds[i].kind;
+    }
+    if (apng && length > 4 && path[length - 5] != '/' && strcasecmp(path + length - 4, ".png") == 0)
+        return GLINTL_FILM_APNG;
+    return GLINTL_FILM_NONE;
+}
+
+// "PATH.frames/%04d.png", a '%' of the path doubled; owned by the caller. NULL: out of memory.
+static char *pattern_of(const char *path)
+{
+    size_t used = 0, room = 2 * strlen(path) + 32;
+    char *out = malloc(room);
+    for (; out && *path; path++) {
+        if (*path == '%')
+            out[used++] = '%';
+        out[used++] = *path;
+    }
+    if (out)
+        snprintf(out + used, room - used, ".frames/%%04d.png");
+    return out;
+}
+
+// ---- The films of a run ----
+
+static glintL_film *find(const glintL_run *run, const char *path)
+{
+    glintL_film *film = run->films;
+    while (film && strcmp(film->path, path) != 0)
+        film = film->next;
+    return film;
+}
+
+static glintL_film *add_film(glintL_run *run, const char *path, glintL_film_kind kind, double fps)
+{
+    glintL_film *film = calloc(1, sizeof *film), **end = &run->films;
+    if (!film)
+        return NULL;
+    film->path = strdup(path);
+    film->pattern = pattern_of(path);
+    film->kind = kind;
+    film->fps = fps;
+    if (!film->path || !film->pattern) {
+        glintL_films_destroy(film);
+        return NULL;
+    }
+    while (*end)
+        end = &(*end)->next;
+    *end = film;
+    return film;
+}
+
+static bool refuse(char *message, const char *path, const char *why)
+{
+    snprintf(message, GLINTL_MESSAGE_SIZE, "output: '%.200s' is a film: %s", path, why);
+    return false;
+}
+
+static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
+{
+    if (film->kind != GLINTL_FILM_APNG && !glintL_has_ffmpeg())
+        glintL_run_warn(run, "ffmpeg is not installed: the frames of %s are rendered, and stay in %s.frames",
+                        film->path, film->path);
+}
+
+bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *render, double fps,
+                      char message[GLINTL_MESSAGE_SIZE])
+{
+    glintL_film_kind kind = glintL_film_kind_of(path, run->asked.apng);
+    if (strcmp(path, "none") == 0)
+        return true;
+    if (run->asked.apng && kind != GLINTL_FILM_APNG) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "--apng: an output in .png expected, got '%.200s'", path);
+        return false;
+    }
+    if (kind == GLINTL_FILM_NONE)
+        return true;
+    if (run->asked.is_untrusted)
+        return refuse(message, path, "an untrusted script writes pictures alone; make the film with glint assemble");
+    fps = run->asked.fps > 0 ? run->asked.fps : fps;
+    if (run->asked.selection.shard_count > 1)
+        return refuse(message, path,
+                      "it takes all frames of one run; give the shards a pattern such as %04d.png, and then "
+                      "make it with glint assemble");
+    if (render->file_passes)
+        return refuse(message, path,
+                      "it has no room for passes; write frames, and make a film of each pass with glint "
+                      "assemble");
+    if (render->desc.alpha && kind != GLINTL_FILM_APNG)
+        return refuse(message, path, "it has no room for alpha; an animated PNG does (.apng, or .png with --apng)");
+    if (kind == GLINTL_FILM_GIF && fps > 50)
+        return refuse(message, path, "a GIF has at most 50 frames a second; --fps 50 or less expected");
+    glintL_film *film = find(run, path);
+    if (film && film->fps != fps)
+        return refuse(message, path, "the animations that go into it have different fps; --fps expected");
+    if (film)
+        return true;
+    film = add_film(run, path, kind, fps);
+    if (film)
+        warn_no_ffmpeg(run, film);
+    else
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    return film != NULL;
+}
+
+void glintL_film_take(const glintL_run *run, glintL_naming *naming)
+{
+    glintL_film *film = naming->pattern ? find(run, naming->pattern) : NULL;
+    if (film)
+        *naming = (glintL_naming) { .pattern = film->pattern, .film = film };
+}
+
+bool glintL_film_add(glintL_film *film, const char *file)
+{
+    if (film->count == film->room) {
+        size_t room = film->room ? 2 * film->room : 64;
+        char **grown = realloc(film->files, room * sizeof *grown);
+        if (!grown)
+            return false;
+        film->files = grown;
+        film->room = room;
+    }
+    film->files[film->count] = strdup(file);
+    return film->files[film->count] && ++film->count;
+}
+
+void glintL_films_destroy(glintL_film *films)
+{
+    while (films) {
+        glintL_film *next = films->next;
+        for (size_t i = 0; i < films->count; i++)
+            free(films->files[i]);
+        free(films->files);
+        free(films->path);
+        free(films->pattern);
+        free(films);
+        films = next;
+    }
+}
+
+// ---- Making ----
+
+static bool match_first(const glintL_film *film, size_t i, const glint_picture *first, const glint_picture *picture,
+                        char *message)
+{
+    int width = glint_picture_width(first), height = glint_picture_height(first), bits = glint_picture_bits(first);
+    if (glint_picture_width(picture) != width || glint_picture_height(picture) != height) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: %dx%d pixels, as %.200s has, expected, got %dx%d",
+                 film->files[i], width, height, film->files[0], glint_picture_width(picture),
+                 glint_picture_height(picture));
+        return false;
+    }
+    if (glint_picture_bits(picture) == bits && glint_picture_transfer(picture) == glint_picture_transfer(first) &&
+        glint_picture_channels(picture) == glint_picture_channels(first))
+        return true;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: bits, transfer and channels as %.200s has expected, got others",
+             film->files[i], film->files[0]);
+    return false;
+}
+
+// Only an APNG has room for what a picture does not cover.
+static bool check_channels(const glintL_film *film, const glint_picture *first, char *message)
+{
+    const int channels = glint_picture_channels(first);
+    if (film->kind == GLINTL_FILM_APNG) {
+        if ((channels == 3 || channels == 4) && glint_picture_bits(first) <= 16)
+            return true;
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: a .png of RGB or RGBA expected for an APNG", film->files[0]);
+        return false;
+    }
+    if (channels == 1 || channels == 3)
+        return true;
+    snprintf(message, GLINTL_MESSAGE_SIZE,
+             "%.200s: it has alpha, for which %.200s has no room; an animated PNG does (.apng, or .png with --apng)",
+             film->files[0], film->path);
+    return false;
+}
+
+bool glintL_film_check_files(const glintL_film *film, bool strict, char message[GLINTL_MESSAGE_SIZE])
+{
+    glint_picture *first = NULL;
+    bool good = true;
+    for (size_t i = 0; i < film->count && good; i++) {
+        glint_picture *picture = NULL;
+        glint_error error;
+        if (glint_picture_read(film->files[i], false, &picture, &error)) {
+            snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
+            good = false;
+        } else if (!first) {
+            first = picture;
+            continue;
+        } else {
+            good = match_first(film, i, first, picture, message) &&
+                   (!strict || glintL_provenance_match(first, film->files[0], picture, film->files[i], true, message));
+        }
+        glint_picture_destroy(picture);
+    }
+    good = good && check_channels(film, first, message);
+    glint_picture_destroy(first);
+    return good;
+}
+
+void glintL_film_tell(const glintL_run *run, const glintL_film *film, size_t done)
+{
+    if (run->reporter.making)
+        run->reporter.making(run->reporter.context, film->path, done, film->count);
+}
+
+static glint_status add_frames(const glintL_run *run, const glintL_film *film, glint_apng *apng, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < film->count && !status; i++) {
+        glint_picture *picture = NULL;
+        glintL_film_tell(run, film, i);
+        if (run->interrupted)
+            return GLINT_ERR_CANCELLED;
+        status = glint_picture_read(film->files[i], true, &picture, error);
+        if (!status)
+            status = glint_apng_add(apng, picture, error);
+        glint_picture_destroy(picture);
+    }
+    return status;
+}
+
+static glint_status make_apng(const glintL_run *run, const glintL_film *film, glint_error *error)
+{
+    glint_picture *first = NULL;
+    glint_apng *apng = NULL;
+    glint_status status = glint_picture_read(film->files[0], false, &first, error);
+    if (status)
+        return status;
+    glint_apng_desc desc = { glint_picture_width(first),
+                             glint_picture_height(first),
+                             glint_picture_bits(first),
+                             glint_picture_channels(first) == 4,
+                             glint_picture_transfer(first),
+                             (uint32_t)film->count,
+                             film->fps,
+                             0,
+                             GLINT_ENCODE_SMALL };
+    glint_picture_destroy(first);
+    status = glint_apng_create(film->path, &desc, &apng, error);
+    if (!status)
+        status = add_frames(run, film, apng, error);
+    if (!status)
+        status = glint_apng_finish(apng, error);
+    glint_apng_destroy(apng);
+    return status;
+}
+
+int glintL_film_make(glintL_run *run, const glintL_film *film, char message[GLINTL_MESSAGE_SIZE])
+{
+    glint_error error = { .message = "interrupted" };
+    if (film->kind != GLINTL_FILM_APNG)
+        return glintL_film_pipe(run, film, message);
+    glint_status status = make_apng(run, film, &error);
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
+    return glintL_run_exit_code(status);
+}
+
+static void remove_frames(const glintL_run *run, glintL_film *film)
+{
+    char folder[GLINTL_PATH_SIZE];
+    for (size_t i = 0; i < film->count; i++) {
+        unlink(film->files[i]);
+        free(film->files[i]);
+    }
+    film->count = 0;
+    snprintf(folder, sizeof folder, "%s.frames", film->path);
+    if (rmdir(folder) != 0 && errno != ENOENT)
+        glintL_run_note(run, "%s: it holds other files, and stays", folder);
+}
+
+bool glintL_films_finish(glintL_run *run)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    for (glintL_film *film = run->films; film && !run->exit_code; film = film->next) {
+        if (film->count == 0)
+            continue;
+        int code = GLINTL_EXIT_USAGE;
+        size_t count = film->count;
+        if (!run->interrupted && glintL_film_check_files(film, false, message))
+            code = glintL_film_make(run, film, message);
+        if (run->interrupted || code)
+            return glintL_run_fail(run, code, 0, "%s", message);
+        remove_frames(run, film);
+        if (run->reporter.figure)
+            run->reporter.figure(run->reporter.context, "film", film->path, (int64_t)count);
+    }
+    if (run->exit_code)
+        return false;
+    glintL_films_destroy(run->films); // another run in the same script makes its films anew
+    run->films = NULL;
+    return true;
+}
+
+void glintL_films_keep(const glintL_run *run)
+{
+    for (const glintL_film *film = run->films; film; film = film->next)
+        if (film->count > 0)
+            glintL_run_note(run, "%zu frames of %s are kept in %s.frames: the same command goes on from there",
+                            film->count, film->path, film->path);
+}

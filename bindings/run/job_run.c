@@ -1,0 +1,197 @@
+// animation:run{...} and sweep:run{...}: the frames of one job, from a script. What the command line says still wins.
+#include <stdio.h>
+#include <string.h>
+
+#include "bindings/run/film.h"
+
+static const glintL_field OPTIONS[] = {
+    { .name = "frames" }, { .name = "shard" },  { .name = "threads" },
+    { .name = "force" },  { .name = "repeat" }, { .name = NULL },
+};
+
+static int read_count(lua_State *L, int index, const char *path, const char *expected, int max)
+{
+    double count = glintL_read_number(L, index, path);
+    if (!(count >= 1 && count <= max) || count != (int)count)
+        glintL_refuse(L, index, path, expected);
+    return (int)count;
+}
+
+// Reads one option; `frames` and `shard` only as strings, left to parse_selection.
+static void read_option(lua_State *L, int index, const char *name, glintL_asked *asked, glintL_render *render)
+{
+    char path[48];
+    int field = glintL_render_find(name);
+    snprintf(path, sizeof path, "run.%s", name);
+    if (field >= 0) {
+        glintL_render_read(L, index, "run.", field, render);
+    } else if (strcmp(name, "threads") == 0) {
+        asked->threads = read_count(L, index, path, "whole number 1 .. 1024", 1024);
+    } else if (strcmp(name, "repeat") == 0) {
+        asked->repeat = read_count(L, index, path, "whole number 1 .. 1000000", 1000000);
+    } else if (strcmp(name, "force") == 0) {
+        if (!lua_isboolean(L, index))
+            glintL_refuse(L, index, path, "boolean");
+        asked->force = lua_toboolean(L, index);
+    } else if (strcmp(name, "frames") == 0 || strcmp(name, "shard") == 0) {
+        if (lua_type(L, index) != LUA_TSTRING && !(lua_isinteger(L, index) && name[0] == 'f'))
+            glintL_refuse(L, index, path, name[0] == 'f' ? "frames such as \"1-3,5\"" : "shard such as \"1/4\"");
+    } else {
+        const char *near = glintL_nearest(name, OPTIONS);
+        for (const glintL_field *f = glintL_render_fields; f->name; f++)
+            near = glintL_nearer(name, near, f->name);
+        glintL_no_such_field(L, "run", name, near);
+    }
+}
+
+static void read_options(lua_State *L, int index, glintL_asked *asked, glintL_render *render)
+{
+    if (lua_isnoneornil(L, index))
+        return;
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, "run", "table");
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            glintL_bad_key(L, "run", -2);
+        read_option(L, lua_gettop(L), lua_tostring(L, -2), asked, render);
+        lua_pop(L, 1);
+    }
+}
+
+// Reads `frames` and `shard` of the table at 2, which read_option has checked. The selection is owned: nothing raises
+// after it has something. False: the message is written.
+static bool parse_selection(lua_State *L, glintL_selection *selection, char message[GLINTL_MESSAGE_SIZE])
+{
+    bool good = true;
+    if (!lua_istable(L, 2))
+        return true;
+    lua_pushliteral(L, "frames");
+    lua_rawget(L, 2);
+    const char *frames = lua_tostring(L, -1);
+    lua_pushliteral(L, "shard");
+    lua_rawget(L, 2);
+    const char *shard = lua_tostring(L, -1);
+    if (frames)
+        good = glintL_selection_parse(selection, frames, message);
+    if (good && shard)
+        good = glintL_selection_parse_shard(selection, shard, message);
+    lua_pop(L, 2);
+    return good;
+}
+
+static int run_protected(lua_State *L)
+{
+    bool *good = lua_touserdata(L, 2);
+    *good = glintL_jobs_run(L, 1, glintL_get_run(L));
+    return 0;
+}
+
+// Runs the list at `list`, which holds the job at 1 alone, as `asked`; the run and the job are as before afterwards.
+// Does not raise.
+static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_asked *asked, const glintL_render *render)
+{
+    glintL_job *job = lua_touserdata(L, 1);
+    char message[GLINTL_MESSAGE_SIZE];
+    glintL_asked before = run->asked;
+    glintL_render render_before = job->render;
+    bool good = false;
+    run->asked = *asked;
+    job->render = *render;
+    lua_pushcfunction(L, run_protected);
+    lua_pushvalue(L, list);
+    lua_pushlightuserdata(L, &good);
+    if (lua_pcall(L, 2, 0, 0) != LUA_OK)
+        good = glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "%s", lua_tostring(L, -1));
+    if (!run->is_command) {
+        good = glintL_run_collect(run, true) && good;
+        good = good && glintL_films_finish(run);
+        if (good && glintL_selection_outside(&run->asked.selection, run->total, message))
+            glintL_run_warn(run, "%s", message);
+    }
+    job->render = render_before;
+    run->asked = before;
+    return good;
+}
+
+static int push_summary(lua_State *L, const glintL_run *run, double start_ms)
+{
+    lua_createtable(L, 0, 3);
+    lua_pushinteger(L, run->done);
+    lua_setfield(L, -2, "frames");
+    lua_pushinteger(L, run->kept);
+    lua_setfield(L, -2, "kept");
+    lua_pushnumber(L, (glintL_now_ms() - start_ms) * 1e-3);
+    lua_setfield(L, -2, "seconds");
+    return 1;
+}
+
+// Plain Lua has no command line: each run counts its frames from 1.
+static void begin_plain(glintL_run *run)
+{
+    glintL_films_destroy(run->films);
+    run->films = NULL;
+    run->exit_code = 0;
+    run->count = run->call_count = run->earlier = 0;
+    run->todo = run->done = run->kept = 0;
+}
+
+// The command line's selection, when there is one, else the script's. False: the message is written.
+static bool merge(lua_State *L, const glintL_run *run, glintL_asked *asked, char message[GLINTL_MESSAGE_SIZE])
+{
+    const glintL_selection *given = &run->asked.selection;
+    asked->selection = (glintL_selection) { 0 };
+    if (!parse_selection(L, &asked->selection, message)) {
+        glintL_selection_clear(&asked->selection);
+        return false;
+    }
+    if (given->range_count || given->shard_count) {
+        glintL_selection_clear(&asked->selection);
+        asked->selection = *given;
+    }
+    if (run->is_command) {
+        asked->threads = run->asked.threads ? run->asked.threads : asked->threads;
+        asked->repeat = run->asked.repeat > 1 ? run->asked.repeat : asked->repeat;
+        asked->force = run->asked.force || asked->force;
+    }
+    return true;
+}
+
+int glintL_job_run(lua_State *L)
+{
+    glintL_run *run = glintL_get_run(L);
+    const glintL_job *job = luaL_checkudata(L, 1, GLINTL_ANIMATION);
+    glintL_asked asked = run->asked;
+    glintL_render render = job->render;
+    char message[GLINTL_MESSAGE_SIZE];
+    double start = glintL_now_ms();
+    lua_settop(L, 2);
+    luaL_checkstack(L, 16, "run");
+    if (run->mode == GLINTL_MODE_DESCRIBE)
+        return glintL_stop_script(L);
+    if (run->in_frame)
+        return glintL_error(L, "run: not inside the frame function of an animation");
+    if (glintL_push_unknown_set(L))
+        return lua_error(L);
+    read_options(L, 2, &asked, &render);
+    lua_newtable(L); // 3
+    lua_pushvalue(L, 1);
+    lua_rawseti(L, 3, 1);
+    if (run->mode == GLINTL_MODE_EXPLAIN) {
+        if (glintL_jobs_explain(L, 3, run))
+            return glintL_stop_script(L);
+        return run->exit_code ? glintL_error(L, "%s", run->message) : 0;
+    }
+    if (!run->is_command)
+        begin_plain(run);
+    if (!merge(L, run, &asked, message))
+        return glintL_error(L, "run: %s", message);
+    bool good = !run->exit_code && glintL_call_settle(run) && run_as(L, run, 3, &asked, &render);
+    if (asked.selection.ranges != run->asked.selection.ranges)
+        glintL_selection_clear(&asked.selection);
+    if (!good) {
+        lua_pushstring(L, run->interrupted ? "interrupted" : run->message); // it says where, as far as that is known
+        return lua_error(L);
+    }
+    return push_summary(L, run, start);
+}

@@ -1,0 +1,421 @@
+// Frames of animations and sweeps: numbered through a list of them, selected, rendered in order.
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/film.h"
+#include "bindings/run/sheet.h"
+
+// ---- What a script returned ----
+
+static bool push_expected(lua_State *L, int index)
+{
+    const char *got = glintL_push_spelling(L, index);
+    lua_pushfstring(L, "the script returned %s; an animation, a sweep, a scene or a list of them is expected", got);
+    return false;
+}
+
+// Pushes the job that one value stands for; false: it is none, and nothing is pushed. A scene is a still.
+static bool push_one(lua_State *L, int index)
+{
+    index = lua_absindex(L, index);
+    if (luaL_testudata(L, index, GLINTL_ANIMATION)) {
+        lua_pushvalue(L, index);
+        return true;
+    }
+    if (!glintL_test_object(L, index, GLINTL_SCENE))
+        return false;
+    glintL_push_job(L, GLINTL_JOB_ANIMATION);
+    lua_pushvalue(L, index);
+    lua_setiuservalue(L, -2, GLINTL_JOB_SCENE);
+    return true;
+}
+
+bool glintL_push_jobs(lua_State *L, int index)
+{
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 8, "jobs");
+    lua_newtable(L);
+    int list = lua_gettop(L);
+    if (push_one(L, index)) {
+        lua_rawseti(L, list, 1);
+        return true;
+    }
+    if (!lua_istable(L, index))
+        return push_expected(L, index);
+    size_t count = glintL_check_list(L, index, "the list that the script returned", false);
+    for (size_t i = 1; i <= count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i);
+        if (!push_one(L, -1))
+            return push_expected(L, -1);
+        lua_rawseti(L, list, (lua_Integer)i);
+        lua_settop(L, list);
+    }
+    if (count == 0)
+        lua_pushliteral(L, "the script returned an empty list; it renders nothing");
+    return count > 0;
+}
+
+static const glintL_job *get_job(lua_State *L, int index, lua_Integer i)
+{
+    lua_rawgeti(L, index, i);
+    const glintL_job *job = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return job;
+}
+
+int64_t glintL_jobs_total(lua_State *L, int index)
+{
+    int64_t total = 0;
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, index); i++)
+        total += get_job(L, index, i)->frames;
+    return total;
+}
+
+// ---- One job of the list ----
+
+typedef struct job_walk {
+    lua_State *L;
+    glintL_run *run;
+    int list, job_index; // on the stack; the job is on top of it
+    lua_Integer settled; // jobs of the list that left the scene as they leave it
+    const glintL_job *job;
+    glintL_render render; // with what the command line says
+    char pattern[GLINTL_PATH_SIZE];
+    glintL_naming naming;
+} job_walk;
+
+// A picture of the run's preview size: quick, and of the same shape.
+static void shrink(glintL_run *run, glint_render_desc *desc)
+{
+    double longest = desc->width > desc->height ? desc->width : desc->height;
+    double scale = longest > run->preview_side ? run->preview_side / longest : 1;
+    run->was_shrunk = run->was_shrunk || scale < 1 || desc->samples > 1;
+    desc->samples = 1;
+    desc->width = scale < 1 ? fmax(1, floor(desc->width * scale + 0.5)) : desc->width;
+    desc->height = scale < 1 ? fmax(1, floor(desc->height * scale + 0.5)) : desc->height;
+}
+
+void glintL_run_apply(glintL_run *run, glintL_render *render)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
+        if (run->asked.render_text[field]) // it was checked when it was read
+            glintL_render_set_text(render, field, run->asked.render_text[field], message);
+    if (run->preview_side > 0)
+        shrink(run, &render->desc);
+}
+
+void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE])
+{
+    size_t length = strlen(run->script);
+    if (length > 4 && strcmp(run->script + length - 4, ".lua") == 0)
+        length -= 4;
+    snprintf(pattern, GLINTL_PATH_SIZE, "%.*s.png", length ? (int)length : 5, length ? run->script : "frame");
+}
+
+// Whether several frames of the whole script go to this job's pattern.
+static bool is_shared(const job_walk *walk)
+{
+    int64_t frames = 0;
+    glintL_render *other = malloc(sizeof *other);
+    if (!other || walk->run->call_count > 0 || walk->run->point_count > 1) {
+        free(other);
+        return true;
+    }
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(walk->L, walk->list); i++) {
+        const glintL_job *job = get_job(walk->L, walk->list, i);
+        *other = job->render;
+        glintL_run_apply(walk->run, other);
+        if (strcmp(other->output, walk->render.output) == 0)
+            frames += job->frames;
+    }
+    free(other);
+    return frames > 1 || walk->run->earlier > 0;
+}
+
+// The job on top of the stack becomes the one at hand.
+static void take_job(job_walk *walk, lua_Integer i)
+{
+    lua_rawgeti(walk->L, walk->list, i);
+    walk->job_index = lua_gettop(walk->L);
+    walk->job = lua_touserdata(walk->L, -1);
+}
+
+static void begin_job(job_walk *walk, lua_Integer i)
+{
+    take_job(walk, i);
+    walk->render = walk->job->render;
+    glintL_run_apply(walk->run, &walk->render);
+    walk->naming = (glintL_naming) { .pattern = walk->render.output, .is_numbered = is_shared(walk) };
+    if (strcmp(walk->render.output, "none") == 0) {
+        walk->naming.pattern = NULL;
+    } else if (!*walk->render.output) {
+        glintL_run_default_name(walk->run, walk->pattern);
+        walk->naming.pattern = walk->pattern;
+        walk->naming.is_plain = true;
+    }
+}
+
+// Prepares the film the job's frames go into, if any. False: the run has failed.
+static bool open_film(job_walk *walk)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    const char *path = walk->naming.pattern ? walk->naming.pattern : "none";
+    if (!glintL_film_open(walk->run, path, &walk->render, walk->job->fps, message))
+        return glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, 0, "%s", message);
+    glintL_film_take(walk->run, &walk->naming);
+    return true;
+}
+
+static int build(lua_State *L)
+{
+    glintL_job_build(L, 1, lua_tointeger(L, 2));
+    return 0;
+}
+
+// Looks at the job's scene, which frame n has just been built in.
+static int observe(lua_State *L)
+{
+    job_walk *walk = lua_touserdata(L, 3);
+    lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
+    glintL_observe_frame(L, walk->run, -1, &walk->render.desc, lua_tointeger(L, 2));
+    return 0;
+}
+
+static int restore(lua_State *L)
+{
+    glintL_sweep_restore(L, 1);
+    return 0;
+}
+
+// Calls `function` with the job and n. False: it raised, and the run has failed.
+static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t number)
+{
+    lua_State *L = walk->L;
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, function);
+    lua_pushvalue(L, walk->job_index);
+    lua_pushinteger(L, n);
+    lua_pushlightuserdata(L, walk);
+    walk->run->in_frame = true;
+    int status = lua_pcall(L, 3, 0, -5);
+    walk->run->in_frame = false;
+    if (status != LUA_OK)
+        glintL_run_fail(walk->run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, number,
+                        "frame %" PRId64 ": %s", number, lua_tostring(L, -1));
+    lua_settop(L, walk->job_index);
+    return status == LUA_OK;
+}
+
+// A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation
+// after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has
+// failed.
+static bool settle_before(job_walk *walk, lua_Integer i, int64_t first)
+{
+    const glintL_job *job = walk->job;
+    int job_index = walk->job_index;
+    bool good = true;
+    int64_t last = first - 1; // number of the last frame before this job
+    for (lua_Integer j = i - 1; j > walk->settled; j--)
+        last -= get_job(walk->L, walk->list, j)->frames;
+    for (; walk->settled < i - 1 && good; walk->settled++) {
+        take_job(walk, walk->settled + 1);
+        last += walk->job->frames;
+        if (walk->job->kind == GLINTL_JOB_ANIMATION)
+            good = call(walk, build, walk->job->frames, last);
+        lua_settop(walk->L, job_index);
+    }
+    walk->job = job;
+    walk->job_index = job_index;
+    return good;
+}
+
+// Notes a sweep's place with the work. False: out of memory; the work is gone, and the run has failed.
+static bool keep_place(job_walk *walk, glintL_work *work)
+{
+    if (walk->job->kind != GLINTL_JOB_SWEEP)
+        return true;
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_PLACE);
+    const char *place = lua_tostring(walk->L, -1);
+    work->sweep = strdup(place ? place : "");
+    lua_pop(walk->L, 1);
+    if (work->sweep)
+        return true;
+    glintL_run_fail(walk->run, GLINTL_EXIT_FAILED, work->index, "out of memory");
+    glintL_work_destroy(work);
+    return false;
+}
+
+static glint_scene *scene_of(job_walk *walk)
+{
+    lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_SCENE);
+    glint_scene *scene = glintL_test_object(walk->L, -1, GLINTL_SCENE);
+    lua_pop(walk->L, 1);
+    return scene;
+}
+
+// Sets the scene to frame n and plans it. NULL: the run has failed.
+static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
+{
+    glint_error error;
+    glintL_work *work = NULL;
+    double start = glintL_now_ms();
+    if (!call(walk, build, n, number) || !call(walk, observe, number, number) || walk->run->exit_code)
+        return NULL;
+    const glint_scene *scene = scene_of(walk);
+    if (!scene) {
+        glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "frame %" PRId64 ": the scene is closed", number);
+        return NULL;
+    }
+    glint_status status = glintL_work_create(scene, &walk->render, number, walk->naming.pattern != NULL,
+                                             walk->run->keeps_images, &work, &error);
+    if (status)
+        glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number,
+                        error.message);
+    else if (!keep_place(walk, work))
+        return NULL;
+    else
+        work->build_ms = glintL_now_ms() - start;
+    return work;
+}
+
+static bool run_frame(job_walk *walk, int64_t n, int64_t number)
+{
+    glint_error error;
+    glintL_work *work = plan_frame(walk, n, number);
+    if (!work)
+        return false;
+    bool good = glintL_work_name(work, &walk->naming, &error) == GLINT_OK;
+    if (!good)
+        glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
+    good = good && glintL_work_run(walk->run, work, walk->run->asked.force);
+    glintL_work_destroy(work);
+    return good;
+}
+
+// ---- The list ----
+
+// Which frames to render: those selected from first to last, of these the ones at places from .. to.
+typedef struct part {
+    int64_t from, to, place; // place: of the last frame passed
+} part;
+
+static part open_part(glintL_run *run, int64_t frames)
+{
+    part p;
+    int64_t first = run->point_count ? 1 : run->count + 1;
+    int64_t last = run->point_count ? frames * run->point_count : run->count + frames;
+    glintL_selection_part(&run->asked.selection, first, last, &p.from, &p.to);
+    p.place = glintL_selection_count(&run->asked.selection, first, run->count);
+    run->total = last;
+    run->todo = (run->point_count ? 0 : run->todo) + p.to - p.from + 1; // the part may be empty: to = from - 1
+    return p;
+}
+
+// Draws the sheet of a sweep whose first frame has that number, when it has one. False: the run has failed.
+static bool make_sheet(job_walk *walk, int64_t first)
+{
+    const glintL_selection *asked = &walk->run->asked.selection;
+    bool partial = asked->range_count > 0 || asked->shard_count > 1;
+    if (!walk->naming.pattern || walk->run->no_sheets)
+        return true;
+    return glintL_sweep_make_sheet(walk->L, walk->job_index, &walk->naming, first, partial);
+}
+
+static bool run_job(job_walk *walk, lua_Integer i, part *p)
+{
+    glintL_run *run = walk->run;
+    int64_t first = run->count + 1;
+    begin_job(walk, i);
+    bool good = open_film(walk);
+    for (int64_t n = 1; n <= walk->job->frames && good; n++) {
+        int64_t number = ++run->count;
+        if (!glintL_selection_has(&run->asked.selection, number))
+            continue;
+        p->place++;
+        if (p->place < p->from || p->place > p->to)
+            continue;
+        good = !run->interrupted && settle_before(walk, i, first) && run_frame(walk, n, number);
+        if (n == walk->job->frames)
+            walk->settled = i;
+    }
+    if (walk->job->kind == GLINTL_JOB_SWEEP)
+        good = call(walk, restore, 0, run->count) && good;
+    if (walk->job->kind == GLINTL_JOB_SWEEP && good && !run->interrupted)
+        good = make_sheet(walk, first);
+    lua_settop(walk->L, walk->job_index - 1);
+    return good;
+}
+
+// Pushes a walk over the list at `index`: the collector's, so that it is freed whatever happens.
+static job_walk *push_walk(lua_State *L, int index, glintL_run *run)
+{
+    int list = lua_absindex(L, index);
+    luaL_checkstack(L, 16, "jobs");
+    job_walk *walk = lua_newuserdatauv(L, sizeof *walk, 0);
+    memset(walk, 0, sizeof *walk);
+    walk->L = L;
+    walk->run = run;
+    walk->list = list;
+    return walk;
+}
+
+bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
+{
+    glint_error error;
+    int top = lua_gettop(L);
+    job_walk *walk = push_walk(L, index, run);
+    part p = open_part(run, glintL_jobs_total(L, walk->list));
+    glintL_find_source(L, run);
+    bool good = !run->exit_code && glintL_run_open(run, &error);
+    if (!good && !run->exit_code)
+        glintL_run_fail(run, glintL_run_exit_code(error.status), 0, "%s", error.message);
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, walk->list) && good; i++)
+        good = run_job(walk, i, &p);
+    run->earlier += good ? 1 : 0;
+    lua_settop(L, top);
+    return good;
+}
+
+// Plans frame n of the job at hand, and keeps its scene and the plan of a frame next to it when the run is to.
+static void explain_frame(job_walk *walk, int64_t n)
+{
+    glintL_run *run = walk->run;
+    const bool keeps = run->keeps_scene && walk->job->frames > 1;
+    glintL_work *next = keeps ? plan_frame(walk, n > 1 ? n - 1 : 2, run->explain_frame) : NULL;
+    glintL_work *work = keeps && !next ? NULL : plan_frame(walk, n, run->explain_frame);
+    if (work) {
+        run->explain_plan = work->plan;
+        work->plan = NULL;
+        glintL_run_keep_scene(run, scene_of(walk), &walk->render);
+    }
+    if (next) {
+        run->kept_neighbour = next->plan;
+        next->plan = NULL;
+    }
+    glintL_work_destroy(work);
+    glintL_work_destroy(next);
+}
+
+bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run)
+{
+    int top = lua_gettop(L);
+    job_walk *walk = push_walk(L, index, run);
+    int64_t n = run->explain_frame - run->count, total = glintL_jobs_total(L, walk->list);
+    for (lua_Integer i = 1; n >= 1 && n <= total; i++) {
+        begin_job(walk, i);
+        if (n <= walk->job->frames) {
+            if (settle_before(walk, i, run->explain_frame - n + 1))
+                explain_frame(walk, n);
+            break;
+        }
+        n -= walk->job->frames;
+        lua_settop(L, walk->job_index - 1);
+    }
+    lua_settop(L, top);
+    run->count += total;
+    return run->explain_plan != NULL;
+}

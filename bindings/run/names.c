@@ -1,0 +1,157 @@
+// Names of files: a pattern, the frame's number and the pass.
+//
+//   "shot_%04d.png", "shot_####.png"   the number, padded with zeros
+//   "50%%.png", "shot%#3.png"          a per cent sign, a number sign
+//   "shot.png"                         "shot_0012.png" when the pattern serves several frames
+//   passes                             "shot_0012.ambient.png"
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "bindings/run/film.h"
+
+#define DIGITS_MAX 18 // widest place for a number
+
+// What stands in a pattern at `text`, which begins with '%' or '#'.
+typedef struct place {
+    size_t length; // of the pattern; 0: wrong
+    int digits; // -1: a plain sign
+} place;
+
+static place read_place(const char *text)
+{
+    place found = { 0, 0 };
+    if (*text == '#') {
+        found.length = strspn(text, "#");
+        found.digits = found.length <= DIGITS_MAX ? (int)found.length : DIGITS_MAX;
+        return found;
+    }
+    if (text[1] == '%' || text[1] == '#')
+        return (place) { 2, -1 };
+    size_t figures = strspn(text + 1, "0123456789");
+    if (text[1 + figures] != 'd' || figures > 3 || (figures > 0 && text[1] != '0'))
+        return found;
+    found.digits = atoi(text + 1);
+    found.length = found.digits <= DIGITS_MAX ? figures + 2 : 0;
+    return found;
+}
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+// "%d" may stand anywhere, "#" in the last part of the path only: folders are called "shot#3".
+static bool is_place(const char *pattern, const char *at)
+{
+    return *at == '%' || (*at == '#' && at >= base_name(pattern));
+}
+
+// An existing pipe or device keeps its name: it is written in place, and nothing is made beside it.
+bool glintL_name_is_special(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+bool glintL_name_is_plain(const char *name, size_t length)
+{
+    bool good = length > 0 && length <= 200 && name[0] != '.';
+    for (size_t i = 0; good && i < length; i++)
+        good = name[i] != '/' && (unsigned char)name[i] >= ' ' && name[i] != 0x7f;
+    return good;
+}
+
+// The dot of ".png" or ".pfm"; NULL: another ending, or no name before it.
+static const char *ending(const char *path)
+{
+    size_t length = strlen(path);
+    if (length < 5 || path[length - 5] == '/')
+        return NULL;
+    const char *dot = path + length - 4;
+    return strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0 ? dot : NULL;
+}
+
+bool glintL_name_is_pfm(const char *path)
+{
+    const char *dot = ending(path);
+    return dot && strcasecmp(dot, ".pfm") == 0;
+}
+
+bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
+{
+    const char *wrong = NULL;
+    if (strcmp(pattern, "none") == 0)
+        return true;
+    for (const char *at = pattern; *at && !wrong;) {
+        size_t length = is_place(pattern, at) ? read_place(at).length : 1;
+        if (length == 0)
+            wrong = "a place for the frame number such as %04d or ####, and %% for a per cent sign";
+        at += length;
+    }
+    bool is_film = glintL_film_kind_of(pattern, false) != GLINTL_FILM_NONE;
+    if (!wrong && is_film && glintL_name_has_number(pattern))
+        wrong = "a film's name without a place for the frame number";
+    if (!wrong && !is_film && !ending(pattern) && !glintL_name_is_special(pattern))
+        wrong = "a file name ending in .png or .pfm, or a film's in .mp4, .webm, .gif or .apng";
+    if (!wrong && strlen(pattern) >= GLINTL_PATH_SIZE - 64)
+        wrong = "a shorter file name";
+    if (wrong)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", wrong, pattern);
+    return !wrong;
+}
+
+bool glintL_name_has_number(const char *pattern)
+{
+    for (const char *at = pattern; *at;) {
+        place found = is_place(pattern, at) ? read_place(at) : (place) { 1, -1 };
+        if (found.digits >= 0)
+            return true;
+        at += found.length ? found.length : 1;
+    }
+    return glintL_name_is_special(pattern);
+}
+
+// Copies the pattern with the number in its places. False: too long.
+static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_PATH_SIZE])
+{
+    size_t used = 0;
+    for (const char *at = naming->pattern; *at && used < GLINTL_PATH_SIZE - 1;) {
+        place found = { 1, -1 };
+        if (!naming->is_plain && is_place(naming->pattern, at))
+            found = read_place(at);
+        if (found.digits >= 0)
+            used += (size_t)snprintf(path + used, GLINTL_PATH_SIZE - used, "%0*" PRId64, found.digits, number);
+        else
+            path[used++] = at[found.length == 2 ? 1 : 0];
+        at += found.length ? found.length : 1;
+    }
+    if (used >= GLINTL_PATH_SIZE)
+        return false;
+    path[used] = '\0';
+    return used < GLINTL_PATH_SIZE - 64;
+}
+
+bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE])
+{
+    char insert[64] = "", tail[8] = "";
+    if (!fill(naming, number, path))
+        return false;
+    if (naming->is_numbered && (naming->is_plain || !glintL_name_has_number(naming->pattern)))
+        snprintf(insert, sizeof insert, "_%04" PRId64, number);
+    if (pass != GLINT_PASS_BEAUTY) {
+        size_t used = strlen(insert);
+        snprintf(insert + used, sizeof insert - used, ".%s", glint_pass_name(pass));
+    }
+    const char *dot = ending(path);
+    size_t stem = dot ? (size_t)(dot - path) : strlen(path);
+    if (insert[0]) {
+        snprintf(tail, sizeof tail, "%s", path + stem);
+        snprintf(path + stem, GLINTL_PATH_SIZE - stem, "%s%s", insert, tail);
+    }
+    return true;
+}

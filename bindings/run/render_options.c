@@ -1,0 +1,392 @@
+// The fields that describe a frame and its file, from a script's table and from the command line.
+#include <errno.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+#define SEED_MAX 9007199254740992.0 // 2^53
+#define DEPTH_MAX 2147483648.0 // 2^31
+#define SAMPLES_MAX 65536.0
+
+typedef enum sort {
+    WHOLE, // a double of the engine's, min .. max
+    REAL, // likewise, not only whole
+    CHOICE, // an enum
+    BITS,
+    FLAG, // a bool
+    OUTPUT,
+    PASSES
+} sort;
+
+typedef struct detail {
+    sort sort;
+    size_t offset; // in glintL_render
+    double min, max;
+    const char *const *names; // CHOICE
+} detail;
+
+static const char *const precisions[] = { "double", "float", NULL };
+static const char *const visibilities[] = { "auto", "cast", "scan", NULL };
+static const char *const transfers[] = { "srgb", "linear", "none", NULL };
+static const char *const roundings[] = { "nearest", "truncate", NULL };
+static const char *const outlines[] = { "none", "black", "white", NULL };
+static const char *const encodes[] = { "fast", "small", NULL };
+
+#define AT(member) offsetof(glintL_render, member)
+
+const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
+
+const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
+    { .name = "width", .kind = GLINTL_NUMBER },
+    { .name = "height", .kind = GLINTL_NUMBER },
+    { .name = "samples", .kind = GLINTL_NUMBER },
+    { .name = "seed", .kind = GLINTL_NUMBER },
+    { .name = "max_depth", .kind = GLINTL_NUMBER },
+    { .name = "bits", .kind = GLINTL_NUMBER },
+    { .name = "precision", .kind = GLINTL_ENUM },
+    { .name = "transfer", .kind = GLINTL_ENUM },
+    { .name = "rounding", .kind = GLINTL_ENUM },
+    { .name = "tone", .kind = GLINTL_ENUM },
+    { .name = "encode", .kind = GLINTL_ENUM },
+    { .name = "output", .kind = GLINTL_STRING },
+    { .name = "passes", .kind = GLINTL_STRING },
+    { .name = "exposure", .kind = GLINTL_NUMBER },
+    { .name = "alpha", .kind = GLINTL_BOOLEAN },
+    { .name = "outline", .kind = GLINTL_ENUM },
+    { .name = "visibility", .kind = GLINTL_ENUM },
+    { .name = "adaptive", .kind = GLINTL_NUMBER },
+    { .name = NULL },
+};
+
+static const detail details[GLINTL_RENDER_FIELDS] = {
+    { WHOLE, AT(desc.width), 1, GLINT_SIDE_MAX, NULL },
+    { WHOLE, AT(desc.height), 1, GLINT_SIDE_MAX, NULL },
+    { WHOLE, AT(desc.samples), 1, SAMPLES_MAX, NULL },
+    { WHOLE, AT(desc.seed), 0, SEED_MAX, NULL },
+    { WHOLE, AT(desc.max_depth), 0, DEPTH_MAX, NULL },
+    { BITS, AT(desc.tone.bits), 0, 0, NULL },
+    { CHOICE, AT(desc.precision), 0, 0, precisions },
+    { CHOICE, AT(desc.tone.transfer), 0, 0, transfers },
+    { CHOICE, AT(desc.tone.rounding), 0, 0, roundings },
+    { CHOICE, AT(desc.tone.curve), 0, 0, glintL_tone_curves },
+    { CHOICE, AT(encode), 0, 0, encodes },
+    { OUTPUT, AT(output), 0, 0, NULL },
+    { PASSES, AT(file_passes), 0, 0, NULL },
+    { REAL, AT(desc.tone.exposure), -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL },
+    { FLAG, AT(desc.alpha), 0, 0, NULL },
+    { CHOICE, AT(desc.outline), 0, 0, outlines },
+    { CHOICE, AT(desc.visibility), 0, 0, visibilities },
+    { REAL, AT(desc.adaptive), 0, 3, NULL },
+};
+
+glintL_render glintL_render_default(void)
+{
+    glintL_render render;
+    memset(&render, 0, sizeof render);
+    render.desc = glint_render_desc_default();
+    render.desc.tone = glint_tone_desc_default();
+    render.encode = GLINT_ENCODE_FAST;
+    return render;
+}
+
+int glintL_render_find(const char *name)
+{
+    for (int i = 0; i < GLINTL_RENDER_FIELDS; i++)
+        if (strcmp(glintL_render_fields[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+const char *const *glintL_render_choices(int field)
+{
+    return details[field].sort == CHOICE ? details[field].names : NULL;
+}
+
+static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == REAL || what->sort == BITS; }
+
+// What is allowed, for messages.
+static void describe(const detail *what, char out[256])
+{
+    size_t used = 0;
+    switch (what->sort) {
+    case WHOLE:
+        snprintf(out, 256, "whole number %.17g .. %.17g", what->min, what->max);
+        break;
+    case REAL:
+        snprintf(out, 256, "number %.17g .. %.17g", what->min, what->max);
+        break;
+    case BITS:
+        snprintf(out, 256, "8 or 16");
+        break;
+    case FLAG:
+        snprintf(out, 256, "true or false");
+        break;
+    case CHOICE:
+        for (const char *const *name = what->names; *name; name++)
+            used += (size_t)snprintf(out + used, 256 - used, "%s\"%s\"",
+                                     name == what->names ? "" : (name[1] ? ", " : " or "), *name);
+        break;
+    case OUTPUT:
+        snprintf(out, 256, "file name");
+        break;
+    case PASSES:
+        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+            used += (size_t)snprintf(out + used, 256 - used, "%s%s", pass ? ", " : "list of ", glint_pass_name(pass));
+        break;
+    }
+}
+
+// False: not allowed, or not a field that takes a number.
+static bool set_number(glintL_render *render, const detail *what, double value)
+{
+    char *field = (char *)render + what->offset;
+    int bits = value == 16 ? 16 : 8;
+    switch (what->sort) {
+    case WHOLE:
+        // Within the limits, so the conversion is exact; NaN fails them.
+        if (!(value >= what->min && value <= what->max) || value != (double)(int64_t)value)
+            return false;
+        memcpy(field, &value, sizeof value);
+        return true;
+    case REAL:
+        if (!(value >= what->min && value <= what->max))
+            return false;
+        memcpy(field, &value, sizeof value);
+        return true;
+    case BITS:
+        memcpy(field, &bits, sizeof bits);
+        return value == bits;
+    default:
+        return false;
+    }
+}
+
+static bool set_choice(glintL_render *render, const detail *what, const char *text)
+{
+    for (unsigned value = 0; what->names[value]; value++) {
+        if (strcmp(what->names[value], text) == 0) {
+            memcpy((char *)render + what->offset, &value, sizeof value); // an enum is stored as GCC and Clang do
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool set_flag(glintL_render *render, const detail *what, const char *text)
+{
+    const bool value = strcmp(text, "true") == 0;
+    memcpy((char *)render + what->offset, &value, sizeof value);
+    return value || strcmp(text, "false") == 0;
+}
+
+static bool add_pass(uint32_t *passes, const char *name, size_t length)
+{
+    char copy[32];
+    if (length >= sizeof copy)
+        return false;
+    memcpy(copy, name, length);
+    copy[length] = '\0';
+    glint_pass pass = glint_pass_from_name(copy);
+    if (pass == GLINT_PASS_COUNT)
+        return false;
+    if (pass != GLINT_PASS_BEAUTY) // which is always written
+        *passes |= 1u << pass;
+    return true;
+}
+
+// "ambient,depth"; "" and "none": no files beside the beauty.
+static bool read_passes(const char *text, uint32_t *out)
+{
+    uint32_t passes = 0;
+    if (*text && strcmp(text, "none") != 0) {
+        for (const char *at = text;;) {
+            at += strspn(at, " ");
+            size_t length = strcspn(at, ", ");
+            const char *after = at + length + strspn(at + length, " ");
+            if ((*after && *after != ',') || !add_pass(&passes, at, length))
+                return false;
+            if (!*after)
+                break;
+            at = after + 1;
+        }
+    }
+    *out = passes;
+    return true;
+}
+
+// For a field whose value is spelt in letters. False: `message` is written.
+static bool set_word(glintL_render *render, const detail *what, const char *text, char message[GLINTL_MESSAGE_SIZE])
+{
+    char allowed[256];
+    bool good = false;
+    if (what->sort == OUTPUT) {
+        if (!glintL_name_check(text, message))
+            return false;
+        snprintf(render->output, sizeof render->output, "%s", text);
+        return true;
+    }
+    if (what->sort == CHOICE)
+        good = set_choice(render, what, text);
+    else if (what->sort == FLAG)
+        good = set_flag(render, what, text);
+    else if (what->sort == PASSES)
+        good = read_passes(text, &render->file_passes);
+    if (!good) {
+        describe(what, allowed);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
+    }
+    return good;
+}
+
+bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE])
+{
+    const detail *what = &details[field];
+    char allowed[256], *end;
+    if (!is_number(what))
+        return set_word(render, what, text, message);
+    double value = strtod(text, &end);
+    if (end != text && *end == '\0' && set_number(render, what, value))
+        return true;
+    describe(what, allowed);
+    snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
+    return false;
+}
+
+// ---- From Lua ----
+
+static int refuse(lua_State *L, int index, const char *path, int field)
+{
+    char full[128], allowed[256];
+    snprintf(full, sizeof full, "%s%s", path, glintL_render_fields[field].name);
+    describe(&details[field], allowed);
+    return glintL_refuse(L, index, full, allowed);
+}
+
+static void read_pass_list(lua_State *L, int index, const char *path, int field, glintL_render *render)
+{
+    char full[128];
+    uint32_t passes = 0;
+    size_t length;
+    snprintf(full, sizeof full, "%s%s", path, glintL_render_fields[field].name);
+    size_t count = glintL_check_list(L, index, full, false);
+    for (size_t i = 1; i <= count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i);
+        const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : NULL;
+        if (!name || !add_pass(&passes, name, length))
+            refuse(L, -1, path, field);
+        lua_pop(L, 1);
+    }
+    render->file_passes = passes;
+}
+
+void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render)
+{
+    const detail *what = &details[field];
+    char message[GLINTL_MESSAGE_SIZE];
+    size_t length;
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 6, "field");
+    if (is_number(what)) {
+        if (lua_type(L, index) != LUA_TNUMBER || !set_number(render, what, lua_tonumber(L, index)))
+            refuse(L, index, path, field);
+        return;
+    }
+    if (what->sort == FLAG) {
+        if (!lua_isboolean(L, index))
+            refuse(L, index, path, field);
+        set_flag(render, what, lua_toboolean(L, index) ? "true" : "false");
+        return;
+    }
+    if (what->sort == PASSES && lua_istable(L, index)) {
+        read_pass_list(L, index, path, field, render);
+        return;
+    }
+    if (lua_type(L, index) != LUA_TSTRING)
+        refuse(L, index, path, field);
+    const char *text = lua_tolstring(L, index, &length);
+    if (strlen(text) != length)
+        refuse(L, index, path, field);
+    if (what->sort == OUTPUT && glintL_get_run(L)->asked.is_untrusted && !glintL_name_is_plain(text, length))
+        glintL_error(L, "%s%s: " GLINTL_PLAIN_NAME " expected, got '%s'", path, glintL_render_fields[field].name, text);
+    if (!set_word(render, what, text, message))
+        glintL_error(L, "%s%s: %s", path, glintL_render_fields[field].name, message);
+}
+
+static void push_passes(lua_State *L, uint32_t passes)
+{
+    int count = 0;
+    lua_newtable(L);
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (passes >> pass & 1) {
+            lua_pushstring(L, glint_pass_name(pass));
+            lua_rawseti(L, -2, ++count);
+        }
+    }
+}
+
+bool glintL_render_spell(const glintL_render *render, int field, char out[64])
+{
+    const detail *what = &details[field];
+    const char *at = (const char *)render + what->offset;
+    double number;
+    unsigned value;
+    switch (what->sort) {
+    case WHOLE:
+    case REAL:
+        memcpy(&number, at, sizeof number);
+        snprintf(out, 64, "%.17g", number);
+        return true;
+    case BITS:
+        snprintf(out, 64, "%d", render->desc.tone.bits);
+        return true;
+    case FLAG:
+        snprintf(out, 64, "%s", *(const bool *)at ? "true" : "false");
+        return true;
+    case CHOICE:
+        memcpy(&value, at, sizeof value);
+        snprintf(out, 64, "%s", what->names[value]);
+        return true;
+    default:
+        return false;
+    }
+}
+
+void glintL_render_push(lua_State *L, int field, const glintL_render *render)
+{
+    const detail *what = &details[field];
+    const char *at = (const char *)render + what->offset;
+    double number;
+    unsigned value;
+    switch (what->sort) {
+    case WHOLE:
+        memcpy(&number, at, sizeof number);
+        lua_pushinteger(L, (lua_Integer)number);
+        break;
+    case REAL:
+        memcpy(&number, at, sizeof number);
+        lua_pushnumber(L, number);
+        break;
+    case BITS:
+        lua_pushinteger(L, render->desc.tone.bits);
+        break;
+    case FLAG:
+        lua_pushboolean(L, *(const bool *)at);
+        break;
+    case CHOICE:
+        memcpy(&value, at, sizeof value);
+        lua_pushstring(L, what->names[value]);
+        break;
+    case PASSES:
+        push_passes(L, render->file_passes);
+        break;
+    case OUTPUT:
+        if (*at)
+            lua_pushstring(L, at);
+        else
+            lua_pushnil(L);
+        break;
+    }
+}

@@ -1,0 +1,335 @@
+// The run: its renderer and writer, the records of its frames in order, and its first failure.
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "bindings/run/film.h"
+
+// Pictures that wait to be encoded, and files to be written. With the picture that is encoded and the one that is rendered
+// these are the four whose memory a renderer holds on to (render.c).
+#define QUEUE_DEPTH 2
+#define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
+
+static const char RUN; // its address is the registry's key of the run
+
+typedef struct run_box {
+    glintL_run *run;
+    bool is_owned;
+} run_box;
+
+double glintL_now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+glintL_run *glintL_run_create(void)
+{
+    glintL_run *run = calloc(1, sizeof *run);
+    if (run) {
+        run->asked.repeat = 1;
+        run->since_ms = glintL_now_ms();
+    }
+    return run;
+}
+
+static void destroy_record(glintL_record *record)
+{
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        free(record->files[pass]);
+    free(record);
+}
+
+void glintL_run_destroy(glintL_run *run)
+{
+    if (!run)
+        return;
+    glint_writer_destroy(run->writer); // before the records its results point to
+    glint_renderer_destroy(run->renderer);
+    glint_plan_destroy(run->explain_plan);
+    glint_plan_destroy(run->kept_neighbour);
+    glint_scene_release(run->kept_scene);
+    glintL_work_destroy(run->deferred);
+    while (run->head) {
+        glintL_record *next = run->head->next;
+        destroy_record(run->head);
+        run->head = next;
+    }
+    glintL_selection_clear(&run->asked.selection);
+    free(run->asked.sets);
+    free(run->asked.folder);
+    glintL_films_destroy(run->films);
+    free(run->params_text);
+    glintL_forget_warnings(run);
+    free(run);
+}
+
+void glintL_run_reset(glintL_run *run)
+{
+    glintL_run_collect(run, true);
+    glint_plan_destroy(run->explain_plan);
+    glintL_work_destroy(run->deferred);
+    glintL_films_destroy(run->films);
+    glintL_forget_warnings(run);
+    free(run->params_text);
+    run->explain_plan = NULL;
+    run->deferred = NULL;
+    run->films = NULL;
+    run->params_text = NULL;
+    run->source[0] = '\0';
+    run->count = run->call_count = run->selected_calls = 0;
+    run->total = run->todo = run->done = run->kept = 0;
+    run->clipped = run->pixels = run->nonfinite = 0;
+    run->earlier = run->failed_index = 0;
+    run->is_stopped = run->in_frame = run->was_shrunk = false;
+    run->since_ms = glintL_now_ms();
+    run->exit_code = GLINTL_EXIT_DONE;
+    run->message[0] = '\0';
+    for (size_t i = 0; i < run->asked.set_count; i++)
+        run->asked.sets[i].is_known = false;
+}
+
+void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render)
+{
+    if (!run->keeps_scene)
+        return;
+    run->kept_scene = glint_scene_retain(scene);
+    run->kept_render = *render;
+}
+
+// ---- The run of a Lua state ----
+
+static int collect_run(lua_State *L)
+{
+    run_box *box = lua_touserdata(L, 1);
+    if (box->is_owned)
+        glintL_run_destroy(box->run);
+    box->run = NULL;
+    return 0;
+}
+
+static run_box *new_box(lua_State *L)
+{
+    luaL_checkstack(L, 4, "run");
+    run_box *box = lua_newuserdatauv(L, sizeof *box, 0);
+    box->run = NULL;
+    box->is_owned = false;
+    lua_createtable(L, 0, 1);
+    lua_pushcfunction(L, collect_run);
+    lua_setfield(L, -2, "__gc");
+    lua_setmetatable(L, -2);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &RUN);
+    return box;
+}
+
+void glintL_attach_run(lua_State *L, glintL_run *run) { new_box(L)->run = run; }
+
+// Plain Lua keeps the script's name in arg[0].
+static void read_script_name(lua_State *L, glintL_run *run)
+{
+    if (lua_getglobal(L, "arg") == LUA_TTABLE) {
+        if (lua_rawgeti(L, -1, 0) == LUA_TSTRING) {
+            const char *path = lua_tostring(L, -1), *slash = strrchr(path, '/');
+            snprintf(run->script, sizeof run->script, "%s", slash ? slash + 1 : path);
+        }
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+glintL_run *glintL_get_run(lua_State *L)
+{
+    luaL_checkstack(L, 6, "run");
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &RUN);
+    run_box *box = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    if (!box)
+        box = new_box(L);
+    if (!box->run) {
+        box->run = glintL_run_create();
+        if (!box->run)
+            luaL_error(L, "out of memory");
+        box->is_owned = true;
+        read_script_name(L, box->run);
+    }
+    return box->run;
+}
+
+int glintL_message_handler(lua_State *L)
+{
+    if (lua_type(L, 1) == LUA_TSTRING)
+        return 1;
+    // Hooks, which end a script that goes on for ever, may be off here.
+    if (!glintL_get_run(L)->asked.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
+        return 1;
+    if (lua_type(L, 1) == LUA_TNUMBER)
+        luaL_tolstring(L, 1, NULL);
+    else
+        lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
+    return 1;
+}
+
+// ---- Failure ----
+
+bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
+{
+    if (run->exit_code)
+        return false;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(run->message, sizeof run->message, format, args);
+    va_end(args);
+    run->exit_code = exit_code;
+    run->failed_index = index;
+    return false;
+}
+
+int glintL_run_exit_code(glint_status status)
+{
+    switch (status) {
+    case GLINT_OK:
+        return GLINTL_EXIT_DONE;
+    case GLINT_ERR_NO_SPACE:
+        return GLINTL_EXIT_LATER;
+    case GLINT_ERR_INVALID:
+    case GLINT_ERR_UNSUPPORTED:
+        return GLINTL_EXIT_USAGE;
+    default:
+        return GLINTL_EXIT_FAILED;
+    }
+}
+
+static glint_status open_renderer(glintL_run *run, glint_error *error)
+{
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    glint_renderer *renderer = NULL;
+    desc.threads = run->asked.threads;
+    desc.time_stages = run->times_stages;
+    desc.count_work = run->counts_work;
+    desc.no_reuse = run->asked.no_reuse || run->asked.repeat > 1; // repeats measure the whole frame
+    desc.reuse_memory = run->asked.reuse_memory;
+    if (run->asked.is_untrusted && !desc.reuse_memory)
+        desc.reuse_memory = UNTRUSTED_REUSE_MEMORY;
+    glint_status status = glint_renderer_create(&desc, &renderer, error);
+    if (status)
+        return status;
+    run->renderer_threads = run->asked.threads;
+    run->renderer = renderer; // from here on a signal can cancel it
+    if (run->interrupted)
+        glint_renderer_cancel(renderer);
+    return GLINT_OK;
+}
+
+bool glintL_run_open(glintL_run *run, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    sigset_t stops, before;
+    if (run->renderer && run->renderer_threads != run->asked.threads) {
+        glint_renderer_destroy(run->renderer);
+        run->renderer = NULL;
+        glintL_run_collect(run, true); // the writer may only go when nothing is left at it
+        glint_writer_destroy(run->writer);
+        run->writer = NULL;
+    }
+    if (run->renderer && run->writer)
+        return true;
+    sigemptyset(&stops); // these are for the script's thread: the threads made here inherit the mask
+    sigaddset(&stops, SIGINT);
+    sigaddset(&stops, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &stops, &before);
+    if (!run->renderer)
+        status = open_renderer(run, error);
+    if (status == GLINT_OK && !run->writer)
+        status = glint_writer_create(QUEUE_DEPTH, run->asked.threads, &run->writer, error);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return status == GLINT_OK;
+}
+
+// ---- Records, reported in the order of frames ----
+
+glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
+{
+    glintL_record *record = calloc(1, sizeof *record);
+    if (!record)
+        goto no_memory;
+    record->index = work->index;
+    record->build_ms = work->build_ms;
+    record->stats = work->stats;
+    record->film = work->film;
+    record->pixel_count = work->render.desc.width * work->render.desc.height;
+    for (int i = 0; i < work->file_count; i++) {
+        char *copy = strdup(work->files[i].path);
+        if (!copy)
+            goto no_memory;
+        record->files[work->files[i].pass] = copy;
+    }
+    if (run->tail)
+        run->tail->next = record;
+    else
+        run->head = record;
+    run->tail = record;
+    return record;
+no_memory:
+    if (record)
+        destroy_record(record);
+    glintL_run_fail(run, GLINTL_EXIT_FAILED, work->index, "out of memory");
+    return NULL;
+}
+
+static void count_record(glintL_run *run, const glintL_record *record)
+{
+    run->done++;
+    run->kept += record->kept;
+    if (!record->kept) {
+        run->clipped += record->stats.clipped;
+        run->nonfinite += record->stats.nonfinite;
+        run->pixels += (uint64_t)record->pixel_count;
+    }
+}
+
+// Reports and drops the records at the head whose files are all written.
+static void flush_records(glintL_run *run)
+{
+    while (run->head && run->head->files_left == 0) {
+        glintL_record *record = run->head;
+        if (!record->failed) {
+            if (record->is_last)
+                count_record(run, record);
+            if (record->is_last && record->film && !glintL_film_add(record->film, record->files[GLINT_PASS_BEAUTY]))
+                glintL_run_fail(run, GLINTL_EXIT_FAILED, record->index, "out of memory");
+            if (run->reporter.frame)
+                run->reporter.frame(run->reporter.context, run, record);
+        }
+        run->head = record->next;
+        if (!run->head)
+            run->tail = NULL;
+        destroy_record(record);
+    }
+}
+
+bool glintL_run_collect(glintL_run *run, bool wait)
+{
+    glint_write_result result;
+    if (run->interrupted && run->writer)
+        glint_writer_cancel(run->writer);
+    flush_records(run);
+    while (run->files_pending > 0 && glint_writer_collect(run->writer, wait, &result)) {
+        glintL_record *record = result.user;
+        run->files_pending--;
+        record->files_left--;
+        record->encode_ms += result.encode_ms;
+        record->write_ms += result.write_ms;
+        if (result.status != GLINT_OK) {
+            record->failed = true;
+            if (result.status != GLINT_ERR_CANCELLED)
+                glintL_run_fail(run, glintL_run_exit_code(result.status), record->index, "%s", result.message);
+            glint_writer_cancel(run->writer); // what else is queued would meet the same end
+        }
+        flush_records(run);
+    }
+    return run->exit_code == GLINTL_EXIT_DONE;
+}

@@ -1,0 +1,410 @@
+/// The job side of the binding: what a run is asked, and the walk of its frames. Private to bindings/.
+///
+///   selection.c       which frames: --frames, --shard
+///   render_options.c  the fields of scene:render{}, animations and sweeps that describe a frame
+///   names.c           frame number and pass -> file name
+///   params.c          glint.params; param_spec.c one parameter and its --set
+///   animation.c       the job object and its fields; sweep.c its other kind
+///   work.c            one frame: plan, names, keys, render, hand to the writer
+///   provenance.c      what a file says of itself, and whether files belong together; source.c the script's text
+///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
+///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
+///   run.c             the run: records in order, failures; jobs.c frames of jobs, job_run.c :run; call.c scene:render
+///   kept_image.c      the picture of a file that was kept
+///
+/// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
+#ifndef GLINT_L_RUN_H
+#define GLINT_L_RUN_H
+
+#include <signal.h>
+
+#include "bindings/value/glintL.h"
+
+#define GLINTL_PATH_SIZE 4096
+#define GLINTL_MESSAGE_SIZE 1024
+#define GLINTL_FRAMES_MAX 100000000 ///< of one job
+
+typedef enum glintL_exit {
+    GLINTL_EXIT_DONE = 0,
+    GLINTL_EXIT_FAILED = 1, ///< a frame failed
+    GLINTL_EXIT_USAGE = 2, ///< usage or script error
+    GLINTL_EXIT_LATER = 75 ///< disk full
+} glintL_exit;
+
+// ---- selection.c ----
+
+typedef struct glintL_range {
+    int64_t first, last, step; ///< last = INT64_MAX: open
+} glintL_range;
+
+typedef struct glintL_selection {
+    glintL_range *ranges; ///< owned; none: every frame
+    size_t range_count;
+    int64_t shard, shard_count; ///< shard 1 .. shard_count; 0 of 0: no shards
+} glintL_selection;
+
+/// Each returns false and writes what was expected and what was got; the selection is then unchanged.
+bool glintL_selection_parse(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_selection_add(glintL_selection *selection, glintL_range range);
+void glintL_selection_clear(glintL_selection *selection);
+bool glintL_selection_is_whole(const glintL_selection *selection); ///< every frame
+/// Without regard to shards.
+bool glintL_selection_has(const glintL_selection *selection, int64_t number);
+int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
+/// Which of the selected frames of 1 .. total are this shard's, counted from 1: *from .. *to, empty when to < from.
+void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to);
+/// Whether frames outside 1 .. total were asked for by number; writes the warning.
+bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- render_options.c ----
+
+#define GLINTL_RENDER_FIELDS 18
+
+extern const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1]; ///< names, and whether numbers, for listing
+glintL_render glintL_render_default(void);
+/// The field's number, or -1.
+int glintL_render_find(const char *name);
+/// The words a field takes, ended by NULL; NULL: it takes something else.
+const char *const *glintL_render_choices(int field);
+/// Sets a field from text as on the command line. False: `message` says what was expected and what was got.
+bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE]);
+/// Sets a field from the Lua value at `index`; raises "<path><name>: ... expected, got ...".
+void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render);
+void glintL_render_push(lua_State *L, int field, const glintL_render *render);
+/// The field as glintL_render_set_text reads it; false: a field that says nothing of the picture.
+bool glintL_render_spell(const glintL_render *render, int field, char out[64]);
+
+// ---- names.c ----
+
+typedef struct glintL_naming {
+    const char *pattern; ///< borrowed; NULL: no file is written
+    bool is_plain; ///< '%' and '#' stand for themselves
+    bool is_numbered; ///< a pattern without a place for the number gets "_0001" before its ending
+    struct glintL_film *film; ///< the frames go into; NULL: none. The run's
+} glintL_naming;
+
+bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
+bool glintL_name_has_number(const char *pattern);
+/// The file of a frame's pass. False: too long.
+bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
+bool glintL_name_is_pfm(const char *path);
+bool glintL_name_is_special(const char *path); ///< an existing pipe or device
+/// Whether an untrusted script may write a file of this name: a plain one, with no folder and nothing hidden.
+bool glintL_name_is_plain(const char *name, size_t length);
+#define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.', at most 200 bytes)"
+
+// ---- What is asked ----
+
+typedef struct glintL_set { ///< --set name=text
+    const char *name;
+    const char *text;
+    bool is_known; ///< a params table has it
+} glintL_set;
+
+typedef enum glintL_warnings { GLINTL_WARNINGS_SHOW, GLINTL_WARNINGS_ERROR, GLINTL_WARNINGS_NONE } glintL_warnings;
+
+typedef struct glintL_asked {
+    glintL_selection selection;
+    const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
+    glintL_set *sets;
+    size_t set_count;
+    size_t swept_count; ///< of the sets, the last ones: those of --sweep
+    bool apng; ///< an output in .png is a film
+    double fps; ///< of films; 0: as the script says
+    int threads; ///< 0: one per processor
+    int repeat; ///< >= 1
+    bool force, no_reuse;
+    bool is_untrusted; ///< the script: its pictures have plain names
+    char *folder; ///< owned; where an untrusted script's pictures go; NULL: nowhere
+    glintL_warnings warnings;
+    size_t reuse_memory; ///< bytes; 0: the engine's default
+} glintL_asked;
+
+typedef enum glintL_mode {
+    GLINTL_MODE_RENDER,
+    GLINTL_MODE_DESCRIBE,
+    GLINTL_MODE_EXPLAIN,
+    GLINTL_MODE_WATCH ///< jobs wait until they are run by cli_run_jobs; calls render as ever
+} glintL_mode;
+
+// ---- One frame on its way ----
+
+/// What is reported of a frame when its last file is written.
+typedef struct glintL_record {
+    int64_t index;
+    int repeat; ///< 1 ..; 0: frames are rendered once
+    bool kept, is_last; ///< is_last: of its repeats
+    double build_ms, encode_ms, write_ms;
+    double pixel_count;
+    glint_frame_stats stats;
+    int files_left; ///< at the writer
+    bool failed;
+    char *files[GLINT_PASS_COUNT]; ///< by pass; owned; NULL: none
+    struct glintL_film *film; ///< its beauty goes into; NULL: none
+    struct glintL_record *next;
+} glintL_record;
+
+typedef struct glintL_file {
+    glint_pass pass;
+    char key[33]; ///< "": the format carries none
+    char path[GLINTL_PATH_SIZE];
+} glintL_file;
+
+typedef struct glintL_work {
+    int64_t index;
+    double build_ms;
+    glintL_render render;
+    glint_plan *plan;
+    glint_image *image; ///< NULL until it is rendered
+    glint_frame_stats stats;
+    char *sweep; ///< owned; "name=value" lines of the frame's place in a glint.sweep; NULL: none
+    struct glintL_film *film;
+    int file_count;
+    glintL_file files[GLINT_PASS_COUNT];
+} glintL_work;
+
+// ---- run.c ----
+
+typedef struct glintL_reporter {
+    void *context;
+    void (*rendering)(void *context, const glintL_run *run, bool begins); ///< around each glint_render
+    void (*frame)(void *context, const glintL_run *run, const glintL_record *record);
+    void (*warn)(void *context, const char *message);
+    /// A sheet or film was made of `count` frames.
+    void (*figure)(void *context, const char *kind, const char *path, int64_t count);
+    /// A film is being made: `done` of its `count` frames are in it. NULL: nobody asks.
+    void (*making)(void *context, const char *path, size_t done, size_t count);
+    /// A picture is rendered, with its linear beauty pass when the run keeps images. NULL: nobody looks.
+    void (*image)(void *context, const glintL_run *run, const glintL_work *work);
+    /// The script is about to run in `L`, whose libraries are open. May raise. NULL: nothing to do.
+    void (*prepare)(void *context, lua_State *L);
+    /// The engine is about to read a file that the script names: a mesh. NULL: nobody asks.
+    void (*reads)(void *context, const char *path);
+} glintL_reporter;
+
+struct glintL_run {
+    bool times_stages, counts_work;
+    bool keeps_images; ///< every picture has its linear beauty pass
+    int preview_side; ///< > 0: no picture has a longer side or more than one sample a pixel
+    bool was_shrunk; ///< by preview_side
+    bool is_command; ///< run by the command: its options beat the script's, files are written behind
+    glintL_mode mode;
+    int64_t explain_frame;
+    glint_plan *explain_plan; ///< owned
+    bool keeps_scene; ///< of the frame that is explained; then there are, too:
+    glint_scene *kept_scene; ///< owned; as it is in that frame
+    glintL_render kept_render;
+    glint_plan *kept_neighbour; ///< owned; the frame before it, or after the first; NULL: none
+    char script[256]; ///< base name
+    char source[33]; ///< of glintL_find_source; "": not looked for yet
+    glintL_asked asked;
+    glintL_reporter reporter;
+
+    glint_renderer *renderer;
+    int renderer_threads; ///< as asked
+    glint_writer *writer;
+    glintL_record *head, *tail; ///< in the order of frames
+    int64_t files_pending;
+    glintL_work *deferred; ///< the first call, while nobody knows whether there is a second
+    char *params_text; ///< owned; "name=value" lines
+    struct glintL_film *films; ///< owned; made when all their frames are there
+
+    int64_t count; ///< frames numbered so far
+    int64_t call_count; ///< of these by scene:render
+    int64_t selected_calls;
+    int64_t total, todo; ///< 0: unknown
+    int64_t done, kept; ///< reported
+    uint64_t clipped, pixels, nonfinite; ///< of the reported frames
+    int64_t point, point_count; ///< which value of --sweep, 1 .. point_count; 0 of 0: no sweep
+    int64_t point_first; ///< frames numbered before this point
+    int64_t earlier; ///< lists of jobs that were run before this one
+    bool is_stopped; ///< the script was ended by glintL_stop_script
+    double since_ms; ///< when the last call returned
+    bool in_frame; ///< a frame function runs
+    bool no_sheets; ///< frames alone are wanted
+
+    char **said; ///< warnings given, each once; owned
+    size_t said_count;
+
+    int exit_code; ///< of the first failure
+    int64_t failed_index;
+    char message[GLINTL_MESSAGE_SIZE];
+    volatile sig_atomic_t interrupted; ///< number of the signal
+};
+
+glintL_run *glintL_run_create(void);
+void glintL_run_destroy(glintL_run *run);
+/// As if nothing had run yet: counts, failure, parameters. Renderer, writer, what is asked and a signal stay.
+void glintL_run_reset(glintL_run *run);
+/// Lets `L` use a run that the caller owns and keeps longer than `L`.
+void glintL_attach_run(lua_State *L, glintL_run *run);
+double glintL_now_ms(void);
+/// Keeps the first failure and returns false. `index` 0: not one frame's.
+bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/// What the command line says beats what the script says.
+void glintL_run_apply(glintL_run *run, glintL_render *render);
+/// The pattern of a script that names no output.
+void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZE]);
+/// The exit code that answers an engine's error.
+int glintL_run_exit_code(glint_status status);
+bool glintL_run_open(glintL_run *run, glint_error *error); ///< the renderer and the writer exist afterwards
+/// Keeps the scene of the frame that is explained, when the run is to.
+void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render);
+/// Adds a record to be reported in its turn. False: out of memory, and the run has failed.
+glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work);
+/// Reports what is complete; waits for all of it when `wait`. False: the run has failed.
+bool glintL_run_collect(glintL_run *run, bool wait);
+/// Message handler: a string out of any error object.
+int glintL_message_handler(lua_State *L);
+
+// ---- warnings.c, warn_view.c ----
+
+/// Gives a warning unless it was given before; under --warnings=error the run fails with it.
+void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/// The same with the position of the Lua code that called: "<position>: <message>".
+void glintL_warn(lua_State *L, const char *message);
+/// Says what a later run goes on from: no mistake, so that it stays no failure under --warnings=error.
+void glintL_run_note(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void glintL_forget_warnings(glintL_run *run);
+/// A material was made; is_dull: with a shininess and without a specular. May raise.
+void glintL_note_material(lua_State *L, int index, bool is_dull);
+void glintL_note_specular(lua_State *L, int index); ///< it has got one since
+/// Looks at the scene at `scene_index` as it is in a frame that is about to be rendered. May raise.
+void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc,
+                          int64_t number);
+/// What all frames together have shown, when the script `script` has ended. May raise.
+void glintL_report_observed(lua_State *L, glintL_run *run, const char *script);
+void glintL_report_unseen(lua_State *L, glintL_run *run);
+
+// ---- work.c ----
+
+/// Plans a frame. `keep_image`: the script will look at the linear picture.
+glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
+                                bool keep_image, glintL_work **out, glint_error *error);
+void glintL_work_destroy(glintL_work *work);
+/// Names the files and takes their keys.
+glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error);
+/// Whether every file is there with its key.
+/// Whether the files are there, whole and with the work's keys. Waits for a file of the same name still at the writer.
+bool glintL_work_is_kept(glintL_run *run, const glintL_work *work);
+glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error);
+/// Reports a frame and hands its files to the writer. False: the run has failed.
+bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept);
+/// The whole of a frame: kept or rendered `repeat` times, and finished. False: the run has failed.
+bool glintL_work_run(glintL_run *run, glintL_work *work, bool force);
+
+// ---- source.c ----
+
+/// Hashes the text of the script and of the modules it has required so far into run->source, once a run.
+void glintL_find_source(lua_State *L, glintL_run *run);
+
+// ---- provenance.c ----
+
+#define GLINTL_TEXT_COUNT 10
+
+/// The texts of a file: what it was made by, and what is needed to make it again.
+typedef struct glintL_provenance {
+    glint_text text[GLINTL_TEXT_COUNT];
+    size_t count;
+    char frame[24]; ///< number within the script
+    char options[1024]; ///< "name=value" lines: what the frame was asked to be
+    char *sweep; ///< owned; "name=value" lines: the axes of glint.sweep, then of --sweep; NULL: none
+} glintL_provenance;
+
+/// False: out of memory, and nothing is to be dropped. The texts point into the arguments and into `out`.
+bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const glintL_work *work,
+                            const glintL_file *file);
+void glintL_provenance_drop(glintL_provenance *provenance);
+/// Finds the line "name=..." in "name=value" lines; its length goes to *length. NULL: there is none, or no lines.
+const char *glintL_find_line(const char *lines, const char *name, size_t name_length, size_t *length);
+/// Whether two files were made by the same script and version for the same end, so that they may stand in one film or
+/// sheet; pass, parameters and options count when `strict`, but what a sweep changes. False: the message names what
+/// differs and where.
+bool glintL_provenance_match(const glint_picture *a, const char *a_path, const glint_picture *b, const char *b_path,
+                             bool strict, char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- animation.c, sweep.c, jobs.c, job_run.c ----
+
+typedef enum glintL_job_kind { GLINTL_JOB_ANIMATION, GLINTL_JOB_SWEEP } glintL_job_kind;
+
+#define GLINTL_JOB_SCENE 1 ///< user values: the scene,
+#define GLINTL_JOB_FRAME 2 ///< the frame function or the list of axes,
+#define GLINTL_JOB_SHEET 3 ///< the sheet,
+#define GLINTL_JOB_SAVED 4 ///< what a sweep changes, as it was before,
+#define GLINTL_JOB_PLACE 5 ///< "name=value" lines of the sweep's frame that was built last
+
+typedef struct glintL_job {
+    void *self; ///< not NULL: messages take a userdata with NULL here for a closed object
+    glintL_job_kind kind;
+    int64_t frames;
+    double fps;
+    bool cyclic;
+    glintL_render render;
+} glintL_job;
+
+int glintL_new_sweep(lua_State *L);
+int glintL_job_run(lua_State *L); ///< animation:run{...}
+/// Reads the table of a constructor at `index` into the job at `job_index`; both absolute.
+void glintL_job_read_table(lua_State *L, int index, int job_index);
+void glintL_sweep_read(lua_State *L, int index, int job_index, const char *name); ///< size, over, sheet
+void glintL_sweep_push_axes(lua_State *L, int axes); ///< a copy of the list at `axes` (absolute)
+void glintL_sweep_build(lua_State *L, int index, int64_t n);
+/// Pushes a userdata with default fields; see GLINTL_JOB_... for its user values.
+glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind);
+const char *glintL_job_name(glintL_job_kind kind); ///< "animation", "sweep"
+/// Sets the scene to frame n of the job, 1 .. frames; 1: the job. May raise.
+void glintL_job_build(lua_State *L, int index, int64_t n);
+/// Puts back what a sweep has changed, so that the next job does not depend on which frames were rendered.
+void glintL_sweep_restore(lua_State *L, int index);
+/// Pushes the object, the name of the field and the list of values of axis `i` of those at `axes`; returns the object's
+/// index.
+int glintL_sweep_push_axis(lua_State *L, int axes, lua_Integer i);
+/// Pushes the table name -> value of frame n of the sweep at `index`.
+void glintL_sweep_push_values(lua_State *L, int index, int64_t n);
+/// Pushes the "name=value" lines of frame n of the sweep at `index`, an axis each.
+void glintL_sweep_push_place(lua_State *L, int index, int64_t n);
+
+/// Makes a list of jobs out of what a script returned at `index` (a job, a scene, a list of them): pushes it and
+/// returns true, or pushes a message and returns false.
+bool glintL_push_jobs(lua_State *L, int index);
+/// Frames of the jobs in the list at `index`.
+int64_t glintL_jobs_total(lua_State *L, int index);
+/// Renders the selected frames of a list of jobs, numbered after those the run has numbered already. Raises
+/// for want of memory only. False: the run has failed.
+bool glintL_jobs_run(lua_State *L, int index, glintL_run *run);
+/// The plan of one frame of the list into run->explain_plan, when the frame is among them; run->keeps_scene: what else
+/// is kept of it.
+bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
+
+// ---- call.c ----
+
+/// Settles the name of the first call now that the script has ended. False: the run has failed.
+bool glintL_call_settle(glintL_run *run);
+/// Raises the error that ends a script which has shown what was asked of it (its parameters, one frame's plan).
+int glintL_stop_script(lua_State *L);
+void glintL_open_kept_image(lua_State *L);
+/// Pushes an image that is rendered only when the script looks at it; it gets its plan, which it owns, later.
+void glintL_push_kept_image(lua_State *L);
+void glintL_set_kept_plan(lua_State *L, int index, glint_plan *plan);
+
+// ---- params.c, param_spec.c ----
+
+/// Pushes the spec of one parameter, from its entry in the table of glint.params at `entry` (absolute).
+void glintL_push_param_spec(lua_State *L, glintL_run *run, const char *name, int entry);
+/// Pushes the list of every parameter: {name=, type=, default=, value=, min=, max=, choices=, doc=}.
+void glintL_push_params(lua_State *L);
+/// Pushes the message about a --set that no params table has, or nothing and returns false.
+bool glintL_push_unknown_set(lua_State *L);
+
+// ---- json.c ----
+
+#include <stdio.h>
+
+/// The shortest spelling that reads back as the same number.
+void glintL_format_number(char out[32], double value);
+void glintL_json_string(FILE *out, const char *text);
+void glintL_json_number(FILE *out, double value); ///< null when it is not finite
+
+#endif

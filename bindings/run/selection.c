@@ -1,0 +1,154 @@
+// Which frames: "1-3,5,7-20:2,90-" and shards "2/4".
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+// Reads decimal digits. False: there are none, or too many.
+static bool read_whole(const char **text, int64_t *out)
+{
+    char *end;
+    if (**text < '0' || **text > '9')
+        return false;
+    errno = 0;
+    long long value = strtoll(*text, &end, 10);
+    if (errno || value == INT64_MAX) // the mark of an open end
+        return false;
+    *out = value;
+    *text = end;
+    return true;
+}
+
+// One part of the list: "5", "1-3", "7-20:2", "90-". False: not one, or it is empty.
+static bool read_range(const char **text, glintL_range *range)
+{
+    range->step = 1;
+    if (!read_whole(text, &range->first))
+        return false;
+    range->last = range->first;
+    if (**text == '-') {
+        ++*text;
+        range->last = INT64_MAX;
+        if (**text >= '0' && **text <= '9' && !read_whole(text, &range->last))
+            return false;
+    }
+    if (**text == ':') {
+        ++*text;
+        if (range->last == range->first || !read_whole(text, &range->step))
+            return false;
+    }
+    return range->step >= 1 && range->last >= range->first;
+}
+
+bool glintL_selection_add(glintL_selection *selection, glintL_range range)
+{
+    glintL_range *grown = realloc(selection->ranges, (selection->range_count + 1) * sizeof *grown);
+    if (!grown)
+        return false;
+    grown[selection->range_count++] = range;
+    selection->ranges = grown;
+    return true;
+}
+
+void glintL_selection_clear(glintL_selection *selection)
+{
+    free(selection->ranges);
+    selection->ranges = NULL;
+    selection->range_count = 0;
+}
+
+bool glintL_selection_parse(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE])
+{
+    glintL_selection read = { 0 };
+    glintL_range range;
+    const char *at = text;
+    bool good;
+    do {
+        good = read_range(&at, &range) && glintL_selection_add(&read, range);
+    } while (good && *at == ',' && *++at);
+    if (!good || *at || at[-1] == ',') {
+        glintL_selection_clear(&read);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "frames such as 1-3,5,7-20:2,90- expected, got '%.200s'", text);
+        return false;
+    }
+    glintL_selection_clear(selection);
+    selection->ranges = read.ranges;
+    selection->range_count = read.range_count;
+    return true;
+}
+
+bool glintL_selection_parse_shard(glintL_selection *selection, const char *text, char message[GLINTL_MESSAGE_SIZE])
+{
+    int64_t shard, count;
+    const char *at = text;
+    if (read_whole(&at, &shard) && *at == '/' && (++at, read_whole(&at, &count)) && *at == '\0' && shard >= 1 &&
+        shard <= count && count <= 1000000) {
+        selection->shard = shard;
+        selection->shard_count = count;
+        return true;
+    }
+    snprintf(message, GLINTL_MESSAGE_SIZE, "K/N with 1 <= K <= N <= 1000000 expected, got '%.200s'", text);
+    return false;
+}
+
+bool glintL_selection_is_whole(const glintL_selection *selection)
+{
+    return selection->range_count == 0 && selection->shard_count == 0;
+}
+
+bool glintL_selection_has(const glintL_selection *selection, int64_t number)
+{
+    for (size_t i = 0; i < selection->range_count; i++) {
+        const glintL_range *range = &selection->ranges[i];
+        if (number >= range->first && number <= range->last && (number - range->first) % range->step == 0)
+            return true;
+    }
+    return selection->range_count == 0;
+}
+
+int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last)
+{
+    int64_t count = 0;
+    if (selection->range_count == 0)
+        return last >= first ? last - first + 1 : 0;
+    for (int64_t number = first; number <= last; number++)
+        count += glintL_selection_has(selection, number);
+    return count;
+}
+
+void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to)
+{
+    int64_t count = glintL_selection_count(selection, first, last);
+    *from = 1;
+    *to = count;
+    if (selection->shard_count > 0) {
+        *from = (selection->shard - 1) * count / selection->shard_count + 1;
+        *to = selection->shard * count / selection->shard_count;
+    }
+}
+
+bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE])
+{
+    for (size_t i = 0; i < selection->range_count; i++) {
+        const glintL_range *range = &selection->ranges[i];
+        bool open = range->last == INT64_MAX;
+        if (range->first >= 1 && range->first <= total && (open || range->last <= total))
+            continue;
+        if (range->first == range->last)
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "frame %" PRId64 " is left out: the frames of the script are 1 .. %" PRId64, range->first, total);
+        else if (open)
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "of frames %" PRId64 "- some are left out: the frames of the script are 1 .. %" PRId64,
+                     range->first, total);
+        else
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "of frames %" PRId64 "-%" PRId64 " some are left out: the frames of the script are 1 .. %" PRId64,
+                     range->first, range->last, total);
+        return true;
+    }
+    return false;
+}

@@ -1,0 +1,223 @@
+// Contact sheets: labels, columns and titles by the axes of the files; the engine draws.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "bindings/run/sheet.h"
+
+#define DEFAULT_GAIN 8.0
+#define ROW_MAX 6 // cells of one axis that stand in one row unless columns are given
+#define LABEL_SIZE 512
+
+static bool ends_in(const char *path, const char *ending)
+{
+    size_t length = strlen(path), size = strlen(ending);
+    return length > size && path[length - size - 1] != '/' && strcasecmp(path + length - size, ending) == 0;
+}
+
+bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
+{
+    if (!ends_in(sheet->path, ".png") && !ends_in(sheet->path, ".html")) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "a file name ending in .png or .html expected, got '%.200s'",
+                 sheet->path);
+        return false;
+    }
+    if (sheet->count < 1 || sheet->count > GLINTL_SHEET_MAX) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "pictures: 1 .. %d expected, got %zu", GLINTL_SHEET_MAX, sheet->count);
+        return false;
+    }
+    if (sheet->difference > (int64_t)sheet->count)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "difference: a picture 1 .. %zu expected, got %lld", sheet->count,
+                 (long long)sheet->difference);
+    else if (sheet->gain > 0 && !sheet->difference)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
+    else if (sheet->columns && ends_in(sheet->path, ".html"))
+        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has sliders instead");
+    else
+        return true;
+    return false;
+}
+
+// ---- Labels ----
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static const char *frame_of(const glintL_axes *axes, size_t cell)
+{
+    const char *frame = glint_picture_text(axes->pictures[cell], "glint:frame");
+    return frame ? frame : "?";
+}
+
+// Whether the numbers of the frames tell the cells apart.
+static bool frames_differ(const glintL_axes *axes)
+{
+    for (size_t i = 1; i < axes->cell_count; i++)
+        if (strcmp(frame_of(axes, i), frame_of(axes, i - 1)) == 0)
+            return false;
+    return axes->cell_count > 1;
+}
+
+// "name value" of every axis, a part each; without axes the frame, else the file.
+static void default_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE])
+{
+    char value[64];
+    size_t used = 0;
+    for (size_t a = 0; a < axes->count && used < LABEL_SIZE; a++) {
+        const glintL_axis *axis = &axes->axis[a];
+        glintL_axis_spell(axis->values[axis->index[cell]], value);
+        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s%s = %s", a ? "\n" : "", axis->name, value);
+    }
+    if (axes->count == 0 && frames_differ(axes))
+        snprintf(out, LABEL_SIZE, "frame %s", frame_of(axes, cell));
+    else if (axes->count == 0)
+        snprintf(out, LABEL_SIZE, "%s", base_name(sheet->files[cell]));
+}
+
+// What {name} stands for; NULL: nothing of that name.
+static const char *find_value(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, const char *name,
+                              size_t length, char value[64])
+{
+    for (size_t a = 0; a < axes->count; a++) {
+        const glintL_axis *axis = &axes->axis[a];
+        if (strlen(axis->name) != length || memcmp(axis->name, name, length) != 0)
+            continue;
+        glintL_axis_spell(axis->values[axis->index[cell]], value);
+        return value;
+    }
+    if (length == 4 && memcmp(name, "file", 4) == 0)
+        return base_name(sheet->files[cell]);
+    return length == 5 && memcmp(name, "frame", 5) == 0 ? frame_of(axes, cell) : NULL;
+}
+
+// Fills in the template. False: the message names what is not known.
+static bool fill_label(const glintL_sheet *sheet, const glintL_axes *axes, size_t cell, char out[LABEL_SIZE],
+                       char *message)
+{
+    char value[64];
+    size_t used = 0;
+    for (const char *at = sheet->label; *at && used < LABEL_SIZE - 1;) {
+        const char *end = *at == '{' ? strchr(at, '}') : NULL;
+        if (!end) {
+            out[used++] = *at++;
+            continue;
+        }
+        size_t length = (size_t)(end - at) - 1;
+        const char *text = find_value(sheet, axes, cell, at + 1, length, value);
+        if (!text) {
+            snprintf(message, GLINTL_MESSAGE_SIZE,
+                     "label: {%.*s}: an axis of the sheet, {file} or {frame} expected; the axes are%s", (int)length,
+                     at + 1, axes->count ? ":" : " none");
+            for (size_t a = 0; a < axes->count; a++) {
+                size_t size = strlen(message);
+                snprintf(message + size, GLINTL_MESSAGE_SIZE - size, " {%s}", axes->axis[a].name);
+            }
+            return false;
+        }
+        used += (size_t)snprintf(out + used, LABEL_SIZE - used, "%s", text);
+        at = end + 1;
+    }
+    out[used < LABEL_SIZE ? used : LABEL_SIZE - 1] = '\0';
+    return true;
+}
+
+static void free_list(char **list, size_t count)
+{
+    for (size_t i = 0; i < count && list; i++)
+        free(list[i]);
+    free(list);
+}
+
+// The labels of all cells, owned by the caller. NULL: the message says why.
+static char **make_labels(const glintL_sheet *sheet, const glintL_axes *axes, char *message)
+{
+    char label[LABEL_SIZE];
+    char **labels = calloc(sheet->count, sizeof *labels);
+    bool good = labels != NULL;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    for (size_t i = 0; i < sheet->count && good; i++) {
+        label[0] = '\0';
+        if (sheet->labels)
+            snprintf(label, sizeof label, "%s", sheet->labels[i]);
+        else if (!sheet->label)
+            default_label(sheet, axes, i, label);
+        else if (strcmp(sheet->label, "none") != 0)
+            good = fill_label(sheet, axes, i, label, message);
+        labels[i] = good ? strdup(label) : NULL;
+        good = labels[i] != NULL;
+    }
+    if (good)
+        return labels;
+    free_list(labels, sheet->count);
+    return NULL;
+}
+
+// ---- The picture ----
+
+// A grid has a column for each value of its first axis; else the sheet is about square.
+static int columns_of(const glintL_sheet *sheet, const glintL_axes *axes)
+{
+    if (sheet->columns)
+        return (int)(sheet->columns < (int64_t)sheet->count ? sheet->columns : (int64_t)sheet->count);
+    if (axes->is_grid && (axes->count > 1 || sheet->count <= ROW_MAX))
+        return (int)axes->axis[0].count;
+    return (int)ceil(sqrt((double)sheet->count));
+}
+
+// Names the columns and rows of a grid; a single axis may run over several rows.
+static void set_titles(const glintL_axes *axes, glint_sheet_desc *desc, char down[256])
+{
+    size_t used = 0;
+    down[0] = '\0';
+    if (!axes->is_grid || (axes->count > 1 && (size_t)desc->columns != axes->axis[0].count))
+        return;
+    desc->across = axes->axis[0].name;
+    for (size_t a = 1; a < axes->count && used < 256; a++)
+        used += (size_t)snprintf(down + used, 256 - used, "%s%s", a > 1 ? ", " : "", axes->axis[a].name);
+    desc->down = *down ? down : NULL;
+}
+
+static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels, char *message)
+{
+    char down[256];
+    glint_error error;
+    glint_sheet_cell *cells = calloc(sheet->count, sizeof *cells);
+    if (!cells) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
+    for (size_t i = 0; i < sheet->count; i++)
+        cells[i] = (glint_sheet_cell) { sheet->files[i], labels[i] };
+    glint_sheet_desc desc = { .cells = cells, .cell_count = sheet->count, .title = sheet->title };
+    desc.columns = columns_of(sheet, axes);
+    desc.difference = (size_t)sheet->difference;
+    desc.gain = sheet->gain > 0 ? sheet->gain : DEFAULT_GAIN;
+    set_titles(axes, &desc, down);
+    glint_status status = glint_sheet_write(&desc, sheet->path, &error);
+    free(cells);
+    if (status)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s", error.message);
+    return glintL_run_exit_code(status);
+}
+
+int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE])
+{
+    glintL_axes axes;
+    int code = GLINTL_EXIT_USAGE;
+    if (!glintL_sheet_check(sheet, message))
+        return code;
+    if (glintL_axes_find(sheet, &axes, &code, message)) {
+        char **labels = make_labels(sheet, &axes, message);
+        code = GLINTL_EXIT_USAGE;
+        if (labels)
+            code = ends_in(sheet->path, ".html") ? glintL_sheet_page(sheet, &axes, labels, message)
+                                                 : draw_picture(sheet, &axes, labels, message);
+        free_list(labels, sheet->count);
+    }
+    glintL_axes_drop(&axes);
+    return code;
+}

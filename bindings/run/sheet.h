@@ -1,0 +1,72 @@
+/// Contact sheets of finished frames, as a picture or as a page. Private to bindings/.
+#ifndef GLINT_L_SHEET_H
+#define GLINT_L_SHEET_H
+
+#include "bindings/run/run.h"
+
+#define GLINTL_AXES_MAX 16
+#define GLINTL_SHEET_MAX 100000 ///< cells
+
+// ---- sheet.c ----
+
+typedef struct glintL_sheet {
+    const char *path; ///< in .png or .html
+    char *const *files; ///< cells, row by row
+    size_t count;
+    char *const *places; ///< "name=value" lines of each cell, its place on the axes; NULL: as the file says
+    char *const *labels; ///< NULL: made of `label`
+    const char *label; ///< with {name} for a value; "none"; NULL: every axis and its value
+    const char *title; ///< NULL: none
+    int64_t columns; ///< 0: by the axes
+    int64_t difference; ///< the cell, from 1, that the others are compared with; 0: none
+    double gain; ///< 0: the default
+    bool mixes; ///< files of different makings are welcome
+} glintL_sheet;
+
+/// Checks what can be checked before there are files. False: the message says what is wrong.
+bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE]);
+/// Draws the sheet. Returns the exit code; the message says what is wrong.
+int glintL_sheet_make(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- sheet_axes.c: what distinguishes the cells ----
+
+typedef struct glintL_axis {
+    char *name; ///< owned
+    char **values; ///< owned, in the order of the cells
+    size_t count;
+    size_t *index; ///< owned: which value each cell has
+} glintL_axis;
+
+typedef struct glintL_axes {
+    glintL_axis axis[GLINTL_AXES_MAX]; ///< the first changes fastest
+    size_t count;
+    bool is_grid; ///< the cells are every combination, in order
+    glint_picture **pictures; ///< owned: their sizes and texts
+    size_t cell_count;
+} glintL_axes;
+
+/// Reads the files of a sheet and finds its axes: the places, then parameters, options and passes that differ. False: a file is
+/// missing, of another size or of another making; *code is then the exit code. In any case `out` is to be dropped.
+bool glintL_axes_find(const glintL_sheet *sheet, glintL_axes *out, int *code, char message[GLINTL_MESSAGE_SIZE]);
+void glintL_axes_drop(glintL_axes *axes);
+/// A value as a label has it: numbers of at most four digits.
+void glintL_axis_spell(const char *value, char out[64]);
+
+// ---- sheet_page.c ----
+
+/// The page with a slider for each axis; labels as on the sheet. Returns the exit code.
+int glintL_sheet_page(const glintL_sheet *sheet, const glintL_axes *axes, char *const *labels,
+                      char message[GLINTL_MESSAGE_SIZE]);
+
+// ---- sweep_sheet.c ----
+
+void glintL_list_sheet(lua_State *L); ///< its fields, see glintL_list_variant
+/// Checks sweep.sheet at `index`; raises.
+void glintL_sweep_check_sheet(lua_State *L, int index);
+/// Checks the sheet of the sweep at `index` against its axes, once it has both; raises.
+void glintL_sweep_check_together(lua_State *L, int index);
+/// Draws the sheet of the sweep at `index` whose frames are numbered from `first`, when it has one. Waits for the frames
+/// to be written. `partial`: some were not asked for, and missing ones are a warning. False: the run has failed.
+bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial);
+
+#endif

@@ -1,0 +1,315 @@
+// sweep.sheet: the contact sheet of a sweep, drawn when its frames are written.
+//
+//     sheet = { label = true, columns = 4, difference = 1, gain = 8, title = "...", output = "sheet.png" }
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "bindings/run/film.h"
+#include "bindings/run/sheet.h"
+
+// ---- Checking ----
+
+static void check_text(lua_State *L, int index, const char *path, const char *expected)
+{
+    size_t length;
+    if (lua_type(L, index) != LUA_TSTRING || strlen(lua_tolstring(L, index, &length)) != length || length == 0)
+        glintL_refuse(L, index, path, expected);
+}
+
+static void check_number(lua_State *L, int index, const char *path, double min, double max, bool whole,
+                         const char *expected)
+{
+    double value = glintL_read_number(L, index, path);
+    if (!(value >= min && value <= max) || (whole && value != (double)(int64_t)value))
+        glintL_refuse(L, index, path, expected);
+}
+
+static void check_field(lua_State *L, int index, const char *name)
+{
+    char path[48], message[GLINTL_MESSAGE_SIZE];
+    snprintf(path, sizeof path, "sweep.sheet.%s", name);
+    if (strcmp(name, "label") == 0) {
+        if (!lua_isboolean(L, index) && !lua_isfunction(L, index) && lua_type(L, index) != LUA_TSTRING)
+            glintL_refuse(L, index, path, "boolean, string or function");
+    } else if (strcmp(name, "columns") == 0) {
+        check_number(L, index, path, 1, GLINT_SIDE_MAX, true, "whole number 1 .. 65535");
+    } else if (strcmp(name, "difference") == 0) {
+        check_number(L, index, path, 1, GLINTL_SHEET_MAX, true, "number of a frame, from 1,");
+    } else if (strcmp(name, "gain") == 0) {
+        check_number(L, index, path, 1e-3, 1e6, false, "number 0.001 .. 1000000");
+    } else {
+        check_text(L, index, path, name[0] == 't' ? "text" : "file name");
+        glintL_sheet as_output = { .path = lua_tostring(L, index), .count = 1 };
+        if (name[0] == 'o' && !glintL_sheet_check(&as_output, message))
+            glintL_error(L, "%s: %s", path, message);
+    }
+}
+
+static const glintL_field FIELDS[] = {
+    { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
+    { .name = "title" }, { .name = "output" },  { .name = NULL },
+};
+
+void glintL_list_sheet(lua_State *L)
+{
+    static const glintL_variant variant = { .name = "sheet", .fields = FIELDS };
+    glintL_list_variant(L, &variant, NULL);
+}
+
+void glintL_sweep_check_sheet(lua_State *L, int index)
+{
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, "sweep.sheet", "table");
+    luaL_checkstack(L, 6, "sheet");
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            glintL_bad_key(L, "sweep.sheet", -2);
+        const char *name = lua_tostring(L, -2);
+        if (!glintL_find_field(FIELDS, name))
+            glintL_no_such_field(L, "sweep.sheet", name, glintL_nearest(name, FIELDS));
+        check_field(L, lua_gettop(L), name);
+        lua_pop(L, 1);
+    }
+}
+
+// What the sheet is made of; the strings are kept by the table `kept` on the stack.
+typedef struct lists {
+    char **files, **places, **labels;
+} lists;
+
+static int64_t read_whole(lua_State *L, int sheet, const char *name)
+{
+    lua_getfield(L, sheet, name);
+    int64_t value = (int64_t)lua_tonumber(L, -1);
+    lua_pop(L, 1);
+    return value;
+}
+
+static const char *read_text(lua_State *L, int sheet, const char *name) // which the table keeps
+{
+    const char *text = lua_getfield(L, sheet, name) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+    lua_pop(L, 1);
+    return text;
+}
+
+static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t count, const char *path)
+{
+    glintL_sheet out = { .path = path, .files = l->files, .count = (size_t)count, .places = l->places };
+    out.labels = l->labels;
+    out.label = read_text(L, sheet, "label");
+    out.title = read_text(L, sheet, "title");
+    out.columns = read_whole(L, sheet, "columns");
+    out.difference = read_whole(L, sheet, "difference");
+    lua_getfield(L, sheet, "gain");
+    out.gain = lua_tonumber(L, -1);
+    if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
+        out.label = "none";
+    lua_pop(L, 2);
+    return out;
+}
+
+// Whether every {name} of a template is an axis of the sweep, whose frame has these "name=value" lines.
+static void check_template(lua_State *L, const char *label, const char *lines)
+{
+    size_t unused;
+    for (const char *at = strchr(label, '{'); at; at = strchr(at + 1, '{')) {
+        size_t length = strcspn(at + 1, "}");
+        if (at[1 + length] == '\0' || glintL_find_line(lines, at + 1, length, &unused) ||
+            (length == 4 && memcmp(at + 1, "file", 4) == 0) || (length == 5 && memcmp(at + 1, "frame", 5) == 0))
+            continue;
+        lua_pushlstring(L, at, length + 2);
+        glintL_error(L, "sweep.sheet.label: %s: the name of an axis, {file} or {frame} expected", lua_tostring(L, -1));
+    }
+}
+
+void glintL_sweep_check_together(lua_State *L, int index)
+{
+    const glintL_job *job = lua_touserdata(L, index);
+    char message[GLINTL_MESSAGE_SIZE];
+    luaL_checkstack(L, 8, "sheet");
+    int top = lua_gettop(L);
+    if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) != LUA_TNIL &&
+        lua_getiuservalue(L, index, GLINTL_JOB_SHEET) == LUA_TTABLE) {
+        int sheet = lua_gettop(L);
+        lists none = { NULL, NULL, NULL };
+        const char *output = read_text(L, sheet, "output");
+        glintL_sheet made = read_sheet(L, sheet, &none, job->frames, output ? output : "sheet.png");
+        if (!glintL_sheet_check(&made, message))
+            glintL_error(L, "sweep.sheet.%s", message);
+        if (lua_getfield(L, sheet, "label") == LUA_TSTRING) {
+            glintL_sweep_push_place(L, index, 1);
+            check_template(L, lua_tostring(L, -2), lua_tostring(L, -1));
+        }
+    }
+    lua_settop(L, top);
+}
+
+// ---- Drawing ----
+
+// "out/%04d.png" -> "out/sheet.png", "x_%04d.png", "x.png" and "x.mp4" -> "x_sheet.png".
+static void default_output(const glintL_naming *naming, char out[GLINTL_PATH_SIZE])
+{
+    const char *pattern = naming->film ? naming->film->path : naming->pattern, *slash = strrchr(pattern, '/'),
+               *name = slash ? slash + 1 : pattern;
+    size_t length = strcspn(name, naming->is_plain || naming->film ? "" : "%#");
+    const char *dot = strrchr(name, '.');
+    if (length == strlen(name) && dot)
+        length = (size_t)(dot - name);
+    while (length > 0 && strchr("_-. ", name[length - 1]))
+        length--;
+    snprintf(out, GLINTL_PATH_SIZE, "%.*s%.*s%s", (int)(name - pattern), pattern, (int)length, name,
+             length ? "_sheet.png" : "sheet.png");
+}
+
+// "sheet.png" -> "sheet_0013.png": of a later sweep of the same run, by its first frame.
+static void number_output(char path[GLINTL_PATH_SIZE], int64_t first)
+{
+    char ending[16];
+    char *dot = strrchr(path, '.');
+    size_t stem = (size_t)(dot - path);
+    snprintf(ending, sizeof ending, "%s", dot);
+    snprintf(path + stem, GLINTL_PATH_SIZE - stem, "_%04" PRId64 "%s", first, ending);
+}
+
+// Pushes what the label function returns for frame n: function(values, n), values[name] = value on each axis.
+static void push_label(lua_State *L, int function, int job, int64_t n)
+{
+    lua_pushvalue(L, function);
+    glintL_sweep_push_values(L, job, n);
+    lua_pushinteger(L, n);
+    lua_call(L, 2, 1);
+    if (lua_type(L, -1) != LUA_TSTRING && lua_type(L, -1) != LUA_TNUMBER)
+        glintL_refuse(L, -1, "sweep.sheet.label: the function's result", "string");
+}
+
+static char *keep(lua_State *L, int kept)
+{
+    char *text = (char *)(uintptr_t)lua_tostring(L, -1); // read only from here on
+    lua_rawseti(L, kept, (lua_Integer)lua_rawlen(L, kept) + 1);
+    return text;
+}
+
+static char **new_list(lua_State *L, int64_t count, int kept)
+{
+    char **list = lua_newuserdatauv(L, (size_t)count * sizeof *list, 0);
+    lua_rawseti(L, kept, (lua_Integer)lua_rawlen(L, kept) + 1);
+    return list;
+}
+
+// The first and last frame that have no file; 0: all have.
+static int64_t find_missing(const lists *l, int64_t count, int64_t *last)
+{
+    int64_t first = 0;
+    for (int64_t n = 1; n <= count; n++) {
+        if (access(l->files[n - 1], R_OK) == 0)
+            continue;
+        first = first ? first : n;
+        *last = n;
+    }
+    return first;
+}
+
+static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64_t first, int64_t count, int label,
+                       int kept, lists *out)
+{
+    char path[GLINTL_PATH_SIZE];
+    out->files = new_list(L, count, kept);
+    out->places = new_list(L, count, kept);
+    out->labels = lua_isfunction(L, label) ? new_list(L, count, kept) : NULL;
+    for (int64_t n = 1; n <= count; n++) {
+        if (!glintL_name_file(naming, first + n - 1, GLINT_PASS_BEAUTY, path))
+            glintL_error(L, "output: the file name '%s...' is too long", path);
+        lua_pushstring(L, path);
+        out->files[n - 1] = keep(L, kept);
+        glintL_sweep_push_place(L, job, n);
+        out->places[n - 1] = keep(L, kept);
+        if (out->labels) {
+            push_label(L, label, job, n);
+            out->labels[n - 1] = keep(L, kept);
+        }
+    }
+}
+
+static void warn_missing(const glintL_run *run, const char *path, int64_t from, int64_t to)
+{
+    if (from == to)
+        glintL_run_note(run, "%s: not drawn: frame %" PRId64 " is not there yet", path, from);
+    else
+        glintL_run_note(run, "%s: not drawn: frames between %" PRId64 " and %" PRId64 " are not there yet", path, from,
+                        to);
+}
+
+typedef struct sheet_call {
+    const glintL_naming *naming;
+    int64_t first;
+    bool partial;
+} sheet_call;
+
+// Draws the sheet, of which all but the files is known.
+static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sheet, const lists *l)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    int64_t last = 0, missing = find_missing(l, (int64_t)sheet->count, &last);
+    if (missing && what->partial) {
+        warn_missing(run, sheet->path, what->first + missing - 1, what->first + last - 1);
+        return;
+    }
+    int code = glintL_sheet_make(sheet, message);
+    if (code && what->partial)
+        glintL_run_note(run, "%s: not drawn: %s", sheet->path, message);
+    else if (code)
+        glintL_run_fail(run, code, 0, "%s: %s", sheet->path, message);
+    else if (run->reporter.figure)
+        run->reporter.figure(run->reporter.context, "sheet", sheet->path, (int64_t)sheet->count);
+}
+
+static int draw_protected(lua_State *L)
+{
+    const glintL_job *job = lua_touserdata(L, 1);
+    const sheet_call *what = lua_touserdata(L, 2);
+    char output[GLINTL_PATH_SIZE];
+    lists l;
+    luaL_checkstack(L, 24, "sheet");
+    lua_getiuservalue(L, 1, GLINTL_JOB_SHEET); // 3
+    lua_getfield(L, 3, "label"); // 4
+    lua_newtable(L); // 5
+    fill_lists(L, 1, what->naming, what->first, job->frames, 4, 5, &l);
+    const char *given = read_text(L, 3, "output");
+    glintL_run *run = glintL_get_run(L);
+    if (given)
+        snprintf(output, sizeof output, "%s", given);
+    else
+        default_output(what->naming, output);
+    if (what->first > 1 && (!given || run->point_count > 1))
+        number_output(output, what->first);
+    glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
+    draw(run, what, &sheet, &l);
+    return 0;
+}
+
+bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial)
+{
+    glintL_run *run = glintL_get_run(L);
+    sheet_call what = { naming, first, partial };
+    int top = lua_gettop(L), type = lua_getiuservalue(L, index, GLINTL_JOB_SHEET);
+    lua_settop(L, top);
+    if (type != LUA_TTABLE)
+        return true;
+    if (!glintL_run_collect(run, true)) // its frames are files from here on
+        return false;
+    lua_pushcfunction(L, glintL_message_handler);
+    lua_pushcfunction(L, draw_protected);
+    lua_pushvalue(L, index);
+    lua_pushlightuserdata(L, &what);
+    run->in_frame = true;
+    int status = lua_pcall(L, 2, 0, top + 1);
+    run->in_frame = false;
+    if (status != LUA_OK)
+        glintL_run_fail(run, status == LUA_ERRMEM ? GLINTL_EXIT_FAILED : GLINTL_EXIT_USAGE, 0, "%s",
+                        lua_tostring(L, -1));
+    lua_settop(L, top);
+    return run->exit_code == 0;
+}

@@ -1,0 +1,387 @@
+// Warnings about where things are: a light inside a closed sphere, an object that no frame can show.
+//
+// Each is given only where it is certain, of shapes of their own and of those in groups, where their transforms put them. A
+// ball around a shape is out of a picture when one plane of the view has it outside; its
+// shadow, the points whose segment to the light meets the sphere, is convex, so the same test holds for it: nothing of
+// it is inside the plane when the sphere is outside and the light lies no further out than the sphere's near side.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+#define MEMBERS_MAX 1000 // of a scene, and of its groups: above that nobody looks for a single shape
+#define LIGHTS_MAX 64
+
+static const char OUTSIDE; // its address is the registry's key: userdata -> message, or false when it was in a view
+
+typedef struct view {
+    double eye[3];
+    double out[5][3], limit[5]; // planes: outside where out . p > limit
+    double forward[3];
+    bool is_perspective;
+} view;
+
+// A shape, or what holds all of it, in the world.
+typedef struct ball {
+    double center[3], radius;
+    bool is_sphere; // it is just that
+} ball;
+
+typedef struct members {
+    const glint_light *lights[LIGHTS_MAX];
+    int light_count;
+    int shape_count; // in groups
+    bool shows_more; // mirrors and the like: what is outside the view may show all the same
+} members;
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static bool normalize(double v[3])
+{
+    double length = sqrt(dot(v, v));
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return length > 0 && isfinite(length);
+}
+
+// ---- The view ----
+
+// A plane whose outward normal leans from `side` towards the eye's back; of an orthographic view it stands upright.
+static void add_plane(view *v, int i, const double side[3], double sign, double reach)
+{
+    for (int c = 0; c < 3; c++)
+        v->out[i][c] = v->is_perspective ? sign * side[c] - reach * v->forward[c] : sign * side[c];
+    normalize(v->out[i]);
+    v->limit[i] = dot(v->out[i], v->eye) + (v->is_perspective ? 0 : reach);
+}
+
+// False: the camera looks along its `up`, where its sides are the engine's choice.
+static bool make_view(const glint_camera_desc *camera, const glint_render_desc *desc, view *v)
+{
+    double right[3], up[3], aspect = desc->width / desc->height;
+    memcpy(v->eye, camera->eye, sizeof v->eye);
+    for (int i = 0; i < 3; i++)
+        v->forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
+    memcpy(up, camera->up, sizeof up);
+    if (!normalize(v->forward) || !normalize(up))
+        return false;
+    cross(v->forward, up, right);
+    if (dot(right, right) < 1e-6 || !normalize(right))
+        return false;
+    cross(right, v->forward, up);
+    v->is_perspective = camera->projection == GLINT_PERSPECTIVE;
+    double high = v->is_perspective ? tan(camera->fov_y_rad / 2) : camera->height / 2, wide = high * aspect;
+    for (int i = 0; i < 4; i++)
+        add_plane(v, i, i < 2 ? right : up, i % 2 ? 1 : -1, i < 2 ? wide : high);
+    for (int c = 0; c < 3; c++)
+        v->out[4][c] = -v->forward[c];
+    v->limit[4] = dot(v->out[4], v->eye);
+    return true;
+}
+
+// Whether the whole ball is outside one plane and, with a light, its whole shadow.
+static bool is_outside(const view *v, const ball *all, const glint_light_desc *light)
+{
+    double radius = all->radius * (1 + 1e-9);
+    for (int i = 0; i < 5; i++) {
+        double near = dot(v->out[i], all->center) - radius, spread = 0; // of the shadow: towards the inside if < 0
+        if (light && light->kind == GLINT_LIGHT_POINT)
+            spread = near - dot(v->out[i], light->position);
+        else if (light)
+            spread = dot(v->out[i], light->direction);
+        if (near > v->limit[i] + 1e-9 * fabs(v->limit[i]) && spread >= 0)
+            return true;
+    }
+    return false;
+}
+
+// ---- What is in the scene ----
+
+// Whether the object has a field of this name with something else than 0, black, false or nil in it.
+static bool has(lua_State *L, const char *type, const void *object, const void *desc, int index, const char *name)
+{
+    const glintL_field *field = glintL_find_field(glintL_class_of(L, type)->variant(object)->fields, name);
+    const char *at = (const char *)desc + (field ? field->offset : 0);
+    if (!field)
+        return false;
+    if (field->kind == GLINTL_COLOR)
+        return ((const double *)(const void *)at)[0] != 0 || ((const double *)(const void *)at)[1] != 0 ||
+               ((const double *)(const void *)at)[2] != 0;
+    if (field->kind == GLINTL_NUMBER)
+        return *(const double *)(const void *)at != 0;
+    if (index == 0)
+        return true;
+    bool given = lua_getfield(L, index, name) != LUA_TNIL;
+    lua_pop(L, 1);
+    return given;
+}
+
+static bool shows_through(lua_State *L, const glint_material *material)
+{
+    const glint_material_desc *desc = material ? glint_material_get(material) : NULL;
+    return desc && (desc->fresnel || has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
+                    has(L, GLINTL_MATERIAL, material, desc, 0, "mirror"));
+}
+
+// Calls `visit` with each object of the scene at `scene`: its userdata is on top.
+static void each_member(lua_State *L, int scene, void (*visit)(lua_State *L, void *context), void *context)
+{
+    if (lua_getiuservalue(L, scene, 1) == LUA_TTABLE) {
+        lua_pushnil(L);
+        while (lua_next(L, -2)) {
+            visit(L, context);
+            lua_pop(L, 1);
+        }
+    }
+    lua_pop(L, 1);
+}
+
+// The ball of a shape before its transform; false: not known.
+static bool find_ball(const glint_shape *shape, ball *out)
+{
+    const glint_shape_desc *desc = glint_shape_get(shape);
+    double half[3], square = 0, lower[3], upper[3];
+    bool is_round = desc->kind == GLINT_SHAPE_SPHERE || desc->kind == GLINT_SHAPE_DISK;
+    bool is_long = desc->kind == GLINT_SHAPE_CYLINDER || desc->kind == GLINT_SHAPE_CONE;
+    const bool is_many = glint_shape_bounds(shape, lower, upper);
+    const double *low = is_many ? lower : is_long ? desc->base : desc->min;
+    const double *high = is_many ? upper : is_long ? desc->top : desc->max;
+    if (!is_round && !is_long && !is_many && desc->kind != GLINT_SHAPE_BOX)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        half[c] = is_round ? 0 : (high[c] - low[c]) / 2;
+        out->center[c] = is_round ? desc->center[c] : low[c] + half[c];
+        square += half[c] * half[c];
+    }
+    if (is_round || is_long)
+        square += desc->radius * desc->radius;
+    out->radius = sqrt(square);
+    out->is_sphere = desc->kind == GLINT_SHAPE_SPHERE;
+    return true;
+}
+
+// Takes a ball along; by a transform that does not keep angles, a larger one around what becomes of it.
+static void move_ball(const glint_transform *t, ball *b)
+{
+    double from[3], squares[3] = { 0 }, between = 0;
+    memcpy(from, b->center, sizeof from);
+    for (int i = 0; i < 3; i++) {
+        b->center[i] = dot(t->m[i], from) + t->m[i][3];
+        for (int j = 0; j < 3; j++)
+            squares[j] += t->m[i][j] * t->m[i][j];
+    }
+    for (int j = 0; j < 3; j++) {
+        double product = 0; // of two columns
+        for (int i = 0; i < 3; i++)
+            product += t->m[i][j] * t->m[i][(j + 1) % 3];
+        between = fmax(between, fabs(product));
+    }
+    bool keeps_angles = between <= 1e-9 * squares[0] && fabs(squares[1] - squares[0]) <= 1e-9 * squares[0] &&
+                        fabs(squares[2] - squares[0]) <= 1e-9 * squares[0];
+    b->radius *= sqrt(keeps_angles ? squares[0] : squares[0] + squares[1] + squares[2]);
+    b->is_sphere = b->is_sphere && keeps_angles;
+}
+
+// Whether a mirror or something transparent is among a shape's materials, or those of a group; counts what it looks at.
+static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
+{
+    glint_material *const *list;
+    const size_t materials = glint_shape_materials(shape, &list);
+    if (++*count > MEMBERS_MAX)
+        return true;
+    for (size_t i = 0; i < materials; i++)
+        if (shows_through(L, list[i]))
+            return true;
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        if (any_shows_through(L, glint_group_child(shape, i), count))
+            return true;
+    return false;
+}
+
+static void gather(lua_State *L, void *context)
+{
+    members *all = context;
+    const glint_light *light = glintL_test_object(L, -1, GLINTL_LIGHT);
+    const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
+    const glint_light_desc *desc = light ? glint_light_get(light) : NULL;
+    if (shape)
+        all->shows_more = all->shows_more || any_shows_through(L, shape, &all->shape_count);
+    if (!desc || !desc->shadows)
+        return;
+    // Other kinds have a surface, or shine in a cone: their shadows are not looked at here.
+    bool is_simple = desc->kind == GLINT_LIGHT_POINT || desc->kind == GLINT_LIGHT_DIRECTIONAL;
+    if (is_simple && all->light_count < LIGHTS_MAX)
+        all->lights[all->light_count++] = light;
+    else
+        all->shows_more = true;
+}
+
+// ---- Shapes ----
+
+typedef struct look {
+    glintL_run *run;
+    int64_t number;
+    const view *view; // NULL: unknown
+    const members *all;
+    int noted; // the table OUTSIDE
+    bool whole; // every frame is rendered
+} look;
+
+static void describe(const glint_shape_desc *shape, const ball *b, char out[160])
+{
+    static const char *const names[] = {
+        [GLINT_SHAPE_SPHERE] = "sphere", [GLINT_SHAPE_SPHERES] = "set of spheres", [GLINT_SHAPE_MESH] = "mesh",
+        [GLINT_SHAPE_BOX] = "box",       [GLINT_SHAPE_DISK] = "disk",       [GLINT_SHAPE_CYLINDER] = "cylinder",
+        [GLINT_SHAPE_CONE] = "cone"
+    };
+    if (*shape->name)
+        snprintf(out, 160, "%s '%s'", names[shape->kind], shape->name);
+    else
+        snprintf(out, 160, "the %s %s {%g, %g, %g}", names[shape->kind],
+                 shape->kind == GLINT_SHAPE_SPHERES || shape->kind == GLINT_SHAPE_MESH ? "around" : "at", b->center[0],
+                 b->center[1], b->center[2]);
+}
+
+static bool is_dark(const glint_light_desc *light)
+{
+    return light->intensity == 0 || (light->color[0] == 0 && light->color[1] == 0 && light->color[2] == 0);
+}
+
+// A sphere lets no light out; seen from outside it hides all that its light could show.
+static void look_for_inner_light(const look *l, const glint_shape_desc *shape, const ball *sphere)
+{
+    char name[160];
+    double to_eye[3], distance = 0;
+    for (int c = 0; c < 3; c++)
+        to_eye[c] = l->view->eye[c] - sphere->center[c];
+    distance = l->view->is_perspective ? sqrt(dot(to_eye, to_eye)) : -dot(to_eye, l->view->forward);
+    for (int i = 0; i < l->all->light_count && distance > sphere->radius; i++) {
+        const glint_light_desc *light = glint_light_get(l->all->lights[i]);
+        double off[3];
+        for (int c = 0; c < 3; c++)
+            off[c] = light->position[c] - sphere->center[c];
+        if (light->kind != GLINT_LIGHT_POINT || is_dark(light) || dot(off, off) >= sphere->radius * sphere->radius)
+            continue;
+        describe(shape, sphere, name);
+        glintL_run_warn(
+            l->run,
+            "frame %lld: a point_light%s%s%s is inside %s, which lets none of its light out; move it, or set "
+            "its shadows = false",
+            (long long)l->number, *light->name ? " '" : "", light->name, *light->name ? "'" : "", name);
+    }
+}
+
+static bool is_unseen(const look *l, const ball *b)
+{
+    bool unseen = is_outside(l->view, b, NULL);
+    for (int i = 0; i < l->all->light_count && unseen; i++)
+        unseen = is_outside(l->view, b, glint_light_get(l->all->lights[i]));
+    return unseen;
+}
+
+// Remembers of the shape whose key is on top whether any frame has shown it.
+static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
+{
+    char name[160];
+    lua_pushvalue(L, -1);
+    int before = lua_rawget(L, l->noted);
+    lua_pop(L, 1);
+    bool seen = !l->view || l->all->shows_more || !is_unseen(l, b);
+    if (before == LUA_TBOOLEAN || (before == LUA_TSTRING && !seen))
+        return;
+    lua_pushvalue(L, -1);
+    if (seen) {
+        lua_pushboolean(L, false);
+    } else {
+        describe(shape, b, name);
+        lua_pushstring(L, name);
+    }
+    lua_rawset(L, l->noted);
+}
+
+// One shape, or all of a group, under the transforms around it; the key of the shape is on top.
+static void look_into(lua_State *L, const look *l, const glint_shape *shape, const glint_transform *outer, int *count)
+{
+    ball b;
+    const glint_shape_desc *desc = glint_shape_get(shape);
+    const glint_transform placed = glint_transform_product(outer, &desc->transform);
+    if (++*count > MEMBERS_MAX)
+        return;
+    for (size_t i = 0; i < glint_group_count(shape); i++) {
+        const glint_shape *child = glint_group_child(shape, i);
+        lua_pushlightuserdata(L, glint_group_child(shape, i));
+        look_into(L, l, child, &placed, count);
+        lua_pop(L, 1);
+    }
+    if (!find_ball(shape, &b))
+        return;
+    move_ball(&placed, &b);
+    if (l->view && b.is_sphere && !shows_through(L, desc->material))
+        look_for_inner_light(l, desc, &b);
+    if (l->whole)
+        look_for_unseen(L, l, desc, &b);
+}
+
+static void look_at(lua_State *L, void *context)
+{
+    const look *l = context;
+    const glint_shape *shape = glintL_test_object(L, -1, GLINTL_SHAPE);
+    const glint_transform here = glint_transform_identity();
+    int count = 0;
+    if (shape)
+        look_into(L, l, shape, &here, &count);
+}
+
+void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc, int64_t number)
+{
+    const glint_scene *scene = glintL_test_object(L, scene_index, GLINTL_SCENE);
+    const glint_camera *camera = scene ? glint_scene_get(scene)->camera : NULL;
+    view v;
+    members all = { .light_count = 0 };
+    bool observes = run->mode == GLINTL_MODE_RENDER || run->mode == GLINTL_MODE_WATCH;
+    if (!camera || !observes || run->asked.warnings == GLINTL_WARNINGS_NONE ||
+        glint_scene_shape_count(scene) + glint_scene_light_count(scene) > MEMBERS_MAX)
+        return;
+    luaL_checkstack(L, 16 + GLINT_GROUP_DEPTH, "scene");
+    scene_index = lua_absindex(L, scene_index);
+    glintL_push_table(L, &OUTSIDE);
+    look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) };
+    l.view = make_view(glint_camera_get(camera), desc, &v) ? &v : NULL;
+    l.whole = glintL_selection_is_whole(&run->asked.selection);
+    all.shows_more = has(L, GLINTL_SCENE, scene, glint_scene_get(scene), scene_index, "indirect");
+    each_member(L, scene_index, gather, &all);
+    each_member(L, scene_index, look_at, &l);
+    lua_pop(L, 1);
+}
+
+void glintL_report_unseen(lua_State *L, glintL_run *run)
+{
+    const char *first = NULL;
+    int count = 0;
+    luaL_checkstack(L, 8, "warnings");
+    glintL_push_table(L, &OUTSIDE);
+    lua_pushnil(L);
+    while (lua_next(L, -2)) {
+        const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;
+        if (name && (!first || strcmp(name, first) < 0)) // tables have no order; the list keeps the string
+            first = name;
+        count += name != NULL;
+        lua_pop(L, 1);
+    }
+    if (count > 1)
+        glintL_run_warn(run,
+                        "%s and %d more are outside the view in every frame, with their shadows; move them, or the "
+                        "camera",
+                        first, count - 1);
+    else if (count == 1)
+        glintL_run_warn(run, "%s is outside the view in every frame, with its shadow; move it, or the camera", first);
+    lua_pop(L, 1);
+}

@@ -1,0 +1,205 @@
+// One frame: its plan, its files and their keys, rendering, and handing over to the writer.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+static glint_status fail(glint_error *error, glint_status status, const char *what, const char *text, const char *rest)
+{
+    error->status = status;
+    snprintf(error->message, sizeof error->message, "%s%.100s%s", what, text, rest);
+    return status;
+}
+
+static bool ends_in_pfm(const glintL_render *render) { return glintL_name_is_pfm(render->output); }
+
+glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
+                                bool keep_image, glintL_work **out, glint_error *error)
+{
+    glintL_work *work = calloc(1, sizeof *work);
+    if (!work)
+        return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
+    bool is_pfm = writes && ends_in_pfm(render);
+    work->index = index;
+    work->render = *render;
+    glint_render_desc *desc = &work->render.desc;
+    desc->passes = writes || keep_image ? render->file_passes : 0;
+    if (keep_image || is_pfm)
+        desc->passes |= 1u << GLINT_PASS_BEAUTY;
+    desc->codes = writes ? !is_pfm : !keep_image; // a run that writes nothing makes the codes all the same: to time it
+    glint_status status = glint_plan_create(scene, desc, &work->plan, error);
+    if (status) {
+        free(work);
+        return status;
+    }
+    *out = work;
+    return GLINT_OK;
+}
+
+void glintL_work_destroy(glintL_work *work)
+{
+    if (!work)
+        return;
+    glint_plan_destroy(work->plan);
+    glint_image_release(work->image);
+    free(work->sweep);
+    free(work);
+}
+
+static glint_write_desc write_desc(const glintL_work *work, const glintL_file *file)
+{
+    glint_write_desc desc = { .path = file->path, .pass = file->pass };
+    desc.tone = work->render.desc.tone;
+    desc.encode = work->render.encode;
+    return desc;
+}
+
+glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error)
+{
+    uint32_t passes = work->render.file_passes | 1u << GLINT_PASS_BEAUTY;
+    work->file_count = 0;
+    work->film = naming->film;
+    if (!naming->pattern)
+        return GLINT_OK;
+    for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        glintL_file *file = &work->files[work->file_count];
+        if (!(passes >> pass & 1))
+            continue;
+        file->pass = (glint_pass)pass;
+        if (!glintL_name_file(naming, work->index, file->pass, file->path))
+            return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
+        file->key[0] = '\0';
+        if (!glintL_name_is_pfm(file->path) && !glintL_name_is_special(file->path)) {
+            glint_write_desc desc = write_desc(work, file);
+            glint_frame_key(work->plan, &desc, file->key);
+        }
+        work->file_count++;
+    }
+    return GLINT_OK;
+}
+
+// Whether an earlier frame of this run is on its way to one of the work's files.
+static bool is_awaited(const glintL_run *run, const glintL_work *work)
+{
+    for (const glintL_record *record = run->head; record; record = record->next)
+        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+            for (int i = 0; i < work->file_count && record->files[pass]; i++)
+                if (strcmp(record->files[pass], work->files[i].path) == 0)
+                    return true;
+    return false;
+}
+
+bool glintL_work_is_kept(glintL_run *run, const glintL_work *work)
+{
+    if (is_awaited(run, work))
+        glintL_run_collect(run, true);
+    for (int i = 0; i < work->file_count; i++) {
+        const glintL_file *file = &work->files[i];
+        if (file->key[0] == '\0' || !glint_file_has_key(file->path, file->key))
+            return false;
+    }
+    return work->file_count > 0;
+}
+
+// Once for each light of the run.
+static void warn_of_caps(glintL_run *run, const glint_plan *plan)
+{
+    const glint_effect *effects;
+    const size_t count = glint_plan_effects(plan, &effects);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(effects[i].effect, "rays in place of caps") == 0)
+            glintL_run_warn(run,
+                            "%s.shadow: caps are for scenes of opaque spheres and planes alone, and its shadows have "
+                            "rays here; set shadow = \"rays\"",
+                            effects[i].caller);
+}
+
+glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
+{
+    glint_image *image = NULL;
+    if (!glintL_run_open(run, error))
+        return error->status;
+    if (run->reporter.rendering)
+        run->reporter.rendering(run->reporter.context, run, true);
+    warn_of_caps(run, work->plan);
+    glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
+    if (run->reporter.rendering)
+        run->reporter.rendering(run->reporter.context, run, false);
+    if (status == GLINT_OK) {
+        glint_image_release(work->image);
+        work->image = image;
+        if (run->reporter.image)
+            run->reporter.image(run->reporter.context, run, work);
+    }
+    return status;
+}
+
+// ---- To the writer ----
+
+static glint_status submit(glintL_run *run, const glintL_work *work, const glintL_file *file, glintL_record *record,
+                           glint_error *error)
+{
+    glintL_provenance provenance;
+    glint_write_desc desc = write_desc(work, file);
+    if (!glintL_provenance_take(&provenance, run, work, file))
+        return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
+    desc.text = provenance.text;
+    desc.text_count = provenance.count;
+    glint_status status = glint_writer_submit(run->writer, work->image, &desc, record, error);
+    glintL_provenance_drop(&provenance);
+    return status;
+}
+
+bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
+{
+    glint_error error;
+    if (kept)
+        memset(&work->stats, 0, sizeof work->stats);
+    glintL_record *record = glintL_run_add(run, work);
+    if (!record)
+        return false;
+    record->kept = kept;
+    record->is_last = true;
+    record->repeat = run->asked.repeat > 1 ? run->asked.repeat : 0;
+    record->files_left = kept ? 0 : work->file_count;
+    for (int i = 0; i < work->file_count && !kept; i++) {
+        glint_status status = submit(run, work, &work->files[i], record, &error);
+        if (status) {
+            record->files_left -= work->file_count - i;
+            record->failed = true;
+            glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+            break;
+        }
+        run->files_pending++;
+    }
+    return glintL_run_collect(run, false);
+}
+
+// Renders, and reports all but the last of the repeats.
+static bool render_repeats(glintL_run *run, glintL_work *work)
+{
+    glint_error error;
+    for (int repeat = 1; repeat <= run->asked.repeat; repeat++) {
+        glint_status status = glintL_work_render(run, work, &error);
+        if (status == GLINT_ERR_CANCELLED)
+            return glintL_run_fail(run, GLINTL_EXIT_FAILED, work->index, "interrupted");
+        if (status)
+            return glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
+        if (repeat < run->asked.repeat) {
+            glintL_record *record = glintL_run_add(run, work);
+            if (!record)
+                return false;
+            record->repeat = repeat;
+            glintL_run_collect(run, false);
+        }
+    }
+    return true;
+}
+
+bool glintL_work_run(glintL_run *run, glintL_work *work, bool force)
+{
+    if (!force && run->asked.repeat == 1 && glintL_work_is_kept(run, work))
+        return glintL_work_finish(run, work, true);
+    return render_repeats(run, work) && glintL_work_finish(run, work, false);
+}

@@ -1,0 +1,314 @@
+// Classes: how the fields of boxes are read and written, and their metatables.
+#include <stdint.h>
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+static const char LISTED; // its address is the registry's key of the table behind glint._fields()
+
+typedef union description { // of whatever object
+    max_align_t align;
+    char bytes[GLINTL_DESC_SIZE];
+} description;
+
+// ---- Fields ----
+
+// The class is the first upvalue of each metamethod. 1: the object.
+static const glintL_class *this_class(lua_State *L) { return lua_touserdata(L, lua_upvalueindex(1)); }
+
+static const luaL_Reg *find_function(const luaL_Reg *functions, const char *name)
+{
+    for (; functions && functions->name; functions++)
+        if (strcmp(functions->name, name) == 0)
+            return functions;
+    return NULL;
+}
+
+// "x", "y" and "z" are parts of the variant's place: which one, or -1.
+static int component(const glintL_variant *variant, const char *name)
+{
+    return variant->place && name[0] >= 'x' && name[0] <= 'z' && !name[1] ? name[0] - 'x' : -1;
+}
+
+static const char *field_name(lua_State *L, const glintL_variant *variant)
+{
+    if (lua_type(L, 2) != LUA_TSTRING)
+        glintL_bad_key(L, variant->name, 2);
+    return lua_tostring(L, 2);
+}
+
+static int unknown_field(lua_State *L, const glintL_class *class, const glintL_variant *variant, const char *name)
+{
+    const char *near = glintL_nearest(name, variant->fields);
+    for (const luaL_Reg *f = variant->getters; f && f->name; f++)
+        near = glintL_nearer(name, near, f->name);
+    for (const luaL_Reg *f = variant->methods; f && f->name; f++)
+        near = glintL_nearer(name, near, f->name);
+    for (const luaL_Reg *f = class->methods; f && f->name; f++)
+        near = glintL_nearer(name, near, f->name);
+    return glintL_no_such_field(L, variant->name, name, glintL_nearer(name, near, "close"));
+}
+
+// An object no userdata stands for any more gets a new one, made before its pointer is read: making it may run a
+// finalizer of the script, which may close the owner.
+static void push_object_field(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
+{
+    void *object;
+    lua_pop(L, 1);
+    glintL_box *box = glintL_new_box(L, field->names[0]);
+    class->get(glintL_check_object(L, 1, class->type), desc);
+    memcpy(&object, desc->bytes + field->offset, sizeof object);
+    if (object) {
+        box->object = glintL_class_of(L, field->names[0])->retain(object);
+        glintL_remember(L, object);
+    } else {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+}
+
+static void push_value(lua_State *L, const glintL_class *class, const glintL_field *field, const void *object)
+{
+    description desc;
+    class->get(object, &desc);
+    if (class->follow)
+        class->follow(&desc);
+    glintL_push_field(L, field, &desc);
+    if (field->kind == GLINTL_OBJECT && lua_isnil(L, -1))
+        push_object_field(L, class, field, &desc);
+}
+
+static int close_object(lua_State *L);
+
+static int read_member(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    const luaL_Reg *function;
+    if (lua_type(L, 2) == LUA_TSTRING) { // methods first: a closed object can still be closed
+        const char *name = lua_tostring(L, 2);
+        if (strcmp(name, "close") == 0) {
+            lua_pushvalue(L, lua_upvalueindex(2));
+            return 1;
+        }
+        function = find_function(class->methods, name);
+        if (function) {
+            lua_pushcfunction(L, function->func);
+            return 1;
+        }
+    }
+    const void *object = glintL_check_object(L, 1, class->type);
+    const glintL_variant *variant = class->variant(object);
+    const char *name = field_name(L, variant);
+    const glintL_field *field = glintL_find_field(variant->fields, name);
+    function = find_function(variant->methods, name);
+    if (function) {
+        lua_pushcfunction(L, function->func);
+        return 1;
+    }
+    int part = component(variant, name);
+    if (field) {
+        push_value(L, class, field, object);
+    } else if (part >= 0) {
+        push_value(L, class, glintL_find_field(variant->fields, variant->place), object);
+        lua_pushnumber(L, glintL_to_vector(L, -1)[part]);
+    } else if ((function = find_function(variant->getters, name)) != NULL) {
+        lua_settop(L, 1);
+        return function->func(L);
+    } else {
+        return unknown_field(L, class, variant, name);
+    }
+    return 1;
+}
+
+// Reads argument 3 into one component of the place.
+static void read_component(lua_State *L, const glintL_variant *variant, int part, description *desc)
+{
+    static const glintL_field parts[] = {
+        { .name = "x", .kind = GLINTL_NUMBER },
+        { .name = "y", .kind = GLINTL_NUMBER },
+        { .name = "z", .kind = GLINTL_NUMBER },
+    };
+    double value;
+    glintL_read_field(L, 3, variant->name, &parts[part], &value);
+    memcpy(desc->bytes + glintL_find_field(variant->fields, variant->place)->offset + (size_t)part * sizeof value,
+           &value, sizeof value);
+}
+
+static const glintL_field *writable_field(lua_State *L, const glintL_class *class, const glintL_variant *variant,
+                                          const char *name)
+{
+    const glintL_field *field = glintL_find_field(variant->fields, name);
+    if (field)
+        return field;
+    if (find_function(variant->getters, name))
+        glintL_error(L, "%s.%s: this field is only read", variant->name, name);
+    if (strcmp(name, "close") == 0 || find_function(class->methods, name) || find_function(variant->methods, name))
+        glintL_error(L, "%s.%s: a method is not assigned to", variant->name, name);
+    unknown_field(L, class, variant, name);
+    return NULL;
+}
+
+// Reading a table allocates, which may run a finalizer of the script that changes or closes the object: its description is
+// got again, and what was read put into that.
+static void *read_nested(lua_State *L, const glintL_class *class, const glintL_field *field, description *desc)
+{
+    description fields = *desc;
+    glintL_read_field(L, 3, class->variant(glintL_check_object(L, 1, class->type))->name, field, &fields);
+    void *object = glintL_check_object(L, 1, class->type);
+    class->get(object, desc);
+    for (const glintL_field *f = field->nested; f->name; f++) {
+        memcpy(desc->bytes + f->offset, fields.bytes + f->offset, (f->kind == GLINTL_COLOR ? 3 : 1) * sizeof(double));
+        if (f->set_offset)
+            desc->bytes[f->set_offset] = fields.bytes[f->set_offset];
+    }
+    desc->bytes[field->set_offset] = fields.bytes[field->set_offset];
+    return object;
+}
+
+static int write_member(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    void *object = glintL_check_object(L, 1, class->type);
+    const glintL_variant *variant = class->variant(object);
+    const char *name = field_name(L, variant);
+    int part = component(variant, name);
+    const glintL_field *field = NULL;
+    description desc;
+    glint_error error;
+    if (part < 0)
+        field = writable_field(L, class, variant, name);
+    class->get(object, &desc);
+    if (field && field->kind == GLINTL_NESTED)
+        object = read_nested(L, class, field, &desc);
+    else if (field)
+        glintL_read_field(L, 3, variant->name, field, &desc);
+    else
+        read_component(L, variant, part, &desc);
+    if (field && class->assigned)
+        class->assigned(L, field, &desc);
+    glintL_check_status(L, variant->name, &error, class->set(object, &desc, &error));
+    if (field && field->kind == GLINTL_OBJECT)
+        glintL_keep(L, 1, field->name, 3);
+    if (field && class->accepted)
+        class->accepted(L, field, &desc);
+    return 0;
+}
+
+// ---- The rest of a metatable ----
+
+static int close_object(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    glintL_box *box = luaL_testudata(L, 1, class->type);
+    if (!box)
+        return glintL_refuse(L, 1, "", class->type + sizeof "glint." - 1);
+    void *object = box->object;
+    box->object = NULL; // first: nothing can come between
+    if (object)
+        class->release(object);
+    return 0;
+}
+
+static int same_object(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    const void *a = glintL_test_object(L, 1, class->type), *b = glintL_test_object(L, 2, class->type);
+    lua_pushboolean(L, a && a == b);
+    return 1;
+}
+
+bool glintL_push_object_name(lua_State *L, int index)
+{
+    if (luaL_getmetafield(L, index, "class") == LUA_TNIL)
+        return false;
+    const glintL_class *class = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    const void *object = class ? glintL_test_object(L, index, class->type) : NULL;
+    if (object)
+        lua_pushstring(L, class->variant(object)->name);
+    else if (class)
+        lua_pushfstring(L, "closed %s", class->type + sizeof "glint." - 1);
+    return class != NULL;
+}
+
+static int to_string(lua_State *L)
+{
+    const glintL_class *class = this_class(L);
+    const void *object = glintL_test_object(L, 1, class->type);
+    if (object) {
+        const glintL_variant *variant = class->variant(object);
+        const glintL_field *field = glintL_find_field(variant->fields, "name");
+        if (field)
+            push_value(L, class, field, object);
+        if (field && *lua_tostring(L, -1))
+            lua_pushfstring(L, "%s '%s'", variant->name, lua_tostring(L, -1));
+        else
+            lua_pushfstring(L, "%s: %p", variant->name, object);
+    } else if (!lua_isuserdata(L, 1) || !glintL_push_object_name(L, 1)) {
+        glintL_refuse(L, 1, "", class->type + sizeof "glint." - 1);
+    }
+    return 1;
+}
+
+void glintL_open_class(lua_State *L, const glintL_class *class)
+{
+    static const luaL_Reg meta[] = {
+        { "__index", read_member },
+        { "__newindex", write_member },
+        { "__eq", same_object },
+        { "__tostring", to_string },
+        { NULL, NULL },
+    };
+    luaL_newmetatable(L, class->type);
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
+    lua_setfield(L, -2, "class");
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
+    lua_pushcclosure(L, close_object, 1);
+    lua_pushvalue(L, -1);
+    lua_setfield(L, -3, "__gc");
+    lua_pushvalue(L, -1);
+    lua_setfield(L, -3, "__close");
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
+    lua_insert(L, -2);
+    luaL_setfuncs(L, meta, 2); // upvalues: class, close
+    lua_pop(L, 1);
+}
+
+static void list_functions(lua_State *L, const luaL_Reg *functions, const char *how)
+{
+    for (; functions && functions->name; functions++) {
+        lua_pushstring(L, how);
+        lua_setfield(L, -2, functions->name);
+    }
+}
+
+void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods)
+{
+    glintL_push_table(L, &LISTED);
+    lua_newtable(L);
+    for (const glintL_field *field = variant->fields; field && field->name; field++) {
+        lua_pushliteral(L, "field");
+        lua_setfield(L, -2, field->name);
+    }
+    list_functions(L, variant->getters, "field");
+    list_functions(L, methods, "method");
+    lua_setfield(L, -2, variant->name);
+    lua_pop(L, 1);
+}
+
+void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *class)
+{
+    static const luaL_Reg parts[] = { { "x", NULL }, { "y", NULL }, { "z", NULL }, { NULL, NULL } };
+    static const luaL_Reg close[] = { { "close", close_object }, { NULL, NULL } };
+    glintL_list_variant(L, variant, class->methods);
+    glintL_push_table(L, &LISTED);
+    lua_getfield(L, -1, variant->name);
+    list_functions(L, variant->place ? parts : NULL, "field");
+    list_functions(L, variant->methods, "method");
+    list_functions(L, close, "method");
+    lua_pop(L, 2);
+}
+
+void glintL_push_listed(lua_State *L) { glintL_push_table(L, &LISTED); }

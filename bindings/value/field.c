@@ -1,0 +1,410 @@
+// Fields: one member of a description, between its name in a script and its place in the engine's struct.
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+#define PATH_SIZE 192 // a path longer than this is cut in messages
+#define WORD_MAX 32 // longer names have no near ones
+#define PI 0x1.921fb54442d18p+1
+
+// ---- Misspelt names ----
+
+static int least(int a, int b) { return a < b ? a : b; }
+
+// Edits that turn one word into the other: a letter added, left out, changed, or two neighbours swapped.
+static int distance(const char *a, const char *b)
+{
+    int rows[3][WORD_MAX + 1], *before = rows[0], *above = rows[1], *row = rows[2];
+    int na = (int)strlen(a), nb = (int)strlen(b);
+    for (int j = 0; j <= nb; j++)
+        above[j] = j;
+    for (int i = 1; i <= na; i++) {
+        row[0] = i;
+        for (int j = 1; j <= nb; j++) {
+            int ca = tolower((unsigned char)a[i - 1]), cb = tolower((unsigned char)b[j - 1]);
+            row[j] = least(least(above[j], row[j - 1]) + 1, above[j - 1] + (ca != cb));
+            if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) && cb == tolower((unsigned char)a[i - 2]))
+                row[j] = least(row[j], before[j - 2] + 1);
+        }
+        int *spare = before;
+        before = above;
+        above = row;
+        row = spare;
+    }
+    return above[nb];
+}
+
+// How far a known name is from the misspelt one; WORD_MAX when it is not near.
+static int farness(const char *name, const char *known)
+{
+    size_t length = strlen(name);
+    if (length > WORD_MAX || strlen(known) > WORD_MAX)
+        return WORD_MAX;
+    int edits = distance(name, known);
+    if (edits <= (length < 5 ? 1 : (int)length / 3))
+        return edits;
+    if (length >= 3 && strncmp(name, known, length) == 0) // the beginning of it
+        return WORD_MAX - 1;
+    return WORD_MAX;
+}
+
+const char *glintL_nearer(const char *name, const char *best, const char *candidate)
+{
+    int limit = best ? farness(name, best) : WORD_MAX;
+    return farness(name, candidate) < limit ? candidate : best;
+}
+
+const char *glintL_nearest(const char *name, const glintL_field *fields)
+{
+    const char *best = NULL;
+    for (const glintL_field *field = fields; field->name; field++)
+        best = glintL_nearer(name, best, field->name);
+    return best;
+}
+
+int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near)
+{
+    const char *dot = *path ? "." : "";
+    char shown[WORD_MAX + 1];
+    snprintf(shown, sizeof shown, "%s", name);
+    for (char *c = shown; *c; c++)
+        *c = iscntrl((unsigned char)*c) ? '?' : *c;
+    if (near)
+        return glintL_error(L, "%s%s%s: no such field; did you mean '%s'?", path, dot, shown, near);
+    return glintL_error(L, "%s%s%s: no such field", path, dot, shown);
+}
+
+int glintL_bad_key(lua_State *L, const char *path, int index)
+{
+    const char *got = glintL_push_spelling(L, index);
+    return glintL_error(L, "%s%sname of a field expected, got %s", path, *path ? ": " : "", got);
+}
+
+const glintL_field *glintL_find_field(const glintL_field *fields, const char *name)
+{
+    for (const glintL_field *field = fields; field->name; field++)
+        if (strcmp(field->name, name) == 0)
+            return field;
+    return NULL;
+}
+
+// ---- One value in ----
+
+static double read_finite(lua_State *L, int index, const char *path)
+{
+    double x = glintL_read_number(L, index, path);
+    if (!isfinite(x))
+        glintL_refuse(L, index, path, "finite number");
+    return x;
+}
+
+// An enum of the engine is stored as the int GCC and Clang give it.
+static void read_enum(lua_State *L, int index, const char *path, const char *const *names, void *out)
+{
+    luaL_Buffer list;
+    if (lua_type(L, index) == LUA_TSTRING) {
+        const char *name = lua_tostring(L, index);
+        for (unsigned value = 0; names[value]; value++) {
+            if (strcmp(name, names[value]) == 0) {
+                memcpy(out, &value, sizeof value);
+                return;
+            }
+        }
+    }
+    const char *got = glintL_push_spelling(L, index);
+    luaL_buffinit(L, &list);
+    for (const char *const *name = names; *name; name++) {
+        luaL_addstring(&list, name == names ? "\"" : name[1] ? "\", \"" : "\" or \"");
+        luaL_addstring(&list, *name);
+    }
+    luaL_addchar(&list, '"');
+    luaL_pushresult(&list);
+    const char *near = NULL;
+    for (const char *const *name = names; *name && lua_type(L, index) == LUA_TSTRING; name++)
+        near = glintL_nearer(lua_tostring(L, index), near, *name);
+    if (near)
+        glintL_error(L, "%s: %s expected, got %s; did you mean \"%s\"?", path, lua_tostring(L, -1), got, near);
+    glintL_error(L, "%s: %s expected, got %s", path, lua_tostring(L, -1), got);
+}
+
+static void read_string(lua_State *L, int index, const char *path, char out[GLINT_NAME_SIZE])
+{
+    size_t length;
+    if (lua_type(L, index) != LUA_TSTRING)
+        glintL_refuse(L, index, path, "string");
+    const char *text = lua_tolstring(L, index, &length);
+    if (length >= GLINT_NAME_SIZE)
+        glintL_error(L, "%s: at most %d bytes expected, got %d", path, GLINT_NAME_SIZE - 1, (int)length);
+    if (memchr(text, '\0', length))
+        glintL_error(L, "%s: string without a zero byte expected", path);
+    memset(out, 0, GLINT_NAME_SIZE);
+    memcpy(out, text, length);
+}
+
+static void read_object(lua_State *L, int index, const char *path, const glintL_field *field, void *out)
+{
+    const char *type = field->names[0];
+    void *object = NULL;
+    if (!lua_isnil(L, index) || field->required) {
+        object = glintL_test_object(L, index, type);
+        if (!object)
+            glintL_refuse(L, index, path, type + sizeof "glint." - 1);
+    }
+    memcpy(out, &object, sizeof object);
+}
+
+// A list of points. The block belongs to Lua, which keeps it until the next list of points is read: long enough for the
+// engine to copy it.
+static void read_points(lua_State *L, int index, const char *path, void *out)
+{
+    static const char block; // its address is the registry's key
+    char element[PATH_SIZE + 24];
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of {x, y, z}");
+    const size_t count = glintL_check_list(L, index, path, false);
+    double(*points)[3] = lua_newuserdatauv(L, (count + 1) * sizeof *points, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &block);
+    for (size_t i = 0; i < count; i++) {
+        snprintf(element, sizeof element, "%s[%zu]", path, i + 1);
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        glintL_read_vector(L, -1, element, points[i]);
+        lua_pop(L, 1);
+    }
+    memcpy(out, &points, sizeof points);
+    memcpy((char *)out + sizeof points, &count, sizeof count);
+}
+
+static void read_transform(lua_State *L, int index, const char *path, glint_transform *out)
+{
+    const glint_transform *t = glintL_to_transform(L, index);
+    if (!t && !lua_isnil(L, index))
+        glintL_refuse(L, index, path, "transform");
+    *out = t ? *t : glint_transform_identity();
+}
+
+// What push_nested gave is read from the table behind it.
+static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
+{
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "table");
+    luaL_checkstack(L, 2, "table");
+    const int top = lua_gettop(L);
+    if (luaL_getmetafield(L, index, "__index") != LUA_TTABLE)
+        lua_pushvalue(L, index);
+    field->begin_nested(desc);
+    glintL_read_table(L, -1, path, field->nested, desc, false);
+    lua_settop(L, top);
+}
+
+// Nothing here but read_points allocates unless it raises, so that no finalizer of the script can run meanwhile and close an object
+// whose pointer was read.
+void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
+{
+    char full[PATH_SIZE];
+    char *base = desc;
+    void *out = base + field->offset;
+    bool set = true;
+    snprintf(full, sizeof full, "%s%s%s", path, *path ? "." : "", field->name);
+    index = lua_absindex(L, index);
+    if (field->set_offset && !field->required && lua_isnil(L, index)) {
+        set = false;
+        memcpy(base + field->set_offset, &set, sizeof set);
+        return;
+    }
+    double x;
+    switch (field->kind) {
+    case GLINTL_NUMBER:
+    case GLINTL_DEGREES:
+        x = read_finite(L, index, full);
+        x = field->kind == GLINTL_DEGREES ? x * PI / 180 : x;
+        memcpy(out, &x, sizeof x);
+        break;
+    case GLINTL_BOOLEAN:
+        if (!lua_isboolean(L, index))
+            glintL_refuse(L, index, full, "boolean");
+        *(bool *)out = lua_toboolean(L, index);
+        break;
+    case GLINTL_VECTOR:
+        glintL_read_vector(L, index, full, out);
+        break;
+    case GLINTL_COLOR:
+        glintL_read_color(L, index, full, out);
+        break;
+    case GLINTL_ENUM:
+        read_enum(L, index, full, field->names, out);
+        break;
+    case GLINTL_STRING:
+        read_string(L, index, full, out);
+        break;
+    case GLINTL_OBJECT:
+        read_object(L, index, full, field, out);
+        break;
+    case GLINTL_POINTS:
+        read_points(L, index, full, out);
+        break;
+    case GLINTL_TRANSFORM:
+        read_transform(L, index, full, out);
+        break;
+    case GLINTL_NESTED:
+        read_nested(L, index, full, field, desc);
+        break;
+    case GLINTL_OTHER:
+        break;
+    }
+    if (field->set_offset)
+        memcpy(base + field->set_offset, &set, sizeof set);
+}
+
+// ---- One value out ----
+
+// Degrees in the fewest digits that give the same radians again, so that what was 40 reads 40.
+static double to_degrees(double radians)
+{
+    char text[32];
+    double degrees = radians * 180 / PI;
+    snprintf(text, sizeof text, "%.15g", degrees);
+    double tidy = strtod(text, NULL);
+    return tidy * PI / 180 == radians ? tidy : degrees;
+}
+
+static void push_points(lua_State *L, const void *in)
+{
+    const double(*points)[3];
+    size_t count;
+    memcpy(&points, in, sizeof points);
+    memcpy(&count, (const char *)in + sizeof points, sizeof count);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        glintL_push_vector(L, points[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static int refuse_part(lua_State *L)
+{
+    return glintL_error(L, "%s: assign a whole table; its fields are only read", lua_tostring(L, lua_upvalueindex(1)));
+}
+
+static int each_part(lua_State *L)
+{
+    lua_getglobal(L, "next");
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_pushnil(L);
+    return 3;
+}
+
+// An empty table that reads as one of the fields' values: assigning to a field of what was read would not reach the object.
+static void push_nested(lua_State *L, const glintL_field *field, const void *desc)
+{
+    luaL_checkstack(L, 6, "field");
+    lua_newtable(L);
+    lua_newtable(L); // its metatable
+    lua_newtable(L); // the values
+    for (const glintL_field *f = field->nested; f->name; f++) {
+        glintL_push_field(L, f, desc);
+        lua_setfield(L, -2, f->name);
+    }
+    lua_pushvalue(L, -1);
+    lua_pushcclosure(L, each_part, 1);
+    lua_setfield(L, -3, "__pairs");
+    lua_setfield(L, -2, "__index");
+    lua_pushstring(L, field->name);
+    lua_pushcclosure(L, refuse_part, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_setmetatable(L, -2);
+}
+
+void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc)
+{
+    const char *base = desc;
+    const void *in = base + field->offset;
+    unsigned value;
+    void *object;
+    luaL_checkstack(L, 4, "field");
+    if (field->set_offset && !*(const bool *)(const void *)(base + field->set_offset)) {
+        lua_pushnil(L);
+        return;
+    }
+    switch (field->kind) {
+    case GLINTL_NUMBER:
+        lua_pushnumber(L, *(const double *)in);
+        break;
+    case GLINTL_DEGREES:
+        lua_pushnumber(L, to_degrees(*(const double *)in));
+        break;
+    case GLINTL_BOOLEAN:
+        lua_pushboolean(L, *(const bool *)in);
+        break;
+    case GLINTL_VECTOR:
+    case GLINTL_COLOR:
+        glintL_push_vector(L, in);
+        break;
+    case GLINTL_ENUM:
+        memcpy(&value, in, sizeof value);
+        lua_pushstring(L, field->names[value]);
+        break;
+    case GLINTL_STRING:
+        lua_pushstring(L, in);
+        break;
+    case GLINTL_OBJECT:
+        memcpy(&object, in, sizeof object);
+        glintL_push_remembered(L, object);
+        break;
+    case GLINTL_POINTS:
+        push_points(L, in);
+        break;
+    case GLINTL_TRANSFORM:
+        glintL_push_transform(L, in);
+        break;
+    case GLINTL_NESTED:
+        push_nested(L, field, desc);
+        break;
+    case GLINTL_OTHER:
+        lua_pushnil(L);
+        break;
+    }
+}
+
+// ---- Whole tables ----
+
+static void check_keys(lua_State *L, int index, const char *path, const glintL_field *fields, bool allow_array)
+{
+    lua_pushnil(L);
+    while (lua_next(L, index)) {
+        lua_pop(L, 1);
+        if (lua_type(L, -1) == LUA_TSTRING) {
+            size_t length;
+            const char *name = lua_tolstring(L, -1, &length);
+            if (!glintL_find_field(fields, name) || strlen(name) != length)
+                glintL_no_such_field(L, path, name, glintL_nearest(name, fields));
+        } else if (!allow_array || !lua_isinteger(L, -1)) {
+            glintL_bad_key(L, path, -1);
+        }
+    }
+}
+
+void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
+                       bool allow_array)
+{
+    index = lua_absindex(L, index);
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "table");
+    luaL_checkstack(L, 6, "table");
+    check_keys(L, index, path, fields, allow_array);
+    // Objects last: see glintL_read_field.
+    for (int objects = 0; objects < 2; objects++) {
+        for (const glintL_field *field = fields; field->name; field++) {
+            if ((field->kind == GLINTL_OBJECT) != objects)
+                continue;
+            lua_pushstring(L, field->name);
+            lua_rawget(L, index);
+            if (field->required || !lua_isnil(L, -1))
+                glintL_read_field(L, -1, path, field, desc);
+            lua_pop(L, 1);
+        }
+    }
+}

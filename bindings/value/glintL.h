@@ -1,0 +1,223 @@
+/// What the files of the binding share. The engine has never heard of Lua; nothing here is seen below bindings/.
+///
+/// An object of the engine travels as a full userdata `glintL_box` holding one reference. Assigning a field copies
+/// the description, changes one member and hands it back to the engine, which checks it: the object is unchanged
+/// when the check fails. Errors raised to Lua read "material.shininess: number >= 0 expected, got -1".
+#ifndef GLINT_L_H
+#define GLINT_L_H
+
+#include <lauxlib.h>
+#include <lua.h>
+
+#include "engine/glint.h"
+
+// ---- check.c: arguments and tables in ----
+
+/// One field of a description struct, and how Lua spells it.
+typedef enum glintL_kind {
+    GLINTL_NUMBER, ///< double
+    GLINTL_DEGREES, ///< double in radians; degrees in Lua
+    GLINTL_BOOLEAN, ///< bool
+    GLINTL_VECTOR, ///< double[3], {x, y, z}
+    GLINTL_COLOR, ///< double[3]: {r, g, b}, one number, "#rrggbb" or a CSS name
+    GLINTL_ENUM, ///< enum; `names` spells its values in order, ends with NULL
+    GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
+    GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
+    GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
+    GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
+    GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
+    GLINTL_OTHER ///< known by name only; the caller reads it
+} glintL_kind;
+
+typedef struct glintL_field {
+    const char *name;
+    glintL_kind kind;
+    size_t offset; ///< in the description
+    size_t set_offset; ///< of a bool that says the field was set (has_ambient ...); 0: none
+    const char *const *names; ///< GLINTL_ENUM, GLINTL_OBJECT
+    bool required; ///< in the constructor's table
+    const struct glintL_field *nested; ///< GLINTL_NESTED
+    void (*begin_nested)(void *desc); ///< GLINTL_NESTED: writes the defaults of its fields
+} glintL_field;
+
+/// Pushes "<file>:<line>: " of the Lua code that called; "" where there is none.
+void glintL_push_position(lua_State *L);
+/// Raises `message` with the position of the Lua code that called.
+int glintL_error(lua_State *L, const char *format, ...);
+/// Raises "<path>.<message>" for an engine error; `path` may be "" (the message alone). Does nothing for GLINT_OK.
+void glintL_check_status(lua_State *L, const char *path, const glint_error *error, glint_status status);
+/// Reads the value at `index` into the field of `desc`; raises "<path>.<field>: ... expected, got ...".
+void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
+/// Pushes the field's value as Lua sees it.
+void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
+/// Reads every key of the table at `index`; raises on an unknown key (naming the nearest known one), a non-string key
+/// (unless allow_array, when integer keys are left to the caller) and a missing required field.
+void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
+                       bool allow_array);
+/// The nearest of `fields` to a misspelt name, or NULL when none is near.
+const char *glintL_nearest(const char *name, const glintL_field *fields);
+const glintL_field *glintL_find_field(const glintL_field *fields, const char *name);
+void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
+void glintL_read_color(lua_State *L, int index, const char *path, double out[3]);
+double glintL_read_number(lua_State *L, int index, const char *path); ///< any number, NaN and infinity too
+/// Three finite numbers: a vector or an array of exactly three; `expected` says so in the message.
+void glintL_read_three(lua_State *L, int index, const char *path, const char *expected, double out[3]);
+/// Which of `best` (NULL: none yet) and `candidate` the misspelt `name` is nearer to; NULL when neither is near.
+const char *glintL_nearer(const char *name, const char *best, const char *candidate);
+/// Raises "<path>.<name>: no such field", with "; did you mean '...'?" unless `near` is NULL.
+int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near);
+/// The value at `index` for messages when it is where a field's name should be: raises.
+int glintL_bad_key(lua_State *L, const char *path, int index);
+/// Raises "<path>: <expected> expected, got <the value at index>".
+int glintL_refuse(lua_State *L, int index, const char *path, const char *expected);
+/// Pushes the value at `index` as messages spell it: 5, true, string "64", sphere, closed material.
+const char *glintL_push_spelling(lua_State *L, int index);
+/// Checks that the table at `index` holds 1 .. n and nothing else (string keys pass when `allow_fields`); returns n.
+size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_fields);
+
+// ---- vector.c: the immutable value of a vector or colour ----
+
+/// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.
+void glintL_push_vector(lua_State *L, const double v[3]);
+/// NULL when the value at index is not one.
+const double *glintL_to_vector(lua_State *L, int index);
+
+// ---- transform.c: the immutable value of an affine map ----
+
+void glintL_push_transform(lua_State *L, const glint_transform *t);
+/// NULL when the value at index is not one.
+const glint_transform *glintL_to_transform(lua_State *L, int index);
+
+// ---- object.c: boxes ----
+
+#define GLINTL_MATERIAL "glint.material"
+#define GLINTL_LIGHT "glint.light"
+#define GLINTL_CAMERA "glint.camera"
+#define GLINTL_SHAPE "glint.shape"
+#define GLINTL_SCENE "glint.scene"
+#define GLINTL_IMAGE "glint.image"
+#define GLINTL_PARAMS "glint.params"
+#define GLINTL_ANIMATION "glint.animation" ///< job.c: animations and sweeps are one type
+
+typedef struct glintL_box {
+    void *object; ///< a reference; NULL before it is made and after close
+} glintL_box;
+
+/// Pushes the userdata with its metatable and a NULL object: handle first, resource second.
+glintL_box *glintL_new_box(lua_State *L, const char *type);
+/// The object; raises "<type> expected, got ..." or "<type> is closed".
+void *glintL_check_object(lua_State *L, int index, const char *type);
+/// Same without raising: NULL when the value is something else.
+void *glintL_test_object(lua_State *L, int index, const char *type);
+/// Remembers (weakly) that the userdata on top of the stack stands for its object; and pushes it again later, nil
+/// when it is gone.
+void glintL_remember(lua_State *L, void *object);
+void glintL_push_remembered(lua_State *L, const void *object);
+
+/// The userdata of an object: the remembered one, else a new one holding a reference. NULL gives nil. The caller
+/// keeps the object alive meanwhile.
+void glintL_push_object(lua_State *L, const char *type, void *object);
+/// Keeps the value at `value` alive as long as the userdata at `index`, under `key` (the name of a field).
+void glintL_keep(lua_State *L, int index, const char *key, int value);
+/// Tells the collector that the userdata just made stands for so many bytes it cannot see, so that a loop that drops
+/// images does not fill the memory. May run the collector.
+void glintL_charge(lua_State *L, size_t bytes);
+
+/// What one sort of object looks like to a script.
+typedef struct glintL_variant {
+    const char *name; ///< "point_light": the path in messages
+    const glintL_field *fields; ///< ends with a NULL name
+    const char *place; ///< the vector field that `x`, `y` and `z` are parts of; NULL: none
+    const luaL_Reg *getters; ///< fields that are only read: functions of the object; NULL: none
+    const luaL_Reg *methods; ///< besides those of the class; NULL: none
+} glintL_variant;
+
+/// How the objects of one type are read and written. `desc` is a copy of the description, of at most
+/// GLINTL_DESC_SIZE bytes.
+typedef struct glintL_class {
+    const char *type;
+    const glintL_variant *(*variant)(const void *object);
+    void (*get)(const void *object, void *desc);
+    glint_status (*set)(void *object, const void *desc, glint_error *error);
+    void *(*retain)(void *object);
+    void (*release)(void *object);
+    /// One field was read from a script: checks or adjusts the rest, before `set`. NULL: nothing to do.
+    void (*assigned)(lua_State *L, const glintL_field *field, void *desc);
+    /// Fills in fields that follow others, for reading. NULL: there are none.
+    void (*follow)(void *desc);
+    /// `field` was taken over by the object: the place for a warning. NULL: nothing to do.
+    void (*accepted)(lua_State *L, const glintL_field *field, const void *desc);
+    const luaL_Reg *methods; ///< besides close; NULL: none
+} glintL_class;
+
+#define GLINTL_DESC_SIZE 1024
+
+/// The class of a type, by the metatable glintL_open_class made.
+const glintL_class *glintL_class_of(lua_State *L, const char *type);
+/// Pushes the table of the registry at `key`, an address; made when it is not there.
+void glintL_push_table(lua_State *L, const void *key);
+
+// ---- class.c: fields and metatables of boxes ----
+
+/// Makes the metatable of a class.
+void glintL_open_class(lua_State *L, const glintL_class *type);
+/// Lists a sort of object, its fields and its methods in glint._fields(), which the test of meta/glint.lua reads.
+/// `methods` may be NULL.
+void glintL_list_variant(lua_State *L, const glintL_variant *variant, const luaL_Reg *methods);
+/// The same for a variant of a class, with what every object has.
+void glintL_list_object(lua_State *L, const glintL_variant *variant, const glintL_class *type);
+/// What glint._fields() returns: variant -> name -> "field" or "method".
+void glintL_push_listed(lua_State *L);
+/// Pushes what messages call the object at `index` ("plane", "closed shape"); false, and nothing pushed, when it is
+/// not of a class.
+bool glintL_push_object_name(lua_State *L, int index);
+
+/// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
+void glintL_open_vector(lua_State *L);
+void glintL_open_material(lua_State *L);
+void glintL_open_light(lua_State *L);
+void glintL_open_camera(lua_State *L);
+void glintL_open_transform(lua_State *L);
+void glintL_open_shape(lua_State *L);
+void glintL_open_scene(lua_State *L);
+void glintL_open_image(lua_State *L);
+void glintL_open_math(lua_State *L);
+void glintL_open_params(lua_State *L);
+void glintL_open_animation(lua_State *L); ///< animation and sweep
+int luaopen_glint(lua_State *L);
+
+/// The constructor glint.spheres, of spheres.c.
+int glintL_new_spheres(lua_State *L);
+/// The constructors glint.mesh and glint.sphere_mesh, of mesh.c.
+int glintL_new_mesh(lua_State *L);
+int glintL_new_sphere_mesh(lua_State *L);
+/// group.c: methods, the getter `count`, and the children in the list at `list`.
+int glintL_group_add(lua_State *L);
+int glintL_group_remove(lua_State *L);
+int glintL_group_count(lua_State *L);
+void glintL_group_fill(lua_State *L, int list, int index);
+
+/// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
+/// Works on anything with __newindex; raises as the assignment would.
+void glintL_set_field(lua_State *L, int object_index, const char *name);
+
+/// The fields of scene:render{}, of animations and of sweeps that describe a frame and its file.
+typedef struct glintL_render {
+    glint_render_desc desc;
+    char output[4096]; ///< "" = none given
+    glint_encode encode;
+    uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
+} glintL_render;
+
+// ---- run.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
+
+/// What the command line (or :run{}) asked. Strings are owned by the run.
+typedef struct glintL_run glintL_run;
+glintL_run *glintL_get_run(lua_State *L);
+/// scene:render{...} of the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
+/// files. Pushes an image, or nil and "skipped". Returns the number of results.
+int glintL_render_call(lua_State *L, glint_scene *scene, int index);
+
+extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
+
+#endif

@@ -1,0 +1,126 @@
+// Boxes: the userdata that stand for objects of the engine.
+#include <limits.h>
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+static const char BOXES; // its address is the registry's key of the boxes by object
+
+glintL_box *glintL_new_box(lua_State *L, const char *type)
+{
+    luaL_checkstack(L, 4, "object");
+    glintL_box *box = lua_newuserdatauv(L, sizeof *box, 1);
+    box->object = NULL;
+    luaL_setmetatable(L, type);
+    return box;
+}
+
+void *glintL_test_object(lua_State *L, int index, const char *type)
+{
+    const glintL_box *box = luaL_testudata(L, index, type);
+    return box ? box->object : NULL;
+}
+
+void *glintL_check_object(lua_State *L, int index, const char *type)
+{
+    const char *name = type + sizeof "glint." - 1;
+    const glintL_box *box = luaL_testudata(L, index, type);
+    if (!box)
+        glintL_refuse(L, index, "", name);
+    else if (!box->object)
+        glintL_error(L, "%s is closed", name);
+    return box ? box->object : NULL;
+}
+
+void glintL_push_table(lua_State *L, const void *key)
+{
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, key) != LUA_TNIL)
+        return;
+    lua_pop(L, 1);
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, key);
+}
+
+void glintL_remember(lua_State *L, void *object)
+{
+    luaL_checkstack(L, 4, "object");
+    glintL_push_table(L, &BOXES);
+    if (!lua_getmetatable(L, -1)) {
+        lua_createtable(L, 0, 1);
+        lua_pushliteral(L, "v");
+        lua_setfield(L, -2, "__mode");
+        lua_pushvalue(L, -1);
+        lua_setmetatable(L, -3);
+    }
+    lua_pop(L, 1);
+    lua_pushvalue(L, -2);
+    lua_rawsetp(L, -2, object);
+    lua_pop(L, 1);
+}
+
+// Allocates nothing.
+void glintL_push_remembered(lua_State *L, const void *object)
+{
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &BOXES) == LUA_TTABLE) {
+        lua_rawgetp(L, -1, object);
+        lua_remove(L, -2);
+        const glintL_box *box = lua_touserdata(L, -1);
+        if (box && box->object == object) // else closed, and its address used again
+            return;
+    }
+    lua_pop(L, 1);
+    lua_pushnil(L);
+}
+
+const glintL_class *glintL_class_of(lua_State *L, const char *type)
+{
+    luaL_getmetatable(L, type);
+    lua_getfield(L, -1, "class");
+    const glintL_class *class = lua_touserdata(L, -1);
+    lua_pop(L, 2);
+    return class;
+}
+
+void glintL_push_object(lua_State *L, const char *type, void *object)
+{
+    luaL_checkstack(L, 6, "object");
+    glintL_push_remembered(L, object);
+    if (!object || !lua_isnil(L, -1))
+        return;
+    lua_pop(L, 1);
+    glintL_box *box = glintL_new_box(L, type);
+    box->object = glintL_class_of(L, type)->retain(object);
+    glintL_remember(L, object);
+}
+
+void glintL_keep(lua_State *L, int index, const char *key, int value)
+{
+    index = lua_absindex(L, index);
+    value = lua_absindex(L, value);
+    luaL_checkstack(L, 4, "object");
+    if (lua_getiuservalue(L, index, 1) != LUA_TTABLE) {
+        lua_pop(L, 1);
+        lua_newtable(L);
+        lua_pushvalue(L, -1);
+        lua_setiuservalue(L, index, 1);
+    }
+    lua_pushvalue(L, value);
+    lua_setfield(L, -2, key);
+    lua_pop(L, 1);
+}
+
+void glintL_charge(lua_State *L, size_t bytes)
+{
+    size_t kib = bytes / 1024;
+    if (kib > 0 && lua_gc(L, LUA_GCISRUNNING) == 1) // not when the script stopped it
+        lua_gc(L, LUA_GCSTEP, kib < INT_MAX ? (int)kib : INT_MAX);
+}
+
+void glintL_set_field(lua_State *L, int object_index, const char *name)
+{
+    object_index = lua_absindex(L, object_index);
+    luaL_checkstack(L, 4, "field");
+    lua_pushvalue(L, -1);
+    lua_setfield(L, object_index, name);
+}

@@ -1,0 +1,319 @@
+// The files of a watched script: inotify on their folders, for editors replace a file as often as they write into it.
+#include <errno.h>
+#include <limits.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "bindings/watch/watch.h"
+
+#define SETTLE_MS 6 // after a write: more of the burst may follow
+#define GONE_MS 150 // after a deletion: editors move a file away before they write it anew
+#define RETRY_MS 500 // folders that are not there are looked for this often
+#define EVENTS \
+    (IN_CLOSE_WRITE | IN_CREATE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR)
+
+typedef struct watched {
+    char *folder, *name; // owned
+    int wd; // of the folder; -1: it is not there
+    unsigned run; // the last that added it
+    bool skipped; // the script writes it
+} watched;
+
+struct watch_files {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    int notify, wake;
+    bool stops;
+    void (*changed)(void *context, const char *path);
+    void *context;
+    watched *list;
+    size_t count;
+    unsigned run;
+    double due_ms; // when to tell; 0: nothing to tell
+    char path[GLINTL_PATH_SIZE]; // the file that changed
+};
+
+// ---- The list; the lock is held ----
+
+static void free_watched(watched *file)
+{
+    free(file->folder);
+    free(file->name);
+}
+
+static bool has_wd(const watch_files *files, int wd)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (files->list[i].wd == wd)
+            return true;
+    return false;
+}
+
+static watched *find(watch_files *files, const char *folder, const char *name)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (strcmp(files->list[i].name, name) == 0 && strcmp(files->list[i].folder, folder) == 0)
+            return &files->list[i];
+    return NULL;
+}
+
+// Takes over folder and name. NULL: out of memory, or an optional file without a folder; both are freed.
+static watched *add(watch_files *files, char *folder, char *name, bool optional)
+{
+    watched *found = folder && name ? find(files, folder, name) : NULL;
+    if (found) {
+        free(folder);
+        free(name);
+        return found;
+    }
+    int wd = folder && name ? inotify_add_watch(files->notify, folder, EVENTS) : -1;
+    bool wanted = folder && name && (wd >= 0 || !optional);
+    watched *grown = wanted ? realloc(files->list, (files->count + 1) * sizeof *grown) : NULL;
+    if (!grown) {
+        free(folder);
+        free(name);
+        return NULL;
+    }
+    files->list = grown;
+    grown[files->count] = (watched) { .folder = folder, .name = name, .wd = wd };
+    return &grown[files->count++];
+}
+
+static void add_path(watch_files *files, const char *path, bool optional, bool skipped)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    if (!*name)
+        return;
+    char *folder = !slash ? strdup(".") : slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
+    char *real = folder ? realpath(folder, NULL) : NULL; // one spelling for one folder
+    if (real) {
+        free(folder);
+        folder = real;
+    }
+    watched *file = add(files, folder, strdup(name), optional);
+    if (file) {
+        file->skipped = skipped || (file->skipped && file->run == files->run);
+        file->run = files->run;
+    }
+}
+
+// A symbolic link: the file it leads to counts as well.
+static void add_target(watch_files *files, const char *path, bool skipped)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0 || !S_ISLNK(info.st_mode))
+        return;
+    char *real = realpath(path, NULL);
+    if (real)
+        add_path(files, real, false, skipped);
+    free(real);
+}
+
+static void note(watch_files *files, const char *path, bool optional, bool skipped)
+{
+    uint64_t one = 1;
+    pthread_mutex_lock(&files->lock);
+    add_path(files, path, optional, skipped);
+    add_target(files, path, skipped);
+    pthread_mutex_unlock(&files->lock);
+    if (write(files->wake, &one, sizeof one) < 0) // there may be a folder to look for
+        return;
+}
+
+void watch_files_add(watch_files *files, const char *path, bool optional) { note(files, path, optional, false); }
+void watch_files_skip(watch_files *files, const char *path) { note(files, path, true, true); }
+
+void watch_files_begin(watch_files *files)
+{
+    pthread_mutex_lock(&files->lock);
+    files->run++;
+    pthread_mutex_unlock(&files->lock);
+}
+
+void watch_files_end(watch_files *files, bool good)
+{
+    pthread_mutex_lock(&files->lock);
+    for (size_t i = files->count; i-- > 0 && good;) {
+        watched gone = files->list[i];
+        if (gone.run == files->run)
+            continue;
+        files->list[i] = files->list[--files->count];
+        if (gone.wd >= 0 && !has_wd(files, gone.wd))
+            inotify_rm_watch(files->notify, gone.wd);
+        free_watched(&gone);
+    }
+    pthread_mutex_unlock(&files->lock);
+}
+
+size_t watch_files_count(watch_files *files)
+{
+    size_t count = 0;
+    pthread_mutex_lock(&files->lock);
+    for (size_t i = 0; i < files->count; i++)
+        count += !files->list[i].skipped;
+    pthread_mutex_unlock(&files->lock);
+    return count;
+}
+
+// ---- The thread; the lock is held but in wait_for_events ----
+
+static void tell_later(watch_files *files, const watched *file, double delay_ms)
+{
+    snprintf(files->path, sizeof files->path, "%s/%s", file->folder, file->name);
+    files->due_ms = glintL_now_ms() + delay_ms;
+}
+
+// A new file is told when it has been written; a new link is whole at once.
+static bool is_link(const watched *file)
+{
+    char path[GLINTL_PATH_SIZE];
+    struct stat info;
+    snprintf(path, sizeof path, "%s/%s", file->folder, file->name);
+    return lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+}
+
+static void take_event(watch_files *files, const struct inotify_event *event)
+{
+    bool lost = event->mask & (IN_IGNORED | IN_DELETE_SELF | IN_MOVE_SELF);
+    for (size_t i = 0; i < files->count; i++) {
+        watched *file = &files->list[i];
+        if (event->mask & IN_Q_OVERFLOW) { // anything may have changed
+            tell_later(files, file, SETTLE_MS);
+            continue;
+        }
+        if (file->wd != event->wd)
+            continue;
+        if (lost)
+            file->wd = -1;
+        if (file->skipped || (!lost && (event->len == 0 || strcmp(event->name, file->name) != 0)))
+            continue;
+        if (lost || event->mask & (IN_DELETE | IN_MOVED_FROM))
+            tell_later(files, file, GONE_MS);
+        else if (!(event->mask & IN_CREATE) || is_link(file))
+            tell_later(files, file, SETTLE_MS);
+    }
+    if (event->mask & IN_MOVE_SELF) // the watch went along with the folder
+        inotify_rm_watch(files->notify, event->wd);
+}
+
+static void read_events(watch_files *files)
+{
+    union { // as aligned as an event
+        struct inotify_event first;
+        char bytes[16384];
+    } buffer;
+    ssize_t size;
+    while ((size = read(files->notify, buffer.bytes, sizeof buffer.bytes)) > 0)
+        for (ssize_t at = 0; at < size;) {
+            const struct inotify_event *event = (const void *)(buffer.bytes + at);
+            take_event(files, event);
+            at += (ssize_t)(sizeof *event + event->len);
+        }
+}
+
+// Looks for folders that were not there. Returns whether some still are not.
+static bool find_folders(watch_files *files)
+{
+    bool lacking = false;
+    for (size_t i = 0; i < files->count; i++) {
+        watched *file = &files->list[i];
+        if (file->wd >= 0)
+            continue;
+        file->wd = inotify_add_watch(files->notify, file->folder, EVENTS);
+        lacking = lacking || file->wd < 0;
+        if (file->wd >= 0 && !file->skipped)
+            tell_later(files, file, SETTLE_MS);
+    }
+    return lacking;
+}
+
+static void wait_for_events(watch_files *files, int timeout_ms)
+{
+    uint64_t count;
+    struct pollfd wait[2] = { { .fd = files->notify, .events = POLLIN }, { .fd = files->wake, .events = POLLIN } };
+    pthread_mutex_unlock(&files->lock);
+    if (poll(wait, 2, timeout_ms) > 0 && wait[1].revents && read(files->wake, &count, sizeof count) < 0)
+        count = 0; // somebody else has read it; there is nobody else
+    pthread_mutex_lock(&files->lock);
+}
+
+static void *watch(void *argument)
+{
+    watch_files *files = argument;
+    char path[GLINTL_PATH_SIZE];
+    pthread_mutex_lock(&files->lock);
+    while (!files->stops) {
+        int timeout = find_folders(files) ? RETRY_MS : -1;
+        double left = files->due_ms - glintL_now_ms();
+        if (files->due_ms > 0 && left <= 0) {
+            files->due_ms = 0;
+            memcpy(path, files->path, sizeof path);
+            pthread_mutex_unlock(&files->lock);
+            files->changed(files->context, path);
+            pthread_mutex_lock(&files->lock);
+            continue;
+        }
+        if (files->due_ms > 0 && (timeout < 0 || left < timeout))
+            timeout = (int)left + 1;
+        wait_for_events(files, timeout);
+        read_events(files);
+    }
+    pthread_mutex_unlock(&files->lock);
+    return NULL;
+}
+
+watch_files *watch_files_create(void (*changed)(void *context, const char *path), void *context,
+                                char message[GLINTL_MESSAGE_SIZE])
+{
+    sigset_t all, before;
+    watch_files *files = calloc(1, sizeof *files);
+    if (!files) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+        return NULL;
+    }
+    files->changed = changed;
+    files->context = context;
+    pthread_mutex_init(&files->lock, NULL);
+    files->notify = inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
+    files->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    sigfillset(&all); // signals are for the script's thread
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    bool good = files->notify >= 0 && files->wake >= 0 && pthread_create(&files->thread, NULL, watch, files) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (good)
+        return files;
+    snprintf(message, GLINTL_MESSAGE_SIZE, "watch: inotify: %s%s", strerror(errno),
+             errno == EMFILE ? "; fs.inotify.max_user_instances limits it" : "");
+    if (files->notify >= 0)
+        close(files->notify);
+    if (files->wake >= 0)
+        close(files->wake);
+    pthread_mutex_destroy(&files->lock);
+    free(files);
+    return NULL;
+}
+
+void watch_files_destroy(watch_files *files)
+{
+    uint64_t one = 1;
+    if (!files)
+        return;
+    pthread_mutex_lock(&files->lock);
+    files->stops = true;
+    pthread_mutex_unlock(&files->lock);
+    if (write(files->wake, &one, sizeof one) == (ssize_t)sizeof one)
+        pthread_join(files->thread, NULL);
+    close(files->notify);
+    close(files->wake);
+    for (size_t i = 0; i < files->count; i++)
+        free_watched(&files->list[i]);
+    free(files->list);
+    pthread_mutex_destroy(&files->lock);
+    free(files);
+}

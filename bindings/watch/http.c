@@ -1,0 +1,376 @@
+// The server of the watch page: one poll() loop over a few non-blocking sockets, on 127.0.0.1 alone.
+//
+//   GET  /TOKEN/            the page
+//   GET  /TOKEN/events      server-sent events: the state, at once and whenever it changes
+//   GET  /TOKEN/picture     the last good picture, PNG; what follows a '?' only tells pictures apart
+//   POST /TOKEN/frame       body: the number of the frame to show
+//   POST /TOKEN/set         body: name=value, as --set takes it
+//   POST /TOKEN/reset       parameters as the command line has them
+//
+// Anything else is 404, whoever asks. The token is random, so other users and pages of other sites cannot ask.
+#include <arpa/inet.h>
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "bindings/watch/client.h"
+
+#define CLIENTS_MAX 32
+#define TOKEN_SIZE 33
+#define POLICY \
+    "Content-Security-Policy: default-src 'self'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; " \
+    "frame-ancestors 'none'\r\n"
+
+static const char page[] = {
+#include "bindings/watch/page.html.h"
+};
+
+struct watch_server {
+    pthread_t thread;
+    pthread_mutex_t lock; // over state, version, picture and stops
+    int listener, wake;
+    bool stops;
+    char token[TOKEN_SIZE], host[32], url[96];
+    watch_orders orders;
+    char *state; // owned
+    unsigned version, sent_version; // of the state; sent_version: of the thread alone
+    watch_picture *picture;
+    watch_client *clients[CLIENTS_MAX];
+    int count;
+};
+
+// ---- Replies ----
+
+static void close_client(watch_server *server, int i)
+{
+    watch_client_destroy(server->clients[i]);
+    server->clients[i] = server->clients[--server->count];
+}
+
+static bool begin_events(watch_server *server, watch_client *c)
+{
+    pthread_mutex_lock(&server->lock);
+    const bool good = watch_client_listen(c, server->state);
+    pthread_mutex_unlock(&server->lock);
+    return good;
+}
+
+static bool reply_picture(watch_server *server, watch_client *c)
+{
+    pthread_mutex_lock(&server->lock);
+    c->picture = server->picture ? watch_picture_retain(server->picture) : NULL;
+    pthread_mutex_unlock(&server->lock);
+    return c->picture ? watch_client_reply(c, "200 OK", "image/png", "", NULL, c->picture->size)
+                      : watch_client_say(c, "404 Not Found");
+}
+
+// ---- Requests ----
+
+// Compares in a time that does not tell how much of it was right.
+static bool same_token(const char *text, const char *token)
+{
+    unsigned char difference = 0;
+    for (int i = 0; i < TOKEN_SIZE - 1; i++) {
+        difference |= (unsigned char)(text[i] ^ token[i]);
+        if (!text[i])
+            return false;
+    }
+    return difference == 0;
+}
+
+// The value of a header, or NULL; it ends at "\r\n".
+static const char *header(const char *head, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *line = strstr(head, "\r\n"); line; line = strstr(line, "\r\n")) {
+        line += 2;
+        if (strncasecmp(line, name, length) == 0 && line[length] == ':')
+            return line + length + 1 + strspn(line + length + 1, " ");
+    }
+    return NULL;
+}
+
+// A name that another site's page has pointed to this machine is not ours.
+static bool is_own_host(const watch_server *server, const char *head)
+{
+    const char *host = header(head, "Host"), *port = strchr(server->host, ':');
+    size_t length = host ? strcspn(host, "\r\n") : 0;
+    if (!host)
+        return false;
+    return (length == strlen(server->host) && strncmp(host, server->host, length) == 0) ||
+           (length == 9 + strlen(port) && strncmp(host, "localhost", 9) == 0 &&
+            strncmp(host + 9, port, length - 9) == 0);
+}
+
+static bool take_order(watch_server *server, watch_client *c, const char *what, char *body)
+{
+    const watch_orders *orders = &server->orders;
+    if (strcmp(what, "frame") == 0) {
+        char *end;
+        long long frame = strtoll(body, &end, 10);
+        if (end == body || *end || frame < 1 || frame > GLINTL_FRAMES_MAX)
+            return watch_client_say(c, "400 Bad Request");
+        orders->frame(orders->context, frame);
+    } else if (strcmp(what, "set") == 0) {
+        char *equals = strchr(body, '=');
+        if (!equals || equals == body || equals - body >= GLINT_NAME_SIZE)
+            return watch_client_say(c, "400 Bad Request");
+        *equals = '\0';
+        orders->set(orders->context, body, equals + 1);
+    } else if (strcmp(what, "reset") == 0) {
+        orders->reset(orders->context);
+    } else {
+        return watch_client_say(c, "404 Not Found");
+    }
+    return watch_client_say(c, "200 OK");
+}
+
+// The whole request is there. False: the client is let go.
+static bool answer(watch_server *server, watch_client *c, char *body)
+{
+    char *path = strchr(c->request, ' '), *end = path ? strpbrk(path + 1, " \r\n") : NULL;
+    if (!path || !end || *end != ' ')
+        return watch_client_say(c, "400 Bad Request");
+    if (!is_own_host(server, c->request))
+        return watch_client_say(c, "403 Forbidden");
+    *path++ = *end = '\0';
+    char *query = strchr(path, '?');
+    if (query)
+        *query = '\0';
+    if (path[0] != '/' || !same_token(path + 1, server->token) || path[TOKEN_SIZE] != '/')
+        return watch_client_say(c, "404 Not Found");
+    path += TOKEN_SIZE + 1;
+    if (strcmp(c->request, "POST") == 0)
+        return take_order(server, c, path, body);
+    if (strcmp(c->request, "GET") != 0)
+        return watch_client_say(c, "405 Method Not Allowed");
+    if (!*path)
+        return watch_client_reply(c, "200 OK", "text/html; charset=utf-8", POLICY, page, sizeof page);
+    if (strcmp(path, "events") == 0)
+        return begin_events(server, c);
+    if (strcmp(path, "picture") == 0)
+        return reply_picture(server, c);
+    return watch_client_say(c, "404 Not Found");
+}
+
+// Answers when all of the request has come. False: the client is let go.
+static bool take_request(watch_server *server, watch_client *c)
+{
+    c->request[c->got] = '\0';
+    char *head_end = strstr(c->request, "\r\n\r\n");
+    if (!head_end)
+        return c->got < WATCH_REQUEST_MAX && strlen(c->request) == c->got;
+    head_end[2] = '\0'; // headers are searched in the head alone
+    const char *length_text = header(c->request, "Content-Length");
+    unsigned long length = length_text ? strtoul(length_text, NULL, 10) : 0;
+    char *body = head_end + 4;
+    if (length > (unsigned long)(c->request + WATCH_REQUEST_MAX - body))
+        return watch_client_say(c, "413 Content Too Large");
+    if ((unsigned long)(c->request + c->got - body) < length) {
+        head_end[2] = '\r';
+        return true;
+    }
+    body[length] = '\0';
+    return answer(server, c, body);
+}
+
+// ---- Sockets; each returns false when the client is to be let go ----
+
+static bool read_client(watch_server *server, watch_client *c)
+{
+    char ignored[256];
+    bool answered = c->size > 0 || c->listens;
+    ssize_t got = answered ? recv(c->socket, ignored, sizeof ignored, 0)
+                           : recv(c->socket, c->request + c->got, WATCH_REQUEST_MAX - c->got, 0);
+    if (got <= 0)
+        return got < 0 && (errno == EAGAIN || errno == EINTR);
+    if (answered)
+        return true;
+    c->got += (size_t)got;
+    return take_request(server, c);
+}
+
+static void accept_client(watch_server *server)
+{
+    int socket = accept4(server->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    if (socket < 0)
+        return;
+    watch_client *c = server->count < CLIENTS_MAX ? watch_client_create(socket) : NULL;
+    if (c)
+        server->clients[server->count++] = c;
+    else
+        close(socket);
+}
+
+// Sends a new state to those who listen. False: the server ends.
+static bool take_state(watch_server *server)
+{
+    pthread_mutex_lock(&server->lock);
+    bool goes_on = !server->stops;
+    bool is_new = server->version != server->sent_version;
+    server->sent_version = server->version;
+    for (int i = server->count - 1; i >= 0 && is_new; i--) {
+        watch_client *c = server->clients[i];
+        if (c->listens && !watch_client_tell(c, server->state))
+            close_client(server, i);
+    }
+    pthread_mutex_unlock(&server->lock);
+    return goes_on;
+}
+
+static int fill_poll(const watch_server *server, struct pollfd *list)
+{
+    int timeout = -1;
+    double now = glintL_now_ms();
+    list[0] = (struct pollfd) { .fd = server->wake, .events = POLLIN };
+    list[1] = (struct pollfd) { .fd = server->listener, .events = POLLIN };
+    for (int i = 0; i < server->count; i++) {
+        const watch_client *c = server->clients[i];
+        const bool writes = watch_client_writes(c);
+        list[2 + i] = (struct pollfd) { .fd = c->socket, .events = (short)(POLLIN | (writes ? POLLOUT : 0)) };
+        int left = c->until_ms > 0 ? (int)(c->until_ms - now) + 1 : -1;
+        if (c->until_ms > 0 && (timeout < 0 || left < timeout))
+            timeout = left > 0 ? left : 0;
+    }
+    return timeout;
+}
+
+static void *serve(void *argument)
+{
+    watch_server *server = argument;
+    struct pollfd list[2 + CLIENTS_MAX];
+    uint64_t count;
+    while (take_state(server)) {
+        for (int i = server->count - 1; i >= 0; i--) { // what can be sent is sent at once
+            watch_client *c = server->clients[i];
+            if (!watch_client_send(c) || (c->until_ms > 0 && glintL_now_ms() > c->until_ms))
+                close_client(server, i);
+        }
+        int timeout = fill_poll(server, list), polled = server->count;
+        if (poll(list, (nfds_t)(2 + polled), timeout) < 0)
+            continue;
+        if (list[0].revents && read(server->wake, &count, sizeof count) < 0)
+            continue;
+        for (int i = polled - 1; i >= 0; i--)
+            if (list[2 + i].revents && !read_client(server, server->clients[i]))
+                close_client(server, i);
+        if (list[1].revents)
+            accept_client(server);
+    }
+    return NULL;
+}
+
+// ---- Opening and closing ----
+
+static bool open_listener(watch_server *server, int port, char *message)
+{
+    struct sockaddr_in address = { .sin_family = AF_INET, .sin_port = htons((uint16_t)port) };
+    socklen_t size = sizeof address;
+    int yes = 1;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    server->listener = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (server->listener >= 0)
+        setsockopt(server->listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    if (server->listener >= 0 && bind(server->listener, (void *)&address, sizeof address) == 0 &&
+        listen(server->listener, CLIENTS_MAX) == 0 && getsockname(server->listener, (void *)&address, &size) == 0) {
+        snprintf(server->host, sizeof server->host, "127.0.0.1:%d", ntohs(address.sin_port));
+        return true;
+    }
+    snprintf(message, GLINTL_MESSAGE_SIZE, "--http: port %d: %s%s", port, strerror(errno),
+             errno == EADDRINUSE ? "; --http without a number takes any free one" : "");
+    return false;
+}
+
+static bool make_token(watch_server *server)
+{
+    unsigned char random[(TOKEN_SIZE - 1) / 2];
+    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random)
+        return false;
+    for (size_t i = 0; i < sizeof random; i++)
+        snprintf(server->token + 2 * i, 3, "%02x", random[i]);
+    snprintf(server->url, sizeof server->url, "http://%s/%s/", server->host, server->token);
+    return true;
+}
+
+static void free_server(watch_server *server)
+{
+    while (server->count > 0)
+        close_client(server, server->count - 1);
+    if (server->listener >= 0)
+        close(server->listener);
+    if (server->wake >= 0)
+        close(server->wake);
+    free(server->state);
+    watch_picture_release(server->picture);
+    pthread_mutex_destroy(&server->lock);
+    free(server);
+}
+
+watch_server *watch_server_create(int port, const watch_orders *orders, char message[GLINTL_MESSAGE_SIZE])
+{
+    sigset_t all, before;
+    watch_server *server = calloc(1, sizeof *server);
+    snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+    if (!server)
+        return NULL;
+    server->listener = -1;
+    server->orders = *orders;
+    server->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    pthread_mutex_init(&server->lock, NULL);
+    if (!open_listener(server, port, message) || server->wake < 0 || !make_token(server)) {
+        free_server(server);
+        return NULL;
+    }
+    sigfillset(&all); // signals are for the script's thread
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    int failed = pthread_create(&server->thread, NULL, serve, server);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (!failed)
+        return server;
+    free_server(server);
+    return NULL;
+}
+
+static void wake_server(watch_server *server)
+{
+    uint64_t one = 1;
+    if (write(server->wake, &one, sizeof one) < 0)
+        return; // the counter is full: it is awake
+}
+
+void watch_server_destroy(watch_server *server)
+{
+    if (!server)
+        return;
+    pthread_mutex_lock(&server->lock);
+    server->stops = true;
+    pthread_mutex_unlock(&server->lock);
+    wake_server(server);
+    pthread_join(server->thread, NULL);
+    free_server(server);
+}
+
+const char *watch_server_url(const watch_server *server) { return server->url; }
+
+void watch_server_publish(watch_server *server, const char *state, watch_picture *picture)
+{
+    char *copy = strdup(state);
+    if (!copy)
+        return; // the page keeps what it has
+    pthread_mutex_lock(&server->lock);
+    free(server->state);
+    server->state = copy;
+    server->version++;
+    if (picture) {
+        watch_picture_release(server->picture);
+        server->picture = watch_picture_retain(picture);
+    }
+    pthread_mutex_unlock(&server->lock);
+    wake_server(server);
+}

@@ -1,0 +1,316 @@
+// Pictures in a terminal: the kitty graphics protocol, sixels, or half blocks of colour.
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "bindings/watch/watch.h"
+
+#define ANSWER_MS 150 // a terminal that has not answered by then never will
+#define SIXEL_SIDE 6 // levels of each primary
+
+// ---- What the terminal says ----
+
+// Asks whether it knows the kitty protocol, then what it is: every terminal answers the second.
+static size_t ask(int terminal, char *answer, size_t room)
+{
+    static const char question[] = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";
+    struct pollfd wait = { .fd = terminal, .events = POLLIN };
+    size_t size = 0;
+    if (write(terminal, question, sizeof question - 1) != (ssize_t)sizeof question - 1)
+        return 0;
+    while (size < room - 1 && poll(&wait, 1, ANSWER_MS) > 0) {
+        ssize_t got = read(terminal, answer + size, room - 1 - size);
+        if (got <= 0)
+            break;
+        size += (size_t)got;
+        const char *last = memchr(answer, '[', size);
+        if (last && memchr(last, 'c', size - (size_t)(last - answer)))
+            break;
+    }
+    return size;
+}
+
+// "\033[?62;4;6c": the features between '?' and 'c'; 4 is sixel graphics.
+static bool has_sixel(const char *answer)
+{
+    const char *at = strstr(answer, "\033[?");
+    for (at = at ? strchr(at, ';') : NULL; at; at = strchr(at + 1, ';'))
+        if (strtol(at + 1, NULL, 10) == 4)
+            return true;
+    return false;
+}
+
+static watch_graphics find_graphics(void)
+{
+    struct termios before, raw;
+    char answer[256] = "";
+    int terminal = open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
+    if (terminal < 0)
+        return WATCH_BLOCKS;
+    bool foreground = tcgetpgrp(terminal) == getpgrp(); // in the background nobody may ask
+    if (foreground && tcgetattr(terminal, &before) == 0) {
+        raw = before;
+        raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
+        tcsetattr(terminal, TCSANOW, &raw);
+        answer[ask(terminal, answer, sizeof answer)] = '\0';
+        tcsetattr(terminal, TCSAFLUSH, &before);
+    }
+    close(terminal);
+    return strstr(answer, "_Gi=31;OK") ? WATCH_KITTY : has_sixel(answer) ? WATCH_SIXEL : WATCH_BLOCKS;
+}
+
+// Terminals without colours, by what terminfo calls them: DEC's VT52 to VT525, all but VT525 and VT241; and "...-m".
+static bool has_colors(void)
+{
+    const char *term = getenv("TERM");
+    size_t length = term ? strlen(term) : 0;
+    if (length > 2 && strcmp(term + length - 2, "-m") == 0)
+        return false;
+    bool is_vt = length > 3 && strncmp(term, "vt", 2) == 0 && term[2] >= '0' && term[2] <= '9';
+    return !is_vt || strncmp(term, "vt525", 5) == 0 || strncmp(term, "vt241", 5) == 0;
+}
+
+void watch_terminal_open(watch_terminal *terminal, const char *name, bool color)
+{
+    static const char *const names[] = { "text", "blocks", "sixel", "kitty" };
+    const char *depth = getenv("COLORTERM");
+    *terminal = (watch_terminal) { .color = color, .is_fresh = true };
+    terminal->full_color = depth && (strcmp(depth, "truecolor") == 0 || strcmp(depth, "24bit") == 0);
+    for (int i = 0; i < 4 && name; i++)
+        if (strcmp(name, names[i]) == 0)
+            terminal->graphics = (watch_graphics)i;
+    if (!name && color)
+        terminal->graphics = find_graphics();
+    if (!name && terminal->graphics == WATCH_BLOCKS && !has_colors())
+        terminal->graphics = WATCH_TEXT;
+}
+
+void watch_terminal_close(watch_terminal *terminal)
+{
+    if (terminal->graphics != WATCH_TEXT && !terminal->is_fresh)
+        fputs("\033[0m\n", stderr);
+}
+
+// ---- Sizes ----
+
+typedef struct place { ///< for the picture
+    int columns, rows; ///< of characters
+    int width, height; ///< of pixels, where the terminal tells; else 0
+} place;
+
+static place find_place(void)
+{
+    struct winsize size = { 0 };
+    place p = { 80, 24, 0, 0 };
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0)
+        p = (place) { size.ws_col, size.ws_row, size.ws_xpixel, size.ws_ypixel };
+    p.height = p.height / p.rows * (p.rows > 3 ? p.rows - 2 : 1);
+    p.rows = p.rows > 3 ? p.rows - 2 : 1; // the line below
+    return p;
+}
+
+// The largest size of the picture's shape within the limits, and not above its own.
+static void fit(const glint_image *image, int max_width, int max_height, int *width, int *height)
+{
+    double w = glint_image_width(image), h = glint_image_height(image);
+    double scale = max_width / w < max_height / h ? max_width / w : max_height / h;
+    scale = scale < 1 ? scale : 1;
+    *width = w * scale >= 1 ? (int)(w * scale) : 1;
+    *height = h * scale >= 1 ? (int)(h * scale) : 1;
+}
+
+// ---- Half blocks: a character is two pixels, the upper in the letter's colour ----
+
+static int cube_color(const unsigned char *rgb)
+{
+    return 16 + 36 * ((rgb[0] * 5 + 127) / 255) + 6 * ((rgb[1] * 5 + 127) / 255) + (rgb[2] * 5 + 127) / 255;
+}
+
+static void put_color(const watch_terminal *terminal, int layer, const unsigned char *rgb)
+{
+    if (terminal->full_color)
+        fprintf(stderr, "\033[%d;2;%d;%d;%dm", layer, rgb[0], rgb[1], rgb[2]);
+    else
+        fprintf(stderr, "\033[%d;5;%dm", layer, cube_color(rgb));
+}
+
+static void draw_blocks(const watch_terminal *terminal, const glint_image *image)
+{
+    place p = find_place();
+    watch_small small;
+    int width, height;
+    fit(image, p.columns, 2 * p.rows, &width, &height);
+    height += height % 2;
+    if (!watch_small_create(image, width, height, &small))
+        return;
+    for (int y = 0; y < height; y += 2) {
+        const unsigned char *upper = small.rgb + (size_t)y * (size_t)width * 3, *lower = upper + (size_t)width * 3;
+        for (int x = 0; x < width; x++) {
+            put_color(terminal, 38, upper + 3 * x);
+            put_color(terminal, 48, lower + 3 * x);
+            fputs("\xe2\x96\x80", stderr); // U+2580, upper half block
+        }
+        fputs("\033[0m\033[K\n", stderr);
+    }
+    free(small.rgb);
+}
+
+// ---- Sixels: six rows at a time, for each colour the dots it has ----
+
+// Which of the cube's colours stands for a pixel: ordered dither, Bayer's 4 x 4 matrix.
+static int sixel_color(const unsigned char *rgb, int x, int y)
+{
+    static const int bayer[4][4] = { { 0, 8, 2, 10 }, { 12, 4, 14, 6 }, { 3, 11, 1, 9 }, { 15, 7, 13, 5 } };
+    int threshold = bayer[y % 4][x % 4] * 2 + 1, color = 0;
+    for (int c = 0; c < 3; c++)
+        color = color * SIXEL_SIDE + (rgb[c] * (SIXEL_SIDE - 1) * 32 / 255 + threshold) / 32;
+    return color;
+}
+
+static void put_run(int dots, int count)
+{
+    if (count > 3)
+        fprintf(stderr, "!%d%c", count, 63 + dots);
+    else
+        for (int i = 0; i < count; i++)
+            fputc(63 + dots, stderr);
+}
+
+// One colour's dots in a band of up to six rows.
+static void put_band(const unsigned char *colors, int width, int rows, int color)
+{
+    int before = 0, count = 0;
+    fprintf(stderr, "#%d", color);
+    for (int x = 0; x < width; x++) {
+        int dots = 0;
+        for (int y = 0; y < rows; y++)
+            dots |= (colors[(size_t)y * (size_t)width + (size_t)x] == color) << y;
+        if (dots != before)
+            put_run(before, count);
+        count = dots == before ? count + 1 : 1;
+        before = dots;
+    }
+    if (before)
+        put_run(before, count);
+    fputc('$', stderr);
+}
+
+static void put_sixels(const watch_small *small, unsigned char *colors)
+{
+    const int all = SIXEL_SIDE * SIXEL_SIDE * SIXEL_SIDE, level = 100 / (SIXEL_SIDE - 1);
+    fprintf(stderr, "\033Pq\"1;1;%d;%d", small->width, small->height);
+    for (int i = 0; i < all; i++)
+        fprintf(stderr, "#%d;2;%d;%d;%d", i, i / (SIXEL_SIDE * SIXEL_SIDE) * level, i / SIXEL_SIDE % SIXEL_SIDE * level,
+                i % SIXEL_SIDE * level);
+    for (int top = 0; top < small->height; top += 6) {
+        bool used[SIXEL_SIDE * SIXEL_SIDE * SIXEL_SIDE] = { false };
+        int rows = small->height - top < 6 ? small->height - top : 6;
+        for (int y = 0; y < rows; y++)
+            for (int x = 0; x < small->width; x++) {
+                size_t at = (size_t)y * (size_t)small->width + (size_t)x;
+                int color = sixel_color(small->rgb + ((size_t)top * (size_t)small->width + at) * 3, x, top + y);
+                colors[at] = (unsigned char)color;
+                used[color] = true;
+            }
+        for (int i = 0; i < all; i++)
+            if (used[i])
+                put_band(colors, small->width, rows, i);
+        fputc('-', stderr);
+    }
+    fputs("\033\\\n", stderr);
+}
+
+static void draw_sixels(const glint_image *image)
+{
+    place p = find_place();
+    watch_small small;
+    int width, height;
+    fit(image, p.width ? p.width : 640, p.height ? p.height : 360, &width, &height);
+    unsigned char *colors = malloc((size_t)width * 6);
+    if (colors && watch_small_create(image, width, height, &small)) {
+        put_sixels(&small, colors);
+        free(small.rgb);
+    }
+    free(colors);
+}
+
+// ---- The kitty graphics protocol: the PNG file itself, in base 64 ----
+
+static void put_base64(const unsigned char *bytes, size_t size)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        unsigned three = (unsigned)bytes[i] << 16 | (i + 1 < size ? (unsigned)bytes[i + 1] << 8 : 0) |
+                         (i + 2 < size ? bytes[i + 2] : 0);
+        fputc(digits[three >> 18], stderr);
+        fputc(digits[three >> 12 & 63], stderr);
+        fputc(i + 1 < size ? digits[three >> 6 & 63] : '=', stderr);
+        fputc(i + 2 < size ? digits[three & 63] : '=', stderr);
+    }
+}
+
+static void draw_kitty(const glint_image *image, const watch_picture *picture)
+{
+    const size_t chunk = 3072; // 4096 digits, the most the protocol takes at once
+    place p = find_place();
+    int cell_width = p.width > 0 ? p.width / p.columns : 8, cell_height = p.height > 0 ? p.height / p.rows : 16;
+    int width, height;
+    cell_width = cell_width > 0 ? cell_width : 8;
+    cell_height = cell_height > 0 ? cell_height : 16;
+    fit(image, p.columns * cell_width, p.rows * cell_height, &width, &height);
+    int columns = width / cell_width, rows = height / cell_height;
+    fputs("\033_Ga=d,d=A,q=2\033\\", stderr); // the picture before goes
+    for (size_t at = 0; at < picture->size; at += chunk) {
+        size_t left = picture->size - at, size = left < chunk ? left : chunk;
+        if (at == 0)
+            fprintf(stderr, "\033_Ga=T,f=100,q=2,c=%d,r=%d,m=%d;", columns > 0 ? columns : 1, rows > 0 ? rows : 1,
+                    left > size);
+        else
+            fprintf(stderr, "\033_Gm=%d;", left > size);
+        put_base64(picture->bytes + at, size);
+        fputs("\033\\", stderr);
+    }
+    fputc('\n', stderr);
+}
+
+// ---- Drawing ----
+
+static void begin(watch_terminal *terminal)
+{
+    fputs(terminal->is_fresh ? "\033[2J\033[H" : "\033[H", stderr);
+    terminal->is_fresh = false;
+}
+
+void watch_terminal_draw(watch_terminal *terminal, const glint_image *image, const watch_picture *picture,
+                         const char *line)
+{
+    static char buffer[1 << 16]; // a picture goes out in few writes
+    if (terminal->graphics != WATCH_TEXT) {
+        setvbuf(stderr, buffer, _IOFBF, sizeof buffer);
+        begin(terminal);
+        if (terminal->graphics == WATCH_KITTY)
+            draw_kitty(image, picture);
+        else if (terminal->graphics == WATCH_SIXEL)
+            draw_sixels(image);
+        else
+            draw_blocks(terminal, image);
+        fprintf(stderr, "\033[0m%s\033[J", line);
+        fflush(stderr);
+        setvbuf(stderr, NULL, _IONBF, 0);
+    } else {
+        fprintf(stderr, "%s\n", line);
+    }
+}
+
+void watch_terminal_error(watch_terminal *terminal, const char *message)
+{
+    if (terminal->graphics != WATCH_TEXT) // the error stands in the picture's place, from its top
+        begin(terminal);
+    fprintf(stderr, "%sglint: %serror:%s %s%s\n", terminal->graphics != WATCH_TEXT ? "\033[K" : "",
+            terminal->color ? "\033[1;31m" : "", terminal->color ? "\033[0m" : "", message,
+            terminal->graphics != WATCH_TEXT ? "\033[K" : "");
+}

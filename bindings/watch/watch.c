@@ -1,0 +1,458 @@
+// glint watch SCRIPT: renders at every save, in the terminal and on a page.
+//
+// A change is shown twice: as a preview, small and with one sample a pixel, and then in full. The two have a renderer
+// each, kept from run to run, so that what a change leaves alone is not computed again.
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "bindings/command/cli.h"
+#include "bindings/watch/watch.h"
+
+#define PREVIEW_SIDE 640
+#define STEPS_BETWEEN_LOOKS 10000 // of the script
+
+static const char watch_track_lua[] = {
+#include "bindings/watch/track.lua.h"
+};
+
+typedef enum quality { PREVIEW, FULL } quality;
+
+typedef struct watcher {
+    cli_options *options;
+    cli_output *output;
+    glintL_run *run;
+    cli_script script;
+    watch_asks asks;
+    watch_files *files;
+    watch_server *server; // NULL: no page
+    watch_terminal terminal;
+    glint_renderer *renderers[2]; // by quality; the one at work is the run's
+    glintL_set *given; // of the command line
+    size_t given_count;
+    quality now;
+    bool shown; // this run has shown a picture
+    bool has_begun; // what is shown now was asked for later than at the start
+    bool differs; // the picture in full is another than the preview
+    double since_ms; // when what is shown now was asked for; 0: at the start
+    int64_t pictures, frame, frames; // pictures: shown so far
+    int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
+    int width, height;
+    double ms;
+    bool is_preview;
+    char *params; // JSON of the last good run; owned
+    char error[GLINTL_MESSAGE_SIZE]; // "": the last run was good
+    char warnings[GLINTL_MESSAGE_SIZE]; // of the last run, a line each
+} watcher;
+
+// ---- What is told ----
+
+// The state as the page gets it.
+static char *make_state(const watcher *w)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fputs("{\"script\":", out);
+    glintL_json_string(out, w->run->script);
+    fprintf(out,
+            ",\"frame\":%" PRId64 ",\"frames\":%" PRId64 ",\"picture\":%" PRId64
+            ",\"width\":%d,\"height\":%d,\"preview\":%s,\"ms\":%.3f,\"params\":%s",
+            w->frame, w->frames, w->pictures, w->width, w->height, w->is_preview ? "true" : "false", w->ms,
+            w->params ? w->params : "[]");
+    if (*w->error) {
+        fputs(",\"error\":", out);
+        glintL_json_string(out, w->error);
+    }
+    if (*w->warnings) {
+        fputs(",\"warnings\":", out);
+        glintL_json_string(out, w->warnings);
+    }
+    fputc('}', out);
+    return fclose(out) == 0 ? text : NULL;
+}
+
+static void publish(watcher *w, watch_picture *picture)
+{
+    char *state = w->server ? make_state(w) : NULL;
+    if (state)
+        watch_server_publish(w->server, state, picture);
+    free(state);
+}
+
+static void print_picture_event(watcher *w)
+{
+    FILE *out = w->output->data;
+    fprintf(out, "{\"event\":\"picture\",\"index\":%" PRId64 ",\"width\":%d,\"height\":%d,\"preview\":%s,\"ms\":%.3f}",
+            w->frame, w->width, w->height, w->is_preview ? "true" : "false", w->ms);
+    cli_end_line(w->output);
+}
+
+static void tell_change(watcher *w, const char *path)
+{
+    if (!*path || !w->output->json)
+        return;
+    fputs("{\"event\":\"change\",\"file\":", w->output->data);
+    glintL_json_string(w->output->data, path);
+    fputc('}', w->output->data);
+    cli_end_line(w->output);
+}
+
+static void tell_error(watcher *w, const char *message)
+{
+    snprintf(w->error, sizeof w->error, "%s", message);
+    publish(w, NULL);
+    watch_terminal_error(&w->terminal, message);
+    if (!w->output->json)
+        return;
+    fputs("{\"event\":\"error\",\"message\":", w->output->data);
+    glintL_json_string(w->output->data, message);
+    fputc('}', w->output->data);
+    cli_end_line(w->output);
+}
+
+// ---- The run's reporter ----
+
+static void show(void *context, const glintL_run *run, const glintL_work *work)
+{
+    watcher *w = context;
+    glint_error error;
+    char line[GLINTL_MESSAGE_SIZE + 512];
+    (void)run;
+    watch_picture *picture = watch_picture_create(work->image, &work->render, &error);
+    if (!picture) {
+        glintL_run_fail(w->run, GLINTL_EXIT_FAILED, work->index, "%s", error.message);
+        return;
+    }
+    w->shown = true;
+    w->is_preview = w->now == PREVIEW && w->run->was_shrunk;
+    w->frame = work->index;
+    w->frames = w->frames > work->index ? w->frames : work->index;
+    w->width = glint_image_width(work->image);
+    w->height = glint_image_height(work->image);
+    w->ms = glintL_now_ms() - w->since_ms;
+    w->pictures++;
+    w->error[0] = '\0';
+    publish(w, picture);
+    if (w->output->json)
+        print_picture_event(w);
+    char of[32] = ""; // a loop counts its calls while it runs
+    if (w->calls == 0 && w->frames > 0 && w->script.has_jobs)
+        snprintf(of, sizeof of, " of %" PRId64, w->frames);
+    snprintf(line, sizeof line, "%.255s, frame %" PRId64 "%s: %d x %d%s, %.0f ms after the %s%s%s", w->run->script,
+             w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", w->ms,
+             w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
+    if (!w->output->quiet && !(w->is_preview && w->terminal.graphics == WATCH_TEXT))
+        watch_terminal_draw(&w->terminal, work->image, picture, line);
+    watch_picture_release(picture);
+}
+
+static void around_render(void *context, const glintL_run *run, bool begins)
+{
+    watcher *w = context;
+    if (begins) {
+        watch_asks_begin_render(&w->asks, run->renderer, w->now == PREVIEW);
+    } else if (watch_asks_end_render(&w->asks)) { // a cancelled renderer is of no use any more
+        glint_renderer_destroy(w->run->renderer);
+        w->run->renderer = NULL;
+    }
+}
+
+// Shown below the picture. The run in full says nothing that its preview has not said.
+static void warn(void *context, const char *message)
+{
+    watcher *w = context;
+    size_t used = strlen(w->warnings);
+    if (w->now == FULL)
+        return;
+    snprintf(w->warnings + used, sizeof w->warnings - used, "%swarning: %s", used ? "\n" : "", message);
+    cli_warning_event(w->output, message);
+}
+
+static void note_mesh(void *context, const char *path)
+{
+    watcher *w = context;
+    watch_files_add(w->files, path, false);
+}
+
+static int note_file(lua_State *L)
+{
+    watcher *w = lua_touserdata(L, lua_upvalueindex(1));
+    watch_files_add(w->files, luaL_checkstring(L, 1), lua_toboolean(L, 2));
+    return 0;
+}
+
+static int skip_file(lua_State *L)
+{
+    watcher *w = lua_touserdata(L, lua_upvalueindex(1));
+    watch_files_skip(w->files, luaL_checkstring(L, 1));
+    return 0;
+}
+
+static watcher *current; // for the hook, which gets no more than the state
+
+// A script that was changed meanwhile ends, even one that would never end by itself.
+static void look(lua_State *L, lua_Debug *where)
+{
+    (void)where;
+    if (atomic_load(&current->asks.supersedes))
+        luaL_error(L, "changed meanwhile");
+}
+
+static void prepare(void *context, lua_State *L)
+{
+    watcher *w = context;
+    if (luaL_loadbufferx(L, watch_track_lua, sizeof watch_track_lua, "=watch", "t") != LUA_OK)
+        lua_error(L);
+    lua_pushlightuserdata(L, w);
+    lua_pushcclosure(L, note_file, 1);
+    lua_pushlightuserdata(L, w);
+    lua_pushcclosure(L, skip_file, 1);
+    lua_call(L, 2, 0);
+    lua_sethook(L, look, LUA_MASKCOUNT, STEPS_BETWEEN_LOOKS);
+}
+
+// ---- One run ----
+
+// Shows `frame`, if the script has it; w->shown tells.
+static void select_frame(watcher *w, int64_t frame)
+{
+    glintL_selection_clear(&w->run->asked.selection);
+    if (!glintL_selection_add(&w->run->asked.selection, (glintL_range) { frame, frame, 1 }))
+        glintL_run_fail(w->run, GLINTL_EXIT_FAILED, 0, "out of memory");
+}
+
+// The renderer of a quality goes to the run, and the other's comes back.
+static void take_renderer(watcher *w, quality now)
+{
+    glintL_run *run = w->run;
+    if (now == w->now)
+        return;
+    w->renderers[w->now] = run->renderer;
+    run->renderer = w->renderers[now];
+    run->renderer_threads = run->asked.threads;
+    w->renderers[now] = NULL;
+    w->now = now;
+}
+
+static int params_protected(lua_State *L)
+{
+    cli_print_params(L, lua_touserdata(L, 1));
+    return 0;
+}
+
+static void keep_params(watcher *w)
+{
+    char *text = NULL;
+    size_t size = 0;
+    lua_State *L = w->script.state;
+    FILE *out = open_memstream(&text, &size);
+    if (!out || !L)
+        return;
+    lua_pushcfunction(L, params_protected);
+    lua_pushlightuserdata(L, out);
+    bool good = lua_pcall(L, 1, 0, 0) == LUA_OK;
+    if (fclose(out) == 0 && good) {
+        free(w->params);
+        w->params = text;
+    } else {
+        free(text);
+    }
+}
+
+static void free_run_sets(watcher *w)
+{
+    watch_free_sets(w->run->asked.sets, w->run->asked.set_count);
+    w->run->asked.sets = NULL;
+    w->run->asked.set_count = 0;
+}
+
+static void begin_run(watcher *w, quality now)
+{
+    glintL_run *run = w->run;
+    take_renderer(w, now);
+    glintL_run_reset(run);
+    run->mode = GLINTL_MODE_WATCH;
+    run->preview_side = now == PREVIEW ? PREVIEW_SIDE : 0;
+    w->shown = false;
+    if (now == PREVIEW)
+        w->warnings[0] = '\0';
+}
+
+// Runs the script from its beginning; its calls of scene:render render on the way.
+static bool run_script(watcher *w, quality now)
+{
+    glintL_run *run = w->run;
+    cli_close_script(&w->script);
+    free_run_sets(w);
+    begin_run(w, now);
+    select_frame(w, watch_asks_frame(&w->asks, 0));
+    if (!watch_asks_sets(&w->asks, w->given, w->given_count, &run->asked.sets, &run->asked.set_count))
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
+    watch_files_begin(w->files);
+    watch_files_add(w->files, w->options->script, false);
+    if (access(w->options->script, F_OK) != 0 && errno == ENOENT)
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%s is not there; it is rendered when it comes back",
+                               w->options->script);
+    return cli_run_script(&w->script, w->options, run);
+}
+
+// The script's jobs, as it left them.
+static bool run_jobs(watcher *w)
+{
+    w->frames = w->calls + w->script.frames;
+    w->run->count = w->calls;
+    select_frame(w, watch_asks_frame(&w->asks, w->frames));
+    return cli_run_jobs(&w->script, w->run);
+}
+
+// A loop of calls counts itself while it runs. When it is shorter than the frame asked for, its last is shown.
+static bool run_calls(watcher *w, quality now)
+{
+    w->frames = w->run->count;
+    if (w->shown || w->frames == 0)
+        return true;
+    watch_asks_frame(&w->asks, w->frames);
+    return run_script(w, now);
+}
+
+// Shows the wanted frame in one quality. False: an error, or something newer was asked for.
+static bool render(watcher *w, quality now, bool run_again)
+{
+    bool good = true, has_jobs = w->script.state && w->script.has_jobs;
+    if (run_again || !has_jobs || w->calls > 0) {
+        good = run_script(w, now);
+        has_jobs = good && w->script.has_jobs;
+        w->calls = w->run->count;
+        if (good || w->script.state)
+            keep_params(w);
+    } else {
+        begin_run(w, now);
+    }
+    w->differs = w->differs || w->run->was_shrunk;
+    if (good)
+        good = has_jobs ? run_jobs(w) : run_calls(w, now);
+    if (run_again)
+        watch_files_end(w->files, good);
+    w->differs = w->differs || w->run->was_shrunk;
+    return glintL_run_collect(w->run, true) && good;
+}
+
+static void answer(watcher *w, bool run_again)
+{
+    w->differs = false;
+    bool good = render(w, PREVIEW, run_again);
+    if (good && w->differs && !watch_asks_waiting(&w->asks) && !w->run->interrupted)
+        good = render(w, FULL, false);
+    if (good && *w->error) { // good again, with nothing new to show
+        w->error[0] = '\0';
+        publish(w, NULL);
+    }
+    if (!good && !watch_asks_waiting(&w->asks) && !w->run->interrupted)
+        tell_error(w, w->run->message);
+}
+
+// ---- The command ----
+
+static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
+{
+    glintL_run *run = w->run;
+    if (!watch_asks_open(&w->asks, message))
+        return false;
+    w->files = watch_files_create(watch_asks_change, &w->asks, message);
+    if (!w->files)
+        return false;
+    if (w->options->http_port >= 0) {
+        watch_orders orders = watch_asks_orders(&w->asks);
+        w->server = watch_server_create(w->options->http_port, &orders, message);
+        if (!w->server)
+            return false;
+    }
+    watch_terminal_open(&w->terminal, w->options->terminal, w->output->color && !w->output->quiet);
+    w->given = run->asked.sets; // the run's are made anew for each run
+    w->given_count = run->asked.set_count;
+    run->asked.sets = NULL;
+    run->asked.set_count = 0;
+    run->asked.force = true;
+    run->asked.render_text[glintL_render_find("output")] = "none";
+    run->keeps_images = true;
+    run->reporter = (glintL_reporter) {
+        .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh
+    };
+    w->asks.wanted = w->options->frame;
+    return true;
+}
+
+static void close_watcher(watcher *w)
+{
+    cli_close_script(&w->script);
+    free_run_sets(w);
+    watch_files_destroy(w->files);
+    watch_server_destroy(w->server);
+    watch_asks_close(&w->asks);
+    watch_terminal_close(&w->terminal);
+    glint_renderer_destroy(w->renderers[PREVIEW]);
+    glint_renderer_destroy(w->renderers[FULL]);
+    free(w->given);
+    free(w->params);
+}
+
+// Where the page is, and that watching has begun.
+static void tell_start(watcher *w)
+{
+    if (w->server)
+        fprintf(stderr, "glint: watching at %s\n", watch_server_url(w->server));
+    if (!w->output->json)
+        return;
+    fputs("{\"event\":\"watch\",\"script\":", w->output->data);
+    glintL_json_string(w->output->data, w->run->script);
+    if (w->server) {
+        fputs(",\"url\":", w->output->data);
+        glintL_json_string(w->output->data, watch_server_url(w->server));
+    }
+    fputc('}', w->output->data);
+    cli_end_line(w->output);
+}
+
+static bool take_ask(watcher *w, watch_ask *ask)
+{
+    bool good = watch_asks_take(&w->asks, w->run, ask);
+    w->since_ms = good ? ask->since_ms : 0;
+    return good;
+}
+
+int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
+{
+    watcher w = { .options = options, .output = output, .run = run };
+    char message[GLINTL_MESSAGE_SIZE];
+    watch_ask ask = { .run_again = true };
+    struct stat info;
+    const bool is_folder = stat(options->script, &info) == 0 && S_ISDIR(info.st_mode);
+    if (is_folder || access(options->script, R_OK) != 0) {
+        snprintf(message, sizeof message, "%.900s: %s", options->script, strerror(is_folder ? EISDIR : errno));
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
+        return GLINTL_EXIT_USAGE;
+    }
+    bool good = open_watcher(&w, message);
+    if (good) {
+        current = &w;
+        w.since_ms = glintL_now_ms();
+        tell_start(&w);
+        do {
+            tell_change(&w, ask.changed);
+            answer(&w, ask.run_again);
+            w.has_begun = true;
+        } while (!output->data_failed && !run->interrupted && take_ask(&w, &ask));
+    }
+    close_watcher(&w);
+    if (!good)
+        cli_report_error(output, 0, GLINTL_EXIT_USAGE, message);
+    return good && !output->data_failed ? GLINTL_EXIT_DONE
+           : output->data_failed        ? GLINTL_EXIT_FAILED
+                                        : GLINTL_EXIT_USAGE;
+}

@@ -1,0 +1,319 @@
+#include "engine/file/bands.h"
+
+#include "engine/base/pool.h"
+#include "engine/base/status.h"
+#include "engine/file/deflate.h"
+#include "engine/film/tone.h"
+#include "engine/stages/stages.h"
+
+#include <stdatomic.h>
+
+#define BAND_BYTES ((size_t)1 << 17) // of filtered rows, at least; fixed, so that no setting changes the file
+#define KEPT_WORK_BYTES ((size_t)1 << 24) // a worker with more memory than that gives it back
+#define FILTER_SUB 1
+#define VECTOR 16
+
+typedef uint8_t vector8 __attribute__((vector_size(VECTOR)));
+typedef uint16_t vector16 __attribute__((vector_size(VECTOR)));
+
+/// What has to agree for stamps to be compared, and for bands to take each other's place.
+typedef struct layout {
+    int width, height;
+    bool alpha;
+    glint_tone_desc tone;
+    glint_encode encode;
+    size_t row_bytes; ///< without the filter's byte
+    size_t band_rows; ///< of every band but the last
+    size_t band_count, stamp_count;
+} layout;
+
+typedef struct band {
+    uint8_t *deflated; ///< owned
+    size_t size;
+    uint32_t adler;
+} band;
+
+/// A picture's bands. {0} has none.
+typedef struct picture {
+    layout layout;
+    band *band;
+    uint64_t *stamp; ///< of the rows of tiles in `band`; 0: not there, or not known
+    size_t *todo; ///< the bands to be made
+} picture;
+
+/// One thread's memory for one band.
+typedef struct worker {
+    glint_bytes rows, swapped, raw, deflated; ///< used up to their capacity
+} worker;
+
+struct glint_bands {
+    int threads;
+    glint_pool *pool; ///< NULL: one thread, the caller's
+    picture last;
+    worker worker[];
+};
+
+// ---- Rows ---------------------------------------------------------------------------------------------------------
+
+/// Filter SUB: each byte less the one `step` bytes before it.
+static void filter_sub(const uint8_t *row, size_t bytes, size_t step, uint8_t *out)
+{
+    *out++ = FILTER_SUB;
+    memcpy(out, row, step);
+    size_t i = step;
+    for (; i + VECTOR <= bytes; i += VECTOR) {
+        vector8 here, before;
+        memcpy(&here, row + i, VECTOR);
+        memcpy(&before, row + i - step, VECTOR);
+        here -= before;
+        memcpy(out + i, &here, VECTOR);
+    }
+    for (; i < bytes; i++)
+        out[i] = (uint8_t)(row[i] - row[i - step]);
+}
+
+/// Native 16-bit codes to the file's order, high byte first.
+static void swap_to_file(const uint16_t *codes, size_t count, uint8_t *out)
+{
+    size_t i = 0;
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    for (; i + VECTOR / 2 <= count; i += VECTOR / 2) {
+        vector16 v;
+        memcpy(&v, codes + i, VECTOR);
+        v = v << 8 | v >> 8;
+        memcpy(out + 2 * i, &v, VECTOR);
+    }
+#endif
+    for (; i < count; i++) {
+        uint16_t code = codes[i];
+        out[2 * i] = (uint8_t)(code >> 8);
+        out[2 * i + 1] = (uint8_t)code;
+    }
+}
+
+static void filter_rows(const glint_png_source *source, size_t row_bytes, size_t first, size_t count, worker *memory)
+{
+    const bool wide = source->tone.bits == 16;
+    uint8_t *out = memory->raw.data;
+    for (size_t y = first; y < first + count; y++, out += row_bytes + 1) {
+        const void *codes = source->row(source->user, (int)y, memory->rows.data);
+        if (wide)
+            swap_to_file(codes, row_bytes / 2, memory->swapped.data);
+        filter_sub(wide ? memory->swapped.data : codes, row_bytes, glint_png_pixel_bytes(source), out);
+    }
+}
+
+// ---- One band -----------------------------------------------------------------------------------------------------
+
+typedef struct task {
+    const glint_png_source *source;
+    picture *picture;
+    worker *worker;
+    atomic_bool failed;
+} task;
+
+static bool make_room(worker *memory, const layout *l, size_t rows)
+{
+    return glint_bytes_reserve(&memory->rows, l->row_bytes) &&
+           (l->tone.bits == 8 || glint_bytes_reserve(&memory->swapped, l->row_bytes)) &&
+           glint_bytes_reserve(&memory->raw, (l->row_bytes + 1) * rows);
+}
+
+/// Puts a copy of the bytes in the band, in memory of just their size.
+static bool keep(band *b, const glint_bytes *deflated)
+{
+    if (b->size != deflated->size) {
+        free(b->deflated);
+        b->size = 0;
+        b->deflated = malloc(deflated->size);
+        if (!b->deflated)
+            return false;
+    }
+    b->size = deflated->size;
+    memcpy(b->deflated, deflated->data, deflated->size);
+    return true;
+}
+
+static bool make_band(task *t, size_t index, worker *memory)
+{
+    const layout *l = &t->picture->layout;
+    band *b = &t->picture->band[index];
+    const size_t first = index * l->band_rows, left = (size_t)l->height - first;
+    const size_t rows = left < l->band_rows ? left : l->band_rows;
+    if (!make_room(memory, l, rows))
+        return false;
+    filter_rows(t->source, l->row_bytes, first, rows, memory);
+    memory->deflated.size = 0;
+    return glint_deflate_band(l->encode, memory->raw.data, (l->row_bytes + 1) * rows, index + 1 == l->band_count,
+                              &memory->deflated, &b->adler, NULL) == GLINT_OK &&
+           keep(b, &memory->deflated);
+}
+
+static void make_item(void *context, size_t index, int number)
+{
+    task *t = context;
+    if (!atomic_load(&t->failed) && !make_band(t, t->picture->todo[index], &t->worker[number]))
+        atomic_store(&t->failed, true);
+}
+
+static void free_worker(worker *memory)
+{
+    free(memory->rows.data);
+    free(memory->swapped.data);
+    free(memory->raw.data);
+    free(memory->deflated.data);
+    *memory = (worker) { 0 };
+}
+
+// ---- A picture ----------------------------------------------------------------------------------------------------
+
+static layout layout_of(const glint_png_source *source, glint_encode encode)
+{
+    layout l = { .width = source->width, .height = source->height, .tone = source->tone, .encode = encode };
+    const size_t height = (size_t)l.height;
+    l.alpha = source->alpha;
+    l.row_bytes = (size_t)l.width * glint_png_pixel_bytes(source);
+    const size_t tile_row = (l.row_bytes + 1) * GLINT_TILE_HEIGHT; // at most 2^24
+    l.band_rows = (BAND_BYTES + tile_row - 1) / tile_row * GLINT_TILE_HEIGHT;
+    if (l.band_rows > height || !glint_deflate_has_bands(encode))
+        l.band_rows = height;
+    l.band_count = (height + l.band_rows - 1) / l.band_rows;
+    l.stamp_count = (height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+    return l;
+}
+
+static bool same_layout(const layout *a, const layout *b)
+{
+    return a->width == b->width && a->height == b->height && a->alpha == b->alpha &&
+           glint_tone_same(&a->tone, &b->tone) && a->encode == b->encode;
+}
+
+static void free_picture(picture *p)
+{
+    for (size_t i = 0; p->band && i < p->layout.band_count; i++)
+        free(p->band[i].deflated);
+    free(p->band);
+    free(p->stamp);
+    free(p->todo);
+    *p = (picture) { 0 };
+}
+
+/// Makes `p` a picture of this layout, with the bands it has if it is one already.
+static bool lay_out(picture *p, const layout *l)
+{
+    if (p->band && same_layout(&p->layout, l))
+        return true;
+    free_picture(p);
+    p->layout = *l;
+    p->band = calloc(l->band_count, sizeof *p->band);
+    p->stamp = calloc(l->stamp_count, sizeof *p->stamp);
+    p->todo = calloc(l->band_count, sizeof *p->todo);
+    if (p->band && p->stamp && p->todo)
+        return true;
+    free_picture(p);
+    return false;
+}
+
+/// Lists the bands that the picture lacks, and marks them as missing until they are made.
+static size_t list_missing(picture *p, const uint64_t *stamp)
+{
+    size_t count = 0;
+    const size_t step = (p->layout.band_rows + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+    for (size_t i = 0; i < p->layout.band_count; i++) {
+        const size_t first = i * step, end = first + step;
+        bool missing = !stamp;
+        for (size_t s = first; s < end && s < p->layout.stamp_count && !missing; s++)
+            missing = stamp[s] == 0 || stamp[s] != p->stamp[s];
+        if (!missing)
+            continue;
+        p->todo[count++] = i;
+        for (size_t s = first; s < end && s < p->layout.stamp_count; s++)
+            p->stamp[s] = 0;
+    }
+    return count;
+}
+
+static bool append_stream(const picture *p, glint_bytes *stream)
+{
+    const layout *l = &p->layout;
+    uint32_t sum = 1;
+    bool done = glint_deflate_begin(stream);
+    for (size_t i = 0; i < l->band_count && done; i++) {
+        const size_t left = (size_t)l->height - i * l->band_rows;
+        const size_t rows = left < l->band_rows ? left : l->band_rows;
+        sum = glint_deflate_join(sum, p->band[i].adler, (l->row_bytes + 1) * rows);
+        done = glint_bytes_append(stream, p->band[i].deflated, p->band[i].size);
+    }
+    return done && glint_deflate_end(stream, sum);
+}
+
+static bool deflate_picture(glint_bands *bands, picture *p, const glint_png_source *source, glint_bytes *stream,
+                            double *reused)
+{
+    const size_t count = list_missing(p, source->stamp);
+    task t = { .source = source, .picture = p, .worker = bands->worker };
+    if (bands->pool && count > 1)
+        glint_pool_run(bands->pool, count, make_item, &t);
+    else
+        for (size_t i = 0; i < count; i++)
+            make_item(&t, i, 0);
+    for (int i = 0; i < bands->threads; i++)
+        if (bands->worker[i].raw.capacity > KEPT_WORK_BYTES)
+            free_worker(&bands->worker[i]);
+    if (atomic_load(&t.failed))
+        return false;
+    if (source->stamp)
+        memcpy(p->stamp, source->stamp, p->layout.stamp_count * sizeof *p->stamp);
+    if (reused)
+        *reused = 1 - (double)count / (double)p->layout.band_count;
+    return append_stream(p, stream);
+}
+
+// ---- The interface ------------------------------------------------------------------------------------------------
+
+glint_status glint_bands_create(int threads, glint_bands **out, glint_error *error)
+{
+    glint_status status = glint_check_whole("threads", threads, 1, 1024, error);
+    if (status)
+        return status;
+    glint_bands *bands = calloc(1, sizeof *bands + (size_t)threads * sizeof *bands->worker);
+    if (!bands)
+        return glint_fail_nomem(error);
+    bands->threads = threads;
+    if (threads > 1)
+        status = glint_pool_create(threads, &bands->pool, error);
+    if (status) {
+        free(bands);
+        return status;
+    }
+    *out = bands;
+    return GLINT_OK;
+}
+
+void glint_bands_destroy(glint_bands *bands)
+{
+    if (!bands)
+        return;
+    glint_pool_destroy(bands->pool);
+    for (int i = 0; i < bands->threads; i++)
+        free_worker(&bands->worker[i]);
+    free_picture(&bands->last);
+    free(bands);
+}
+
+glint_status glint_bands_deflate(glint_bands *bands, const glint_png_source *source, glint_encode encode,
+                                 glint_bytes *stream, double *reused, glint_error *error)
+{
+    glint_bands *own = NULL;
+    picture passing = { 0 }; // what has no stamps is not worth keeping, nor losing what is kept
+    glint_status status = bands ? GLINT_OK : glint_bands_create(1, &own, error);
+    if (status)
+        return status;
+    picture *p = bands && source->stamp ? &bands->last : &passing;
+    const layout l = layout_of(source, encode);
+    if (!lay_out(p, &l) || !deflate_picture(bands ? bands : own, p, source, stream, reused))
+        status = glint_fail_nomem(error);
+    free_picture(&passing);
+    glint_bands_destroy(own);
+    return status;
+}

@@ -1,0 +1,193 @@
+#include "engine/file/deflate.h"
+
+#include "engine/base/status.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <zlib.h>
+#ifdef GLINT_HAVE_ISAL
+#include <isa-l.h>
+#endif
+#ifdef GLINT_HAVE_LIBDEFLATE
+#include <libdeflate.h>
+#endif
+
+#define BAND_SIZE_MAX ((size_t)1 << 31)
+#define SMALL_LEVEL_LIBDEFLATE 6
+#define FAST_LEVEL_ZLIB 1
+#define SMALL_LEVEL_ZLIB 6
+
+/// Room that any of the encoders finds enough; a function of the size alone, since some look at how much there is.
+static size_t room_for(size_t size) { return size + size / 8 + 4096; }
+
+// ---- zlib ---------------------------------------------------------------------------------------------------------
+
+#if !defined GLINT_HAVE_ISAL || !defined GLINT_HAVE_LIBDEFLATE
+static char zlib_name[32];
+
+static void make_zlib_name(void) { snprintf(zlib_name, sizeof zlib_name, "zlib %s", zlibVersion()); }
+
+static const char *name_of_zlib(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_zlib_name);
+    return zlib_name;
+}
+
+static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    z_stream stream = { 0 };
+    if (deflateInit2(&stream, level, Z_DEFLATED, -15, 9, level < 4 ? Z_RLE : Z_FILTERED) != Z_OK)
+        return 0;
+    stream.next_in = (Bytef *)(uintptr_t)data; // not written: zlib's interface lacks the const
+    stream.avail_in = (uInt)size;
+    stream.next_out = out;
+    stream.avail_out = (uInt)(room < UINT32_MAX ? room : UINT32_MAX);
+    int result = deflate(&stream, last ? Z_FINISH : Z_FULL_FLUSH);
+    bool whole = last ? result == Z_STREAM_END : result == Z_OK && stream.avail_in == 0 && stream.avail_out > 0;
+    size_t written = whole ? (size_t)(stream.next_out - out) : 0;
+    deflateEnd(&stream);
+    return written;
+}
+#endif
+
+// ---- fast ---------------------------------------------------------------------------------------------------------
+
+#ifdef GLINT_HAVE_ISAL
+#define TEXT_OF(x) #x
+#define TEXT(x) TEXT_OF(x)
+#define NAME_OF_FAST "isal " TEXT(ISAL_MAJOR_VERSION) "." TEXT(ISAL_MINOR_VERSION) "." TEXT(ISAL_PATCH_VERSION)
+
+#define PLACES 32 // to choose from
+#define PLACE_STEP ((size_t)1 << 16)
+
+/// CRC-32C of four bytes from 0, as the crc32 instruction has it.
+static uint32_t crc32c(uint32_t bytes)
+{
+    for (int i = 0; i < 32; i++)
+        bytes = bytes >> 1 ^ (bytes & 1 ? 0x82f63b78 : 0);
+    return bytes;
+}
+
+/// Level 1 files the third position of its input under a hash of its own stream's address instead of one of the bytes
+/// there (ISA-L 2.30, icf body without history). That shows where one of the first three positions has the same hash, by at
+/// least three bits of it: the bytes written would depend on where the stream lies.
+static bool shows_place(uintptr_t place, const uint8_t *data, size_t size)
+{
+    uint32_t bytes;
+    for (size_t i = 0; i < 3 && i + sizeof bytes <= size; i++) {
+        memcpy(&bytes, data + i, sizeof bytes);
+        if (((crc32c(bytes) ^ crc32c((uint32_t)(place >> 16))) & 7) == 0)
+            return true;
+    }
+    return false;
+}
+
+static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    uint8_t *memory = malloc(sizeof(struct isal_zstream) + ISAL_DEF_LVL1_DEFAULT + (PLACES - 1) * PLACE_STEP);
+    if (!memory)
+        return 0;
+    struct isal_zstream *stream = (struct isal_zstream *)memory;
+    for (size_t i = 1; i < PLACES && shows_place((uintptr_t)stream, data, size); i++)
+        stream = (struct isal_zstream *)(memory + i * PLACE_STEP);
+    isal_deflate_stateless_init(stream);
+    stream->hist_bits = 0; // the whole window: init leaves what was in memory
+    stream->level = 1;
+    stream->level_buf = (uint8_t *)(stream + 1);
+    stream->level_buf_size = ISAL_DEF_LVL1_DEFAULT;
+    stream->gzip_flag = IGZIP_DEFLATE;
+    stream->flush = last ? NO_FLUSH : FULL_FLUSH;
+    stream->end_of_stream = last;
+    stream->next_in = (uint8_t *)(uintptr_t)data; // not written: the interface lacks the const
+    stream->avail_in = (uint32_t)size;
+    stream->next_out = out;
+    stream->avail_out = (uint32_t)(room < UINT32_MAX ? room : UINT32_MAX);
+    size_t written = isal_deflate_stateless(stream) == COMP_OK ? stream->total_out : 0;
+    free(memory);
+    return written;
+}
+#else
+#define NAME_OF_FAST name_of_zlib()
+
+static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    return band_by_zlib(FAST_LEVEL_ZLIB, data, size, last, out, room);
+}
+#endif
+
+// ---- small --------------------------------------------------------------------------------------------------------
+
+#ifdef GLINT_HAVE_LIBDEFLATE
+#define NAME_OF_SMALL "libdeflate " LIBDEFLATE_VERSION_STRING
+#define SMALL_HAS_BANDS false
+
+static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    struct libdeflate_compressor *compressor = last ? libdeflate_alloc_compressor(SMALL_LEVEL_LIBDEFLATE) : NULL;
+    if (!compressor)
+        return 0;
+    size_t written = libdeflate_deflate_compress(compressor, data, size, out, room);
+    libdeflate_free_compressor(compressor);
+    return written;
+}
+#else
+#define NAME_OF_SMALL name_of_zlib()
+#define SMALL_HAS_BANDS true
+
+static size_t small_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    return band_by_zlib(SMALL_LEVEL_ZLIB, data, size, last, out, room);
+}
+#endif
+
+// ---- The interface ------------------------------------------------------------------------------------------------
+
+const char *glint_encoder_name(glint_encode encode)
+{
+    return encode == GLINT_ENCODE_SMALL ? NAME_OF_SMALL : NAME_OF_FAST;
+}
+
+bool glint_deflate_has_bands(glint_encode encode) { return encode == GLINT_ENCODE_SMALL ? SMALL_HAS_BANDS : true; }
+
+static uint32_t checksum(const uint8_t *data, size_t size)
+{
+#if defined GLINT_HAVE_LIBDEFLATE
+    return libdeflate_adler32(1, data, size);
+#elif defined GLINT_HAVE_ISAL
+    return isal_adler32(1, data, size);
+#else
+    return (uint32_t)adler32_z(1, data, size);
+#endif
+}
+
+glint_status glint_deflate_band(glint_encode encode, const uint8_t *data, size_t size, bool last, glint_bytes *out,
+                                uint32_t *adler, glint_error *error)
+{
+    bool bands = glint_deflate_has_bands(encode);
+    if (bands ? size > BAND_SIZE_MAX : !last)
+        return glint_fail(error, GLINT_ERR_INVALID, "size: the encoder takes 2^31 bytes, or the whole, at a time");
+    size_t room = room_for(size);
+    if (!glint_bytes_reserve(out, room))
+        return glint_fail_nomem(error);
+    uint8_t *end = out->data + out->size;
+    size_t written = (encode == GLINT_ENCODE_SMALL ? small_band : fast_band)(data, size, last, end, room);
+    if (!written) // the room is enough, so that memory is all an encoder can lack
+        return glint_fail_nomem(error);
+    out->size += written;
+    *adler = checksum(data, size);
+    return GLINT_OK;
+}
+
+uint32_t glint_deflate_join(uint32_t first, uint32_t second, size_t second_size)
+{
+    return (uint32_t)adler32_combine64(first, second, (off_t)second_size);
+}
+
+bool glint_deflate_begin(glint_bytes *out) { return glint_bytes_append(out, "\x78\x01", 2); }
+
+bool glint_deflate_end(glint_bytes *out, uint32_t adler)
+{
+    uint8_t tail[4] = { (uint8_t)(adler >> 24), (uint8_t)(adler >> 16), (uint8_t)(adler >> 8), (uint8_t)adler };
+    return glint_bytes_append(out, tail, sizeof tail);
+}

@@ -1,0 +1,232 @@
+/// A file on its way: hidden beside its place until it is whole.
+#include "engine/base/status.h"
+#include "engine/file/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define TEMPORARY_TRIES 100
+#define TEMPORARY_ROOM 160 // what the temporary name adds to the file's: host, process, number
+
+struct glint_draft {
+    char *path; ///< as it was given
+    char *target; ///< where it goes: the end of a symbolic link
+    char *temporary; ///< NULL: the target is a pipe or a device, written in place
+    int file; ///< -1: closed
+};
+
+/// 0 or an errno.
+static int write_all(int file, const uint8_t *data, size_t size)
+{
+    while (size) {
+        ssize_t done = write(file, data, size < SSIZE_MAX ? size : SSIZE_MAX);
+        if (done < 0 && errno != EINTR)
+            return errno;
+        if (done == 0)
+            return EIO;
+        if (done > 0) {
+            data += done;
+            size -= (size_t)done;
+        }
+    }
+    return 0;
+}
+
+static int close_after(int file, int code)
+{
+    // After EINTR the descriptor is closed all the same on Linux.
+    if (close(file) != 0 && !code && errno != EINTR)
+        return errno;
+    return code;
+}
+
+static int open_again(const char *path, int flags, mode_t mode)
+{
+    int file;
+    do
+        file = open(path, flags, mode);
+    while (file < 0 && errno == EINTR);
+    return file;
+}
+
+/// Makes every folder `path` (which is changed and put back) lies in.
+static int make_folders(char *path)
+{
+    for (char *at = path + 1; *path && *at; at++) {
+        if (*at != '/' || at[-1] == '/')
+            continue;
+        *at = '\0';
+        int code = mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : errno;
+        struct stat info;
+        if (code && stat(path, &info) == 0) // it is there, say on a read-only file system
+            code = 0;
+        *at = '/';
+        if (code)
+            return code;
+    }
+    return 0;
+}
+
+/// Writes the name of a hidden file beside `path`, no other process or thread's.
+static void make_temporary_name(const char *path, char *out, size_t room)
+{
+    static atomic_uint count;
+    char host[48] = "host";
+    gethostname(host, sizeof host);
+    host[sizeof host - 1] = '\0';
+    for (char *c = host; *c; c++)
+        if (*c == '/')
+            *c = '-';
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    unsigned number = atomic_fetch_add(&count, 1);
+    snprintf(out, room, "%.*s.%.120s.%s.%ld.%u.tmp", (int)(name - path), path, name, host, (long)getpid(), number);
+}
+
+static int create_temporary(const char *path, char *temporary, size_t room, int *file)
+{
+    for (int i = 0; i < TEMPORARY_TRIES; i++) {
+        make_temporary_name(path, temporary, room);
+        *file = open_again(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (*file >= 0)
+            return 0;
+        if (errno != EEXIST)
+            break;
+    }
+    return errno;
+}
+
+static int sync_again(int file)
+{
+    int result;
+    do
+        result = fsync(file);
+    while (result != 0 && errno == EINTR);
+    return result == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
+}
+
+/// Where a write to `path` ends up: the target of a symbolic link, else a copy of `path`. NULL: out of memory.
+static char *target_of(const char *path)
+{
+    struct stat info;
+    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode)) {
+        char *target = realpath(path, NULL);
+        if (target || errno == ENOMEM)
+            return target;
+    }
+    return strdup(path);
+}
+
+static int open_beside(glint_draft *draft)
+{
+    size_t room = strlen(draft->target) + TEMPORARY_ROOM;
+    draft->temporary = malloc(room);
+    if (!draft->temporary)
+        return ENOMEM;
+    int code = create_temporary(draft->target, draft->temporary, room, &draft->file);
+    if (code == ENOENT) {
+        code = make_folders(draft->target);
+        if (!code)
+            code = create_temporary(draft->target, draft->temporary, room, &draft->file);
+    }
+    if (code) { // there is none to remove
+        free(draft->temporary);
+        draft->temporary = NULL;
+    }
+    return code;
+}
+
+/// 0 or an errno.
+static int open_draft(glint_draft *draft)
+{
+    struct stat info;
+    const char *path = draft->path;
+    size_t length = strlen(path);
+    if (length == 0)
+        return ENOENT;
+    if (path[length - 1] == '/')
+        return EISDIR;
+    bool exists = stat(path, &info) == 0;
+    if (exists && S_ISDIR(info.st_mode))
+        return EISDIR;
+    if (exists && !S_ISREG(info.st_mode)) {
+        draft->file = open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY, 0);
+        return draft->file < 0 ? errno : 0;
+    }
+    if (exists && access(path, W_OK) != 0) // a rename would not ask
+        return errno;
+    draft->target = target_of(path);
+    return draft->target ? open_beside(draft) : ENOMEM;
+}
+
+glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error)
+{
+    glint_draft *draft = calloc(1, sizeof *draft);
+    if (!draft)
+        return glint_fail_nomem(error);
+    draft->file = -1;
+    draft->path = strdup(path);
+    int code = draft->path ? open_draft(draft) : ENOMEM;
+    if (code) {
+        glint_draft_destroy(draft);
+        return glint_file_fail(error, path, code);
+    }
+    *out = draft;
+    return GLINT_OK;
+}
+
+const char *glint_draft_name(const glint_draft *draft) { return draft->temporary ? draft->temporary : draft->path; }
+
+glint_status glint_draft_append(glint_draft *draft, const void *bytes, size_t size, glint_error *error)
+{
+    int code = write_all(draft->file, bytes, size);
+    return code ? glint_file_fail(error, draft->path, code) : GLINT_OK;
+}
+
+glint_status glint_draft_finish(glint_draft *draft, glint_error *error)
+{
+    int code = draft->temporary ? sync_again(draft->file) : 0;
+    code = close_after(draft->file, code);
+    draft->file = -1;
+    if (!code && draft->temporary) {
+        code = rename(draft->temporary, draft->target) == 0 ? 0 : errno;
+        if (!code) {
+            free(draft->temporary);
+            draft->temporary = NULL;
+        }
+    }
+    return code ? glint_file_fail(error, draft->path, code) : GLINT_OK;
+}
+
+void glint_draft_destroy(glint_draft *draft)
+{
+    if (!draft)
+        return;
+    if (draft->file >= 0)
+        close(draft->file);
+    if (draft->temporary)
+        unlink(draft->temporary);
+    free(draft->temporary);
+    free(draft->target);
+    free(draft->path);
+    free(draft);
+}
+
+glint_status glint_file_write(const char *path, const void *bytes, size_t size, glint_error *error)
+{
+    glint_draft *draft = NULL;
+    glint_status status = glint_draft_create(path, &draft, error);
+    if (!status)
+        status = glint_draft_append(draft, bytes, size, error);
+    if (!status)
+        status = glint_draft_finish(draft, error);
+    glint_draft_destroy(draft);
+    return status;
+}

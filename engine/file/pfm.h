@@ -1,0 +1,23 @@
+/// PFM: float pictures, "PF" with three channels and "Pf" with one, bottom row first. Internal.
+#ifndef GLINT_IMAGE_PFM_H
+#define GLINT_IMAGE_PFM_H
+
+#include "engine/glint.h"
+#include "engine/file/bytes.h"
+
+/// Appends a whole little-endian PFM to `out`. With three channels an infinite value is written as the largest float of
+/// its sign, and NaN as 0; one channel is a distance and may be infinite.
+///
+/// plane     channels (1 or 3) pointers to width * height values, top row first.
+/// False: out of memory.
+bool glint_pfm_encode(int width, int height, int channels, float *const plane[], glint_bytes *out);
+
+typedef struct glint_pfm {
+    int width, height, channels;
+    float *values; ///< interleaved, top row first; the owner calls free
+} glint_pfm;
+
+/// Decodes either byte order; the scale's size is left aside. GLINT_ERR_FORMAT when the bytes are not a whole PFM.
+glint_status glint_pfm_decode(const uint8_t *data, size_t size, glint_pfm *out, glint_error *error);
+
+#endif

@@ -1,0 +1,70 @@
+/// PNG in memory: libpng is the container, filter and deflate are ours to choose. Internal.
+#ifndef GLINT_IMAGE_PNG_H
+#define GLINT_IMAGE_PNG_H
+
+#include "engine/glint.h"
+#include "engine/file/bytes.h"
+
+#define GLINT_PNG_TEXT_MAX 65536 ///< bytes of one text value
+#define GLINT_PNG_KEY "glint:key" ///< tEXt keyword of a frame's key
+
+/// Where the codes of an RGB or RGBA picture come from, a row at a time.
+typedef struct glint_png_source {
+    int width, height; ///< 1 .. GLINT_SIDE_MAX
+    bool alpha; ///< four channels instead of three
+    glint_tone_desc tone; ///< bits: 8 or 16; sRGB: an sRGB chunk; linear: gAMA 1.0
+    /// The 3 * width codes, with alpha 4 * width (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
+    /// large enough, or where they already are. Rows may be asked for in any order and by several threads.
+    const void *(*row)(const void *user, int y, void *scratch);
+    const void *user;
+    const uint64_t *stamp; ///< of the rows of tiles, as in glint_image; NULL: nothing is known of the codes
+} glint_png_source;
+
+/// Bytes of one pixel.
+static inline size_t glint_png_pixel_bytes(const glint_png_source *source)
+{
+    return (source->alpha ? 4 : 3) * (source->tone.bits == 16 ? 2 : 1);
+}
+
+typedef struct glint_bands glint_bands; ///< bands.h
+
+typedef struct glint_png_desc {
+    glint_encode encode;
+    const glint_text *text;
+    size_t text_count;
+} glint_png_desc;
+
+/// Appends a whole PNG to `out`. The bytes depend on source and desc and the deflate library alone; no dates.
+/// bands and reused are those of glint_bands_deflate.
+/// GLINT_ERR_INVALID for a bad keyword or a value that is too long; GLINT_ERR_NOMEM. `out` may have grown on failure.
+glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source, const glint_png_desc *desc,
+                              glint_bytes *out, double *reused, glint_error *error);
+
+typedef struct glint_png {
+    int width, height;
+    int channels; ///< 1 .. 4: grey, grey and alpha, RGB, RGB and alpha
+    int bits; ///< 8 or 16; fewer are widened to 8, palettes become RGB
+    void *codes; ///< uint8_t or uint16_t (native order), interleaved; the owner calls free
+} glint_png;
+
+/// Decodes a PNG; every CRC must be right and IEND there. GLINT_ERR_FORMAT otherwise; *out is written on success.
+glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, glint_error *error);
+
+/// Whether the bytes are a whole PNG (chunks from IHDR to IEND with right CRCs, nothing after) that has this text.
+bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value);
+
+typedef struct glint_png_head {
+    int width, height;
+    int bits; ///< as decoded: 8 or 16
+    int channels; ///< as decoded, 1 .. 4
+    glint_transfer transfer; ///< linear: gAMA says 1.0; else sRGB is taken for granted
+    bool is_animated; ///< several frames
+} glint_png_head;
+
+/// Reads what stands beside the pixels, and calls `text` (unless NULL) for each tEXt: its bytes, Latin-1, are borrowed for
+/// the call; false ends the walk. GLINT_ERR_FORMAT when the bytes are not a whole PNG, GLINT_ERR_NOMEM after false.
+glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *out,
+                            bool (*text)(void *user, const uint8_t *bytes, size_t size), void *user,
+                            glint_error *error);
+
+#endif

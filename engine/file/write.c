@@ -1,0 +1,292 @@
+#include "engine/file/write.h"
+
+#include "engine/base/status.h"
+#include "engine/file/file.h"
+#include "engine/film/image.h"
+#include "engine/file/pfm.h"
+#include "engine/file/png.h"
+#include "engine/film/tone.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#define KEY_FILE_LIMIT ((size_t)1 << 34)
+
+/// What a row of codes is made from.
+typedef struct picture {
+    const glint_image *image;
+    float *const *plane;
+    glint_tone_desc tone; ///< of the file
+    const glint_tone_table *table; ///< colour passes
+    float gain; ///< likewise
+    double nearest; ///< of all depths
+    const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
+} picture;
+
+/// A pipe or a device: what has no ending to go by is written as PNG there.
+static bool is_special_file(const char *path)
+{
+    struct stat info;
+    return path && stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error)
+{
+    const char *ending = path ? strrchr(path, '.') : NULL;
+    if (ending && strcasecmp(ending, ".png") == 0)
+        *kind = GLINT_FILE_PNG;
+    else if (ending && strcasecmp(ending, ".pfm") == 0)
+        *kind = GLINT_FILE_PFM;
+    else if (is_special_file(path))
+        *kind = GLINT_FILE_PNG;
+    else
+        return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png or .pfm expected, got '%.400s'",
+                          path ? path : "");
+    return GLINT_OK;
+}
+
+// ---- Rows of codes ------------------------------------------------------------------------------------------------
+
+static const void *row_of_codes(const void *user, int y, void *scratch)
+{
+    (void)scratch;
+    const picture *p = user;
+    return (const uint8_t *)p->image->codes + (size_t)y * (size_t)p->image->width * glint_image_pixel_bytes(p->image);
+}
+
+static const void *row_of_color(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    const float *r = p->plane[0] + at, *g = p->plane[1] + at, *b = p->plane[2] + at;
+    if (p->tone.bits == 16)
+        glint_tone_row16(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
+    else
+        glint_tone_row8(p->table, p->gain, r, g, b, width, scratch, NULL, NULL);
+    return scratch;
+}
+
+/// Beauty with alpha.
+static const void *row_of_covered(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    const float *rgb[3] = { p->plane[0] + at, p->plane[1] + at, p->plane[2] + at };
+    glint_tone_row_alpha(p->table, p->gain, rgb, p->image->plane[GLINT_PASS_ALPHA][0] + at, width, scratch, NULL, NULL);
+    return scratch;
+}
+
+/// Stores `value` (of 0 .. 1) as the linear code number `at` of a row.
+static void put_linear(const picture *p, void *codes, size_t at, double value)
+{
+    double x = value > 0 ? value < 1 ? value : 1 : 0;
+    if (p->tone.bits == 16)
+        ((uint16_t *)codes)[at] = (uint16_t)(x * 65535 + 0.5);
+    else
+        ((uint8_t *)codes)[at] = (uint8_t)(x * 255 + 0.5);
+}
+
+/// Beauty with its lines, which cover.
+static const void *row_of_outlined(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    const size_t width = (size_t)p->image->width, channels = p->image->alpha ? 4 : 3, size = p->tone.bits / 8;
+    const float *line = p->image->plane[GLINT_PASS_OUTLINE][0] + (size_t)y * width;
+    const void *row = p->under(user, y, scratch);
+    const int ink = p->image->outline == GLINT_OUTLINE_WHITE ? 0xff : 0;
+    uint8_t *out = scratch;
+    if (row != scratch)
+        memcpy(scratch, row, width * channels * size);
+    for (size_t x = 0; x < width; x++) {
+        if (line[x] == 0)
+            continue;
+        memset(out + x * channels * size, ink, 3 * size);
+        if (channels == 4)
+            memset(out + (x * channels + 3) * size, 0xff, size);
+    }
+    return scratch;
+}
+
+/// A share, 0 .. 1.
+static const void *row_of_shares(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *share = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++)
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, share[x]);
+    return scratch;
+}
+
+/// Nearest over distance: white at the nearest point, half as bright at twice its distance, and a horizon far away
+/// leaves the objects in front their contrast. The background, at infinity, is black.
+static const void *row_of_depth(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *depth = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        double value = depth[x] > 0 ? p->nearest / depth[x] : 1;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, value);
+    }
+    return scratch;
+}
+
+static const void *row_of_normals(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        bool background = p->plane[0][at + x] == 0 && p->plane[1][at + x] == 0 && p->plane[2][at + x] == 0;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, background ? 0 : p->plane[c][at + x] * 0.5 + 0.5);
+    }
+    return scratch;
+}
+
+/// One to one on 24 bits, 0 to 0: odd multipliers and shifts that can be undone.
+static uint32_t color_of_id(uint32_t id)
+{
+    uint32_t h = id & 0xffffff;
+    h = h * 0x9e3779b1u & 0xffffff;
+    h ^= h >> 12;
+    h = h * 0x85ebcbu & 0xffffff;
+    return h ^ h >> 13;
+}
+
+static const void *row_of_ids(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    size_t width = (size_t)p->image->width;
+    const float *id = p->plane[0] + (size_t)y * width;
+    for (size_t x = 0; x < width; x++) {
+        uint32_t color = id[x] >= 0 && id[x] < 0x1p32f ? color_of_id((uint32_t)id[x]) : 0;
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, (double)(color >> (8 * c) & 255) / 255);
+    }
+    return scratch;
+}
+
+// ---- Which rows ---------------------------------------------------------------------------------------------------
+
+static void find_nearest(picture *p)
+{
+    size_t count = (size_t)p->image->width * (size_t)p->image->height;
+    p->nearest = HUGE_VAL;
+    for (size_t i = 0; i < count; i++)
+        p->nearest = p->plane[0][i] < p->nearest ? p->plane[0][i] : p->nearest;
+    if (isinf(p->nearest))
+        p->nearest = 0; // nothing but background
+}
+
+static bool is_color(glint_pass pass)
+{
+    return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
+           pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE && pass != GLINT_PASS_REFINED;
+}
+
+static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
+{
+    if (pass == GLINT_PASS_BEAUTY && image->codes)
+        return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds codes of another tone and no 'beauty' pass");
+    return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
+}
+
+static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                               glint_bytes *out, double *reused, glint_error *error)
+{
+    picture p = { .image = image, .plane = image->plane[desc->pass], .tone = desc->tone };
+    glint_status status = glint_tone_check(&desc->tone, error);
+    if (status)
+        return status;
+    glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
+    source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
+    glint_png_desc png = { desc->encode, desc->text, desc->text_count };
+    if (!is_color(desc->pass))
+        source.tone.transfer = GLINT_TRANSFER_LINEAR;
+    if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
+        source.row = row_of_codes;
+        source.stamp = image->row_stamp;
+    } else if (!p.plane[0]) {
+        return fail_not_kept(image, desc->pass, error);
+    } else if (is_color(desc->pass)) {
+        status = glint_tone_table_shared(&desc->tone, &p.table, error);
+        p.gain = glint_tone_gain(&desc->tone);
+        source.row = source.alpha ? row_of_covered : row_of_color;
+    } else if (desc->pass == GLINT_PASS_DEPTH) {
+        find_nearest(&p);
+        source.row = row_of_depth;
+    } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE || desc->pass == GLINT_PASS_REFINED) {
+        source.row = row_of_shares;
+    } else {
+        source.row = desc->pass == GLINT_PASS_NORMAL ? row_of_normals : row_of_ids;
+    }
+    if (desc->pass == GLINT_PASS_BEAUTY && image->outline) {
+        p.under = source.row;
+        source.row = row_of_outlined;
+        source.stamp = NULL; // of the codes without lines
+    }
+    return status ? status : glint_png_encode(bands, &source, &png, out, reused, error);
+}
+
+glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                                glint_bytes *out, double *reused, glint_error *error)
+{
+    glint_file_kind kind = GLINT_FILE_PNG;
+    glint_status status = glint_file_kind_of(desc->path, &kind, error);
+    if (status)
+        return status;
+    int channels = glint_pass_channels(desc->pass);
+    if (!channels)
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
+                          (int)desc->pass);
+    if (desc->encode != GLINT_ENCODE_FAST && desc->encode != GLINT_ENCODE_SMALL)
+        return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
+    if (kind == GLINT_FILE_PNG)
+        return encode_png(image, desc, bands, out, reused, error);
+    float *const *plane = image->plane[desc->pass];
+    if (!plane[0])
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image",
+                          glint_pass_name(desc->pass));
+    return glint_pfm_encode(image->width, image->height, channels, plane, out) ? GLINT_OK : glint_fail_nomem(error);
+}
+
+glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)
+{
+    glint_bytes bytes = { 0 };
+    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
+    if (!status)
+        status = glint_file_write(desc->path, bytes.data, bytes.size, error);
+    free(bytes.data);
+    return status;
+}
+
+glint_status glint_image_to_bytes(const glint_image *image, const glint_write_desc *desc, uint8_t **data, size_t *size,
+                                  glint_error *error)
+{
+    glint_bytes bytes = { 0 };
+    glint_status status = glint_image_encode(image, desc, NULL, &bytes, NULL, error);
+    if (status) {
+        free(bytes.data);
+        return status;
+    }
+    *data = bytes.data;
+    *size = bytes.size;
+    return GLINT_OK;
+}
+
+bool glint_file_has_key(const char *path, const char *key)
+{
+    struct glint_bytes bytes = { 0 };
+    if (is_special_file(path)) // reading a pipe would wait, and keeps nothing
+        return false;
+    if (glint_file_read(path, KEY_FILE_LIMIT, &bytes, NULL))
+        return false;
+    bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);
+    free(bytes.data);
+    return has;
+}

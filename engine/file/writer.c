@@ -1,0 +1,313 @@
+/// glint_writer: one list of jobs in the order they were submitted. A thread encodes them (with a pool of its own, if it may
+/// use several), another brings them to disk, so that nobody computes less while a file is synced.
+#include "engine/base/pool.h"
+#include "engine/base/status.h"
+#include "engine/file/file.h"
+#include "engine/file/write.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
+
+typedef struct job {
+    struct job *next;
+    job_state state;
+    glint_image *image; ///< owned until it is encoded
+    glint_write_desc desc; ///< its strings follow the job in memory
+    glint_bytes bytes; ///< of the file, from then until they are in it; owned
+    glint_write_result result;
+} job;
+
+struct glint_writer {
+    pthread_t encoder, filer;
+    glint_bands *bands; ///< the encoder's
+    pthread_mutex_t
+        lock; ///< over all below; what is being encoded or filed is the thread's meanwhile, but for `next`, `state`
+    pthread_cond_t changed;
+    job *first, **end; ///< submitted and not collected
+    int waiting[JOB_DONE]; ///< jobs that are queued, and that are encoded
+    int queue_depth; ///< the most of either
+    bool closing; ///< no more are submitted
+    bool encoded_all; ///< and none of them is left to the encoder
+};
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+// ---- The threads --------------------------------------------------------------------------------------------------
+
+static void finish(job *j, glint_status status, const glint_error *error)
+{
+    j->result.status = status;
+    memcpy(j->result.message, error->message, sizeof j->result.message);
+}
+
+/// Returns whether there is something to be filed.
+static bool encode(job *j, glint_bands *bands)
+{
+    glint_error error = { 0 };
+    const double start = now_ms();
+    const glint_status status = glint_image_encode(j->image, &j->desc, bands, &j->bytes, &j->result.reused, &error);
+    j->result.encode_ms = now_ms() - start;
+    glint_image_release(j->image);
+    j->image = NULL;
+    finish(j, status, &error);
+    return status == GLINT_OK;
+}
+
+static void file(job *j)
+{
+    glint_error error = { 0 };
+    const double start = now_ms();
+    finish(j, glint_file_write(j->desc.path, j->bytes.data, j->bytes.size, &error), &error);
+    j->result.write_ms = now_ms() - start;
+}
+
+/// The first job that waits for its next step, which begins; NULL: none does.
+static job *take(glint_writer *writer, job_state waiting)
+{
+    job *j = writer->first;
+    while (j && j->state != waiting)
+        j = j->next;
+    if (j) {
+        j->state = waiting + 1;
+        writer->waiting[waiting]--;
+        pthread_cond_broadcast(&writer->changed);
+    }
+    return j;
+}
+
+static void move_on(glint_writer *writer, job *j, job_state state)
+{
+    if (state != JOB_ENCODED) {
+        free(j->bytes.data);
+        j->bytes = (glint_bytes) { 0 };
+    } else {
+        writer->waiting[state]++;
+    }
+    j->state = state;
+    pthread_cond_broadcast(&writer->changed);
+}
+
+static void *run_encoder(void *user)
+{
+    glint_writer *writer = user;
+    pthread_mutex_lock(&writer->lock);
+    for (;;) {
+        job *j = writer->waiting[JOB_ENCODED] < writer->queue_depth ? take(writer, JOB_QUEUED) : NULL;
+        if (!j && writer->closing && !writer->waiting[JOB_QUEUED])
+            break;
+        if (!j) {
+            pthread_cond_wait(&writer->changed, &writer->lock);
+            continue;
+        }
+        pthread_mutex_unlock(&writer->lock);
+        const bool encoded = encode(j, writer->bands);
+        pthread_mutex_lock(&writer->lock);
+        move_on(writer, j, encoded ? JOB_ENCODED : JOB_DONE);
+    }
+    writer->encoded_all = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    return NULL;
+}
+
+static void *run_filer(void *user)
+{
+    glint_writer *writer = user;
+    pthread_mutex_lock(&writer->lock);
+    for (;;) {
+        job *j = take(writer, JOB_ENCODED);
+        if (!j && writer->encoded_all)
+            break;
+        if (!j) {
+            pthread_cond_wait(&writer->changed, &writer->lock);
+            continue;
+        }
+        pthread_mutex_unlock(&writer->lock);
+        file(j);
+        pthread_mutex_lock(&writer->lock);
+        move_on(writer, j, JOB_DONE);
+    }
+    pthread_mutex_unlock(&writer->lock);
+    return NULL;
+}
+
+// ---- Making and ending --------------------------------------------------------------------------------------------
+
+/// Starts a thread with every signal blocked: signals are the main thread's.
+static bool start_thread(glint_writer *writer, pthread_t *thread, void *(*run)(void *))
+{
+    sigset_t all, old;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    const bool started = pthread_create(thread, NULL, run, writer) == 0;
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    return started;
+}
+
+/// Lets the encoder end what is queued.
+static void close_encoder(glint_writer *writer)
+{
+    pthread_mutex_lock(&writer->lock);
+    writer->closing = true;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    pthread_join(writer->encoder, NULL);
+}
+
+static bool start_threads(glint_writer *writer)
+{
+    if (!start_thread(writer, &writer->encoder, run_encoder))
+        return false;
+    if (start_thread(writer, &writer->filer, run_filer))
+        return true;
+    close_encoder(writer);
+    return false;
+}
+
+static void free_writer(glint_writer *writer)
+{
+    pthread_cond_destroy(&writer->changed);
+    pthread_mutex_destroy(&writer->lock);
+    glint_bands_destroy(writer->bands);
+    free(writer);
+}
+
+glint_status glint_writer_create(int queue_depth, int threads, glint_writer **out, glint_error *error)
+{
+    glint_status status = glint_check_range("queue_depth", queue_depth, 1, 1 << 20, "number 1 .. 1048576", error);
+    if (!status)
+        status = glint_check_whole("threads", threads, 0, 1024, error);
+    if (status)
+        return status;
+    glint_writer *writer = calloc(1, sizeof *writer);
+    if (!writer)
+        return glint_fail_nomem(error);
+    writer->queue_depth = queue_depth;
+    writer->end = &writer->first;
+    pthread_mutex_init(&writer->lock, NULL);
+    pthread_cond_init(&writer->changed, NULL);
+    status = glint_bands_create(threads ? threads : glint_pool_processors(), &writer->bands, error);
+    if (!status && !start_threads(writer))
+        status = glint_fail(error, GLINT_ERR_NOMEM, "no thread for the writer");
+    if (status) {
+        free_writer(writer);
+        return status;
+    }
+    *out = writer;
+    return GLINT_OK;
+}
+
+void glint_writer_destroy(glint_writer *writer)
+{
+    if (!writer)
+        return;
+    close_encoder(writer);
+    pthread_join(writer->filer, NULL);
+    for (job *j = writer->first; j;) {
+        job *next = j->next;
+        free(j);
+        j = next;
+    }
+    free_writer(writer);
+}
+
+// ---- Jobs ---------------------------------------------------------------------------------------------------------
+
+/// Copies a string to *at, which moves past it.
+static const char *keep_string(char **at, const char *string)
+{
+    if (!string)
+        return NULL;
+    size_t size = strlen(string) + 1;
+    char *copy = memcpy(*at, string, size);
+    *at += size;
+    return copy;
+}
+
+static size_t room_of(const char *string) { return string ? strlen(string) + 1 : 0; }
+
+static job *make_job(const glint_write_desc *desc)
+{
+    size_t text_bytes = desc->text_count * sizeof(glint_text);
+    size_t room = sizeof(job) + text_bytes + room_of(desc->path);
+    for (size_t i = 0; i < desc->text_count; i++)
+        room += room_of(desc->text[i].keyword) + room_of(desc->text[i].value);
+    job *j = malloc(room);
+    if (!j)
+        return NULL;
+    *j = (job) { .state = JOB_QUEUED, .desc = *desc };
+    glint_text *text = (glint_text *)(j + 1);
+    char *at = (char *)(text + desc->text_count);
+    j->desc.path = keep_string(&at, desc->path);
+    j->desc.text = text;
+    for (size_t i = 0; i < desc->text_count; i++) {
+        text[i].keyword = keep_string(&at, desc->text[i].keyword);
+        text[i].value = keep_string(&at, desc->text[i].value);
+    }
+    return j;
+}
+
+glint_status glint_writer_submit(glint_writer *writer, glint_image *image, const glint_write_desc *desc, void *user,
+                                 glint_error *error)
+{
+    job *j = make_job(desc);
+    if (!j)
+        return glint_fail_nomem(error);
+    j->image = glint_image_retain(image);
+    j->result.user = user;
+    pthread_mutex_lock(&writer->lock);
+    while (writer->waiting[JOB_QUEUED] >= writer->queue_depth)
+        pthread_cond_wait(&writer->changed, &writer->lock);
+    *writer->end = j;
+    writer->end = &j->next;
+    writer->waiting[JOB_QUEUED]++;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+    return GLINT_OK;
+}
+
+bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *result)
+{
+    pthread_mutex_lock(&writer->lock);
+    while (wait && writer->first && writer->first->state != JOB_DONE)
+        pthread_cond_wait(&writer->changed, &writer->lock);
+    job *j = writer->first && writer->first->state == JOB_DONE ? writer->first : NULL;
+    if (j) {
+        writer->first = j->next;
+        if (!writer->first)
+            writer->end = &writer->first;
+    }
+    pthread_mutex_unlock(&writer->lock);
+    if (j)
+        *result = j->result;
+    free(j);
+    return j != NULL;
+}
+
+void glint_writer_cancel(glint_writer *writer)
+{
+    pthread_mutex_lock(&writer->lock);
+    for (job *j = writer->first; j; j = j->next) {
+        if (j->state != JOB_QUEUED)
+            continue;
+        glint_image_release(j->image);
+        j->image = NULL;
+        j->result.status = GLINT_ERR_CANCELLED;
+        snprintf(j->result.message, sizeof j->result.message, "cancelled");
+        j->state = JOB_DONE;
+    }
+    writer->waiting[JOB_QUEUED] = 0;
+    pthread_cond_broadcast(&writer->changed);
+    pthread_mutex_unlock(&writer->lock);
+}

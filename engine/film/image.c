@@ -1,0 +1,158 @@
+#include "engine/film/image.h"
+
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/film/tone.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    int channels;
+} pass_table[GLINT_PASS_COUNT] = {
+    [GLINT_PASS_BEAUTY] = { "beauty", 3 },       [GLINT_PASS_BACKGROUND] = { "background", 3 },
+    [GLINT_PASS_AMBIENT] = { "ambient", 3 },     [GLINT_PASS_DIFFUSE] = { "diffuse", 3 },
+    [GLINT_PASS_SPECULAR] = { "specular", 3 },   [GLINT_PASS_INDIRECT] = { "indirect", 3 },
+    [GLINT_PASS_MIRROR] = { "mirror", 3 },       [GLINT_PASS_TRANSMISSION] = { "transmission", 3 },
+    [GLINT_PASS_DEPTH] = { "depth", 1 },         [GLINT_PASS_NORMAL] = { "normal", 3 },
+    [GLINT_PASS_OBJECT_ID] = { "object_id", 1 }, [GLINT_PASS_ALPHA] = { "alpha", 1 },
+    [GLINT_PASS_OUTLINE] = { "outline", 1 },     [GLINT_PASS_REFINED] = { "refined", 1 },
+};
+
+static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
+
+const char *glint_pass_name(glint_pass pass) { return is_pass(pass) ? pass_table[pass].name : NULL; }
+
+glint_pass glint_pass_from_name(const char *name)
+{
+    int pass = 0;
+    while (pass < GLINT_PASS_COUNT && !(name && strcmp(name, pass_table[pass].name) == 0))
+        pass++;
+    return (glint_pass)pass;
+}
+
+int glint_pass_channels(glint_pass pass) { return is_pass(pass) ? pass_table[pass].channels : 0; }
+
+static bool allocate_plane(size_t pixels, float **plane)
+{
+    *plane = glint_alloc_large(pixels, sizeof(float));
+    return *plane != NULL;
+}
+
+static bool allocate_all(glint_image *image, uint32_t passes, const glint_tone_desc *codes_tone)
+{
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < pass_table[pass].channels; c++)
+            if (passes & 1u << pass && !allocate_plane(pixels, &image->plane[pass][c]))
+                return false;
+    if (!codes_tone)
+        return true;
+    image->code_tone = *codes_tone;
+    image->codes = glint_alloc_large(pixels, glint_image_pixel_bytes(image));
+    image->row_stamp = calloc(glint_image_stamps(image), sizeof *image->row_stamp);
+    return image->codes && image->row_stamp;
+}
+
+static glint_status create(int width, int height, uint32_t passes, bool alpha, const glint_tone_desc *codes_tone,
+                           glint_image **out, glint_error *error)
+{
+    glint_status status = glint_check_whole("width", width, 1, GLINT_SIDE_MAX, error);
+    if (!status)
+        status = glint_check_whole("height", height, 1, GLINT_SIDE_MAX, error);
+    if (!status && codes_tone)
+        status = glint_tone_check(codes_tone, error);
+    if (status)
+        return status;
+    // The largest size that is asked for is below 2^36 bytes.
+    if (sizeof(size_t) < 8 && (double)width * height * 12 > (double)SIZE_MAX)
+        return glint_fail_nomem(error);
+    glint_image *image = calloc(1, sizeof *image);
+    if (!image)
+        return glint_fail_nomem(error);
+    atomic_init(&image->references, 1);
+    image->width = width;
+    image->height = height;
+    image->alpha = alpha;
+    image->channels = alpha ? 4 : 3;
+    if (!allocate_all(image, passes, codes_tone)) {
+        glint_image_release(image);
+        return glint_fail_nomem(error);
+    }
+    *out = image;
+    return GLINT_OK;
+}
+
+glint_status glint_image_create(int width, int height, uint32_t passes, const glint_tone_desc *codes_tone,
+                                glint_image **out, glint_error *error)
+{
+    return create(width, height, passes, false, codes_tone, out, error);
+}
+
+glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error)
+{
+    glint_status status = create((int)desc->width, (int)desc->height, desc->passes, desc->alpha,
+                                 desc->codes ? &desc->tone : NULL, out, error);
+    if (!status)
+        (*out)->outline = desc->outline;
+    return status;
+}
+
+size_t glint_image_bytes(const glint_image *image)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    size_t bytes = image->codes ? pixels * glint_image_pixel_bytes(image) : 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < 3; c++)
+            bytes += image->plane[pass][c] ? pixels * sizeof(float) : 0;
+    return bytes;
+}
+
+glint_image *glint_image_retain(glint_image *image)
+{
+    if (image)
+        atomic_fetch_add_explicit(&image->references, 1, memory_order_relaxed);
+    return image;
+}
+
+void glint_image_release(glint_image *image)
+{
+    if (!image || atomic_fetch_sub_explicit(&image->references, 1, memory_order_acq_rel) != 1)
+        return;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < 3; c++)
+            free(image->plane[pass][c]);
+    free(image->codes);
+    free(image->row_stamp);
+    free(image->film);
+    free(image);
+}
+
+int glint_image_width(const glint_image *image) { return image->width; }
+
+int glint_image_height(const glint_image *image) { return image->height; }
+
+bool glint_image_has_pass(const glint_image *image, glint_pass pass)
+{
+    return is_pass(pass) && image->plane[pass][0] != NULL;
+}
+
+glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
+                               glint_error *error)
+{
+    if (!is_pass(pass))
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
+                          (int)pass);
+    if (!image->plane[pass][0])
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", pass_table[pass].name);
+    glint_status status = glint_check_whole("x", x, 0, image->width - 1, error);
+    if (!status)
+        status = glint_check_whole("y", y, 0, image->height - 1, error);
+    if (status)
+        return status;
+    size_t at = (size_t)y * (size_t)image->width + (size_t)x;
+    for (int c = 0; c < 3; c++)
+        out[c] = image->plane[pass][pass_table[pass].channels == 1 ? 0 : c][at];
+    return GLINT_OK;
+}

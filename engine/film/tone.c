@@ -1,0 +1,369 @@
+#include "engine/film/tone.h"
+
+#include "engine/base/status.h"
+
+#include <float.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GUESS_SHIFT 15 // a bucket of `guess` holds the floats that agree in their upper 17 bits
+
+glint_tone_desc glint_tone_desc_default(void)
+{
+    return (glint_tone_desc) { GLINT_TONE_CLAMP, GLINT_TRANSFER_SRGB, GLINT_ROUND_NEAREST, 8, 0 };
+}
+
+glint_status glint_tone_check(const glint_tone_desc *desc, glint_error *error)
+{
+    if (desc->curve > GLINT_TONE_FILMIC)
+        return glint_fail(error, GLINT_ERR_INVALID, "tone: clamp, reinhard or filmic expected, got %d",
+                          (int)desc->curve);
+    if (desc->transfer > GLINT_TRANSFER_NONE)
+        return glint_fail(error, GLINT_ERR_INVALID, "transfer: srgb, linear or none expected, got %d",
+                          (int)desc->transfer);
+    if (desc->rounding != GLINT_ROUND_NEAREST && desc->rounding != GLINT_ROUND_TRUNCATE)
+        return glint_fail(error, GLINT_ERR_INVALID, "rounding: nearest or truncate expected, got %d",
+                          (int)desc->rounding);
+    if (desc->bits != 8 && desc->bits != 16)
+        return glint_fail(error, GLINT_ERR_INVALID, "bits: 8 or 16 expected, got %d", desc->bits);
+    return glint_check_range("exposure", desc->exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, "stops, -32 .. 32",
+                             error);
+}
+
+bool glint_tone_same(const glint_tone_desc *a, const glint_tone_desc *b)
+{
+    return a->curve == b->curve && a->transfer == b->transfer && a->rounding == b->rounding && a->bits == b->bits &&
+           a->exposure == b->exposure;
+}
+
+// ---- By definition ------------------------------------------------------------------------------------------------
+
+static double clamp_to_unit(double x)
+{
+    return x > 0 ? x < 1 ? x : 1 : 0; // NaN gives 0
+}
+
+double glint_srgb_encode(double linear)
+{
+    double x = clamp_to_unit(linear);
+    if (x <= 0.0031308)
+        return 12.92 * x;
+    return x < 1 ? 1.055 * glint_pow(x, 1 / 2.4) - 0.055 : 1; // 1.055 - 0.055 is not 1 in double
+}
+
+double glint_srgb_decode(double encoded)
+{
+    double x = clamp_to_unit(encoded);
+    return x <= 0.04045 ? x / 12.92 : glint_pow((x + 0.055) / 1.055, 2.4);
+}
+
+float glint_tone_gain(const glint_tone_desc *desc) { return (float)glint_pow(2, desc->exposure); }
+
+/// Of light after exposure.
+static double code_of(const glint_tone_desc *desc, double linear)
+{
+    double y = glint_tone_curve_value(desc->curve, linear);
+    double x = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_encode(y) : clamp_to_unit(y);
+    double code = x * (desc->bits == 16 ? 65535 : 255);
+    return floor(desc->rounding == GLINT_ROUND_NEAREST ? code + 0.5 : code);
+}
+
+double glint_tone_value(const glint_tone_desc *desc, double linear)
+{
+    if (desc->exposure == 0)
+        return code_of(desc, linear);
+    const float exposed = glint_tone_gain(desc) * (float)linear;
+    return code_of(desc, (double)exposed);
+}
+
+// ---- Tables -------------------------------------------------------------------------------------------------------
+
+static uint32_t bits_of(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static float float_of(uint32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/// The first float whose code is at least k, anywhere.
+static float first_by_search(const glint_tone_desc *desc, int k)
+{
+    uint32_t low = 0, high = bits_of(INFINITY); // code(low) < k <= code(high)
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (code_of(desc, (double)float_of(middle)) < k)
+            low = middle;
+        else
+            high = middle;
+    }
+    return float_of(high);
+}
+
+/// The first float whose code is at least k, 1 <= k <= M: the float above the inverse, where that is far enough from
+/// any float to be beyond doubt, else by single steps. The inverse and the definition agree to 2^-48; a curve's to
+/// 2^-34, since 1 - y of the last codes has 16 bits less.
+static float first_of_code(const glint_tone_desc *desc, int k)
+{
+    double code = desc->rounding == GLINT_ROUND_NEAREST ? k - 0.5 : k;
+    double encoded = code / (desc->bits == 16 ? 65535 : 255);
+    double y = desc->transfer == GLINT_TRANSFER_SRGB ? glint_srgb_decode(encoded) : encoded;
+    double linear = glint_tone_curve_inverse(desc->curve, y);
+    if (!(linear < FLT_MAX))
+        return first_by_search(desc, k);
+    uint32_t bits = bits_of((float)linear);
+    if (float_of(bits) < linear)
+        bits++;
+    double doubt = (desc->curve == GLINT_TONE_CLAMP ? 0x1p-40 : 0x1p-30) * linear;
+    if (linear < glint_tone_curve_white(desc->curve) && float_of(bits) - linear > doubt &&
+        linear - float_of(bits - 1) > doubt)
+        return float_of(bits);
+    while (code_of(desc, (double)float_of(bits)) < k)
+        bits++;
+    while (code_of(desc, (double)float_of(bits - 1)) >= k)
+        bits--;
+    return float_of(bits);
+}
+
+static bool fill_lut(glint_tone_table *table)
+{
+    const uint32_t entries = (bits_of(table->top) >> 16) - GLINT_TONE_FIRST + 1;
+    table->lut = malloc(entries * sizeof *table->lut);
+    if (!table->lut)
+        return false;
+    uint32_t first = GLINT_TONE_FIRST << 16, code = 0, next = bits_of(first_of_code(&table->desc, 1));
+    for (uint32_t i = 0; i < entries; i++, first += 0x10000) {
+        while (code < 255 && next <= first) {
+            code++;
+            next = code < 255 ? bits_of(first_of_code(&table->desc, (int)code + 1)) : UINT32_MAX;
+        }
+        uint32_t offset = next - first;
+        table->lut[i] = code | (offset < 0x10000 ? offset : 0x10000) << 8;
+    }
+    return true;
+}
+
+/// The transfer function as the tone stage estimates it: m^(1 / 2.4) by Remez's exchange, relative error 1.2e-6, which
+/// is 3.2e-4 codes at 1. Roundings of float arithmetic, at most 2^-24 of 512 at the end and of the terms before, add
+/// less than 0.7e-4, so that 16 / 2^15 codes (4.9e-4) on either side of a step are enough.
+static void make_fit(glint_tone_table *table)
+{
+    static const float power[6] = { 0x1.815cbcp-2f, 0x1.e7d75cp-1f,  -0x1.f7881ep-2f,
+                                    0x1.ab2598p-3f, -0x1.a5354ep-5f, 0x1.643670p-8f };
+    const bool srgb = table->desc.transfer == GLINT_TRANSFER_SRGB;
+    glint_tone_fit *fit = &table->fit;
+    memcpy(fit->power, power, sizeof power);
+    for (int i = 0; i < 16; i++)
+        fit->scale[i] = srgb ? (float)(255 * 1.055 * glint_pow(2, (i - 15) / 2.4)) : 0;
+    fit->doubt = 32;
+    fit->knee = srgb ? 0.0031308f : INFINITY;
+    fit->slope = (float)(srgb ? 255 * 12.92 : 255);
+    fit->base = 256 + (float)fit->doubt * 0x1p-16f + (table->desc.rounding == GLINT_ROUND_NEAREST ? 0.5f : 0);
+    fit->offset = fit->base - (float)(255 * 0.055);
+}
+
+static uint32_t code_by_search(const float *threshold, float x)
+{
+    uint32_t low = 0, high = 65536; // threshold[low] <= x < threshold[high]
+    while (high - low > 1) {
+        uint32_t middle = (low + high) / 2;
+        if (threshold[middle] <= x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/// Where x lies between the codes around it, so that a line through two such numbers is a good guess in between.
+static float fractional_code(const float *threshold, float x)
+{
+    uint32_t code = code_by_search(threshold, x);
+    if (code == 65535)
+        return 65535;
+    return (float)code + (x - threshold[code]) / (threshold[code + 1] - threshold[code]);
+}
+
+static bool fill_thresholds(glint_tone_table *table)
+{
+    const uint32_t entries = (bits_of(table->top) >> GUESS_SHIFT) - (GLINT_TONE16_FIRST << (16 - GUESS_SHIFT)) + 1;
+    table->threshold = malloc(65537 * sizeof *table->threshold);
+    table->guess = malloc(entries * sizeof *table->guess);
+    if (!table->threshold || !table->guess)
+        return false;
+    table->threshold[0] = 0;
+    for (int k = 1; k <= 65535; k++)
+        table->threshold[k] = first_of_code(&table->desc, k);
+    table->threshold[65536] = INFINITY;
+    uint32_t bits = GLINT_TONE16_FIRST << 16;
+    float value = fractional_code(table->threshold, float_of(bits));
+    for (uint32_t i = 0; i < entries; i++) {
+        bits += 1u << GUESS_SHIFT;
+        float next = fractional_code(table->threshold, float_of(bits));
+        table->guess[i][0] = value;
+        table->guess[i][1] = (next - value) / (1 << GUESS_SHIFT);
+        value = next;
+    }
+    return true;
+}
+
+glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_table **out, glint_error *error)
+{
+    glint_status status = glint_tone_check(desc, error);
+    if (status)
+        return status;
+    glint_tone_table *table = calloc(1, sizeof *table);
+    if (!table)
+        return glint_fail_nomem(error);
+    table->desc = *desc;
+    table->desc.exposure = 0;
+    table->white = (float)glint_tone_curve_white(desc->curve);
+    table->top = desc->curve == GLINT_TONE_CLAMP ? 1 : first_of_code(&table->desc, desc->bits == 8 ? 255 : 65535);
+    table->has_fit = desc->bits == 8 && desc->curve == GLINT_TONE_CLAMP;
+    if (table->has_fit)
+        make_fit(table);
+    if (!(desc->bits == 8 ? fill_lut(table) : fill_thresholds(table))) {
+        glint_tone_table_destroy(table);
+        return glint_fail_nomem(error);
+    }
+    *out = table;
+    return GLINT_OK;
+}
+
+void glint_tone_table_destroy(glint_tone_table *table)
+{
+    if (!table)
+        return;
+    free(table->lut);
+    free(table->threshold);
+    free(table->guess);
+    free(table);
+}
+
+glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error)
+{
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    static glint_tone_table *made[GLINT_TONE_FILMIC + 1][2][2][2];
+    glint_status status = glint_tone_check(desc, error);
+    if (status)
+        return status;
+    glint_tone_table **slot = &made[desc->curve][desc->transfer == GLINT_TRANSFER_SRGB]
+                                   [desc->rounding == GLINT_ROUND_NEAREST][desc->bits == 16];
+    pthread_mutex_lock(&lock);
+    if (!*slot)
+        status = glint_tone_table_create(desc, slot, error);
+    if (!status)
+        *out = *slot;
+    pthread_mutex_unlock(&lock);
+    return status;
+}
+
+// ---- Rows ---------------------------------------------------------------------------------------------------------
+
+static inline float clamp_float(float x, float top)
+{
+    x = x > 0 ? x : 0;
+    return x < top ? x : top;
+}
+
+static inline uint8_t code8(const glint_tone_table *table, float exposed)
+{
+    uint32_t bits = bits_of(clamp_float(exposed, table->top));
+    if (bits < GLINT_TONE_FIRST << 16)
+        return 0;
+    uint32_t entry = table->lut[(bits >> 16) - GLINT_TONE_FIRST];
+    return (uint8_t)((entry & 255) + ((bits & 0xffff) >= entry >> 8));
+}
+
+static inline uint16_t code16(const glint_tone_table *table, float exposed)
+{
+    float x = clamp_float(exposed, table->top);
+    uint32_t bits = bits_of(x);
+    if (bits < GLINT_TONE16_FIRST << 16)
+        return 0;
+    const float *line = table->guess[(bits >> GUESS_SHIFT) - (GLINT_TONE16_FIRST << (16 - GUESS_SHIFT))];
+    uint32_t code = (uint32_t)(line[0] + (float)(bits & ((1u << GUESS_SHIFT) - 1)) * line[1]);
+    while (x < table->threshold[code]) // the guess is within one: threshold[0] = 0, threshold[65536] = inf
+        code--;
+    while (x >= table->threshold[code + 1])
+        code++;
+    return (uint16_t)code;
+}
+
+/// Whether a channel of light, before exposure, is not finite; after it, brighter than white.
+static inline bool is_odd(float r, float g, float b) { return !isfinite(r) || !isfinite(g) || !isfinite(b); }
+static inline bool is_clipped(const glint_tone_table *table, const float x[3])
+{
+    return x[0] > table->white || x[1] > table->white || x[2] > table->white;
+}
+
+void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
+                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float x[3] = { gain * r[i], gain * g[i], gain * b[i] };
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + (size_t)c] = code8(table, x[c]);
+        above += is_clipped(table, x);
+        odd += is_odd(r[i], g[i], b[i]);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}
+
+void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
+                      size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    for (size_t i = 0; i < count; i++) {
+        const float x[3] = { gain * r[i], gain * g[i], gain * b[i] };
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + (size_t)c] = code16(table, x[c]);
+        above += is_clipped(table, x);
+        odd += is_odd(r[i], g[i], b[i]);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}
+
+void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,
+                          size_t count, void *rgba, uint64_t *clipped, uint64_t *nonfinite)
+{
+    uint64_t above = 0, odd = 0;
+    const bool wide = table->desc.bits == 16;
+    const double most = wide ? 65535 : 255;
+    for (size_t i = 0; i < count; i++) {
+        const bool covered = alpha[i] > 0;
+        float light[3], x[3];
+        unsigned code[4] = { 0, 0, 0, (unsigned)((double)alpha[i] * most + 0.5) };
+        for (int c = 0; c < 3; c++) {
+            light[c] = covered ? rgb[c][i] / alpha[i] : 0;
+            x[c] = gain * light[c];
+            code[c] = wide ? code16(table, x[c]) : code8(table, x[c]);
+        }
+        for (size_t c = 0; c < 4; c++)
+            if (wide)
+                ((uint16_t *)rgba)[4 * i + c] = (uint16_t)code[c];
+            else
+                ((uint8_t *)rgba)[4 * i + c] = (uint8_t)code[c];
+        above += is_clipped(table, x);
+        odd += is_odd(light[0], light[1], light[2]);
+    }
+    if (clipped)
+        *clipped += above;
+    if (nonfinite)
+        *nonfinite += odd;
+}

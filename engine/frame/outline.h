@@ -1,0 +1,25 @@
+/// The pass `outline`: 1 where a line is drawn, else 0; made of the finished planes depth, normal and object_id. Internal.
+///
+/// Two pixels side by side show an edge between them where one hits nothing, where they show two objects, or where no one
+/// smooth surface has both their points P, Q with their normals m, n. With e = (Q - P) / |Q - P|: on an arc, e.m and -e.n
+/// are the sine of half the angle between the normals. It bends towards the eye, or one point hides in front of the other,
+/// where the larger of e.m and -e.n is positive: an edge above GLINT_OUTLINE_VALLEY; it bends away, an edge above
+/// GLINT_OUTLINE_RIDGE, where that much could also be a small ball. Where m.n is above GLINT_OUTLINE_SMOOTH, a mesh with
+/// normals between those of its corners may be so far from them that GLINT_OUTLINE_STEP is asked for: one surface behind the
+/// other. The line is one pixel wide, on the nearer side.
+#ifndef GLINT_OUTLINE_H
+#define GLINT_OUTLINE_H
+
+#include "engine/base/pool.h"
+#include "engine/film/image.h"
+#include "engine/plan/plan.h"
+
+#define GLINT_OUTLINE_VALLEY 0.25 ///< sine of half of 29 degrees
+#define GLINT_OUTLINE_RIDGE 0.45 ///< of half of 53 degrees
+#define GLINT_OUTLINE_SMOOTH 0.95 ///< cosine of 18 degrees
+#define GLINT_OUTLINE_STEP 0.7 ///< sine of 44 degrees
+
+/// Fills the image's plane. Any number of threads gives the same.
+void glint_outline(const glint_plan *plan, glint_pool *pool, glint_image *image);
+
+#endif

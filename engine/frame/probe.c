@@ -1,0 +1,200 @@
+/// One ray, one reflection: the answers of the frame's own kernels for people who debug, and for tests.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+#include <stdlib.h>
+
+/// A group of which lane 0 alone is used.
+typedef struct lane_group {
+    _Alignas(64) double origin[3][GLINT_GROUP], direction[3][GLINT_GROUP], point[3][GLINT_GROUP],
+        normal[3][GLINT_GROUP];
+    _Alignas(64) double t[GLINT_GROUP];
+    _Alignas(64) uint32_t prim[GLINT_GROUP], material[GLINT_GROUP];
+    _Alignas(64) float cosine[GLINT_GROUP], log2_specular[GLINT_GROUP];
+    _Alignas(64) float facing[GLINT_GROUP], sine2[GLINT_GROUP], schlick[GLINT_GROUP];
+    _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_GROUP];
+    uint16_t active, hits, lit, back, dark;
+} lane_group;
+
+static void cast_lane(const glint_stages *stages, const glint_geometry_table *geometry, lane_group *g)
+{
+    glint_cast_args cast = {
+        .group_count = 1, .active = &g->active, .geometry = geometry, .t = g->t, .prim = g->prim, .hits = &g->hits
+    };
+    glint_surface_args surface = { .group_count = 1,
+                                   .hits = &g->hits,
+                                   .prim = g->prim,
+                                   .prims = geometry->prims,
+                                   .mixed = geometry->triangles || geometry->solids,
+                                   .scale = geometry->scale,
+                                   .solids = geometry->solids,
+                                   .t = g->t,
+                                   .material = g->material,
+                                   .back = &g->back,
+                                   .dark = &g->dark };
+    for (int c = 0; c < 3; c++) {
+        cast.origin[c] = surface.origin[c] = g->origin[c];
+        cast.direction[c] = surface.direction[c] = g->direction[c];
+        surface.point[c] = g->point[c];
+        surface.normal[c] = g->normal[c];
+    }
+    stages->geometry[GLINT_DOUBLE].cast_rays(&cast);
+    if (g->hits & 1)
+        stages->geometry[GLINT_DOUBLE].surface(&surface);
+}
+
+static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_group *g, double scale, glint_hit *out)
+{
+    const glint_part *part = &geometry->parts[geometry->prim_part[id]];
+    *out = (glint_hit) { .t = g->t[0] * scale, .shape = part->shape, .element = id - part->first_prim };
+    const double turn = g->back & 1 ? -1 : 1;
+    for (int c = 0; c < 3; c++) {
+        out->point[c] = g->point[c][0];
+        out->normal[c] = g->normal[c][0] * turn;
+    }
+}
+
+glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
+                              glint_hit *out, glint_error *error)
+{
+    const glint_stages *stages;
+    glint_status status = glint_check_vector("origin", origin, error);
+    if (!status)
+        status = glint_check_direction("direction", direction, error);
+    if (!status)
+        status = glint_choose_isa(NULL, &stages, error);
+    if (status)
+        return status;
+    double scaled[3];
+    const double scale = vec_rescale(scaled, direction);
+    lane_group *g = glint_alloc(1, sizeof *g);
+    if (!g)
+        return glint_fail_nomem(error);
+    glint_geometry *geometry = NULL;
+    glint_geometry_table table;
+    status = glint_geometry_of(scene, &geometry, error);
+    if (!status)
+        status = glint_geometry_index(geometry, NULL, &table, error);
+    if (!status) {
+        g->active = 1;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            for (int c = 0; c < 3; c++) {
+                g->origin[c][i] = origin[c];
+                g->direction[c][i] = scaled[c];
+            }
+        cast_lane(stages, &table, g);
+        *hit = g->hits & 1;
+        if (*hit)
+            read_hit(geometry, table.prims[g->prim[0]].id, g, scale, out);
+    }
+    glint_geometry_release(geometry);
+    free(g);
+    return status;
+}
+
+/// What microfacets need beside `light`, which has run.
+static void evaluate_facets(const glint_stages *stages, const glint_light_args *light, lane_group *g)
+{
+    glint_view_args view = { .group_count = 1, .hits = &g->hits, .facing = g->facing };
+    glint_facet_args facet = { .group_count = 1,
+                               .material = light->material,
+                               .materials = light->materials,
+                               .directional = true,
+                               .scale = 1,
+                               .sample_count = 1,
+                               .lit = { &g->lit },
+                               .sine2 = { g->sine2 },
+                               .schlick = { g->schlick } };
+    vec_copy(facet.position, light->position);
+    for (int c = 0; c < 3; c++) {
+        facet.point[c] = g->point[c];
+        facet.normal[c] = view.normal[c] = g->normal[c];
+        facet.direction[c] = view.direction[c] = g->direction[c];
+    }
+    stages->geometry[GLINT_DOUBLE].view(&view);
+    stages->geometry[GLINT_DOUBLE].facet(&facet);
+}
+
+static void evaluate_lane(const glint_stages *stages, const glint_material_desc *desc, const double to_light[3],
+                          lane_group *g)
+{
+    static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
+    glint_shade_material material;
+    glint_shade_material_init(&material, desc, black);
+    glint_light_args light = { .group_count = 1,
+                               .hits = &g->hits,
+                               .material = g->material,
+                               .materials = &material,
+                               .dark = &g->dark,
+                               .directional = true,
+                               .scale = 1,
+                               .sample_count = 1,
+                               .highlights = material.highlight && material.highlight != GLINT_HIGHLIGHT_FACETS,
+                               .lit = { &g->lit },
+                               .cosine = { g->cosine },
+                               .log2_specular = { g->log2_specular } };
+    vec_copy(light.position, to_light);
+    glint_shade_light strength = {
+        .lit = &g->lit, .cosine = g->cosine, .log2_specular = g->log2_specular, .sine2 = g->sine2, .schlick = g->schlick
+    };
+    vec_copy(strength.diffuse, white);
+    vec_copy(strength.specular, white);
+    glint_shade_args shade = { .group_count = 1,
+                               .active = &g->active,
+                               .hits = &g->hits,
+                               .material = g->material,
+                               .materials = &material,
+                               .facing = g->facing,
+                               .highlights = material.highlight,
+                               .first = true,
+                               .lights = &strength,
+                               .light_count = 1 };
+    for (int c = 0; c < 3; c++) {
+        light.point[c] = g->point[c];
+        light.normal[c] = g->normal[c];
+        light.direction[c] = g->direction[c];
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            shade.sum[k][c] = g->sum[k][c];
+    }
+    stages->geometry[GLINT_DOUBLE].light(&light);
+    if (material.highlight == GLINT_HIGHLIGHT_FACETS)
+        evaluate_facets(stages, &light, g);
+    stages->shade(&shade);
+}
+
+glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
+                                     const double to_eye[3], glint_reflection *out, glint_error *error)
+{
+    const glint_stages *stages;
+    glint_status status = glint_check_direction("normal", normal, error);
+    if (!status)
+        status = glint_check_direction("to_light", to_light, error);
+    if (!status)
+        status = glint_check_direction("to_eye", to_eye, error);
+    if (!status)
+        status = glint_choose_isa(NULL, &stages, error);
+    if (status)
+        return status;
+    double n[3], l[3], v[3];
+    vec_normalize(n, normal);
+    vec_normalize(l, to_light);
+    vec_normalize(v, to_eye);
+    const double turn = vec_dot(n, v) < 0 ? -1 : 1;
+    lane_group *g = glint_alloc(1, sizeof *g);
+    if (!g)
+        return glint_fail_nomem(error);
+    g->active = g->hits = 1;
+    for (int c = 0; c < 3; c++) {
+        g->normal[c][0] = n[c] * turn;
+        g->direction[c][0] = -v[c];
+    }
+    evaluate_lane(stages, &material->desc, l, g);
+    for (int c = 0; c < 3; c++) {
+        out->diffuse[c] = g->sum[GLINT_TERM_DIFFUSE][c][0];
+        out->specular[c] = g->sum[GLINT_TERM_SPECULAR][c][0];
+    }
+    free(g);
+    return GLINT_OK;
+}

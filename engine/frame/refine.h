@@ -1,0 +1,33 @@
+/// Adaptive sampling: which pixels of a picture of one sample each are worth all samples. Internal.
+///
+/// A frame with it is two: a base, of one sample in the middle of each pixel, and of the pixels chosen here the frame with
+/// all its samples. Each pixel has the bits of the one or of the other. The base is done before the choice begins, so that
+/// no pixel's neighbours depend on tiles, threads or what was kept.
+///
+/// Two of eight neighbours are both chosen where they show two objects, or one and nothing; where their normals are more
+/// than 25.8 degrees apart; or where the codes that they would be shown with differ, red, green and blue together, by more
+/// than the threshold: as POV-Ray's +A does, in shares of the code for white, sRGB.
+#ifndef GLINT_REFINE_H
+#define GLINT_REFINE_H
+
+#include "engine/base/pool.h"
+#include "engine/film/image.h"
+#include "engine/plan/plan.h"
+
+#define GLINT_REFINE_NORMAL 0.9f ///< cosine
+
+typedef struct glint_refine {
+    uint8_t *chosen; ///< a byte a pixel: whether it gets all samples
+    uint8_t *below; ///< likewise: chosen for the sake of the row before
+    size_t capacity; ///< of each
+    float *rows; ///< codes of two rows for each thread
+    size_t row_capacity; ///< of these
+    uint64_t count; ///< pixels chosen
+} glint_refine;
+
+/// Chooses. `base` was rendered as glint_plan_base describes. Any number of threads gives the same.
+glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, double threshold, glint_pool *pool,
+                                 glint_error *error);
+void glint_refine_clear(glint_refine *refine);
+
+#endif

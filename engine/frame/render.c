@@ -1,0 +1,484 @@
+/// A frame: its tiles on the worker pool, each walked through the plan's stages; progress and cancel.
+#include "engine/base/alloc.h"
+#include "engine/base/pool.h"
+#include "engine/base/status.h"
+#include "engine/film/image.h"
+#include "engine/film/tone.h"
+#include "engine/frame/outline.h"
+#include "engine/frame/refine.h"
+#include "engine/reuse/reuse.h"
+#include "engine/tile/tile.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/// Pictures whose memory a renderer holds on to, for a job with two in its queue: these, the one that is encoded and the one
+/// that is rendered. A fifth would be new memory and a whole picture to copy or make each time.
+#define GLINT_SPARE_IMAGES 4
+
+struct glint_renderer {
+    glint_pool *pool;
+    const glint_stages *stages;
+    bool time_stages, count_work;
+    atomic_bool cancelled;
+    atomic_bool *stop; ///< that; of a renderer of bases, that of its frames
+    atomic_size_t tiles_done;
+    atomic_size_t tile_count;
+    glint_tile **tiles; ///< a tile's working memory for each worker
+    glint_reuse reuse;
+    glint_sites_kept sites;
+    glint_scan scan;
+    glint_image *last; ///< the last frame, given again when nothing it reads changed
+    /// Pictures given before, whose memory is used again once nobody else holds them.
+    glint_image *spare[GLINT_SPARE_IMAGES];
+    glint_key last_key;
+    glint_frame_stats last_stats;
+    glint_refine refine;
+    /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
+    /// has it, and again after one that has not.
+    struct glint_renderer *base;
+    bool shares; ///< it is such a one
+};
+
+/// One call of glint_render.
+typedef struct frame {
+    glint_renderer *renderer;
+    glint_tile_frame shared;
+    uint32_t across;
+} frame;
+
+glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
+
+glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
+{
+    glint_renderer *renderer = calloc(1, sizeof *renderer);
+    if (!renderer)
+        return glint_fail_nomem(error);
+    renderer->stop = &renderer->cancelled;
+    renderer->time_stages = desc->time_stages;
+    renderer->count_work = desc->count_work;
+    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
+    glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
+    const int threads = desc->threads ? desc->threads : glint_pool_processors();
+    if (!status)
+        status = glint_pool_create(threads, &renderer->pool, error);
+    if (!status && !(renderer->tiles = calloc((size_t)threads, sizeof *renderer->tiles)))
+        status = glint_fail_nomem(error);
+    for (int i = 0; i < threads && !status; i++)
+        if (!(renderer->tiles[i] = glint_alloc(1, sizeof **renderer->tiles)))
+            status = glint_fail_nomem(error);
+    if (status) {
+        glint_renderer_destroy(renderer);
+        return status;
+    }
+    *out = renderer;
+    return GLINT_OK;
+}
+
+static void drop_spares(glint_renderer *renderer)
+{
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
+        if (renderer->spare[i] && renderer->reuse.on)
+            glint_reuse_unreserve(&renderer->reuse, glint_image_bytes(renderer->spare[i]));
+        glint_image_release(renderer->spare[i]);
+        renderer->spare[i] = NULL;
+    }
+}
+
+void glint_renderer_destroy(glint_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    glint_renderer_destroy(renderer->base);
+    glint_refine_clear(&renderer->refine);
+    for (int i = 0; !renderer->shares && renderer->tiles && i < glint_pool_threads(renderer->pool); i++)
+        glint_tile_destroy(renderer->tiles[i]);
+    if (!renderer->shares)
+        free(renderer->tiles);
+    drop_spares(renderer);
+    glint_sites_clear(&renderer->sites, &renderer->reuse);
+    glint_scan_clear(&renderer->scan);
+    glint_reuse_destroy(&renderer->reuse);
+    glint_image_release(renderer->last);
+    if (!renderer->shares)
+        glint_pool_destroy(renderer->pool);
+    free(renderer);
+}
+
+const char *glint_renderer_isa(const glint_renderer *renderer) { return renderer->stages->name; }
+
+int glint_renderer_threads(const glint_renderer *renderer) { return glint_pool_threads(renderer->pool); }
+
+void glint_renderer_cancel(glint_renderer *renderer) { atomic_store(&renderer->cancelled, true); }
+
+double glint_renderer_progress(const glint_renderer *renderer)
+{
+    const size_t count = atomic_load(&renderer->tile_count);
+    return count ? (double)atomic_load(&renderer->tiles_done) / (double)count : 0;
+}
+
+static void render_item(void *context, size_t index, int worker)
+{
+    frame *f = context;
+    glint_renderer *renderer = f->renderer;
+    if (!glint_tile_cancelled(&f->shared))
+        glint_tile_render(renderer->tiles[worker], &f->shared, (uint32_t)(index % f->across),
+                          (uint32_t)(index / f->across));
+    atomic_fetch_add(&renderer->tiles_done, 1);
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+/// A row of tiles is stamped by the stamps of its tiles.
+static void stamp_rows(glint_image *image, uint32_t across)
+{
+    for (size_t row = 0; image->codes && row < glint_image_stamps(image); row++) {
+        const glint_film_stamp *film = image->film + row * across;
+        glint_key key = { 0 };
+        bool known = true;
+        for (size_t x = 0; x < across; x++) {
+            known = known && film[x].codes;
+            key = glint_key_add(key, &film[x].codes, sizeof film[x].codes);
+        }
+        image->row_stamp[row] = known ? key.low : 0;
+    }
+}
+
+static void collect_stats(glint_renderer *renderer, const glint_plan *plan, double wall_ms, glint_frame_stats *stats)
+{
+    glint_tile_counts sum = { 0 };
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
+        const glint_tile_counts *part = &renderer->tiles[i]->counts;
+        for (int k = 0; k < GLINT_STAGE_COUNT; k++) {
+            sum.ns[k] += part->ns[k];
+            sum.runs[k] += part->runs[k];
+            sum.reuses[k] += part->reuses[k];
+        }
+        sum.tile_ns += part->tile_ns;
+        sum.primary += part->primary;
+        sum.shadow += part->shadow;
+        sum.work.tests += part->work.tests;
+        sum.work.light_samples += part->work.light_samples;
+        sum.work.powers += part->work.powers;
+        sum.work.sites += part->work.sites;
+        sum.work.lights_seen += part->work.lights_seen;
+        sum.work.overlaps += part->work.overlaps;
+        sum.mirror += part->mirror;
+        sum.refraction += part->refraction;
+        sum.indirect += part->indirect;
+        sum.clipped += part->clipped;
+        sum.nonfinite += part->nonfinite;
+    }
+    sum.reuses[GLINT_STAGE_VERTEX] += renderer->sites.ready;
+    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->scan.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
+    const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
+    *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
+    stats->rays = (glint_ray_counts) { .primary = sum.primary,
+                                       .shadow = sum.shadow,
+                                       .mirror = sum.mirror,
+                                       .refraction = sum.refraction,
+                                       .indirect = sum.indirect };
+    stats->work = sum.work;
+    stats->clipped = sum.clipped;
+    stats->nonfinite = sum.nonfinite;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        if (!plan->runs[id])
+            continue;
+        stats->stage_name[stats->stage_count] = glint_stage_names[id];
+        if (renderer->time_stages)
+            stats->stage_ms[stats->stage_count] = (double)sum.ns[id] * 1e-6;
+        const uint64_t calls = sum.runs[id] + sum.reuses[id];
+        stats->stage_reused[stats->stage_count++] =
+            calls ? (double)sum.reuses[id] / (double)calls : sum.reuses[GLINT_STAGE_CAST] > 0;
+    }
+}
+
+/// What needs all tiles.
+static void finish(glint_renderer *renderer, const glint_plan *plan, glint_image *image)
+{
+    glint_tile_counts *counts = &renderer->tiles[0]->counts;
+    if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(renderer->stop))
+        return;
+    const uint64_t start = glint_tile_now_ns();
+    glint_outline(plan->base ? plan->base : plan, renderer->pool, image);
+    counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
+    counts->runs[GLINT_STAGE_OUTLINE]++;
+}
+
+/// Whether some tile's hits are not there from an earlier frame.
+static bool casts(const glint_reuse *reuse, const glint_plan *plan)
+{
+    for (size_t i = 0; i < reuse->tile_count; i++)
+        if (!glint_key_equal(reuse->tiles[i].cast, plan->keys[GLINT_STAGE_CAST]))
+            return true;
+    return reuse->tile_count == 0;
+}
+
+/// What the frame's rays meet, and by which way what the eye sees is found.
+static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, glint_tile_frame *shared,
+                            size_t tile_count, glint_error *error)
+{
+    glint_geometry *geometry = plan->geometry;
+    glint_status status = plan->asks_index ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
+                                           : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
+    if (status)
+        return status;
+    if (shared->base) { // other pixels in every frame
+        glint_reuse_clear(&renderer->reuse);
+    } else {
+        glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
+        glint_reuse_begin(&renderer->reuse, plan, tile_count);
+    }
+    renderer->scan.ms = 0;
+    if (!plan->scan || !casts(&renderer->reuse, plan))
+        return GLINT_OK;
+    const double begin = now_ms();
+    status = glint_scan_begin(&renderer->scan, plan, &shared->geometry, renderer->pool, error);
+    renderer->scan.ms = now_ms() - begin;
+    if (!shared->geometry.nodes)
+        atomic_fetch_add(&geometry->index->frames_without, 1);
+    shared->scan = !status && renderer->scan.on ? &renderer->scan : NULL;
+    if (!status && !shared->scan)
+        status = glint_geometry_index(geometry, renderer->pool, &shared->geometry, error);
+    return status;
+}
+
+static bool has_format(const glint_image *image, const glint_render_desc *desc)
+{
+    uint32_t passes = 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
+    return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
+           image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
+           (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
+}
+
+/// `base`: of adaptive sampling, after the choice; else NULL.
+static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_image *image, const glint_image *base,
+                        const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
+{
+    frame f = { .renderer = renderer,
+                .shared = { .plan = plan,
+                            .stages = renderer->stages,
+                            .image = image,
+                            .last = renderer->last && has_format(renderer->last, &plan->desc) ? renderer->last : NULL,
+                            .tone_table = table,
+                            .gain = glint_tone_gain(&plan->desc.tone),
+                            .reuse = &renderer->reuse,
+                            .sites = &renderer->sites,
+                            .base = base,
+                            .refined = renderer->refine.chosen,
+                            .cancelled = renderer->stop,
+                            .time_stages = renderer->time_stages,
+                            .count_work = renderer->count_work } };
+    const double begin = now_ms();
+    f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
+    glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
+    if (image->film && (base || !renderer->reuse.tile_count)) // nobody signs what is put there
+        memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
+    if (!status)
+        status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
+    if (status)
+        return status;
+    if (renderer->reuse.tile_count && !image->film &&
+        !(image->film = calloc((size_t)f.across * down, sizeof *image->film)))
+        return glint_fail_nomem(error);
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
+        renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
+        if (!glint_tile_extend(renderer->tiles[i], plan))
+            return glint_fail_nomem(error);
+    }
+    atomic_store(&renderer->tiles_done, 0);
+    atomic_store(&renderer->tile_count, (size_t)f.across * down);
+    const double start = now_ms();
+    glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
+    finish(renderer, plan, image);
+    collect_stats(renderer, plan, now_ms() - start + renderer->scan.ms, stats);
+    stats->build_ms = start - begin - renderer->scan.ms;
+    if (atomic_load(renderer->stop))
+        return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
+    if (image->film)
+        stamp_rows(image, f.across);
+    return GLINT_OK;
+}
+
+/// The key of the whole picture.
+static glint_key picture_key(const glint_plan *plan)
+{
+    return plan->keys[plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE];
+}
+
+/// Gives the last picture again when this frame's would be the same.
+static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats)
+{
+    const glint_image *last = renderer->last;
+    if (!last || !last->codes != !plan->desc.codes || !glint_key_equal(renderer->last_key, picture_key(plan)))
+        return false;
+    *out = glint_image_retain(renderer->last);
+    if (stats) {
+        *stats = (glint_frame_stats) { .stage_count = renderer->last_stats.stage_count };
+        stats->clipped = renderer->last_stats.clipped;
+        stats->nonfinite = renderer->last_stats.nonfinite;
+        stats->refined = renderer->last_stats.refined;
+        for (int i = 0; i < stats->stage_count; i++) {
+            stats->stage_name[i] = renderer->last_stats.stage_name[i];
+            stats->stage_reused[i] = 1;
+        }
+    }
+    return true;
+}
+
+static void remember(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                     const glint_frame_stats *stats)
+{
+    bool within_budget = false;
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
+        within_budget = within_budget || renderer->spare[i] == image;
+    glint_image_release(renderer->last);
+    renderer->last = within_budget && renderer->reuse.on ? glint_image_retain(image) : NULL;
+    renderer->last_key = picture_key(plan);
+    renderer->last_stats = *stats;
+}
+
+/// A picture to render into: one given before that nobody else holds any more, or a new one.
+static glint_status take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
+                               glint_error *error)
+{
+    int free_slot = -1;
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++) {
+        glint_image *image = renderer->spare[i];
+        if (image && !has_format(image, desc)) {
+            drop_spares(renderer);
+            break;
+        }
+        if (image && atomic_load(&image->references) == 1) {
+            *out = glint_image_retain(image);
+            return GLINT_OK;
+        }
+    }
+    for (int i = 0; i < GLINT_SPARE_IMAGES; i++)
+        free_slot = renderer->spare[i] ? free_slot : i;
+    glint_status status = glint_image_create_for(desc, out, error);
+    if (!status && free_slot >= 0 &&
+        (!renderer->reuse.on || glint_reuse_reserve(&renderer->reuse, glint_image_bytes(*out))))
+        renderer->spare[free_slot] = glint_image_retain(*out);
+    return status;
+}
+
+// ---- Adaptive sampling ----
+
+/// A renderer that keeps its own, half of what may be kept, and shares the rest.
+static glint_status open_base(glint_renderer *renderer, glint_error *error)
+{
+    glint_renderer *base = renderer->base;
+    if (base)
+        return GLINT_OK;
+    base = calloc(1, sizeof *base);
+    if (!base)
+        return glint_fail_nomem(error);
+    base->shares = true;
+    base->pool = renderer->pool;
+    base->tiles = renderer->tiles;
+    base->stages = renderer->stages;
+    base->stop = renderer->stop;
+    base->time_stages = renderer->time_stages;
+    base->count_work = renderer->count_work;
+    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1);
+    renderer->base = base;
+    return GLINT_OK;
+}
+
+/// Adds what the base took, and the choice.
+static void add_stats(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
+{
+    const double pixels = plan->desc.width * plan->desc.height;
+    const double all = pixels + (double)to->refined * plan->desc.samples; // samples
+    to->build_ms += base->build_ms;
+    to->render_ms += base->render_ms + base->tone_ms;
+    to->rays.primary += base->rays.primary;
+    to->rays.shadow += base->rays.shadow;
+    to->rays.mirror += base->rays.mirror;
+    to->rays.refraction += base->rays.refraction;
+    to->rays.indirect += base->rays.indirect;
+    to->work.tests += base->work.tests;
+    to->work.light_samples += base->work.light_samples;
+    to->work.powers += base->work.powers;
+    to->work.sites += base->work.sites;
+    to->work.lights_seen += base->work.lights_seen;
+    for (int i = 0; i < to->stage_count; i++) {
+        if (to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
+            to->stage_ms[i] = choose_ms;
+        for (int k = 0; k < base->stage_count; k++) {
+            if (to->stage_name[i] != base->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
+                continue;
+            to->stage_ms[i] += base->stage_ms[k];
+            to->stage_reused[i] = base->stage_reused[k] * pixels / all;
+        }
+    }
+}
+
+/// The base of a frame, then the pixels that are worth it, then those.
+static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *plan, glint_image *image,
+                                 const glint_tone_table *table, glint_frame_stats *stats, glint_error *error)
+{
+    glint_image *base = NULL;
+    glint_frame_stats first;
+    glint_status status = open_base(renderer, error);
+    if (!status)
+        status = glint_render(renderer->base, plan->base, &base, &first, error);
+    if (status)
+        return status;
+    const double start = now_ms();
+    status = glint_refine_choose(&renderer->refine, base, plan->desc.adaptive, renderer->pool, error);
+    const double choose_ms = now_ms() - start;
+    if (!status)
+        status = run(renderer, plan, image, base, table, stats, error);
+    glint_image_release(base);
+    if (status)
+        return status;
+    stats->refined = renderer->refine.count;
+    add_stats(stats, &first, plan, renderer->time_stages ? choose_ms : 0);
+    stats->render_ms += choose_ms;
+    return GLINT_OK;
+}
+
+glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                          glint_error *error)
+{
+    const glint_render_desc *desc = &plan->desc;
+    glint_image *image = NULL;
+    const glint_tone_table *table = NULL;
+    glint_frame_stats counted;
+    if (atomic_load(renderer->stop))
+        return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
+    if (unchanged(renderer, plan, out, stats))
+        return GLINT_OK;
+    glint_status status = take_image(renderer, desc, &image, error);
+    if (!status && desc->codes)
+        status = glint_tone_table_shared(&desc->tone, &table, error);
+    if (!plan->base) {
+        glint_renderer_destroy(renderer->base);
+        renderer->base = NULL;
+    }
+    if (!status && plan->base)
+        status = run_adaptive(renderer, plan, image, table, &counted, error);
+    else if (!status)
+        status = run(renderer, plan, image, NULL, table, &counted, error);
+    if (status) {
+        glint_image_release(image);
+        return status;
+    }
+    remember(renderer, plan, image, &counted);
+    if (stats)
+        *stats = counted;
+    *out = image;
+    return GLINT_OK;
+}

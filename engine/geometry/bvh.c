@@ -1,0 +1,338 @@
+#include "engine/geometry/bvh.h"
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/geometry/bvh_split.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/// A subtree is left to a worker when it holds at most 1 / TASK_SHARE of all, and at least TASK_MIN boxes.
+#define TASK_SHARE 12
+#define TASK_MIN 2048
+
+/// Nodes in a row that grows. A child index counts from the row's start.
+typedef struct node_list {
+    glint_node *nodes; ///< owned
+    uint32_t count, capacity;
+} node_list;
+
+/// A subtree that a worker builds. Its first node has a place in the top, the others follow all that came before.
+typedef struct task {
+    glint_record_set set;
+    int depth; ///< nodes that a path may have in it
+    uint32_t at; ///< in the top
+    uint32_t base; ///< of its second node in the finished tree
+    node_list list;
+    bool failed;
+} task;
+
+typedef struct builder {
+    glint_records records;
+    node_list top;
+    task *tasks; ///< owned
+    size_t task_count, task_capacity;
+    uint32_t task_max; ///< boxes in a task; larger sets are split by all workers together
+    glint_node *nodes; ///< the finished tree
+} builder;
+
+/// What a node's slots become: sets of one node or more each, and sets whose records get a slot each.
+typedef struct node_plan {
+    glint_record_set sets[GLINT_NODE_WIDTH];
+    double area[GLINT_NODE_WIDTH];
+    bool open[GLINT_NODE_WIDTH]; ///< a slot for each record
+    uint32_t count;
+} node_plan;
+
+/// A node's slots in the order of its sets.
+typedef struct node_slots {
+    const glint_bounds *boxes[GLINT_NODE_WIDTH];
+    const glint_record_set *sets[GLINT_NODE_WIDTH]; ///< NULL: the box is a record
+    uint32_t count;
+} node_slots;
+
+/// Makes room for `count` more nodes; UINT32_MAX: out of memory, else the index of the first.
+static uint32_t nodes_add(node_list *list, uint32_t count)
+{
+    if (count > list->capacity - list->count) {
+        const uint32_t capacity = list->capacity + list->capacity / 2 + 16;
+        glint_node *nodes = realloc(list->nodes, (size_t)capacity * sizeof *nodes);
+        if (!nodes)
+            return UINT32_MAX;
+        list->nodes = nodes;
+        list->capacity = capacity;
+    }
+    list->count += count;
+    return list->count - count;
+}
+
+/// Half the area; nothing in float overflows a double's.
+static double half_area(const glint_bounds *box)
+{
+    double size[3];
+    for (int axis = 0; axis < 3; axis++)
+        size[axis] = (double)box->upper[axis] - box->lower[axis];
+    return size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+}
+
+/// Nodes on the longest path when `count` boxes are split by number.
+static int least_depth(uint32_t count)
+{
+    int depth = 1;
+    for (uint64_t held = GLINT_NODE_WIDTH; held < count; held *= GLINT_NODE_WIDTH)
+        depth++;
+    return depth;
+}
+
+/// The set to split next: the largest by area, or by number. plan->count: none is too large for one node.
+static uint32_t pick_set(const node_plan *plan, bool by_number)
+{
+    uint32_t best = plan->count;
+    for (uint32_t i = 0; i < plan->count; i++) {
+        if (plan->sets[i].count <= GLINT_NODE_WIDTH)
+            continue;
+        const bool same = best < plan->count && (by_number || plan->area[i] == plan->area[best]);
+        if (best == plan->count ||
+            (same ? plan->sets[i].count > plan->sets[best].count : plan->area[i] > plan->area[best]))
+            best = i;
+    }
+    return best;
+}
+
+/// Splits until every slot is taken or every set fits a node. depth: nodes that a path may have from here on.
+static void plan_sets(const builder *b, const glint_record_set *set, int depth, bool shared, node_plan *plan)
+{
+    const bool by_number = least_depth(set->count) >= depth;
+    plan->sets[0] = *set;
+    plan->area[0] = half_area(&set->box);
+    plan->count = 1;
+    uint32_t i;
+    while (plan->count < GLINT_NODE_WIDTH && (i = pick_set(plan, by_number)) < plan->count) {
+        glint_record_set *above = &plan->sets[plan->count];
+        if (by_number)
+            glint_records_halve(&b->records, &plan->sets[i], above);
+        else
+            glint_records_split(&b->records, &plan->sets[i], above, shared);
+        plan->area[i] = half_area(&plan->sets[i].box);
+        plan->area[plan->count] = half_area(&above->box);
+        plan->count++;
+    }
+}
+
+/// Free slots go to the records of small sets, which then need no node: the largest first.
+static void plan_open(node_plan *plan)
+{
+    uint32_t room = GLINT_NODE_WIDTH - plan->count;
+    for (uint32_t i = 0; i < plan->count; i++)
+        plan->open[i] = plan->sets[i].count == 1;
+    for (;;) {
+        uint32_t best = plan->count;
+        for (uint32_t i = 0; i < plan->count; i++)
+            if (!plan->open[i] && plan->sets[i].count - 1 <= room &&
+                (best == plan->count || plan->area[i] > plan->area[best]))
+                best = i;
+        if (best == plan->count)
+            return;
+        plan->open[best] = true;
+        room -= plan->sets[best].count - 1;
+    }
+}
+
+static int widest_axis(const glint_bounds *box)
+{
+    int widest = 0;
+    for (int axis = 1; axis < 3; axis++)
+        if ((double)box->upper[axis] - box->lower[axis] > (double)box->upper[widest] - box->lower[widest])
+            widest = axis;
+    return widest;
+}
+
+/// Returns how many of the slots are sets.
+static uint32_t plan_slots(const builder *b, const node_plan *plan, node_slots *slots)
+{
+    uint32_t count = 0, sets = 0;
+    for (uint32_t i = 0; i < plan->count; i++) {
+        const glint_record *records = glint_records_of(&b->records, &plan->sets[i]);
+        for (uint32_t k = 0; plan->open[i] && k < plan->sets[i].count; k++) {
+            slots->boxes[count] = &records[k];
+            slots->sets[count++] = NULL;
+        }
+        if (!plan->open[i]) {
+            slots->boxes[count] = &plan->sets[i].box;
+            slots->sets[count++] = &plan->sets[i];
+            sets++;
+        }
+    }
+    slots->count = count;
+    return sets;
+}
+
+/// Where each slot goes: by the centres along an axis, equal ones in the order they came.
+static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_NODE_WIDTH])
+{
+    typedef int32_t int4 __attribute__((vector_size(16)));
+    glint_float4 places[GLINT_NODE_WIDTH / 4];
+    for (uint32_t i = 0; i < GLINT_NODE_WIDTH; i++)
+        places[i / 4][i % 4] =
+            i < slots->count ? slots->boxes[i]->lower[axis] * 0.5f + slots->boxes[i]->upper[axis] * 0.5f : INFINITY;
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const float place = places[i / 4][i % 4];
+        int4 before = { 0 };
+        for (int32_t k = 0; k < GLINT_NODE_WIDTH / 4; k++) {
+            const int4 index = (int4) { 0, 1, 2, 3 } + 4 * k;
+            before -= (places[k] < place) | ((places[k] == place) & (index < (int32_t)i));
+        }
+        ranks[i] = (uint32_t)(before[0] + before[1] + before[2] + before[3]);
+    }
+}
+
+static uint32_t record_index(const glint_record *record)
+{
+    uint32_t index;
+    memcpy(&index, (const char *)&record->lower + 3 * sizeof(float), sizeof index);
+    return index;
+}
+
+static void fill_node(glint_node *node, const node_slots *slots, int axis, uint32_t child)
+{
+    uint32_t ranks[GLINT_NODE_WIDTH];
+    rank_slots(slots, axis, ranks);
+    for (uint32_t i = 0; i < slots->count; i++) {
+        const glint_bounds *box = slots->boxes[i];
+        for (int k = 0; k < 3; k++) {
+            node->lower[k][ranks[i]] = box->lower[k];
+            node->upper[k][ranks[i]] = box->upper[k];
+        }
+        node->child[ranks[i]] = slots->sets[i] ? child++ : GLINT_NODE_PRIM | record_index(box);
+    }
+    for (uint32_t i = slots->count; i < GLINT_NODE_WIDTH; i++) {
+        for (int k = 0; k < 3; k++) {
+            node->lower[k][i] = INFINITY;
+            node->upper[k][i] = -INFINITY;
+        }
+        node->child[i] = 0;
+    }
+}
+
+static bool add_task(builder *b, const glint_record_set *set, int depth, uint32_t at)
+{
+    if (b->task_count == b->task_capacity) {
+        const size_t capacity = 2 * b->task_capacity + 16;
+        task *tasks = realloc(b->tasks, capacity * sizeof *tasks);
+        if (!tasks)
+            return false;
+        b->tasks = tasks;
+        b->task_capacity = capacity;
+    }
+    b->tasks[b->task_count++] = (task) { .set = *set, .depth = depth, .at = at };
+    return true;
+}
+
+/// Builds the node of `set` at list->nodes[at] and all below it. In the top, what a worker can do becomes a task.
+/// False: out of memory.
+static bool build_node(builder *b, node_list *list, uint32_t at, const glint_record_set *set, int depth)
+{
+    const bool top = list == &b->top;
+    node_plan plan;
+    node_slots slots;
+    plan_sets(b, set, depth, top, &plan);
+    plan_open(&plan);
+    const uint32_t children = plan_slots(b, &plan, &slots);
+    uint32_t child = nodes_add(list, children);
+    if (child == UINT32_MAX)
+        return false;
+    fill_node(&list->nodes[at], &slots, widest_axis(&set->box), child);
+    for (uint32_t i = 0; i < slots.count; i++) {
+        const glint_record_set *below = slots.sets[i];
+        if (!below)
+            continue;
+        const bool is_task = top && below->count >= TASK_MIN && below->count <= b->task_max;
+        if (!(is_task ? add_task(b, below, depth - 1, child) : build_node(b, list, child, below, depth - 1)))
+            return false;
+        child++;
+    }
+    return true;
+}
+
+static void build_task(void *context, size_t index, int worker)
+{
+    (void)worker;
+    builder *b = context;
+    task *t = &b->tasks[index];
+    t->failed = nodes_add(&t->list, 1) == UINT32_MAX || !build_node(b, &t->list, 0, &t->set, t->depth);
+}
+
+/// Copies a task's nodes to where they stay.
+static void join_task(void *context, size_t index, int worker)
+{
+    (void)worker;
+    builder *b = context;
+    task *t = &b->tasks[index];
+    for (uint32_t i = 0; i < t->list.count; i++) {
+        glint_node *node = i ? &b->nodes[t->base + i - 1] : &b->nodes[t->at];
+        *node = t->list.nodes[i];
+        for (int k = 0; k < GLINT_NODE_WIDTH; k++)
+            if (node->child[k] && !(node->child[k] & GLINT_NODE_PRIM))
+                node->child[k] += t->base - 1;
+    }
+    free(t->list.nodes);
+    t->list.nodes = NULL;
+}
+
+static bool build_lists(builder *b, const glint_record_set *root)
+{
+    if (nodes_add(&b->top, 1) == UINT32_MAX || !build_node(b, &b->top, 0, root, GLINT_BVH_DEPTH))
+        return false;
+    glint_run_items(b->records.pool, b->task_count, build_task, b);
+    for (size_t i = 0; i < b->task_count; i++)
+        if (b->tasks[i].failed)
+            return false;
+    return true;
+}
+
+/// The top, then the rest of each task in order.
+static bool join(builder *b, glint_bvh *out)
+{
+    uint32_t count = b->top.count;
+    for (size_t i = 0; i < b->task_count; i++) {
+        b->tasks[i].base = count;
+        count += b->tasks[i].list.count - 1;
+    }
+    b->nodes = glint_alloc_large(count, sizeof *b->nodes);
+    if (!b->nodes)
+        return false;
+    memcpy(b->nodes, b->top.nodes, b->top.count * sizeof *b->nodes);
+    glint_run_items(b->records.pool, b->task_count, join_task, b);
+    *out = (glint_bvh) { b->nodes, count };
+    return true;
+}
+
+static void builder_free(builder *b)
+{
+    glint_records_free(&b->records);
+    for (size_t i = 0; i < b->task_count; i++)
+        free(b->tasks[i].list.nodes);
+    free(b->tasks);
+    free(b->top.nodes);
+}
+
+glint_status glint_bvh_build(const glint_box *boxes, uint32_t count, glint_pool *pool, glint_bvh *out,
+                             glint_error *error)
+{
+    if (count == 0) {
+        *out = (glint_bvh) { 0 };
+        return GLINT_OK;
+    }
+    builder b = { .task_max = count / TASK_SHARE };
+    glint_record_set root;
+    const bool built =
+        glint_records_init(&b.records, boxes, count, pool, &root) && build_lists(&b, &root) && join(&b, out);
+    builder_free(&b);
+    return built ? GLINT_OK : glint_fail_nomem(error);
+}
+
+void glint_bvh_free(glint_bvh *bvh)
+{
+    free(bvh->nodes);
+    *bvh = (glint_bvh) { 0 };
+}

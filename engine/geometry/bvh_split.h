@@ -1,0 +1,54 @@
+/// Splitting a set of boxes in two, for bvh.c. Internal to it.
+#ifndef GLINT_BVH_SPLIT_H
+#define GLINT_BVH_SPLIT_H
+
+#include "engine/base/pool.h"
+#include "engine/geometry/bvh.h"
+
+typedef float glint_float4 __attribute__((vector_size(16)));
+
+typedef struct glint_bounds {
+    glint_float4 lower, upper; ///< the fourth lane means nothing
+} glint_bounds;
+
+/// A box on its way into the tree. lower[3] holds the bits of its index.
+typedef glint_bounds glint_record;
+
+/// Records that lie side by side.
+typedef struct glint_record_set {
+    glint_bounds box; ///< of the boxes
+    glint_bounds center; ///< of their centres, which are halved so that no difference overflows
+    uint32_t begin, count; ///< in buffers[buffer]
+    uint32_t buffer;
+    uint32_t splits; ///< by place, on the way here from the root
+} glint_record_set;
+
+/// Every record is in one of two buffers: a split reads from one and writes to the other.
+typedef struct glint_records {
+    glint_record *buffers[2]; ///< owned
+    struct glint_chunk *chunks; ///< owned; scratch of splits that the pool shares
+    glint_pool *pool; ///< borrowed, may be NULL
+} glint_records;
+
+/// Copies boxes[0 .. count), count > 0, into records; `root` becomes the set of all. False: out of memory;
+/// glint_records_free frees what there is.
+bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t count, glint_pool *pool,
+                        glint_record_set *root);
+void glint_records_free(glint_records *records);
+
+/// Splits by place, where the surface area heuristic finds it cheapest, or by number where places do not differ; `set`
+/// becomes the lower part and `above` the other. set->count must be above GLINT_NODE_WIDTH. Either way has the same
+/// result; `shared` has the pool's workers do it, which pays for large sets.
+void glint_records_split(const glint_records *records, glint_record_set *set, glint_record_set *above, bool shared);
+/// Splits into halves by number: 16^k records into 16^k / 2 and no more.
+void glint_records_halve(const glint_records *records, glint_record_set *set, glint_record_set *above);
+
+/// Runs items on the pool's workers, or one after the other on the calling thread when there is no pool or one item.
+void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context);
+
+static inline const glint_record *glint_records_of(const glint_records *records, const glint_record_set *set)
+{
+    return records->buffers[set->buffer] + set->begin;
+}
+
+#endif

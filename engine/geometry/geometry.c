@@ -1,0 +1,458 @@
+#include "engine/geometry/geometry.h"
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- What is equal ----
+
+static float float_up(double x)
+{
+    const float f = (float)x;
+    return (double)f < x ? nextafterf(f, HUGE_VALF) : f;
+}
+
+static float float_down(double x) { return -float_up(-x); }
+
+/// Finds the primitives that are bit-equal to one before them.
+static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
+{
+    const uint32_t count = geometry->table.prim_count;
+    size_t size = 16, unlike = 0;
+    for (uint32_t i = 0; i < count; i++)
+        unlike += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
+    while (size < 2 * unlike)
+        size *= 2;
+    uint32_t *slots = calloc(size, sizeof *slots); // index + 1
+    geometry->repeats = calloc((size_t)count + 1, sizeof *geometry->repeats);
+    if (!slots || !geometry->repeats) {
+        free(slots);
+        return glint_fail_nomem(error);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        double place[GLINT_PLACE_MAX], other[GLINT_PLACE_MAX];
+        if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
+            continue; // has a rule for all triangles of its plane
+        const size_t bytes = (size_t)glint_prim_place(geometry, &geometry->prims[i], place) * sizeof *place;
+        size_t at = glint_key_add((glint_key) { 0 }, place, bytes).low & (size - 1);
+        for (; slots[at]; at = (at + 1) & (size - 1)) {
+            glint_prim_place(geometry, &geometry->prims[slots[at] - 1], other);
+            if (memcmp(place, other, bytes) == 0) // the kind comes first: other counts differ there
+                break;
+        }
+        if (slots[at])
+            geometry->repeats[i] = true;
+        else
+            slots[at] = i + 1;
+    }
+    free(slots);
+    return GLINT_OK;
+}
+
+/// Keys of where the primitives are, and of what they look like.
+static void make_keys(glint_geometry *geometry)
+{
+    enum { CHUNK = 32 };
+    size_t smooth = 0, sited = 0;
+    for (uint32_t i = 0; i < geometry->table.prim_count; i += CHUNK) {
+        double place[CHUNK * GLINT_PLACE_MAX];
+        uint32_t look[CHUNK][2], n = 0;
+        size_t numbers = 0;
+        for (; n < CHUNK && i + n < geometry->table.prim_count; n++) {
+            const glint_prim *prim = &geometry->prims[i + n];
+            numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
+            const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
+            const bool sites = triangle && prim->sites != GLINT_MISS;
+            const uint32_t *part =
+                geometry->prim_part + i + n; // where a mesh follows another, the places do not say it
+            const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
+            look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (sites ? 4u : 0) | (other ? 8u : 0);
+            look[n][1] = prim->material;
+            smooth += !flat;
+            sited += sites;
+        }
+        geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
+        geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
+    }
+    geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
+    if (sited)
+        geometry->look = glint_key_add(geometry->look, geometry->sites, sited * sizeof *geometry->sites);
+}
+
+// ---- The index's frame ----
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/// Around the middle of what there is (the median, so that one giant does not draw it away), in units of the largest
+/// length: floats lose least there.
+static void choose_frame(glint_geometry *geometry)
+{
+    enum { SAMPLES = 255 };
+    glint_geometry_table *table = &geometry->table;
+    const uint32_t count = table->prim_count, step = count / SAMPLES + 1;
+    for (int c = 0; c < 3; c++) {
+        double sample[SAMPLES + 1] = { 0 };
+        size_t n = 0;
+        for (uint32_t i = 0; i < count; i += step)
+            sample[n++] = geometry->prims[i].center[c]; // of a triangle, a corner
+        qsort(sample, n, sizeof *sample, by_value);
+        table->reference[c] = n ? sample[n / 2] : 0;
+    }
+    double largest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_prim *prim = &geometry->prims[i];
+        double lower[3], upper[3];
+        if (!glint_prim_bounded(prim)) {
+            table->extent = fmax(table->extent, vec_max_abs(prim->center));
+            continue;
+        }
+        glint_prim_bounds(table->solids, prim, lower, upper);
+        table->extent = fmax(table->extent, fmax(vec_max_abs(lower), vec_max_abs(upper)));
+        vec_sub(lower, lower, table->reference);
+        vec_sub(upper, upper, table->reference);
+        largest = fmax(largest, fmax(vec_max_abs(lower), vec_max_abs(upper)));
+    }
+    table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
+}
+
+/// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
+#define BOX_MAX 0x1p120
+
+/// Its box, and a sphere around it: its own, or that of the box.
+static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
+{
+    double lower[3], upper[3], center[3], half[3];
+    glint_prim_bounds(table->solids, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        half[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : 0.5 * upper[c] - 0.5 * lower[c];
+        center[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->center[c] : 0.5 * upper[c] + 0.5 * lower[c];
+        center[c] = (center[c] - table->reference[c]) * table->scale;
+        half[c] *= table->scale;
+        // of a solid, what its inverse and it differ by
+        const double slack =
+            0x1p-50 * (fabs(center[c]) + half[c]) + (prim->kind == GLINT_PRIM_SOLID ? 0x1p-30 * half[c] : 0);
+        prim->filter_center[c] = (float)center[c];
+        box->lower[c] = float_down(fmax(center[c] - half[c] - slack, -BOX_MAX));
+        box->upper[c] = float_up(fmin(center[c] + half[c] + slack, BOX_MAX));
+    }
+    const double radius = prim->kind == GLINT_PRIM_SPHERE ? half[0] : sqrt(vec_dot(half, half));
+    prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(center, center)) + FLT_MIN);
+}
+
+static glint_status index_create(glint_geometry *geometry, glint_error *error)
+{
+    const uint32_t count = geometry->table.prim_count;
+    glint_index *index = geometry->index = calloc(1, sizeof *index);
+    geometry->unbounded = glint_alloc(count, sizeof *geometry->unbounded);
+    if (!index || !geometry->unbounded)
+        return glint_fail_nomem(error);
+    atomic_init(&index->references, 1);
+    pthread_mutex_init(&index->lock, NULL);
+    index->boxes = malloc((count + 1) * sizeof *index->boxes);
+    index->bounded = malloc((count + 1) * sizeof *index->bounded);
+    if (!index->boxes || !index->bounded)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < count; i++) {
+        glint_prim *prim = &geometry->prims[i];
+        prim->filter_bound = HUGE_VALF;
+        if (geometry->repeats[i])
+            continue; // the first of equal ones wins every tie and casts every shadow
+        if (glint_prim_bounded(prim)) {
+            place_in_frame(&geometry->table, prim, &index->boxes[index->box_count]);
+            index->bounded[index->box_count++] = i;
+        } else {
+            geometry->unbounded[geometry->table.unbounded_count++] = i;
+        }
+    }
+    geometry->table.unbounded = geometry->unbounded;
+    free(geometry->repeats);
+    geometry->repeats = NULL;
+    return GLINT_OK;
+}
+
+static void index_release(glint_index *index)
+{
+    if (!index || atomic_fetch_sub(&index->references, 1) > 1)
+        return;
+    glint_bvh_free(&index->bvh);
+    free(index->boxes);
+    free(index->bounded);
+    free(index->order);
+    pthread_mutex_destroy(&index->lock);
+    free(index);
+}
+
+/// Numbers the primitives in the order in which the tree's nodes name them, and has the nodes say so.
+static void order_by_tree(glint_index *index)
+{
+    uint32_t next = 0;
+    for (uint32_t n = 0; n < index->bvh.node_count; n++) {
+        glint_node *node = &index->bvh.nodes[n];
+        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
+            if (!(node->lower[0][i] <= node->upper[0][i]) || !(node->child[i] & GLINT_NODE_PRIM))
+                continue;
+            index->order[next] = index->bounded[node->child[i] & ~GLINT_NODE_PRIM];
+            node->child[i] = GLINT_NODE_PRIM | next++;
+        }
+    }
+}
+
+static glint_status make_order(glint_index *index, glint_error *error)
+{
+    index->order = malloc((index->box_count + 1) * sizeof *index->order);
+    if (!index->order)
+        return glint_fail_nomem(error);
+    memcpy(index->order, index->bounded, index->box_count * sizeof *index->order);
+    return GLINT_OK;
+}
+
+/// The order is the tree's, unless there has been need of one before.
+static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+{
+    const bool free_order = !index->order;
+    glint_status status = free_order ? make_order(index, error) : GLINT_OK;
+    if (!status)
+        status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
+    if (status) {
+        if (free_order)
+            free(index->order);
+        index->order = free_order ? NULL : index->order;
+        return status;
+    }
+    if (free_order)
+        order_by_tree(index);
+    free(index->boxes);
+    free(index->bounded);
+    index->boxes = NULL;
+    index->bounded = NULL;
+    index->built = true;
+    return GLINT_OK;
+}
+
+typedef struct arranging {
+    const glint_index *index;
+    const glint_prim *from;
+    glint_prim *to;
+} arranging;
+
+#define ARRANGE_CHUNK 16384u
+
+static void arrange_chunk(void *context, size_t chunk, int worker)
+{
+    const arranging *a = context;
+    const uint32_t from = (uint32_t)chunk * ARRANGE_CHUNK, rest = a->index->box_count - from;
+    (void)worker;
+    for (uint32_t i = from; i < from + (rest < ARRANGE_CHUNK ? rest : ARRANGE_CHUNK); i++)
+        a->to[i] = a->from[a->index->order[i]];
+}
+
+/// Where each id is among those in the order of the index.
+static bool find_places(glint_geometry *geometry, const glint_prim *arranged, uint32_t count)
+{
+    geometry->places = glint_alloc(geometry->table.prim_count, sizeof *geometry->places);
+    if (!geometry->places)
+        return false;
+    for (uint32_t i = 0; i < count; i++)
+        geometry->places[arranged[i].id] = i;
+    return true;
+}
+
+/// Puts the primitives into the order of the index, those without an end last.
+static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_error *error)
+{
+    const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
+    arranging a = { geometry->index, geometry->prims, glint_alloc_large(count, sizeof *geometry->prims) };
+    if (!a.to)
+        return glint_fail_nomem(error);
+    const size_t chunks = (bounded + ARRANGE_CHUNK - 1) / ARRANGE_CHUNK;
+    if (pool && chunks > 1)
+        glint_pool_run(pool, chunks, arrange_chunk, &a);
+    else
+        for (size_t i = 0; i < chunks; i++)
+            arrange_chunk(&a, i, 0);
+    if (geometry->sites && !find_places(geometry, a.to, bounded)) {
+        free(a.to);
+        return glint_fail_nomem(error);
+    }
+    for (uint32_t i = 0; i < geometry->table.unbounded_count; i++) {
+        a.to[bounded + i] = geometry->prims[geometry->unbounded[i]];
+        geometry->unbounded[i] = bounded + i;
+    }
+    free(geometry->prims);
+    geometry->table.prims = geometry->prims = a.to;
+    geometry->table.prim_count = bounded + geometry->table.unbounded_count;
+    geometry->arranged = true;
+    return GLINT_OK;
+}
+
+glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                  glint_error *error)
+{
+    glint_index *index = geometry->index;
+    pthread_mutex_lock(&index->lock);
+    glint_status status = index->built ? GLINT_OK : index_build(index, pool, error);
+    if (!status && !geometry->arranged)
+        status = arrange(geometry, pool, error);
+    *table = geometry->table;
+    table->nodes = index->bvh.nodes;
+    pthread_mutex_unlock(&index->lock);
+    return status;
+}
+
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                    glint_error *error)
+{
+    glint_index *index = geometry->index;
+    pthread_mutex_lock(&index->lock);
+    glint_status status = GLINT_OK;
+    if (!index->order) {
+        status = make_order(index, error);
+        index->plain = !status;
+    }
+    if (!status && !geometry->arranged)
+        status = arrange(geometry, pool, error);
+    *table = geometry->table;
+    table->nodes = index->bvh.nodes;
+    pthread_mutex_unlock(&index->lock);
+    return status;
+}
+
+/// A tree of what is neither triangle nor plane. `list`, `boxes`: room for all of it.
+static glint_status build_others(glint_geometry *geometry, uint32_t *list, glint_box *boxes, glint_pool *pool,
+                                 glint_error *error)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < geometry->index->box_count; i++) {
+        glint_prim prim = geometry->prims[i];
+        if (prim.kind == GLINT_PRIM_TRIANGLE)
+            continue;
+        place_in_frame(&geometry->table, &prim, &boxes[count]);
+        list[count++] = i;
+    }
+    glint_status status = count ? glint_bvh_build(boxes, count, pool, &geometry->others, error) : GLINT_OK;
+    for (uint32_t n = 0; n < geometry->others.node_count && !status; n++)
+        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
+            glint_node *node = &geometry->others.nodes[n];
+            if (node->lower[0][i] <= node->upper[0][i] && node->child[i] & GLINT_NODE_PRIM)
+                node->child[i] = GLINT_NODE_PRIM | list[node->child[i] & ~GLINT_NODE_PRIM];
+        }
+    geometry->has_others = !status;
+    return status;
+}
+
+glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
+                                   glint_error *error)
+{
+    pthread_mutex_lock(&geometry->index->lock);
+    glint_status status = GLINT_OK;
+    if (!geometry->has_others) {
+        const uint32_t most = geometry->table.prim_count - geometry->triangle_count;
+        uint32_t *list = malloc((most + 1) * sizeof *list);
+        glint_box *boxes = malloc((most + 1) * sizeof *boxes);
+        status = list && boxes ? build_others(geometry, list, boxes, pool, error) : glint_fail_nomem(error);
+        free(list);
+        free(boxes);
+    }
+    *table = geometry->table;
+    table->nodes = geometry->others.nodes;
+    *any = table->nodes || table->unbounded_count > 0;
+    pthread_mutex_unlock(&geometry->index->lock);
+    return status;
+}
+
+// ---- The scene's ----
+
+glint_geometry *glint_geometry_retain(glint_geometry *geometry)
+{
+    atomic_fetch_add(&geometry->references, 1);
+    return geometry;
+}
+
+void glint_geometry_release(glint_geometry *geometry)
+{
+    if (!geometry || atomic_fetch_sub(&geometry->references, 1) > 1)
+        return;
+    index_release(geometry->index);
+    glint_bvh_free(&geometry->others);
+    glint_list_free(&geometry->materials);
+    free(geometry->prims);
+    free(geometry->prim_part);
+    free(geometry->repeats);
+    free(geometry->parts);
+    free(geometry->normals);
+    free(geometry->solids);
+    free(geometry->unbounded);
+    free(geometry->sites);
+    free(geometry->site_prims);
+    free(geometry->places);
+    free(geometry);
+}
+
+static glint_status fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
+{
+    const glint_geometry *last = scene->geometry;
+    glint_status status = glint_geometry_fill(geometry, scene, error);
+    if (!status)
+        status = find_repeats(geometry, error);
+    if (status)
+        return status;
+    geometry->id_count = geometry->table.prim_count;
+    make_keys(geometry);
+    choose_frame(geometry);
+    status = index_create(geometry, error);
+    if (!status && last && glint_key_equal(last->where, geometry->where)) {
+        index_release(geometry->index);
+        geometry->index = last->index;
+        atomic_fetch_add(&geometry->index->references, 1);
+    }
+    return status;
+}
+
+uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
+{
+    const glint_part *part = &geometry->parts[geometry->prim_part[id]];
+    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim);
+}
+
+/// Every change of a shape gives it a number that no other state of any shape has.
+static glint_key revision_of(const glint_scene *scene)
+{
+    enum { CHUNK = 64 };
+    glint_key key = { 0 };
+    for (size_t i = 0; i < scene->shapes.count; i += CHUNK) {
+        uint64_t revision[CHUNK];
+        size_t n = 0;
+        for (; n < CHUNK && i + n < scene->shapes.count; n++)
+            revision[n] = glint_shape_revision(glint_scene_shape(scene, i + n));
+        key = glint_key_add(key, revision, n * sizeof *revision);
+    }
+    return key;
+}
+
+glint_status glint_geometry_of(const glint_scene *scene, glint_geometry **out, glint_error *error)
+{
+    const glint_key revision = revision_of(scene);
+    if (!scene->geometry || !glint_key_equal(scene->geometry->revision, revision)) {
+        glint_geometry *geometry = calloc(1, sizeof *geometry);
+        if (!geometry)
+            return glint_fail_nomem(error);
+        atomic_init(&geometry->references, 1);
+        geometry->revision = revision;
+        glint_status status = fill(geometry, scene, error);
+        if (status) {
+            glint_geometry_release(geometry);
+            return status;
+        }
+        glint_geometry_release(scene->geometry);
+        ((glint_scene *)scene)->geometry = geometry; // a cache: nobody sees it
+    }
+    *out = glint_geometry_retain(scene->geometry);
+    return GLINT_OK;
+}

@@ -1,0 +1,86 @@
+/// Everything rays meet, in one table: made from a scene's shapes, kept with the scene until a shape changes, shared by
+/// the plans made meanwhile. Internal.
+#ifndef GLINT_GEOMETRY_H
+#define GLINT_GEOMETRY_H
+
+#include "engine/base/hash.h"
+#include "engine/geometry/bvh.h"
+#include "engine/scene/objects.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+/// The index, which outlives a change of materials.
+typedef struct glint_index {
+    atomic_size_t references;
+    pthread_mutex_t lock; ///< over the building
+    bool built;
+    glint_box *boxes; ///< of the bounded primitives, until the index is built
+    uint32_t *bounded; ///< the primitive of each box, likewise
+    uint32_t box_count;
+    uint32_t *order; ///< the primitive in each place, once arranged: the tree's order
+    bool plain; ///< that of definition: the tree was not there yet
+    atomic_uint frames_without; ///< that were scanned while there was no tree
+    glint_bvh bvh;
+} glint_index;
+
+/// A shape's run of primitives; as many as there are groups that show it.
+typedef struct glint_part {
+    glint_shape *shape; ///< the scene's
+    uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
+} glint_part;
+
+struct glint_geometry {
+    atomic_size_t references;
+    glint_key revision; ///< of the shapes it was made from
+    glint_prim *prims; ///< in order of definition, and in that of the index once it is built
+    bool arranged; ///< the latter
+    uint32_t *prim_part; ///< which part each is of, by id
+    bool *repeats; ///< which are bit-equal to one before, by id; until the index is made
+    glint_part *parts; ///< in order of definition
+    uint32_t part_count;
+    glint_corner_normals *normals; ///< of triangles that are shaded smoothly
+    glint_sites *sites; ///< of triangles whose light is worked out at sites
+    uint32_t *site_prims; ///< id of the first triangle of each site
+    uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
+    glint_solid *solids;
+    uint32_t *unbounded;
+    glint_list materials; ///< in order of first use; the scene's shapes own them
+    glint_index *index;
+    glint_bvh others; ///< of what is neither triangle nor plane, once asked for
+    bool has_others; ///< it has been asked for
+    uint32_t triangle_count;
+    uint32_t id_count; ///< primitives that were described, repeats included
+    glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
+    glint_key where, look; ///< of the places; of materials and sides
+};
+
+/// The scene's geometry, from the last plan where no shape has changed since. The caller owns a reference.
+glint_status glint_geometry_of(const glint_scene *scene, glint_geometry **out, glint_error *error);
+glint_geometry *glint_geometry_retain(glint_geometry *geometry);
+
+/// Builds the index unless it is there. Any thread; `pool` may be NULL. *table: with the index.
+glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                  glint_error *error);
+/// The same for who does not ask the index: it is not built, and *table is without it unless it is there. The order of the
+/// primitives is that of the first of these two calls, and stays.
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
+                                    glint_error *error);
+/// An arranged geometry without its triangles: *table, with an index of the rest alone. *any: there is something.
+glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
+                                   glint_error *error);
+
+/// The number of a primitive's object in order of definition, from 0: a mesh is one object, a sphere of many is one.
+uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
+
+/// geometry/prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
+glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
+/// All that a primitive's place is made of. Returns how many numbers.
+enum { GLINT_PLACE_MAX = 14 };
+int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX]);
+/// A box around a primitive that has an end.
+void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3]);
+
+static inline bool glint_prim_bounded(const glint_prim *prim) { return prim->kind != GLINT_PRIM_PLANE; }
+
+#endif

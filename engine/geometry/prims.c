@@ -1,0 +1,451 @@
+/// From shapes to primitives.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/geometry/geometry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- One primitive ----
+
+static void sphere_init(glint_prim *prim, const double center[3], double radius)
+{
+    prim->kind = GLINT_PRIM_SPHERE;
+    for (int c = 0; c < 3; c++)
+        prim->center[c] = center[c] + 0.0; // -0 and 0 are one place
+    prim->radius = radius;
+    prim->scale = power_of_two_scale(radius);
+    const double r = radius * prim->scale;
+    prim->r2 = r * r;
+    prim->r2_low = fma(r, r, -prim->r2);
+}
+
+static void plane_init(glint_prim *prim, const double point[3], const double normal[3])
+{
+    prim->kind = GLINT_PRIM_PLANE;
+    for (int c = 0; c < 3; c++)
+        prim->center[c] = point[c] + 0.0;
+    vec_normalize(prim->normal, normal);
+    prim->scale = 1;
+}
+
+int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX])
+{
+    out[0] = prim->kind;
+    if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        memcpy(out + 1, prim->corner, sizeof prim->corner);
+        return 10;
+    }
+    vec_copy(out + 1, prim->center);
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        const glint_solid *solid = &geometry->solids[prim->item];
+        out[4] = solid->form;
+        memcpy(out + 5, solid->inverse, sizeof solid->inverse);
+        return 14;
+    }
+    vec_copy(out + 4, prim->normal);
+    out[7] = prim->radius;
+    return 8;
+}
+
+static void solid_bounds(const glint_solid *solid, const double center[3], double lower[3], double upper[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double *m = solid->forward[c], round = sqrt(m[0] * m[0] + m[1] * m[1]);
+        double low = -round, high = round; // a disk, and what the others have across
+        if (solid->form == GLINT_FORM_BALL)
+            high = sqrt(vec_dot(m, m));
+        else if (solid->form == GLINT_FORM_BOX)
+            high = (fabs(m[0]) + fabs(m[1])) + fabs(m[2]);
+        else if (solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE)
+            high = round + fabs(m[2]);
+        if (solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL) {
+            low = fmin(0, m[2] - round);
+            high = fmax(0, m[2] + round);
+        } else {
+            low = -high;
+        }
+        lower[c] = center[c] + low;
+        upper[c] = center[c] + high;
+    }
+}
+
+void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3])
+{
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        solid_bounds(&solids[prim->item], prim->center, lower, upper);
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        lower[c] = prim->center[c] - prim->radius;
+        upper[c] = prim->center[c] + prim->radius;
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            lower[c] = fmin(prim->corner[0][c], fmin(prim->corner[1][c], prim->corner[2][c]));
+            upper[c] = fmax(prim->corner[0][c], fmax(prim->corner[1][c], prim->corner[2][c]));
+        }
+    }
+}
+
+// ---- Solids: a unit shape, and the map that makes it the one described ----
+
+/// Two unit vectors across a unit one (Duff et al., JCGT 6(1) 2017).
+static void basis(const double n[3], double x[3], double y[3])
+{
+    const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    x[0] = 1 + sign * n[0] * n[0] * a, x[1] = sign * b, x[2] = -sign * n[0];
+    y[0] = b, y[1] = sign + n[1] * n[1] * a, y[2] = -n[1];
+}
+
+/// x and y across `along`, of length `radius`; z is `along`.
+static void round_map(double m[3][4], const double origin[3], const double along[3], double radius)
+{
+    double n[3], x[3], y[3];
+    vec_normalize(n, along);
+    basis(n, x, y);
+    for (int c = 0; c < 3; c++) {
+        m[c][0] = radius * x[c];
+        m[c][1] = radius * y[c];
+        m[c][2] = along[c];
+        m[c][3] = origin[c];
+    }
+}
+
+static glint_form form_of(const glint_shape_desc *desc)
+{
+    switch (desc->kind) {
+    case GLINT_SHAPE_BOX:
+        return GLINT_FORM_BOX;
+    case GLINT_SHAPE_DISK:
+        return GLINT_FORM_DISK;
+    case GLINT_SHAPE_CYLINDER:
+        return desc->capped ? GLINT_FORM_CYLINDER : GLINT_FORM_TUBE;
+    case GLINT_SHAPE_CONE:
+        return desc->capped ? GLINT_FORM_CONE : GLINT_FORM_FUNNEL;
+    default:
+        return GLINT_FORM_BALL;
+    }
+}
+
+/// The map from the unit shape.
+static glint_transform unit_map(const glint_shape_desc *desc)
+{
+    glint_transform map = glint_transform_identity();
+    double middle[3], along[3];
+    for (int c = 0; c < 3; c++) {
+        middle[c] = 0.5 * desc->base[c] + 0.5 * desc->top[c];
+        along[c] = 0.5 * desc->top[c] - 0.5 * desc->base[c];
+    }
+    if (desc->kind == GLINT_SHAPE_CYLINDER) {
+        round_map(map.m, middle, along, desc->radius);
+    } else if (desc->kind == GLINT_SHAPE_CONE) {
+        vec_sub(along, desc->base, desc->top);
+        round_map(map.m, desc->top, along, desc->radius);
+    } else if (desc->kind == GLINT_SHAPE_DISK) {
+        vec_normalize(along, desc->normal);
+        round_map(map.m, desc->center, along, desc->radius);
+    } else {
+        for (int c = 0; c < 3; c++) {
+            const bool box = desc->kind == GLINT_SHAPE_BOX;
+            map.m[c][c] = box ? 0.5 * desc->max[c] - 0.5 * desc->min[c] : desc->radius;
+            map.m[c][3] = box ? 0.5 * desc->max[c] + 0.5 * desc->min[c] : desc->center[c];
+        }
+    }
+    return map;
+}
+
+static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *map)
+{
+    double cofactors[3][3], scaled[3][3], largest = 0;
+    prim->kind = GLINT_PRIM_SOLID;
+    solid->form = form;
+    glint_transform_linear(map, solid->forward);
+    for (int c = 0; c < 3; c++) {
+        prim->center[c] = map->m[c][3] + 0.0;
+        largest = fmax(largest, vec_max_abs(solid->forward[c]));
+    }
+    const double scale = power_of_two_scale(largest);
+    for (int c = 0; c < 3; c++)
+        vec_scale(scaled[c], solid->forward[c], scale);
+    const double determinant = glint_linear_cofactors(scaled, cofactors);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            solid->inverse[i][j] = cofactors[j][i] / determinant * scale;
+}
+
+// ---- All of a scene ----
+
+typedef struct filler {
+    glint_geometry *geometry;
+    uint32_t *numbers; ///< of the materials of the shape at hand
+    uint32_t object_count;
+    size_t prims, parts, smooth, sited, sites, solids, materials; ///< how many there are; materials: most of any shape
+    size_t visits;
+    uint32_t normal_count, sited_count, solid_count;
+    glint_error *error;
+} filler;
+
+/// A shape where it stands: the map of all groups around it, NULL where there is none but the identity.
+typedef struct placing {
+    const glint_transform *map;
+    double cofactors[3][3], determinant; ///< of it
+} placing;
+
+static void place_normal(const placing *place, const double n[3], double out[3])
+{
+    double turned[3] = { n[0], n[1], n[2] };
+    for (int c = 0; c < 3 && place->map; c++)
+        turned[c] = vec_dot(place->cofactors[c], n) * (place->determinant < 0 ? -1 : 1);
+    if (place->map && vec_max_abs(turned) > 0)
+        vec_normalize(turned, turned);
+    vec_copy(out, turned);
+}
+
+static void place_point(const placing *place, const double p[3], double out[3])
+{
+    if (place->map)
+        glint_transform_point(place->map, p, out);
+    else
+        vec_copy(out, p);
+    for (int c = 0; c < 3; c++)
+        out[c] += 0.0;
+}
+
+/// The number of the shape's material in `materials`, which grows as new ones appear.
+static glint_status material_number(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error)
+{
+    size_t index = glint_list_find(materials, material);
+    glint_status status = GLINT_OK;
+    if (index == materials->count)
+        status = glint_list_add(materials, material, error);
+    *out = (uint32_t)index;
+    return status;
+}
+
+static bool is_smooth(const glint_shape *shape)
+{
+    return shape->mesh && (shape->desc.shading == GLINT_SHADING_PHONG || shape->desc.shading == GLINT_SHADING_GOURAUD);
+}
+
+static bool is_sited(const glint_shape *shape)
+{
+    return shape->mesh && (shape->desc.shading == GLINT_SHADING_FLAT || shape->desc.shading == GLINT_SHADING_GOURAUD);
+}
+
+/// How many sites a shape has each time it shows.
+static size_t count_sites(const glint_shape *shape)
+{
+    if (!is_sited(shape))
+        return 0;
+    return shape->desc.shading == GLINT_SHADING_FLAT ? shape->mesh->face_count : shape->mesh->site_count;
+}
+
+/// The site of corner j of triangle i, from the shape's first.
+static uint32_t site_of(const glint_shape *shape, size_t i, int j)
+{
+    const glint_mesh *mesh = shape->mesh;
+    if (shape->desc.shading == GLINT_SHADING_FLAT)
+        return mesh->faces ? mesh->faces[i] : (uint32_t)i;
+    return (mesh->sites ? mesh->sites : mesh->triangles)[i][j];
+}
+
+static void name_site(glint_geometry *geometry, const glint_prim *prim, int j, uint32_t site)
+{
+    geometry->sites[prim->sites].at[j] = site;
+    if (prim->id < geometry->site_prims[site])
+        geometry->site_prims[site] = prim->id;
+}
+
+/// A mirrored triangle's corners are taken the other way round: its front stays its front.
+static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const placing *place)
+{
+    const glint_mesh *mesh = shape->mesh;
+    const bool mirrored = place->map && place->determinant < 0;
+    const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
+    prim->kind = GLINT_PRIM_TRIANGLE;
+    prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
+    prim->sites = is_sited(shape) ? f->sited_count++ : GLINT_MISS;
+    for (int j = 0; j < 3; j++) {
+        const int from = mirrored ? (3 - j) % 3 : j;
+        place_point(place, mesh->vertices[at[from]], prim->corner[j]);
+        if (prim->item != GLINT_MISS)
+            place_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
+        if (prim->sites != GLINT_MISS)
+            name_site(f->geometry, prim, j, f->geometry->table.site_count + site_of(shape, i, from));
+    }
+}
+
+/// A ball stays a sphere where the map keeps angles.
+static void add_ball(filler *f, glint_prim *prim, const double center[3], double radius, const placing *place)
+{
+    double factor = 1, moved[3];
+    if (!place->map || glint_transform_similar(place->map, &factor)) {
+        place_point(place, center, moved);
+        sphere_init(prim, moved, radius * factor);
+        return;
+    }
+    glint_shape_desc desc = { .kind = GLINT_SHAPE_SPHERE, .radius = radius };
+    vec_copy(desc.center, center);
+    const glint_transform unit = unit_map(&desc), map = glint_transform_product(place->map, &unit);
+    prim->item = f->solid_count++;
+    solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &map);
+}
+
+static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc, const placing *place)
+{
+    glint_transform map = unit_map(desc);
+    if (place->map)
+        map = glint_transform_product(place->map, &map);
+    prim->item = f->solid_count++;
+    solid_init(prim, &f->geometry->solids[prim->item], form_of(desc), &map);
+}
+
+static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const placing *place)
+{
+    glint_geometry *geometry = f->geometry;
+    const glint_shape_desc *desc = &shape->desc;
+    const uint32_t at = geometry->table.prim_count++;
+    glint_prim *prim = &geometry->prims[at];
+    double point[3], normal[3];
+    prim->id = at;
+    switch (desc->kind) {
+    case GLINT_SHAPE_MESH:
+        add_triangle(f, prim, shape, i, place);
+        break;
+    case GLINT_SHAPE_SPHERES:
+        add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], place);
+        break;
+    case GLINT_SHAPE_SPHERE:
+        add_ball(f, prim, desc->center, desc->radius, place);
+        break;
+    case GLINT_SHAPE_PLANE:
+        place_point(place, desc->point, point);
+        place_normal(place, desc->normal, normal);
+        plane_init(prim, point, normal);
+        break;
+    default:
+        add_solid(f, prim, desc, place);
+        break;
+    }
+    prim->two_sided = desc->two_sided;
+    prim->material = f->numbers[shape->index ? shape->index[i] : 0];
+    geometry->prim_part[at] = part;
+}
+
+static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around);
+
+static glint_status add_prims(filler *f, glint_shape *shape, const placing *place)
+{
+    glint_geometry *geometry = f->geometry;
+    for (size_t i = 0; i < shape->material_count; i++) {
+        glint_status status = material_number(&geometry->materials, shape->materials[i], &f->numbers[i], f->error);
+        if (status)
+            return status;
+    }
+    const uint32_t part = geometry->part_count++;
+    geometry->parts[part] = (glint_part) { shape, geometry->table.prim_count, f->object_count };
+    for (size_t i = 0; i < shape->count; i++)
+        add_prim(f, shape, i, part, place);
+    f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
+    geometry->table.triangles = geometry->table.triangles || shape->mesh;
+    geometry->triangle_count += shape->mesh ? (uint32_t)shape->count : 0;
+    geometry->table.site_count += (uint32_t)count_sites(shape);
+    return GLINT_OK;
+}
+
+/// around: the map of the groups that the shape is in; NULL: the identity.
+static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around)
+{
+    glint_transform map = shape->desc.transform;
+    placing place = { .map = &map };
+    double linear[3][3];
+    glint_status status = GLINT_OK;
+    if (around)
+        map = glint_transform_product(around, &shape->desc.transform);
+    if (glint_transform_is_identity(&map))
+        place.map = NULL;
+    else if (around)
+        status = glint_check_transform("group.transform: with those around it", &map, f->error);
+    if (status)
+        return status;
+    glint_transform_linear(&map, linear);
+    place.determinant = glint_linear_cofactors(linear, place.cofactors);
+    if (shape->desc.kind != GLINT_SHAPE_GROUP)
+        return add_prims(f, shape, &place);
+    for (size_t i = 0; i < shape->children.count && !status; i++)
+        status = add_shape(f, shape->children.items[i], place.map);
+    return status;
+}
+
+#define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each as often as it shows
+
+/// mapped: within a group that has a transform.
+static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped)
+{
+    const bool group = shape->desc.kind == GLINT_SHAPE_GROUP;
+    glint_status status = GLINT_OK;
+    mapped = mapped || !glint_transform_is_identity(&shape->desc.transform);
+    if (++f->visits > VISITS_MAX)
+        return glint_fail(f->error, GLINT_ERR_INVALID, "scene: at most %zu shapes and groups expected", VISITS_MAX);
+    for (size_t i = 0; i < shape->children.count && !status; i++)
+        status = count_shape(f, shape->children.items[i], mapped);
+    f->parts += !group;
+    f->prims += shape->count;
+    f->smooth += is_smooth(shape) ? shape->count : 0;
+    f->sited += is_sited(shape) ? shape->count : 0;
+    f->sites += count_sites(shape);
+    f->solids += mapped || shape->desc.kind >= GLINT_SHAPE_BOX ? shape->count : 0; // at most
+    f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
+    return status;
+}
+
+static bool allocate_sites(filler *f)
+{
+    glint_geometry *geometry = f->geometry;
+    if (!f->sites)
+        return true;
+    geometry->sites = glint_alloc(f->sited, sizeof *geometry->sites);
+    geometry->site_prims = glint_alloc(f->sites, sizeof *geometry->site_prims);
+    if (!geometry->sites || !geometry->site_prims)
+        return false;
+    memset(geometry->site_prims, 0xff, f->sites * sizeof *geometry->site_prims);
+    return true;
+}
+
+static bool allocate(filler *f)
+{
+    glint_geometry *geometry = f->geometry;
+    f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
+    geometry->prims = glint_alloc(f->prims, sizeof *geometry->prims);
+    geometry->prim_part = glint_alloc(f->prims, sizeof *geometry->prim_part);
+    geometry->parts = glint_alloc(f->parts, sizeof *geometry->parts);
+    geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
+    geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
+    return f->numbers && geometry->prims && geometry->prim_part && geometry->parts &&
+           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && allocate_sites(f);
+}
+
+glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
+{
+    filler f = { .geometry = geometry, .error = error };
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < scene->shapes.count && !status; i++)
+        status = count_shape(&f, glint_scene_shape(scene, i), false);
+    if (!status && f.prims >= INT32_MAX)
+        status =
+            glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims);
+    if (!status && f.sites >= INT32_MAX)
+        status = glint_fail(error, GLINT_ERR_INVALID,
+                            "scene: fewer than 2147483647 faces and vertices with light of their own expected, got %zu",
+                            f.sites);
+    if (!status && !allocate(&f))
+        status = glint_fail_nomem(error);
+    for (size_t i = 0; i < scene->shapes.count && !status; i++)
+        status = add_shape(&f, glint_scene_shape(scene, i), NULL);
+    free(f.numbers);
+    geometry->table.prims = geometry->prims;
+    geometry->table.corner_normals = geometry->normals;
+    geometry->table.solids = geometry->solids;
+    geometry->table.sites = geometry->sites;
+    return status;
+}

@@ -1,0 +1,154 @@
+/// What rays do beyond the first surface: which materials send them on, and how bright anything they find can be.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+/// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
+#define STRENGTH_MAX 1e150
+
+static double brightest_of(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
+
+static void bounded(double out[3], const double color[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = fmin(color[c], STRENGTH_MAX);
+}
+
+/// What there is of a mirror: where it was never set, it follows `fresnel`.
+static const double *mirror_of(const glint_material_desc *desc)
+{
+    static const double black[3] = { 0 }, white[3] = { 1, 1, 1 };
+    return desc->has_mirror ? desc->mirror : desc->fresnel ? white : black;
+}
+
+static void bounce_material_init(glint_bounce_material *out, const glint_material_desc *desc)
+{
+    *out = (glint_bounce_material) { .ior = desc->ior, .fresnel = desc->fresnel };
+    bounded(out->mirror, mirror_of(desc));
+    bounded(out->transmission, desc->transmission);
+    bounded(out->absorption, desc->absorption);
+    out->mirrors = brightest_of(out->mirror) > 0;
+    out->transmits = brightest_of(out->transmission) > 0;
+}
+
+/// A bound of what a material sends on of the light its rays bring, where they are not totally reflected.
+static double gain(const glint_bounce_material *m)
+{
+    double most = 0;
+    for (int c = 0; c < 3; c++)
+        most = fmax(most, m->fresnel ? fmax(m->mirror[c], m->transmission[c]) : m->mirror[c] + m->transmission[c]);
+    return most;
+}
+
+/// The same of any ray: total reflection dims none.
+static double gain_anywhere(const glint_bounce_material *m)
+{
+    return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
+}
+
+/// A bound of the light that surfaces of a material themselves give to any ray.
+static double surface_light(const glint_plan *plan, uint32_t i)
+{
+    const glint_shade_material *m = &plan->materials[i];
+    double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
+    for (uint32_t k = 0; k < plan->light_count; k++) {
+        const glint_plan_light *light = &plan->lights[k];
+        const double c0 = light->coefficients[0];
+        const bool radiant = light->lamps && light->lamps->emission >= GLINT_EMIT_RADIANT_FRONT;
+        const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
+        const double far = brightest_of(m->diffuse) * brightest_of(light->diffuse) +
+                           brightest_of(m->specular) * brightest_of(light->specular);
+        if (far > 0)
+            sum += near * far;
+    }
+    return sum;
+}
+
+/// The same of all surfaces, of lights that are seen, and of the background.
+static double brightest_surface(const glint_plan *plan)
+{
+    double most = brightest_of(plan->background);
+    for (uint32_t i = 0; i < plan->glow_count; i++)
+        most = fmax(most, brightest_of(plan->glows[i].shown));
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        most = fmax(most, surface_light(plan, i));
+    return most;
+}
+
+/// The most that a chain without indirect light, whose materials send on no more than they get, can bring: at each surface
+/// what a material that sends on gives itself, at its end anything.
+static double brightest_chain(const glint_plan *plan, double depth)
+{
+    double each = 0;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        if (plan->bouncing[i].mirrors || plan->bouncing[i].transmits)
+            each = fmax(each, surface_light(plan, i));
+    return brightest_surface(plan) + (each > 0 ? each * depth : 0);
+}
+
+/// A bound of 1 + g + g^2 + ... + g^depth.
+static double geometric(double g, double depth)
+{
+    return g < 1 ? fmin(depth + 1, 1 / (1 - g)) : (depth + 1) * glint_pow(g, depth);
+}
+
+// ---- How bright ----
+
+/// Bounds what a ray can bring, and with it what a way of indirect light must still weigh: two bounds' worth of what all
+/// rays of a sample may lose together is left to mirrored and refracted ones.
+static void bound_light(glint_plan *plan)
+{
+    double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        most = fmax(most, (plan->bouncing ? gain_anywhere(&plan->bouncing[i]) : 0) +
+                              (plan->indirect.samples ? brightest_of(plan->materials[i].diffuse) : 0));
+    plan->brightest = brightest_surface(plan) * geometric(most, depth);
+    if (plan->bouncing && !plan->indirect.samples && most <= 1)
+        plan->brightest = fmin(plan->brightest, brightest_chain(plan, depth));
+    plan->indirect.least = GLINT_BOUNCE_LOSS / (4 * plan->brightest * geometric(most, depth));
+}
+
+/// Below 1 in sum, mirror and transmission share a ray's weight out; above, the number of rays doubles at each surface.
+static glint_status check_depth(const glint_plan *plan, double most, glint_error *error)
+{
+    if (most <= 1 || plan->desc.max_depth < GLINT_BOUNCE_LEVELS)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID,
+                      "max_depth: at most %d expected where a material's mirror + transmission is above 1 (here %.9g), "
+                      "got %.0f",
+                      GLINT_BOUNCE_LEVELS - 1, most, plan->desc.max_depth);
+}
+
+glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
+{
+    const glint_list *list = &plan->geometry->materials;
+    double splitting = 0;
+    bool any = false;
+    for (size_t i = 0; i < list->count; i++) {
+        const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
+        any = any || brightest_of(mirror_of(desc)) > 0 || brightest_of(desc->transmission) > 0;
+    }
+    if (!any) {
+        if (plan->indirect.samples)
+            bound_light(plan);
+        return GLINT_OK;
+    }
+    plan->bouncing = glint_alloc(list->count, sizeof *plan->bouncing);
+    if (!plan->bouncing)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < list->count; i++) {
+        glint_bounce_material *m = &plan->bouncing[i];
+        bounce_material_init(m, &((const glint_material *)list->items[i])->desc);
+        plan->mirrors = plan->mirrors || m->mirrors;
+        plan->transmits = plan->transmits || m->transmits;
+        plan->absorbs = plan->absorbs || (m->transmits && brightest_of(m->absorption) > 0);
+        if (m->mirrors && m->transmits)
+            splitting = fmax(splitting, gain(m));
+    }
+    bound_light(plan);
+    glint_status status = check_depth(plan, splitting, error);
+    if (!status && plan->transmits && !plan->camera.orthographic)
+        status = glint_plan_eye(plan, error);
+    return status;
+}

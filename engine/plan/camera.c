@@ -1,0 +1,63 @@
+#include "engine/base/math.h"
+#include "engine/base/sequence.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+/// The view's axes. An `up` along the view gives way to the world axis least aligned with it.
+static void view_axes(const glint_camera_desc *desc, double forward[3], double right[3], double up[3])
+{
+    if (desc->has_direction) {
+        vec_normalize(forward, desc->direction);
+    } else {
+        vec_sub(forward, desc->at, desc->eye);
+        vec_normalize(forward, forward);
+    }
+    double hint[3];
+    vec_normalize(hint, desc->up);
+    vec_cross(right, forward, hint);
+    if (vec_dot(right, right) < 1e-24) {
+        int least = 0;
+        for (int c = 1; c < 3; c++)
+            if (fabs(forward[c]) < fabs(forward[least]))
+                least = c;
+        double axis[3] = { least == 0, least == 1, least == 2 };
+        vec_cross(right, forward, axis);
+    }
+    vec_normalize(right, right);
+    vec_cross(up, right, forward);
+}
+
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render)
+{
+    double right[3], up[3];
+    *out = (glint_plan_camera) { .orthographic = desc->projection == GLINT_ORTHOGRAPHIC,
+                                 .pixel_offset = desc->pixel_offset };
+    vec_copy(out->eye, desc->eye);
+    view_axes(desc, out->forward, right, up);
+    const double half_height = out->orthographic ? 0.5 * desc->height : glint_tan_half(desc->fov_y_rad);
+    vec_scale(out->right, right, half_height / render->height);
+    vec_scale(out->up, up, half_height / render->height);
+}
+
+void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])
+{
+    glint_sequence_point(k, glint_sequence_bits((uint32_t)plan->desc.samples), plan->desc.seed, out);
+    for (int i = 0; i < 2; i++)
+        out[i] = fmin(fmax(out[i] + (plan->camera.pixel_offset - 0.5), 0), 1);
+}
+
+glint_render_desc glint_plan_base(const glint_render_desc *desc)
+{
+    glint_render_desc base = *desc;
+    base.samples = 1;
+    base.adaptive = 0;
+    base.outline = GLINT_OUTLINE_NONE;
+    base.passes = (desc->passes & ~(1u << GLINT_PASS_REFINED | 1u << GLINT_PASS_OUTLINE)) | 1u << GLINT_PASS_BEAUTY |
+                  1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID;
+    base.codes = true;
+    base.tone = glint_tone_desc_default();
+    base.tone.curve = desc->tone.curve;
+    base.tone.exposure = desc->tone.exposure;
+    base.tone.bits = 16;
+    return base;
+}

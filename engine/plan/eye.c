@@ -1,0 +1,166 @@
+/// What the eye is in: transparent objects that it is inside of, each by a rule of its own. A ball, a plane and a solid have
+/// an inside; of a mesh it is where a ray from the eye along the view goes out through more faces than in, which of a closed
+/// mesh holds along any ray.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// Media from the outermost to the innermost, which is the smallest, of equals the last defined.
+typedef struct around {
+    uint32_t count;
+    struct holder {
+        double size; ///< diagonal of its box
+        uint32_t id, material;
+    } in[GLINT_MEDIA_MAX];
+} around;
+
+/// The triangles of one part, so far.
+typedef struct hull {
+    int exits; ///< less entries
+    uint32_t id, material; ///< the first triangle's
+    double lower[3], upper[3];
+} hull;
+
+static bool holds(const glint_geometry *geometry, const glint_prim *prim, const double point[3])
+{
+    double e[3];
+    vec_sub(e, point, prim->center);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return glint_solid_holds(&geometry->solids[prim->item], e);
+    if (prim->kind == GLINT_PRIM_PLANE)
+        return vec_dot(prim->normal, e) < 0;
+    return sqrt(vec_dot(e, e)) < prim->radius;
+}
+
+/// 1: the ray goes out through the triangle, -1: in, 0: past it. Seen along the ray the edges of all triangles are counted
+/// where they cross one half of one axis, each with the same numbers in both that it belongs to.
+static int crossing(const glint_prim *prim, const double eye[3], const double d[3])
+{
+    int z = fabs(d[1]) > fabs(d[0]);
+    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
+    const int x = (z + 1) % 3, y = (z + 2) % 3;
+    double seen[3][2], depth[3], weight[3], sum = 0, way = 0;
+    int turns = 0;
+    for (int j = 0; j < 3; j++) {
+        double p[3];
+        vec_sub(p, prim->corner[j], eye);
+        seen[j][0] = p[x] * d[z] - p[z] * d[x];
+        seen[j][1] = p[y] * d[z] - p[z] * d[y];
+        depth[j] = p[z];
+    }
+    for (int j = 0; j < 3; j++) {
+        const double *a = seen[j], *b = seen[(j + 1) % 3];
+        const double side = a[0] * b[1] - a[1] * b[0];
+        turns += a[1] <= 0 && b[1] > 0 && side > 0;
+        turns -= b[1] <= 0 && a[1] > 0 && side < 0;
+        weight[(j + 2) % 3] = side;
+    }
+    if (turns == 0)
+        return 0;
+    for (int j = 0; j < 3; j++) {
+        sum += weight[j];
+        way += weight[j] * depth[j];
+    }
+    if (!(way / (sum * d[z]) > 0))
+        return 0;
+    return d[z] > 0 ? turns : -turns;
+}
+
+static bool is_outside(const struct holder *a, const struct holder *b)
+{
+    return a->size > b->size || (a->size == b->size && a->id < b->id);
+}
+
+static void add_holder(around *eye, double size, uint32_t id, uint32_t material)
+{
+    const struct holder holder = { size, id, material };
+    if (eye->count == GLINT_MEDIA_MAX) {
+        if (is_outside(&holder, &eye->in[0]))
+            return;
+        memmove(eye->in, eye->in + 1, --eye->count * sizeof *eye->in);
+    }
+    uint32_t at = eye->count++;
+    for (; at > 0 && is_outside(&holder, &eye->in[at - 1]); at--)
+        eye->in[at] = eye->in[at - 1];
+    eye->in[at] = holder;
+}
+
+static double diagonal(const double lower[3], const double upper[3])
+{
+    double across[3];
+    vec_sub(across, upper, lower);
+    return sqrt(vec_dot(across, across));
+}
+
+static double size_of(const glint_geometry *geometry, const glint_prim *prim)
+{
+    double lower[3], upper[3];
+    if (prim->kind == GLINT_PRIM_PLANE)
+        return HUGE_VAL;
+    if (prim->kind == GLINT_PRIM_SPHERE)
+        return 2 * sqrt(3) * prim->radius;
+    glint_prim_bounds(geometry->solids, prim, lower, upper);
+    return diagonal(lower, upper);
+}
+
+static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *prim)
+{
+    double lower[3], upper[3];
+    const bool first = part->lower[0] > part->upper[0];
+    glint_prim_bounds(NULL, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        part->lower[c] = fmin(part->lower[c], lower[c]);
+        part->upper[c] = fmax(part->upper[c], upper[c]);
+    }
+    if (first || prim->id < part->id) {
+        part->id = prim->id;
+        part->material = prim->material;
+    }
+    part->exits += crossing(prim, plan->camera.eye, plan->camera.forward);
+}
+
+/// hulls: of each part, where there are triangles. A renderer may be arranging the primitives meanwhile.
+static void find_media(const glint_plan *plan, hull *hulls, around *eye)
+{
+    const glint_geometry *geometry = plan->geometry;
+    const uint32_t hull_count = geometry->triangle_count ? geometry->part_count : 0;
+    for (uint32_t i = 0; i < hull_count; i++)
+        hulls[i] = (hull) { .lower = { HUGE_VAL, HUGE_VAL, HUGE_VAL }, .upper = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL } };
+    pthread_mutex_lock(&geometry->index->lock);
+    for (uint32_t i = 0; i < geometry->table.prim_count; i++) {
+        const glint_prim *prim = &geometry->prims[i];
+        if (!plan->bouncing[prim->material].transmits)
+            continue;
+        if (prim->kind == GLINT_PRIM_TRIANGLE)
+            add_triangle(&hulls[geometry->prim_part[prim->id]], plan, prim);
+        else if (holds(geometry, prim, plan->camera.eye))
+            add_holder(eye, size_of(geometry, prim), prim->id, prim->material);
+    }
+    pthread_mutex_unlock(&geometry->index->lock);
+    for (uint32_t i = 0; i < hull_count; i++)
+        for (int k = 0; k < hulls[i].exits && k < GLINT_MEDIA_MAX; k++)
+            add_holder(eye, diagonal(hulls[i].lower, hulls[i].upper), hulls[i].id, hulls[i].material);
+}
+
+glint_status glint_plan_eye(glint_plan *plan, glint_error *error)
+{
+    around eye = { 0 };
+    const uint32_t triangles = plan->geometry->triangle_count;
+    hull *hulls = triangles ? glint_alloc(plan->geometry->part_count, sizeof *hulls) : NULL;
+    if (triangles && !hulls)
+        return glint_fail_nomem(error);
+    find_media(plan, hulls, &eye);
+    free(hulls);
+    for (uint32_t i = 0; i < eye.count; i++)
+        glint_media_enter(&plan->eye_media, eye.in[i].material);
+    if (eye.count == 0)
+        return GLINT_OK;
+    const glint_bounce_material *m = &plan->bouncing[glint_media_top(&plan->eye_media)];
+    plan->veil.on = m->absorption[0] > 0 || m->absorption[1] > 0 || m->absorption[2] > 0;
+    vec_copy(plan->veil.absorption, m->absorption);
+    return GLINT_OK;
+}

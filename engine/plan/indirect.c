@@ -1,0 +1,56 @@
+/// Indirect light: what surfaces get from other surfaces and from the background.
+///
+/// A material's ambient light is ka Ia. As much of it as kd Ia stands for the light that its surroundings send, Ia being
+/// the mean L of all directions; that part is replaced by kd times what ways of light find, and comes back only where a
+/// way is followed no further. What ka has beyond kd is light of the surface's own.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+
+static bool is_matt(const glint_shade_material *m)
+{
+    return m->diffuse[0] > 0 || m->diffuse[1] > 0 || m->diffuse[2] > 0;
+}
+
+/// Parts a material's ambient light.
+static void part_ambient(glint_shade_material *material, const double ambient[3], double rest[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double all = material->ambient[c], replaced = fmin(all, material->diffuse[c] * ambient[c]);
+        material->ambient[c] = all - replaced;
+        rest[c] = replaced;
+    }
+}
+
+/// Where the samples of each light begin.
+static glint_status find_lights(glint_plan *plan, glint_error *error)
+{
+    glint_plan_indirect *indirect = &plan->indirect;
+    indirect->light_rows = glint_alloc((size_t)plan->light_count + 1, sizeof *indirect->light_rows);
+    if (!indirect->light_rows)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < plan->light_count; i++)
+        if (!plan->lights[i].joined)
+            indirect->light_rows[indirect->light_count++] = i;
+    indirect->light_rows[indirect->light_count] = plan->light_count;
+    return GLINT_OK;
+}
+
+glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
+{
+    glint_plan_indirect *indirect = &plan->indirect;
+    bool matt = false;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        matt = matt || is_matt(&plan->materials[i]);
+    if (!scene->has_indirect || scene->indirect_bounces == 0 || !matt || plan->geometry->table.prim_count == 0)
+        return GLINT_OK;
+    indirect->rest = glint_alloc(plan->material_count, sizeof *indirect->rest);
+    if (!indirect->rest)
+        return glint_fail_nomem(error);
+    indirect->samples = (uint32_t)scene->indirect_samples;
+    indirect->bounces = (uint32_t)scene->indirect_bounces;
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        part_ambient(&plan->materials[i], plan->ambient, indirect->rest[i]);
+    return find_lights(plan, error);
+}

@@ -1,0 +1,296 @@
+/// The keys of a plan: what each stage declares to read, hashed. A stage's key holds the keys of the stages before it,
+/// whose results it reads too. A new stage gets reuse by a row in `stages`; tests/engine/test_reuse.c changes every field of
+/// every description and finds what a row forgets.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/plan/plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// What there is to read, described or derived.
+typedef enum input {
+    INPUT_VIEW, ///< camera, picture size, samples
+    INPUT_PLACES, ///< where the surfaces are
+    INPUT_GLOW_PLACES, ///< where lights are seen
+    INPUT_LOOKS, ///< which material each has, and its sides
+    INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
+    INPUT_LIGHT_PLACES, ///< kind, position, fall-off
+    INPUT_SHADOWS, ///< which lights cast them
+    INPUT_LIGHT_COLORS,
+    INPUT_MATERIALS, ///< reflectances, exponents
+    INPUT_BACKGROUND, ///< and what lights look like
+    INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
+    INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
+    INPUT_BOUNCES, ///< what materials send on, how far, and through what
+    INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
+    INPUT_CUE, ///< how light fades with the way from the eye
+    INPUT_PASSES,
+    INPUT_TONE
+} input;
+
+#define READS(what) (1u << INPUT_##what)
+
+static const uint32_t stages[GLINT_STAGE_COUNT] = {
+    [GLINT_STAGE_CAMERA] = READS(VIEW),
+    [GLINT_STAGE_CAST] = READS(PLACES),
+    [GLINT_STAGE_GLOW] = READS(GLOW_PLACES),
+    [GLINT_STAGE_SURFACE] = READS(LOOKS),
+    [GLINT_STAGE_VIEW] = 0,
+    [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
+    [GLINT_STAGE_FACET] = 0,
+    [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
+    [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
+    [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
+    [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
+    [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
+    [GLINT_STAGE_CUE] = READS(CUE),
+    [GLINT_STAGE_REFINE] = READS(ADAPTIVE),
+    [GLINT_STAGE_RESOLVE] = READS(PASSES),
+    [GLINT_STAGE_TONE] = READS(TONE),
+    [GLINT_STAGE_OUTLINE] = 0,
+};
+
+#define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
+
+static glint_key view_key(const glint_plan *plan, glint_key key)
+{
+    const glint_plan_camera *c = &plan->camera;
+    const double frame[] = { plan->desc.width,     plan->desc.height, plan->desc.samples, plan->desc.seed,
+                             plan->desc.precision, c->orthographic,   c->pixel_offset };
+    ADD(key, frame);
+    ADD(key, c->eye);
+    ADD(key, c->forward);
+    ADD(key, c->right);
+    ADD(key, c->up);
+    return key;
+}
+
+static glint_key light_place_key(const glint_plan_light *l, glint_key key)
+{
+    const double numbers[] = { l->directional,     l->position[0],     l->position[1],
+                               l->position[2],     l->coefficients[0], l->coefficients[1],
+                               l->coefficients[2], l->is_spot,         l->turn_count };
+    ADD(key, numbers);
+    if (l->is_spot) {
+        const double cone[] = { l->spot.axis[0], l->spot.axis[1], l->spot.axis[2],
+                                l->spot.outer,   l->spot.inverse, l->spot.exponent };
+        ADD(key, cone);
+    }
+    if (l->cap || l->hard) {
+        const double shadow[] = { l->cap ? l->cap->radius : 0, l->radiant_cap, l->hard };
+        ADD(key, shadow);
+    }
+    return l->lamps ? glint_key_add(key, l->lamps, l->turn_count * sizeof *l->lamps) : key;
+}
+
+static glint_key light_color_key(const glint_plan_light *l, glint_key key)
+{
+    ADD(key, l->diffuse);
+    ADD(key, l->specular);
+    return key;
+}
+
+static glint_key glow_place_key(const glint_plan_glow *glow, glint_key key)
+{
+    const double kind[] = { glow->ball, glow->one_sided, glow->radius, (double)glow->edge_count };
+    ADD(key, kind);
+    ADD(key, glow->center);
+    ADD(key, glow->normal);
+    return glint_key_add(key, glow->edges, glow->edge_count * sizeof *glow->edges);
+}
+
+static glint_key highlights_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->powers);
+    ADD(key, plan->facets);
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        ADD(key, plan->materials[i].highlight);
+    return key;
+}
+
+static glint_key material_key(const glint_shade_material *m, glint_key key)
+{
+    const double exponent[] = { m->shininess, m->highlight, m->lobe, m->alpha };
+    ADD(key, m->diffuse);
+    ADD(key, m->specular);
+    ADD(key, m->ambient);
+    ADD(key, m->grazing);
+    ADD(key, exponent);
+    return key;
+}
+
+/// What of a material is read where it has no highlight.
+static glint_key matte_key(const glint_shade_material *m, glint_key key)
+{
+    ADD(key, m->diffuse);
+    ADD(key, m->ambient);
+    return key;
+}
+
+static glint_key tint_key(const glint_bounce_material *m, glint_key key)
+{
+    ADD(key, m->transmission);
+    ADD(key, m->absorption);
+    return key;
+}
+
+static glint_key bounces_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->desc.max_depth);
+    for (uint32_t i = 0; i < plan->material_count; i++) {
+        const glint_bounce_material *m = &plan->bouncing[i];
+        const double numbers[] = { m->ior, m->fresnel };
+        key = tint_key(m, key);
+        ADD(key, m->mirror);
+        ADD(key, numbers);
+    }
+    return key;
+}
+
+static glint_key indirect_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->indirect.samples);
+    ADD(key, plan->indirect.bounces);
+    return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);
+}
+
+static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key key)
+{
+    const glint_tone_desc *tone = &plan->desc.tone;
+    const double numbers[] = {
+        plan->desc.codes, tone->curve, tone->transfer, tone->rounding, tone->bits, tone->exposure
+    };
+    if (which & READS(PASSES))
+        ADD(key, plan->desc.passes);
+    if (which & READS(PASSES) && plan->desc.outline)
+        ADD(key, plan->desc.outline);
+    if (which & READS(TONE))
+        ADD(key, numbers);
+    return key;
+}
+
+/// Continues a key with everything in `which`.
+static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key key)
+{
+    const glint_geometry *geometry = plan->geometry;
+    if (which & READS(VIEW))
+        key = view_key(plan, key);
+    if (which & READS(PLACES))
+        ADD(key, plan->where);
+    if (which & READS(LOOKS))
+        ADD(key, geometry->look);
+    if (which & READS(HIGHLIGHTS))
+        key = highlights_key(plan, key);
+    for (uint32_t i = 0; i < plan->glow_count && which & READS(GLOW_PLACES); i++)
+        key = glow_place_key(&plan->glows[i], key);
+    for (uint32_t i = 0; i < plan->light_count; i++) {
+        if (which & READS(LIGHT_PLACES))
+            key = light_place_key(&plan->lights[i], key);
+        if (which & READS(SHADOWS))
+            ADD(key, plan->lights[i].shadows);
+        if (which & READS(LIGHT_COLORS))
+            key = light_color_key(&plan->lights[i], key);
+    }
+    for (uint32_t i = 0; i < plan->material_count && which & READS(MATERIALS); i++)
+        key = material_key(&plan->materials[i], key);
+    for (uint32_t i = 0; i < plan->material_count && which & READS(TINTS) && plan->tints; i++)
+        key = tint_key(&plan->bouncing[i], key);
+    if (which & READS(INDIRECT) && plan->runs[GLINT_STAGE_INDIRECT])
+        key = indirect_key(plan, key);
+    if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
+        key = bounces_key(plan, key);
+    if (which & READS(ADAPTIVE) && plan->runs[GLINT_STAGE_REFINE]) {
+        const double seen[] = { plan->desc.adaptive, plan->desc.tone.curve, plan->desc.tone.exposure };
+        ADD(key, seen);
+    }
+    if (which & READS(CUE) && plan->cue.on) {
+        ADD(key, plan->cue.color);
+        ADD(key, plan->cue.near);
+        ADD(key, plan->cue.far);
+    }
+    if (which & READS(CUE) && plan->veil.on)
+        ADD(key, plan->veil.absorption);
+    if (which & READS(BACKGROUND))
+        ADD(key, plan->background);
+    if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
+        ADD(key, plan->desc.alpha);
+    for (uint32_t i = 0; i < plan->glow_count && which & READS(BACKGROUND); i++)
+        ADD(key, plan->glows[i].shown);
+    return output_key(plan, which, key);
+}
+
+/// What sites are lit by. Where no material has a highlight, nothing of the camera.
+static glint_key vertex_key(const glint_plan *plan)
+{
+    const glint_plan_camera *c = &plan->camera;
+    const double frame[] = { plan->desc.precision, plan->highlights ? 1 + c->orthographic : 0 };
+    glint_key key = { 0 };
+    ADD(key, frame);
+    if (plan->highlights)
+        key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
+                              : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
+    return add_inputs(plan,
+                      READS(PLACES) | READS(LOOKS) | READS(HIGHLIGHTS) | READS(LIGHT_PLACES) | READS(SHADOWS) |
+                          READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS),
+                      key);
+}
+
+/// The keys of the parts that a tile may depend on alone.
+static glint_status part_keys(glint_plan *plan, glint_error *error)
+{
+    const glint_key none = { 0 };
+    const glint_key light_base =
+        add_inputs(plan, stages[GLINT_STAGE_LIGHT] & ~READS(LIGHT_PLACES), plan->keys[GLINT_STAGE_SURFACE]);
+    for (uint32_t i = 0; i < plan->light_count; i++) {
+        glint_plan_light *light = &plan->lights[i];
+        light->key = light_place_key(light, light_base);
+        light->place_key = glint_key_add(light->key, &light->shadows, sizeof light->shadows);
+        const uint32_t place = i % GLINT_LIGHT_CHUNK; // samples of a lamp are added up a call of shade at a time
+        light->look_key = glint_key_add(light_color_key(light, light->place_key), &place, sizeof place);
+    }
+    plan->material_keys = glint_alloc(plan->material_count, sizeof *plan->material_keys);
+    plan->matte_keys = glint_alloc(plan->material_count, sizeof *plan->matte_keys);
+    if (!plan->material_keys || !plan->matte_keys)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < plan->material_count; i++) {
+        plan->material_keys[i] = material_key(&plan->materials[i], none);
+        plan->matte_keys[i] = matte_key(&plan->materials[i], none);
+    }
+    plan->all_materials_key =
+        add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
+    plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
+    plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
+    plan->output_key = add_inputs(plan, READS(CUE) | READS(PASSES) | READS(TONE), none);
+    return GLINT_OK;
+}
+
+glint_status glint_plan_keys(glint_plan *plan, glint_error *error)
+{
+    glint_key key = { 0 };
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        plan->keys[id] = key = add_inputs(plan, stages[id], key);
+    plan->vertex_key = vertex_key(plan);
+    return part_keys(plan, error);
+}
+
+bool glint_plan_twin_make(glint_plan_twin *twin, const glint_plan *plan, glint_key where)
+{
+    glint_error error;
+    twin->plan = *plan;
+    twin->plan.where = where;
+    twin->plan.material_keys = twin->plan.matte_keys = NULL;
+    twin->plan.lights = malloc((plan->light_count + 1) * sizeof *plan->lights);
+    if (!twin->plan.lights)
+        return false;
+    if (plan->light_count)
+        memcpy(twin->plan.lights, plan->lights, plan->light_count * sizeof *plan->lights);
+    return glint_plan_keys(&twin->plan, &error) == GLINT_OK;
+}
+
+void glint_plan_twin_free(glint_plan_twin *twin)
+{
+    free(twin->plan.lights);
+    free(twin->plan.material_keys);
+    free(twin->plan.matte_keys);
+}

@@ -1,0 +1,241 @@
+#include "engine/plan/raster.h"
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/film/tone.h"
+
+#include <stdlib.h>
+
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",   "cast",   "glow",    "surface", "view",
+                                                           "light",    "facet",  "occlude", "vertex",  "shade",
+                                                           "indirect", "bounce", "cue",     "refine",  "resolve",
+                                                           "tone",     "outline" };
+
+glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
+{
+    const char *asked, *who = isa && *isa ? "isa" : "GLINT_ISA";
+    bool unknown;
+    *out = glint_stages_select(isa, &asked, &unknown);
+    if (*out)
+        return GLINT_OK;
+    if (unknown)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, sse2, avx2 or avx512 expected, got '%s'", who, asked);
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, asked);
+}
+
+glint_render_desc glint_render_desc_default(void)
+{
+    return (glint_render_desc) { .width = 1280,
+                                 .height = 720,
+                                 .samples = 1,
+                                 .max_depth = 5,
+                                 .passes = 1u << GLINT_PASS_BEAUTY,
+                                 .tone = glint_tone_desc_default() };
+}
+
+static glint_status check_render_desc(const glint_render_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_whole("width", desc->width, 1, GLINT_SIDE_MAX, error);
+    if (!status)
+        status = glint_check_whole("height", desc->height, 1, GLINT_SIDE_MAX, error);
+    if (!status && desc->width * desc->height > INT32_MAX)
+        status = glint_fail(error, GLINT_ERR_INVALID,
+                            "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f", desc->width,
+                            desc->height);
+    if (!status)
+        status = glint_check_whole("samples", desc->samples, 1, 65536, error);
+    if (!status)
+        status = glint_check_range("adaptive", desc->adaptive, 0, 3, "number 0 .. 3", error);
+    if (!status)
+        status = glint_check_whole("max_depth", desc->max_depth, 0, 0x1p31, error);
+    if (!status)
+        status = glint_check_whole("seed", desc->seed, 0, 0x1p53, error);
+    if (!status && desc->precision > GLINT_FLOAT)
+        status = glint_fail(error, GLINT_ERR_INVALID, "precision: double or float expected");
+    if (!status && desc->visibility > GLINT_VISIBILITY_SCAN)
+        status = glint_fail(error, GLINT_ERR_INVALID, "visibility: auto, cast or scan expected");
+    if (!status && desc->passes >> GLINT_PASS_COUNT)
+        status = glint_fail(error, GLINT_ERR_INVALID, "passes: no such pass");
+    if (!status && desc->outline > GLINT_OUTLINE_WHITE)
+        status = glint_fail(error, GLINT_ERR_INVALID, "outline: none, black or white expected");
+    if (!status)
+        status = glint_tone_check(&desc->tone, error);
+    return status;
+}
+
+/// Stages that never walk the index, but for the cast.
+static const uint32_t without_index = 1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_GLOW |
+                                      1u << GLINT_STAGE_SURFACE | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT |
+                                      1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE |
+                                      1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
+
+/// Whether triangles are to be scanned.
+static void choose_visibility(glint_plan *plan)
+{
+    const glint_visibility asked = plan->desc.visibility;
+    bool needs_index = false;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
+    plan->scan = plan->geometry->triangle_count > 0 && asked != GLINT_VISIBILITY_CAST &&
+                 (asked == GLINT_VISIBILITY_SCAN || glint_scan_pays(plan, needs_index));
+    plan->asks_index = !plan->scan || needs_index;
+}
+
+/// Whether the samples of a tile can be shaded in one: what was found for each fits the tile, and light comes from
+/// nowhere else.
+static bool shades_together(const glint_plan *plan)
+{
+    static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE, GLINT_STAGE_INDIRECT, GLINT_STAGE_GLOW,
+                                            GLINT_STAGE_CUE,    GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET };
+    for (size_t i = 0; i < sizeof other / sizeof *other; i++)
+        if (plan->runs[other[i]])
+            return false;
+    return plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+           plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK && !plan->tints;
+}
+
+/// Lists the stages this frame needs.
+static void choose_stages(glint_plan *plan)
+{
+    const bool surfaces = plan->geometry->table.prim_count > 0, lit = surfaces && plan->light_count > 0;
+    plan->runs[GLINT_STAGE_BOUNCE] = surfaces && (plan->mirrors || plan->transmits) && plan->desc.max_depth > 0;
+    plan->runs[GLINT_STAGE_INDIRECT] = plan->indirect.samples > 0;
+    plan->tints = lit && plan->transmits && plan->shadow_count > 0;
+    plan->dims = plan->tints && plan->absorbs;
+    plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
+    plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
+    plan->runs[GLINT_STAGE_CUE] = plan->cue.on || plan->veil.on;
+    plan->accumulate = plan->runs[GLINT_STAGE_CUE] || plan->desc.samples > 1 || plan->glow_count > 0 ||
+                       plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
+                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
+    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
+    plan->runs[GLINT_STAGE_CAST] = surfaces;
+    plan->runs[GLINT_STAGE_SURFACE] = surfaces;
+    plan->runs[GLINT_STAGE_LIGHT] = lit;
+    plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
+    plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
+    plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.site_count > 0;
+    plan->runs[GLINT_STAGE_SHADE] = true;
+    plan->together = shades_together(plan);
+    plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
+    plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
+    plan->runs[GLINT_STAGE_TONE] = plan->desc.codes;
+    plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
+}
+
+static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
+    glint_status status = glint_geometry_of(scene, &plan->geometry, error);
+    if (!status)
+        status = glint_plan_shading(plan, scene, error);
+    if (!status)
+        status = glint_plan_glows(plan, scene, error);
+    if (!status)
+        status = glint_plan_find_indirect(plan, &scene->desc, error);
+    if (!status)
+        status = glint_plan_bounce(plan, error);
+    if (status)
+        return status;
+    choose_stages(plan);
+    choose_visibility(plan);
+    plan->where = plan->geometry->where;
+    status = glint_plan_keys(plan, error);
+    return status ? status : glint_plan_explain(plan, scene, error);
+}
+
+glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
+                               glint_error *error)
+{
+    glint_status status = check_render_desc(desc, error);
+    if (status)
+        return status;
+    if (!scene->desc.camera)
+        return glint_fail(error, GLINT_ERR_INVALID, "camera: the scene has none; give it one with camera = ...");
+    glint_plan *plan = calloc(1, sizeof *plan);
+    if (!plan)
+        return glint_fail_nomem(error);
+    plan->desc = *desc;
+    if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
+        plan->desc.passes |= 1u << GLINT_PASS_ALPHA;
+    if (desc->outline)
+        plan->desc.passes |= 1u << GLINT_PASS_OUTLINE;
+    if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
+        plan->desc.passes |= GLINT_OUTLINE_READS;
+    status = fill(plan, scene, error);
+    if (!status && plan->runs[GLINT_STAGE_REFINE]) {
+        const glint_render_desc base = glint_plan_base(&plan->desc);
+        status = glint_plan_create(scene, &base, &plan->base, error);
+    }
+    if (status) {
+        glint_plan_destroy(plan);
+        return status;
+    }
+    *out = plan;
+    return GLINT_OK;
+}
+
+void glint_plan_destroy(glint_plan *plan)
+{
+    if (!plan)
+        return;
+    glint_plan_destroy(plan->base);
+    glint_geometry_release(plan->geometry);
+    free(plan->lights);
+    free(plan->lamps);
+    free(plan->glows);
+    free(plan->glow_edges);
+    free(plan->materials);
+    free(plan->bouncing);
+    free(plan->indirect.rest);
+    free(plan->indirect.light_rows);
+    free(plan->material_keys);
+    free(plan->matte_keys);
+    free(plan->lines);
+    free(plan->effects);
+    free(plan);
+}
+
+const glint_render_desc *glint_plan_render_desc(const glint_plan *plan) { return &plan->desc; }
+
+size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list)
+{
+    *list = plan->effects;
+    return plan->effect_count;
+}
+
+size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
+{
+    *list = plan->stage_list;
+    return plan->stage_count;
+}
+
+glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
+{
+    const uint64_t each = (uint64_t)plan->desc.samples + (plan->base ? 1 : 0);
+    const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * each;
+    const uint64_t sides = 2 * (uint64_t)plan->geometry->table.site_count;
+    glint_ray_counts rays = { 0 };
+    if (plan->runs[GLINT_STAGE_CAMERA])
+        rays.primary = samples;
+    if (plan->runs[GLINT_STAGE_OCCLUDE])
+        rays.shadow = (samples + sides) * (plan->shadow_count - plan->spared_count);
+    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->mirrors)
+        rays.mirror = samples;
+    if (plan->runs[GLINT_STAGE_BOUNCE] && plan->transmits)
+        rays.refraction = samples;
+    rays.indirect = samples * plan->indirect.samples;
+    return rays;
+}
+
+void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
+{
+    const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
+                            desc->tone.rounding, desc->tone.bits,  desc->encode };
+    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_REFINE], options, sizeof options);
+    key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
+    if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
+        key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
+    key = glint_key_add_string(key, GLINT_VERSION);
+    key = glint_key_add_string(key, glint_encoder_name(desc->encode));
+    glint_key_hex(key, hex);
+}

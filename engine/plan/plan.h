@@ -1,0 +1,219 @@
+/// A frame's plan: the tables its stages read, which stages there are, and the key of each. Internal.
+///
+///   plan.c            puts it together
+///   plan/keys.c       what each stage reads, hashed
+///   geometry.c        what rays meet, shared by the plans of one scene
+///   plan/camera.c     the view
+///   plan/shading.c    materials and lights
+///   plan/bounce.c     mirrors and transparent materials
+///   plan/eye.c        what the eye is inside of
+///   plan/visible_lights.c       lights that are seen
+///   plan/indirect.c   light that surfaces get from other surfaces and the background
+///   plan/explain.c    which effects the scene calls for, and who called
+#ifndef GLINT_PLAN_H
+#define GLINT_PLAN_H
+
+#include "engine/geometry/geometry.h"
+#include "engine/geometry/media.h"
+
+/// In the order a frame runs them.
+typedef enum glint_stage_id {
+    GLINT_STAGE_CAMERA,
+    GLINT_STAGE_CAST,
+    GLINT_STAGE_GLOW,
+    GLINT_STAGE_SURFACE,
+    GLINT_STAGE_VIEW,
+    GLINT_STAGE_LIGHT,
+    GLINT_STAGE_FACET,
+    GLINT_STAGE_OCCLUDE,
+    GLINT_STAGE_VERTEX,
+    GLINT_STAGE_SHADE,
+    GLINT_STAGE_INDIRECT,
+    GLINT_STAGE_BOUNCE,
+    GLINT_STAGE_CUE,
+    GLINT_STAGE_REFINE, ///< before all others: which pixels they run for
+    GLINT_STAGE_RESOLVE,
+    GLINT_STAGE_TONE,
+    GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
+    GLINT_STAGE_COUNT
+} glint_stage_id;
+
+extern const char *const glint_stage_names[GLINT_STAGE_COUNT];
+
+typedef struct glint_plan_camera {
+    bool orthographic;
+    double eye[3], forward[3]; ///< forward is unit
+    double right[3], up[3]; ///< from a pixel's centre to its edge
+    double pixel_offset;
+} glint_plan_camera;
+
+/// A light, or one sample of an area light.
+typedef struct glint_plan_light {
+    bool directional, shadows, attenuated;
+    bool joined; ///< a further sample of the area light before it
+    bool is_spot;
+    glint_spot spot;
+    const glint_lamp *lamps; ///< of an area light: the pattern of each turn, turn after turn; else NULL
+    const glint_lamp *cap; ///< shadows by caps: the whole light; else NULL
+    bool hard; ///< area: one ray to `position`, its middle, decides for all samples
+    bool radiant_cap; ///< within its radius the light is no stronger than at it
+    uint32_t turn_count; ///< samples of a pixel take the turns one after the other
+    double position[3]; ///< directional: the unit vector towards the light; area: read where `hard`
+    double scale; ///< see glint_light_args
+    double coefficients[3];
+    double diffuse[3], specular[3]; ///< colour times intensity
+    glint_key key; ///< of what `light` reads for this light; `occlude` reads the same
+    glint_key place_key, look_key; ///< of that and whether it casts shadows; of the place and the colours
+} glint_plan_light;
+
+/// An edge of a polygon: where it begins, and the unit vector across it.
+typedef struct glint_plan_edge {
+    double corner[3], inwards[3];
+} glint_plan_edge;
+
+/// The surface of a light that rays see.
+typedef struct glint_plan_glow {
+    bool ball; ///< else flat
+    bool one_sided; ///< flat: to the side of the normal
+    double center[3], radius; ///< of a ball around all of it; disk, ball: its own
+    double normal[3]; ///< flat: unit
+    const glint_plan_edge *edges; ///< polygon
+    size_t edge_count; ///< 0: a disk
+    double shown[3]; ///< pi times its radiance: as everything in the film
+} glint_plan_glow;
+
+/// What a material sends on.
+typedef struct glint_bounce_material {
+    double mirror[3], transmission[3], absorption[3], ior;
+    bool fresnel, mirrors, transmits; ///< the latter: some channel
+} glint_bounce_material;
+
+/// Indirect light; all 0: there is none.
+typedef struct glint_plan_indirect {
+    uint32_t samples, bounces;
+    uint32_t *light_rows; ///< the first of plan->lights that belongs to each light, and one beyond
+    uint32_t light_count;
+    double (*rest)[3]; ///< beside materials: what `ambient` adds where light is followed no further
+    double least; ///< the share of its first weight below which a way of light ends
+} glint_plan_indirect;
+
+#define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile/bounce.c
+#define GLINT_BOUNCE_SPLITS 16 ///< surfaces of a chain at which both rays are followed
+#define GLINT_BOUNCE_LOSS 0x1p-20 ///< of linear light: what weak rays that are not followed may hold together, a sample
+
+typedef struct glint_text_line {
+    char effect[48];
+    char caller[2 * GLINT_NAME_SIZE];
+} glint_text_line;
+
+struct glint_plan {
+    glint_render_desc desc;
+    struct glint_plan *base; ///< of the picture that adaptive sampling looks at, of one sample a pixel; NULL: it is off
+    glint_plan_camera camera;
+
+    glint_geometry *geometry;
+    glint_shade_material *materials; ///< in the geometry's order
+    uint32_t material_count;
+    bool highlights; ///< some material and some light make one: of the next two kinds
+    bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
+    glint_plan_light *lights;
+    glint_lamp *lamps; ///< of all area lights
+    bool caps; ///< shapes and materials allow shadows by caps
+    uint32_t light_count, shadow_count; ///< of these, rows that cast shadows, and
+    uint32_t spared_count; ///< among those, rows that need no rays of their own
+    double ambient[3], background[3];
+    struct {
+        bool on;
+        double color[3], near, far; ///< see glint_scene_desc
+    } cue;
+    struct {
+        bool on;
+        double absorption[3]; ///< of the innermost medium
+    } veil; ///< the eye is inside what absorbs
+    glint_plan_glow *glows; ///< NULL: no light is seen
+    glint_plan_edge *glow_edges; ///< of all of them
+    uint32_t glow_count;
+    size_t glow_edge_count;
+
+    glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
+    bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits
+    glint_plan_indirect indirect;
+    glint_media eye_media; ///< what the eye of a perspective camera is inside of
+    bool tints; ///< some light casts shadows, and something transmits
+    bool dims; ///< and something absorbs what goes through it
+    double brightest; ///< bound of what any ray can bring; may be infinite
+
+    bool runs[GLINT_STAGE_COUNT];
+    glint_key where; ///< the geometry's, of its places
+    glint_key keys[GLINT_STAGE_COUNT];
+    glint_key *material_keys, *matte_keys; ///< of each row of materials; of what it reads where it has no highlight
+    glint_key all_materials_key, all_lights_key, background_key;
+    glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
+    glint_key output_key; ///< of what pictures are made of pixels
+    bool scan; ///< triangles are found by projecting them, not by casting
+    bool asks_index; ///< some stage walks it
+    bool accumulate; ///< sums over samples or over chunks of lights
+    bool together; ///< all samples of a tile are shaded in one, by what was found for each: they need no sums
+
+    glint_stage_info stage_list[GLINT_STAGE_COUNT];
+    size_t stage_count;
+    glint_text_line *lines;
+    glint_effect *effects;
+    size_t effect_count, effect_capacity;
+};
+
+/// Whether anything can add to a term.
+static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
+{
+    return term < GLINT_TERM_LOCAL ||
+           plan->runs[term == GLINT_TERM_INDIRECT ? GLINT_STAGE_INDIRECT : GLINT_STAGE_BOUNCE];
+}
+
+/// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
+glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);
+
+/// The passes that `outline` is made of.
+#define GLINT_OUTLINE_READS (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID)
+
+/// The base frame of adaptive sampling, of one sample a pixel: the passes of `desc`, and the geometry and codes that are compared.
+glint_render_desc glint_plan_base(const glint_render_desc *desc);
+
+/// Where sample `k` of a pixel lies in it: 0 .. 1 across and down.
+void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
+
+void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+/// Fills materials and the lights that give light.
+glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
+/// Fills one material's row. `light_ambient` is Ia.
+void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
+
+/// Fills what indirect light needs, after shading, and takes from the materials' ambient light what it stands for.
+glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
+/// Fills what mirrors and transparent materials need, after that.
+glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
+/// Fills what the eye of a perspective camera is inside of, which glint_plan_bounce does where something transmits.
+glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
+
+/// Fills the lights that are seen.
+glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error);
+/// Whether rays see a light, and what they see: pi times its radiance.
+///
+/// By `radiance` L: pi L color. By `intensity` I: color I A(D), A its fall-off and D the radius of a disk of its area (of a
+/// sphere: its own). A light that falls off as 1/(c2 d^2) so looks like what lights the same from afar, I/(c2 area); one
+/// that does not fall off looks as bright as the white surface it lights.
+bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
+
+glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
+
+/// A plan's keys as they would be if its surfaces were elsewhere: a copy that owns nothing of the plan's.
+typedef struct glint_plan_twin {
+    glint_plan plan; ///< of which all keys, and those of the lights, differ
+} glint_plan_twin;
+
+/// where: see glint_geometry. False: no memory. To be freed either way.
+bool glint_plan_twin_make(glint_plan_twin *twin, const glint_plan *plan, glint_key where);
+void glint_plan_twin_free(glint_plan_twin *twin);
+
+glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
+
+#endif

@@ -1,0 +1,286 @@
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/scene/area_light.h"
+#include "engine/plan/plan.h"
+#include "engine/stages/simd/coefficients.h"
+
+#include <float.h>
+
+#define PI 0x1.921fb54442d18p+1
+#define SAMPLES_MAX 0x1p27 ///< of all lights, for all turns
+
+/// Strengths beyond this are white in any film; keeping below it, products of two stay finite.
+#define STRENGTH_MAX 1e150
+
+static bool is_black(const double c[3]) { return c[0] == 0 && c[1] == 0 && c[2] == 0; }
+
+static void bounded(double out[3], const double color[3], double factor)
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = color[c] == 0 ? 0 : fmin(color[c] * factor, STRENGTH_MAX);
+}
+
+/// Phong and Blinn-Phong.
+static void power_init(glint_shade_material *out, const glint_material_desc *desc)
+{
+    const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
+    const double s = fmin(blinn && desc->matched ? 4 * desc->shininess : desc->shininess, FLT_MAX);
+    double norm = 1;
+    if (desc->normalized)
+        norm = blinn ? (s + 2) * (s + 4) / (8 * (glint_pow(2, -s / 2) + s)) : (s + 2) / 2;
+    out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
+    out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
+    out->shininess = (float)s;
+    // exp2's argument is half the logarithm of x times the shininess; a share of 1e-4 is far above all rounding
+    out->least = (float)(glint_pow(2, 2 * GLINT_EXP2_LOWEST / s) * (1 - 1e-4));
+    bounded(out->specular, desc->specular, norm);
+}
+
+static void facets_init(glint_shade_material *out, const glint_material_desc *desc)
+{
+    out->highlight = GLINT_HIGHLIGHT_FACETS;
+    out->lobe = desc->distribution == GLINT_DISTRIBUTION_BECKMANN ? GLINT_LOBE_BECKMANN : GLINT_LOBE_GGX;
+    out->alpha = (float)fmax(desc->roughness * desc->roughness, 1e-18);
+    for (int c = 0; c < 3; c++) {
+        const double ks = fmin(desc->specular[c], STRENGTH_MAX);
+        out->specular[c] = ks * desc->f0[c];
+        out->grazing[c] = ks * (1 - desc->f0[c]);
+    }
+}
+
+void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3])
+{
+    glint_material_desc d = *desc;
+    glint_material_desc_resolve(&d);
+    *out = (glint_shade_material) { 0 };
+    bounded(out->diffuse, d.diffuse, 1);
+    for (int c = 0; c < 3; c++)
+        out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
+    if (!glint_material_is_shiny(&d))
+        return;
+    if (d.model == GLINT_MODEL_COOK_TORRANCE)
+        facets_init(out, &d);
+    else
+        power_init(out, &d);
+}
+
+/// Whether its shadows are by caps.
+static bool is_cap(const glint_plan *plan, const glint_light_desc *desc)
+{
+    return plan->caps && desc->shadow == GLINT_SHADOW_CAPS && desc->shadows && desc->radius > 0;
+}
+
+/// Whether the light is taken for many points of its surface.
+static bool is_area(const glint_plan *plan, const glint_light_desc *desc)
+{
+    if (is_cap(plan, desc))
+        return false;
+    switch (desc->kind) {
+    case GLINT_LIGHT_DISK:
+    case GLINT_LIGHT_POLYGON:
+        return true;
+    case GLINT_LIGHT_SPHERE:
+        return desc->radius > 0 || desc->has_radiance;
+    default:
+        return false;
+    }
+}
+
+/// How many points are taken: of a point-like disk, one.
+static uint32_t sample_count(const glint_plan *plan, const glint_light_desc *desc)
+{
+    return !is_area(plan, desc) || (desc->kind == GLINT_LIGHT_DISK && desc->radius == 0) ? 1 : (uint32_t)desc->samples;
+}
+
+static void spot_init(glint_plan_light *out, const glint_light_desc *desc)
+{
+    const double inner = glint_cos(desc->inner_rad), outer = glint_cos(desc->outer_rad);
+    out->is_spot = inner > -1 || desc->exponent > 0; // else it shines everywhere, as a point light
+    if (!out->is_spot)
+        return;
+    out->attenuated = true;
+    vec_normalize(out->spot.axis, desc->direction);
+    out->spot.outer = outer;
+    out->spot.inverse = inner > outer ? 1 / (inner - outer) : HUGE_VAL;
+    out->spot.exponent = (float)fmin(desc->exponent, FLT_MAX);
+}
+
+/// The power of two that brings the largest distance from here to a surface that has an end near 1: then no square of a
+/// distance overflows a float, and none that is 2^-60 of it vanishes. Distances that are not far from 1 stay as they are:
+/// the kernels leave out a product by 1.
+static double distance_scale(const double position[3], const glint_geometry_table *geometry)
+{
+    double away[3];
+    vec_sub(away, position, geometry->reference);
+    const double distance = fmax(vec_max_abs(away), 1 / geometry->scale);
+    const double scale = distance > 0 && isfinite(distance) ? power_of_two_scale(distance) : 1;
+    return 0x1p-20 < scale && scale < 0x1p20 ? 1 : scale;
+}
+
+/// The mean of a polygon's corners, which is within it.
+static void middle_of_corners(const glint_light_desc *desc, double out[3])
+{
+    for (int c = 0; c < 3; c++) {
+        out[c] = 0;
+        for (size_t i = 0; i < desc->vertex_count; i++)
+            out[c] += desc->vertices[i][c] / (double)desc->vertex_count;
+    }
+}
+
+/// A light, or what all samples of one have in common.
+static void light_init(const glint_plan *plan, glint_plan_light *out, const glint_light_desc *desc)
+{
+    const glint_geometry_table *geometry = &plan->geometry->table;
+    *out = (glint_plan_light) { .hard = desc->shadow == GLINT_SHADOW_HARD && is_area(plan, desc),
+                                .directional = desc->kind == GLINT_LIGHT_DIRECTIONAL,
+                                .shadows = desc->shadows,
+                                .scale = 1 };
+    double strength = desc->intensity / sample_count(plan, desc);
+    if (out->directional) {
+        vec_normalize(out->position, desc->direction);
+        vec_scale(out->position, out->position, -1);
+        out->coefficients[0] = 1;
+    } else {
+        const double *a = desc->attenuation;
+        const double *place = desc->kind == GLINT_LIGHT_POLYGON ? desc->vertices[0] : desc->position;
+        vec_copy(out->position, desc->position);
+        if (desc->kind == GLINT_LIGHT_POLYGON)
+            middle_of_corners(desc, out->position);
+        vec_copy(out->coefficients, a);
+        out->attenuated = a[0] != 1 || a[1] != 0 || a[2] != 0;
+        out->scale = distance_scale(place, geometry);
+    }
+    if (desc->kind == GLINT_LIGHT_SPOT)
+        spot_init(out, desc);
+    if (desc->has_radiance && is_cap(plan, desc)) {
+        out->attenuated = out->radiant_cap = true;
+        out->coefficients[0] = 0;
+        out->coefficients[2] = 1;
+        strength = desc->radiance * (PI * (desc->radius * desc->radius));
+    } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
+        const double size = glint_lamp_size(desc);
+        out->attenuated = true;
+        out->scale = size > 0 ? power_of_two_scale(size) : 1;
+        strength = desc->radiance * (glint_lamp_area(desc) / desc->samples) * (out->scale * out->scale);
+    }
+    bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);
+    bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
+}
+
+/// Ia: the scene's ambient light and every light's.
+static void total_ambient(glint_plan *plan, const glint_scene *scene)
+{
+    vec_copy(plan->ambient, scene->desc.ambient);
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        for (int c = 0; c < 3; c++)
+            plan->ambient[c] += desc->ambient[c] * desc->intensity;
+    }
+    bounded(plan->ambient, plan->ambient, 1);
+    bounded(plan->background, scene->desc.background, 1);
+    plan->cue.on = scene->desc.has_depth_cue;
+    plan->cue.near = scene->desc.depth_cue_near;
+    plan->cue.far = scene->desc.depth_cue_far;
+    bounded(plan->cue.color, scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
+}
+
+/// Which kinds of highlight there are among the materials.
+static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets, glint_error *error)
+{
+    const glint_list *list = &plan->geometry->materials;
+    plan->materials = glint_alloc(list->count, sizeof *plan->materials);
+    if (!plan->materials)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < list->count; i++) {
+        glint_shade_material *material = &plan->materials[plan->material_count++];
+        glint_shade_material_init(material, &((const glint_material *)list->items[i])->desc, plan->ambient);
+        *powers =
+            *powers || material->highlight == GLINT_HIGHLIGHT_PHONG || material->highlight == GLINT_HIGHLIGHT_BLINN;
+        *facets = *facets || material->highlight == GLINT_HIGHLIGHT_FACETS;
+    }
+    return GLINT_OK;
+}
+
+/// Rows for all lights, and lamps for those of area.
+static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    double rows = 0, lamps = 0;
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        rows += sample_count(plan, desc);
+        if (is_area(plan, desc))
+            lamps += (double)sample_count(plan, desc) * glint_lamp_turns(desc, plan->desc.samples);
+        else if (is_cap(plan, desc))
+            lamps++;
+    }
+    if (fmax(rows, lamps) > SAMPLES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "lights: at most %.0f samples of all together expected, got %.0f",
+                          SAMPLES_MAX, fmax(rows, lamps));
+    plan->lights = glint_alloc((size_t)rows, sizeof *plan->lights);
+    plan->lamps = glint_alloc((size_t)lamps, sizeof *plan->lamps);
+    return plan->lights && plan->lamps ? GLINT_OK : glint_fail_nomem(error);
+}
+
+/// Adds the rows of one light: one, or one a sample. Returns how many lamps they took of `lamps`.
+static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
+                        glint_lamp *lamps)
+{
+    const uint32_t samples = sample_count(plan, desc), turns = glint_lamp_turns(desc, plan->desc.samples);
+    const bool area = is_area(plan, desc);
+    if (area) {
+        glint_light_desc taken = *desc;
+        taken.samples = samples;
+        glint_lamp_fill(&taken, turns, plan->desc.seed, lamps);
+    }
+    if (is_cap(plan, desc))
+        glint_lamp_whole(desc, lamps);
+    for (uint32_t i = 0; i < samples; i++) {
+        glint_plan_light *light = &plan->lights[plan->light_count++];
+        *light = *common;
+        light->joined = i > 0;
+        light->lamps = area ? lamps + (size_t)i * turns : NULL;
+        light->turn_count = area ? turns : 0;
+        light->cap = is_cap(plan, desc) ? lamps : NULL;
+        plan->shadow_count += light->shadows;
+        plan->spared_count += light->cap || (light->shadows && light->hard && i % GLINT_LIGHT_CHUNK > 0);
+    }
+    return area ? (size_t)samples * turns : is_cap(plan, desc);
+}
+
+/// Caps are of spheres and planes, which let no light through.
+static bool allows_caps(const glint_plan *plan)
+{
+    const glint_geometry_table *table = &plan->geometry->table;
+    const glint_list *list = &plan->geometry->materials;
+    bool opaque = true;
+    for (size_t i = 0; i < list->count; i++)
+        opaque = opaque && is_black(((const glint_material *)list->items[i])->desc.transmission);
+    return opaque && !table->triangles && !table->solids;
+}
+
+glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    bool powers = false, facets = false, glossy_light = false;
+    size_t lamps = 0;
+    plan->caps = allows_caps(plan);
+    total_ambient(plan, scene);
+    glint_status status = make_materials(plan, &powers, &facets, error);
+    if (!status)
+        status = make_room(plan, scene, error);
+    if (status)
+        return status;
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        glint_plan_light light;
+        light_init(plan, &light, desc);
+        if (is_black(light.diffuse) && is_black(light.specular))
+            continue;
+        glossy_light = glossy_light || !is_black(light.specular);
+        lamps += add_light(plan, &light, desc, plan->lamps + lamps);
+    }
+    plan->powers = powers && glossy_light;
+    plan->facets = facets && glossy_light;
+    plan->highlights = plan->powers || plan->facets;
+    return GLINT_OK;
+}

@@ -1,0 +1,89 @@
+/// The lights that rays see: their surfaces, and how bright they look.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/scene/area_light.h"
+#include "engine/plan/plan.h"
+
+#define PI 0x1.921fb54442d18p+1
+#define STRENGTH_MAX 1e150 ///< white in any film; keeping below it, products stay finite
+
+bool glint_light_shows(const glint_light_desc *desc, double shown[3])
+{
+    const double area = glint_lamp_area(desc), *a = desc->attenuation;
+    bool any = false;
+    if (!desc->visible || !(area > 0))
+        return false;
+    const double way = desc->kind == GLINT_LIGHT_POLYGON ? sqrt(area / PI) : desc->radius;
+    const double factor =
+        desc->has_radiance ? PI * desc->radiance : desc->intensity / (a[0] + (a[1] * way + a[2] * (way * way)));
+    for (int c = 0; c < 3; c++) {
+        shown[c] = desc->color[c] == 0 ? 0 : fmin(desc->color[c] * factor, STRENGTH_MAX);
+        any = any || shown[c] > 0;
+    }
+    return any;
+}
+
+/// The edges of a polygon, into the plan's room for all of them.
+static void add_edges(glint_plan *plan, glint_plan_glow *glow, const glint_light_desc *desc)
+{
+    glow->edges = plan->glow_edges + plan->glow_edge_count;
+    glow->edge_count = desc->vertex_count;
+    plan->glow_edge_count += desc->vertex_count;
+    for (size_t i = 0; i < desc->vertex_count; i++) {
+        glint_plan_edge *edge = &plan->glow_edges[plan->glow_edge_count - desc->vertex_count + i];
+        double along[3];
+        vec_copy(edge->corner, desc->vertices[i]);
+        vec_sub(along, desc->vertices[(i + 1) % desc->vertex_count], desc->vertices[i]);
+        vec_cross(edge->inwards, glow->normal, along);
+        vec_normalize(edge->inwards, edge->inwards);
+    }
+}
+
+static void add_glow(glint_plan *plan, const glint_light_desc *desc, const double shown[3])
+{
+    glint_plan_glow *glow = &plan->glows[plan->glow_count++];
+    *glow = (glint_plan_glow) { .ball = desc->kind == GLINT_LIGHT_SPHERE, .radius = desc->radius };
+    vec_copy(glow->shown, shown);
+    vec_copy(glow->center, desc->position);
+    if (glow->ball)
+        return;
+    glow->one_sided = !desc->two_sided;
+    if (desc->kind == GLINT_LIGHT_POLYGON) {
+        glint_lamp_polygon_normal(desc, glow->normal);
+        vec_copy(glow->center, desc->vertices[0]);
+        glow->radius = 0;
+        for (size_t i = 1; i < desc->vertex_count; i++) { // all of it is that near to its first corner
+            double away[3];
+            vec_sub(away, desc->vertices[i], desc->vertices[0]);
+            glow->radius = fmax(glow->radius, sqrt(vec_dot(away, away)) * (1 + 1e-12));
+        }
+        add_edges(plan, glow, desc);
+    } else {
+        vec_normalize(glow->normal, desc->normal);
+    }
+}
+
+glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    size_t lights = 0, edges = 0;
+    double shown[3];
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        const bool shows = glint_light_shows(desc, shown);
+        lights += shows;
+        edges += shows ? desc->vertex_count : 0;
+    }
+    if (lights == 0)
+        return GLINT_OK;
+    plan->glows = glint_alloc(lights, sizeof *plan->glows);
+    plan->glow_edges = glint_alloc(edges + 1, sizeof *plan->glow_edges);
+    if (!plan->glows || !plan->glow_edges)
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        if (glint_light_shows(desc, shown))
+            add_glow(plan, desc, shown);
+    }
+    return GLINT_OK;
+}

@@ -1,0 +1,289 @@
+/// Results that outlive a change of geometry: where a few primitives have moved, come or gone, a tile in which none of them
+/// shows, before or after, has the hits it had, and a light whose way to the tile's points none of them crosses reaches what
+/// it reached. Such results are given the new plan's keys before the frame begins.
+#include "engine/base/vec.h"
+#include "engine/reuse/reuse.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CARRY_PRIMS 16384u ///< a scene of more keeps nothing
+#define CARRY_CHANGES 64 ///< likewise a frame that has changed more
+
+/// Room around every ball: far above all rounding of the kernels, of these tests and of the balls themselves.
+static double loosened(double radius, double distance) { return radius * (1 + 1e-6) + 1e-6 * distance; }
+
+typedef struct ball {
+    double center[3], radius;
+} ball;
+
+typedef struct carry {
+    glint_reuse *reuse;
+    const glint_plan *plan;
+    const glint_plan *before; ///< the same plan with the places of the last frame: its keys
+    ball balls[2 * CARRY_CHANGES]; ///< around all that has changed, as it was and as it is
+    uint32_t ball_count;
+    const uint32_t *moved_to; ///< the place of each primitive of the last frame; NULL: all are where they were
+    glint_image *const *images;
+    uint32_t image_count;
+} carry;
+
+// ---- What has changed ----
+
+/// Every primitive's, by id. NULL: no memory.
+static glint_kept_place *find_places(const glint_geometry *geometry, uint32_t count)
+{
+    glint_kept_place *places = malloc((count + 1) * sizeof *places);
+    for (uint32_t id = 0; places && id < count; id++)
+        places[id].at = GLINT_MISS;
+    for (uint32_t i = 0; places && i < geometry->table.prim_count; i++) {
+        const glint_prim *prim = &geometry->prims[i];
+        glint_kept_place *place = &places[prim->id];
+        double numbers[GLINT_PLACE_MAX], lower[3], upper[3], half[3];
+        const size_t bytes = (size_t)glint_prim_place(geometry, prim, numbers) * sizeof *numbers;
+        place->key = glint_key_add((glint_key) { 0 }, numbers, bytes);
+        place->at = i;
+        place->radius = HUGE_VAL;
+        if (!glint_prim_bounded(prim))
+            continue;
+        glint_prim_bounds(geometry->solids, prim, lower, upper);
+        for (int c = 0; c < 3; c++) {
+            place->center[c] = 0.5 * lower[c] + 0.5 * upper[c];
+            half[c] = 0.5 * upper[c] - 0.5 * lower[c];
+        }
+        place->radius = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : sqrt(vec_dot(half, half));
+    }
+    return places;
+}
+
+static bool add_ball(carry *c, const glint_kept_place *place)
+{
+    if (place->at == GLINT_MISS)
+        return true;
+    if (!(place->radius < HUGE_VAL) || c->ball_count == 2 * CARRY_CHANGES)
+        return false;
+    ball *b = &c->balls[c->ball_count++];
+    vec_copy(b->center, place->center);
+    b->radius = place->radius;
+    return true;
+}
+
+/// Returns whether what has changed is little.
+static bool find_changes(carry *c, const glint_kept_place *was, const glint_kept_place *is, uint32_t count)
+{
+    for (uint32_t id = 0; id < count; id++) {
+        const bool both = was[id].at != GLINT_MISS && is[id].at != GLINT_MISS;
+        if (both ? glint_key_equal(was[id].key, is[id].key) : was[id].at == is[id].at)
+            continue;
+        if (!add_ball(c, &was[id]) || !add_ball(c, &is[id]))
+            return false;
+    }
+    return true;
+}
+
+// ---- What it may have touched ----
+
+/// Whether a change may show in a tile: one that is not for certain outside the pyramid of its rays.
+static bool shows(const carry *c, uint32_t column, uint32_t row)
+{
+    const glint_plan_camera *camera = &c->plan->camera;
+    const double width = c->plan->desc.width, height = c->plan->desc.height;
+    const double x[2] = { 2.0 * column * GLINT_TILE_WIDTH - width,
+                          2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - width };
+    const double y[2] = { height - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height),
+                          height - 2.0 * row * GLINT_TILE_HEIGHT };
+    double inwards[4][3], length[4];
+    for (int side = 0; side < 4; side++) {
+        const double *across = side < 2 ? camera->right : camera->up, *along = side < 2 ? camera->up : camera->right;
+        const double at = side < 2 ? x[side] : y[side - 2];
+        double edge[3];
+        for (int k = 0; k < 3; k++)
+            edge[k] = camera->forward[k] + at * across[k];
+        vec_cross(inwards[side], edge, along);
+        length[side] = sqrt(vec_dot(inwards[side], inwards[side]));
+        const double sign = (vec_dot(inwards[side], across) < 0) == (side % 2 == 0) ? -1 : 1;
+        for (int k = 0; k < 3; k++)
+            inwards[side][k] *= sign;
+    }
+    for (uint32_t i = 0; i < c->ball_count; i++) {
+        double way[3];
+        vec_sub(way, c->balls[i].center, camera->eye);
+        const double radius = loosened(c->balls[i].radius, sqrt(vec_dot(way, way)));
+        bool outside = false;
+        for (int side = 0; side < 4; side++)
+            outside = outside || vec_dot(inwards[side], way) < -radius * length[side];
+        if (!outside)
+            return true;
+    }
+    return false;
+}
+
+/// A ball around all that the light shines from; directional: *to is the way there.
+static double light_ball(const glint_plan_light *light, double to[3])
+{
+    const glint_lamp *lamp = light->cap ? light->cap : light->lamps;
+    vec_copy(to, lamp ? lamp->center : light->position);
+    return lamp ? lamp->radius : 0;
+}
+
+/// Whether a change may lie between a light and what a tile shows: nearer to the line between their middles than all three
+/// are wide.
+static bool shades(const carry *c, const glint_plan_light *light, const glint_point_box *box)
+{
+    double from[3], half[3], to[3], line[3];
+    for (int k = 0; k < 3; k++) {
+        from[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+        half[k] = 0.5 * box->upper[k] - 0.5 * box->lower[k];
+    }
+    const double wide = fmax(light_ball(light, to), sqrt(vec_dot(half, half)));
+    vec_copy(line, to);
+    if (!light->directional)
+        vec_sub(line, to, from);
+    const double length2 = vec_dot(line, line);
+    for (uint32_t i = 0; i < c->ball_count; i++) {
+        double way[3], beside[3];
+        vec_sub(way, c->balls[i].center, from);
+        double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
+        along = light->directional ? along : fmin(along, 1);
+        for (int k = 0; k < 3; k++)
+            beside[k] = way[k] - along * line[k];
+        const double far = sqrt(vec_dot(way, way)) + sqrt(length2) + sqrt(vec_dot(from, from));
+        if (!(sqrt(vec_dot(beside, beside)) > loosened(c->balls[i].radius + wide, far)))
+            return true;
+    }
+    return false;
+}
+
+// ---- New keys ----
+
+static void renew(glint_key *key, glint_key before, glint_key now)
+{
+    if (glint_key_equal(*key, before))
+        *key = now;
+}
+
+/// Where a primitive is now; GLINT_MISS, and what lanes beside the picture hold, stay as they are.
+static uint32_t moved(const carry *c, uint32_t place)
+{
+    return c->moved_to && place < c->reuse->place_count ? c->moved_to[place] : place;
+}
+
+static void carry_hits(const carry *c, glint_kept_tile *tile)
+{
+    const glint_key *was = c->before->keys, *is = c->plan->keys;
+    const bool hits = tile->t && glint_key_equal(tile->cast, was[GLINT_STAGE_CAST]);
+    for (size_t i = 0; hits && c->moved_to && i < (size_t)c->reuse->samples * GLINT_TILE_SAMPLES; i++)
+        tile->prim[i] = moved(c, tile->prim[i]);
+    if (glint_key_equal(tile->seen, was[GLINT_STAGE_SURFACE]))
+        tile->only = moved(c, tile->only);
+    if (glint_key_equal(tile->boxed, was[GLINT_STAGE_SURFACE]))
+        tile->box.only = moved(c, tile->box.only);
+    renew(&tile->cast, was[GLINT_STAGE_CAST], is[GLINT_STAGE_CAST]);
+    renew(&tile->view, was[GLINT_STAGE_VIEW], is[GLINT_STAGE_VIEW]);
+    renew(&tile->seen, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
+    renew(&tile->boxed, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
+}
+
+/// Returns whether all lights reach what they reached.
+static bool carry_lights(const carry *c, glint_kept_tile *tile, bool boxed)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < c->reuse->light_count; i++) {
+        const glint_plan_light *was = &c->before->lights[i], *is = &c->plan->lights[i];
+        glint_kept_light *light = &tile->lights[i];
+        const bool ordered =
+            is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
+        const bool open = !is->shadows || (boxed && !ordered && !shades(c, is, &tile->box));
+        renew(&light->light, was->key, is->key);
+        if (open) {
+            renew(&light->occlude, was->key, is->key);
+            renew(&light->place, was->place_key, is->place_key);
+        }
+        all = all && open;
+    }
+    return all && c->plan->light_count <= c->reuse->light_count;
+}
+
+static void carry_tile(const carry *c, size_t index, uint32_t column, uint32_t row)
+{
+    glint_kept_tile *tile = &c->reuse->tiles[index];
+    const glint_key surface = c->before->keys[GLINT_STAGE_SURFACE];
+    const bool seen = glint_key_equal(tile->seen, surface), boxed = glint_key_equal(tile->boxed, surface);
+    if ((!seen && !glint_key_equal(tile->cast, c->before->keys[GLINT_STAGE_CAST])) || shows(c, column, row))
+        return;
+    const glint_key film = glint_reuse_film_key(c->reuse, tile, c->before);
+    const bool more = tile->shown_count > 0 && glint_reuse_shows_more(tile, c->plan);
+    carry_hits(c, tile);
+    const bool lit = carry_lights(c, tile, boxed);
+    if (!seen || more || (!lit && tile->shown_count > 0))
+        return;
+    const glint_key now = glint_reuse_film_key(c->reuse, tile, c->plan), none = { 0 };
+    for (uint32_t i = 0; i < c->image_count && !glint_key_equal(film, none); i++)
+        if (c->images[i] && c->images[i]->film)
+            renew(&c->images[i]->film[index].key, film, now);
+}
+
+static void carry_all(const carry *c)
+{
+    glint_reuse *reuse = c->reuse;
+    const uint32_t across = (reuse->width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    for (size_t i = 0; i < reuse->tile_count; i++)
+        carry_tile(c, i, (uint32_t)(i % across), (uint32_t)(i / across));
+    reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // what stays where it is may be kept from now on
+    renew(&reuse->view, c->before->keys[GLINT_STAGE_VIEW], c->plan->keys[GLINT_STAGE_VIEW]);
+    for (uint32_t i = 0; i < reuse->light_count; i++)
+        renew(&reuse->light[i], c->before->lights[i].key, c->plan->lights[i].key);
+}
+
+/// Where each primitive of the last frame is now. False: no memory. *moved_to is NULL where none has moved.
+static bool find_moves(const glint_kept_place *was, const glint_kept_place *is, uint32_t count, uint32_t **moved_to)
+{
+    bool same = true;
+    for (uint32_t id = 0; id < count; id++)
+        same = same && (was[id].at == GLINT_MISS || was[id].at == is[id].at);
+    *moved_to = same ? NULL : calloc(count + 1, sizeof **moved_to);
+    for (uint32_t id = 0; *moved_to && id < count; id++)
+        if (was[id].at != GLINT_MISS)
+            (*moved_to)[was[id].at] = is[id].at;
+    return same || *moved_to;
+}
+
+static void carry_changes(carry *c, const glint_kept_place *is, uint32_t count)
+{
+    const glint_kept_place *was = c->reuse->places;
+    glint_plan_twin twin;
+    uint32_t *moved_to = NULL;
+    if (!find_changes(c, was, is, count) || !find_moves(was, is, count, &moved_to))
+        return;
+    carry whole = *c;
+    whole.moved_to = moved_to;
+    whole.before = &twin.plan;
+    if (glint_plan_twin_make(&twin, c->plan, c->reuse->where) &&
+        glint_key_equal(c->reuse->cast, twin.plan.keys[GLINT_STAGE_CAST]))
+        carry_all(&whole);
+    glint_plan_twin_free(&twin);
+    free(moved_to);
+}
+
+void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count)
+{
+    const glint_geometry *geometry = plan->geometry;
+    const uint32_t count = geometry->id_count, lights = plan->light_count;
+    const bool plain = reuse->plain == geometry->index->plain; // else the same places may have another order
+    if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
+        return;
+    carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
+    const bool few = count <= CARRY_PRIMS && count * sizeof(glint_kept_place) < reuse->budget / 64;
+    glint_kept_place *places = few ? find_places(geometry, count) : NULL;
+    const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
+                       reuse->scale == geometry->table.scale && // another underflows elsewhere
+                       reuse->light_count == (lights < GLINT_KEPT_LIGHTS ? lights : GLINT_KEPT_LIGHTS);
+    if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic)
+        carry_changes(&c, places, count);
+    free(reuse->places);
+    reuse->places = places;
+    reuse->place_count = count;
+    reuse->where = geometry->where;
+    reuse->scale = geometry->table.scale;
+}

@@ -1,0 +1,320 @@
+#include "engine/scene/area_light.h"
+#include "engine/base/sequence.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+
+#include <float.h>
+#include <stdio.h>
+
+#define PI 0x1.921fb54442d18p+1
+#define GOLDEN 0x1.3c6ef372fe95p-1 // (sqrt(5) - 1) / 2
+#define PLANAR 1e-6 // corners may be out of the plane, or inwards, by so much of the polygon's size
+#define TURNS_SAMPLES 4096 // samples beyond which pixels' samples share their patterns
+
+typedef const double (*corners)[3];
+
+// ---- Polygons ----
+
+/// Twice the area along the normal: the sum of the fan's cross products.
+static void area_vector(const glint_light_desc *desc, double out[3])
+{
+    out[0] = out[1] = out[2] = 0;
+    for (size_t i = 1; i + 1 < desc->vertex_count; i++) {
+        double a[3], b[3], c[3];
+        vec_sub(a, desc->vertices[i], desc->vertices[0]);
+        vec_sub(b, desc->vertices[i + 1], desc->vertices[0]);
+        vec_cross(c, a, b);
+        for (int k = 0; k < 3; k++)
+            out[k] += c[k];
+    }
+}
+
+void glint_lamp_polygon_normal(const glint_light_desc *desc, double normal[3])
+{
+    area_vector(desc, normal);
+    vec_normalize(normal, normal);
+}
+
+/// The largest distance of a corner from the first, by components.
+static double polygon_size(const glint_light_desc *desc)
+{
+    double size = 0;
+    for (size_t i = 1; i < desc->vertex_count; i++) {
+        double a[3];
+        vec_sub(a, desc->vertices[i], desc->vertices[0]);
+        size = fmax(size, vec_max_abs(a));
+    }
+    return size;
+}
+
+/// Every corner lies in the plane and on the inner side of the edge from corner i.
+static glint_status check_edge(const glint_light_desc *desc, size_t i, const double normal[3], double size,
+                               glint_error *error)
+{
+    const double *from = desc->vertices[i], *to = desc->vertices[(i + 1) % desc->vertex_count];
+    double edge[3], inwards[3];
+    vec_sub(edge, to, from);
+    if (edge[0] == 0 && edge[1] == 0 && edge[2] == 0)
+        return glint_fail(error, GLINT_ERR_INVALID, "vertices: corners that differ expected, got corner %zu twice",
+                          i + 1);
+    vec_cross(inwards, normal, edge);
+    vec_normalize(inwards, inwards);
+    for (size_t k = 0; k < desc->vertex_count; k++) {
+        double away[3];
+        vec_sub(away, desc->vertices[k], from);
+        if (fabs(vec_dot(away, normal)) > PLANAR * size)
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "vertices: corners in one plane expected, got corner %zu %.3g out of it", k + 1,
+                              vec_dot(away, normal));
+        if (vec_dot(away, inwards) < -PLANAR * size)
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "vertices: convex polygon expected, got corner %zu outside of the edge from corner %zu",
+                              k + 1, i + 1);
+        if (k != i && vec_max_abs(away) == 0)
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "vertices: corners that differ expected, got corner %zu again as corner %zu", i + 1,
+                              k + 1);
+    }
+    return GLINT_OK;
+}
+
+glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error *error)
+{
+    if (desc->vertex_count < 3 || desc->vertex_count > GLINT_CORNERS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "vertices: 3 to %d corners expected, got %zu", GLINT_CORNERS_MAX,
+                          desc->vertex_count);
+    for (size_t i = 0; i < desc->vertex_count; i++) {
+        char name[48];
+        snprintf(name, sizeof name, "vertices: corner %zu", i + 1);
+        glint_status status = glint_check_vector(name, desc->vertices[i], error);
+        if (status)
+            return status;
+    }
+    double normal[3];
+    const double size = polygon_size(desc);
+    area_vector(desc, normal);
+    const double area = sqrt(vec_dot(normal, normal)) / 2;
+    if (!(area > 1e-12 * size * size))
+        return glint_fail(error, GLINT_ERR_INVALID, "vertices: polygon with an area expected, got area %.3g", area);
+    if (!isfinite(area))
+        return glint_fail(error, GLINT_ERR_INVALID, "vertices: polygon with a finite area expected");
+    vec_normalize(normal, normal);
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < desc->vertex_count && !status; i++)
+        status = check_edge(desc, i, normal, size, error);
+    return status;
+}
+
+// ---- Areas ----
+
+double glint_lamp_area(const glint_light_desc *desc)
+{
+    double normal[3];
+    switch (desc->kind) {
+    case GLINT_LIGHT_DISK:
+        return PI * (desc->radius * desc->radius);
+    case GLINT_LIGHT_SPHERE:
+        return 4 * PI * (desc->radius * desc->radius);
+    case GLINT_LIGHT_POLYGON:
+        area_vector(desc, normal);
+        return sqrt(vec_dot(normal, normal)) / 2;
+    default:
+        return 0;
+    }
+}
+
+double glint_lamp_size(const glint_light_desc *desc)
+{
+    return desc->kind == GLINT_LIGHT_POLYGON ? polygon_size(desc) : desc->radius;
+}
+
+// ---- From the unit square to the surface ----
+
+/// What the maps need of a light besides its description.
+typedef struct surface {
+    const glint_light_desc *desc;
+    double normal[3], right[3], up[3]; ///< disk, polygon: unit
+    double area2; ///< polygon: twice its area
+    bool parallelogram;
+} surface;
+
+/// Two unit vectors across the normal; with zeros where the normal is an axis.
+static void find_frame(surface *s)
+{
+    double axis[3] = { 0, 0, 0 };
+    int least = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(s->normal[k]) < fabs(s->normal[least]))
+            least = k;
+    axis[least] = 1;
+    vec_cross(s->right, axis, s->normal);
+    vec_normalize(s->right, s->right);
+    vec_cross(s->up, s->normal, s->right);
+}
+
+static void surface_init(surface *s, const glint_light_desc *desc)
+{
+    *s = (surface) { .desc = desc };
+    if (desc->kind == GLINT_LIGHT_DISK) {
+        vec_normalize(s->normal, desc->normal);
+        find_frame(s);
+    } else if (desc->kind == GLINT_LIGHT_POLYGON) {
+        corners v = desc->vertices;
+        area_vector(desc, s->normal);
+        s->area2 = sqrt(vec_dot(s->normal, s->normal));
+        vec_normalize(s->normal, s->normal);
+        s->parallelogram = desc->vertex_count == 4;
+        for (int k = 0; k < 3 && s->parallelogram; k++)
+            s->parallelogram = v[1][k] - v[0][k] == v[2][k] - v[3][k];
+    }
+}
+
+/// Rings of equal area, Archimedes' way.
+static void sphere_point(const surface *s, double u, double v, double position[3], double normal[3])
+{
+    const double ring = 2 * sqrt(u * (1 - u)), angle = 2 * PI * v;
+    normal[0] = ring * glint_cos(angle);
+    normal[1] = 1 - 2 * u;
+    normal[2] = ring * glint_sin(angle);
+    for (int k = 0; k < 3; k++)
+        position[k] = s->desc->position[k] + s->desc->radius * normal[k];
+}
+
+static void disk_point(const surface *s, double u, double v, double position[3])
+{
+    const double r = s->desc->radius * sqrt(u), angle = 2 * PI * v;
+    const double x = r * glint_cos(angle), y = r * glint_sin(angle);
+    for (int k = 0; k < 3; k++)
+        position[k] = s->desc->position[k] + (x * s->right[k] + y * s->up[k]);
+}
+
+static void on_triangle(const double a[3], const double b[3], const double c[3], double x, double y, double out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = a[k] + (x * (b[k] - a[k]) + y * (c[k] - a[k]));
+}
+
+/// The triangles of the fan share u by their areas.
+static void polygon_point(const surface *s, double u, double v, double position[3])
+{
+    corners corner = s->desc->vertices;
+    if (s->parallelogram) {
+        on_triangle(corner[0], corner[1], corner[3], u, v, position);
+        return;
+    }
+    double left = u * s->area2;
+    for (size_t i = 1;; i++) {
+        double a[3], b[3], c[3];
+        vec_sub(a, corner[i], corner[0]);
+        vec_sub(b, corner[i + 1], corner[0]);
+        vec_cross(c, a, b);
+        const double area2 = fmax(vec_dot(c, s->normal), 0);
+        if (left < area2 || i + 2 == s->desc->vertex_count) {
+            const double r = sqrt(area2 > 0 ? fmin(left / area2, 1) : 0);
+            on_triangle(corner[0], corner[i], corner[i + 1], r * (1 - v), r * v, position);
+            return;
+        }
+        left -= area2;
+    }
+}
+
+static void surface_point(const surface *s, const double square[2], double position[3], double normal[3])
+{
+    if (s->desc->kind == GLINT_LIGHT_SPHERE) {
+        sphere_point(s, square[0], square[1], position, normal);
+        return;
+    }
+    vec_copy(normal, s->normal);
+    if (s->desc->kind == GLINT_LIGHT_DISK)
+        disk_point(s, square[0], square[1], position);
+    else
+        polygon_point(s, square[0], square[1], position);
+}
+
+// ---- The samples ----
+
+uint32_t glint_lamp_turns(const glint_light_desc *desc, double pixel_samples)
+{
+    uint32_t turns = 1;
+    while (turns < pixel_samples && 2 * turns * desc->samples <= TURNS_SAMPLES)
+        turns *= 2;
+    return turns;
+}
+
+/// The blocks of a sequence's points belong to 2 x 2 pixels first, so that these have an even set as well.
+static uint32_t lane_order(uint32_t lane)
+{
+    const uint32_t x = lane & 3, y = lane >> 2;
+    return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
+}
+
+static uint32_t emission_of(const glint_light_desc *desc)
+{
+    const bool flat = desc->kind != GLINT_LIGHT_SPHERE, one_sided = flat && !desc->two_sided;
+    if (!desc->has_radiance)
+        return one_sided ? GLINT_EMIT_FRONT : GLINT_EMIT_ALL;
+    if (one_sided)
+        return GLINT_EMIT_RADIANT_FRONT;
+    return flat ? GLINT_EMIT_RADIANT_BOTH : GLINT_EMIT_RADIANT_BALL;
+}
+
+/// Box and ball around all samples.
+static void enclose(const glint_light_desc *desc, glint_lamp *lamps, size_t count)
+{
+    double lower[3] = { DBL_MAX, DBL_MAX, DBL_MAX }, upper[3] = { -DBL_MAX, -DBL_MAX, -DBL_MAX };
+    double center[3], radius = 0;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            for (int lane = 0; lane < GLINT_GROUP; lane++) {
+                lower[k] = fmin(lower[k], lamps[i].position[k][lane]);
+                upper[k] = fmax(upper[k], lamps[i].position[k][lane]);
+            }
+    for (int k = 0; k < 3; k++)
+        center[k] = desc->kind == GLINT_LIGHT_POLYGON ? 0.5 * lower[k] + 0.5 * upper[k] : desc->position[k];
+    radius = desc->radius;
+    if (desc->kind == GLINT_LIGHT_POLYGON)
+        radius =
+            0.5 * sqrt((upper[0] - lower[0]) * (upper[0] - lower[0]) + (upper[1] - lower[1]) * (upper[1] - lower[1]) +
+                       (upper[2] - lower[2]) * (upper[2] - lower[2]));
+    for (size_t i = 0; i < count; i++) {
+        vec_copy(lamps[i].lower, lower);
+        vec_copy(lamps[i].upper, upper);
+        vec_copy(lamps[i].center, center);
+        lamps[i].radius = radius;
+        lamps[i].emission = emission_of(desc);
+    }
+}
+
+void glint_lamp_whole(const glint_light_desc *desc, glint_lamp *out)
+{
+    *out = (glint_lamp) { .radius = desc->radius };
+    vec_copy(out->center, desc->position);
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = desc->position[k] - desc->radius;
+        out->upper[k] = desc->position[k] + desc->radius;
+    }
+}
+
+void glint_lamp_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_lamp *out)
+{
+    const uint32_t samples = (uint32_t)desc->samples;
+    const int bits = glint_sequence_bits(GLINT_GROUP * turns);
+    surface s;
+    surface_init(&s, desc);
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+        for (uint32_t turn = 0; turn < turns; turn++) {
+            double shift[2];
+            glint_sequence_point(lane_order(lane) * turns + turn, bits, seed, shift);
+            for (uint32_t i = 0; i < samples; i++) {
+                double position[3], normal[3], square[2] = { (i + shift[0]) / samples, i * GOLDEN + shift[1] };
+                square[1] -= floor(square[1]);
+                surface_point(&s, square, position, normal);
+                glint_lamp *lamp = &out[(size_t)i * turns + turn];
+                for (int k = 0; k < 3; k++) {
+                    lamp->position[k][lane] = position[k];
+                    lamp->normal[k][lane] = normal[k];
+                }
+            }
+        }
+    enclose(desc, out, (size_t)samples * turns);
+}

@@ -1,0 +1,91 @@
+#include "engine/base/status.h"
+#include "engine/scene/objects.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define PI 0x1.921fb54442d18p+1
+
+glint_camera_desc glint_camera_desc_default(void)
+{
+    return (glint_camera_desc) { .projection = GLINT_PERSPECTIVE,
+                                 .eye = { 0, 0, 10 },
+                                 .up = { 0, 1, 0 },
+                                 .direction = { 0, 0, -1 },
+                                 .fov_y_rad = 40 * PI / 180,
+                                 .height = 10,
+                                 .pixel_offset = 0.5 };
+}
+
+static glint_status check_view(const glint_camera_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("eye", desc->eye, error);
+    if (status)
+        return status;
+    if (desc->has_direction)
+        return glint_check_direction("direction", desc->direction, error);
+    status = glint_check_vector("at", desc->at, error);
+    const double *at = desc->at, *eye = desc->eye;
+    if (!status && at[0] == eye[0] && at[1] == eye[1] && at[2] == eye[2])
+        status = glint_fail(error, GLINT_ERR_INVALID,
+                            "at: a point other than the eye expected, got {%.15g, %.15g, %.15g}", at[0], at[1], at[2]);
+    if (!status && !(isfinite(at[0] - eye[0]) && isfinite(at[1] - eye[1]) && isfinite(at[2] - eye[2])))
+        status = glint_fail(error, GLINT_ERR_INVALID, "at: a point within reach of the eye expected, got {%g, %g, %g}",
+                            at[0], at[1], at[2]);
+    return status;
+}
+
+static glint_status check(const glint_camera_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if (desc->projection > GLINT_ORTHOGRAPHIC)
+        status = glint_fail(error, GLINT_ERR_INVALID, "projection: no such projection");
+    if (!status)
+        status = check_view(desc, error);
+    if (!status)
+        status = glint_check_direction("up", desc->up, error);
+    if (!status && !(desc->fov_y_rad > 0 && desc->fov_y_rad < PI))
+        status = glint_fail(error, GLINT_ERR_INVALID, "fov: angle between 0 and 180 degrees expected, got %.15g",
+                            desc->fov_y_rad * 180 / PI);
+    if (!status && !(desc->height > 0 && isfinite(desc->height)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "height: number > 0 expected, got %.15g", desc->height);
+    if (!status)
+        status = glint_check_range("pixel_offset", desc->pixel_offset, 0, 1, "number 0 .. 1", error);
+    return status;
+}
+
+glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error)
+{
+    glint_status status = check(desc, error);
+    if (status)
+        return status;
+    glint_camera *camera = malloc(sizeof *camera);
+    if (!camera)
+        return glint_fail_nomem(error);
+    *camera = (glint_camera) { .references = 1, .desc = *desc };
+    *out = camera;
+    return GLINT_OK;
+}
+
+glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error)
+{
+    glint_status status = check(desc, error);
+    if (!status)
+        camera->desc = *desc;
+    return status;
+}
+
+const glint_camera_desc *glint_camera_get(const glint_camera *camera) { return &camera->desc; }
+
+glint_camera *glint_camera_retain(glint_camera *camera)
+{
+    if (camera)
+        camera->references++;
+    return camera;
+}
+
+void glint_camera_release(glint_camera *camera)
+{
+    if (camera && --camera->references == 0)
+        free(camera);
+}

@@ -1,0 +1,382 @@
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/scene/objects.h"
+
+#include <stdlib.h>
+
+#define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals
+
+glint_mesh_desc glint_mesh_desc_default(void)
+{
+    return (glint_mesh_desc) { .transform = glint_transform_identity(), .two_sided = true };
+}
+
+void glint_mesh_free(glint_mesh *mesh)
+{
+    if (!mesh)
+        return;
+    free(mesh->vertices);
+    free(mesh->triangles);
+    free(mesh->normals);
+    free(mesh->triangle_normals);
+    free(mesh->faces);
+    free(mesh->sites);
+    free(mesh);
+}
+
+glint_status glint_check_shading(glint_shading shading, glint_error *error)
+{
+    if (shading <= GLINT_SHADING_GOURAUD)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "shading: faceted, phong, flat or gouraud expected");
+}
+
+// ---- Faces to triangles ----
+
+/// One face while it is cut up.
+typedef struct polygon {
+    size_t number; ///< from 1
+    const uint32_t *corners; ///< vertices
+    uint32_t size;
+    double normal[3]; ///< by Newell's sum, in units of the largest extent
+    uint32_t *left; ///< places in `corners` that are not cut off yet
+    uint32_t room; ///< of `left`
+} polygon;
+
+typedef struct builder {
+    const glint_mesh_desc *desc;
+    glint_mesh *mesh;
+    size_t room; ///< triangles
+    polygon face;
+    glint_error *error;
+} builder;
+
+static const double *vertex(const builder *b, uint32_t place)
+{
+    return b->desc->vertices + 3 * (size_t)b->face.corners[place];
+}
+
+/// Cross product of two sides of the triangle at places i, j, k, brought near 1 by a power of two: 0 means no area.
+static void triangle_normal(const builder *b, uint32_t i, uint32_t j, uint32_t k, double out[3])
+{
+    double f[3], g[3];
+    vec_sub(f, vertex(b, j), vertex(b, i));
+    vec_sub(g, vertex(b, k), vertex(b, i));
+    const double largest = fmax(vec_max_abs(f), vec_max_abs(g));
+    const double scale = largest > 0 ? power_of_two_scale(largest) : 1;
+    vec_scale(f, f, scale);
+    vec_scale(g, g, scale);
+    vec_cross(out, f, g);
+}
+
+static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
+{
+    glint_mesh *mesh = b->mesh;
+    if (mesh->triangle_count == MOST)
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces: at most %zu triangles expected", MOST);
+    if (mesh->triangle_count == b->room) {
+        const size_t room = b->room * 2;
+        void *triangles = realloc(mesh->triangles, room * sizeof *mesh->triangles);
+        if (!triangles)
+            return glint_fail_nomem(b->error);
+        mesh->triangles = triangles;
+        void *normals = mesh->triangle_normals ? realloc(mesh->triangle_normals, room * sizeof *mesh->triangles) : NULL;
+        if (mesh->triangle_normals && !normals)
+            return glint_fail_nomem(b->error);
+        mesh->triangle_normals = normals;
+        void *faces = mesh->faces ? realloc(mesh->faces, room * sizeof *mesh->faces) : NULL;
+        if (mesh->faces && !faces)
+            return glint_fail_nomem(b->error);
+        mesh->faces = faces;
+        b->room = room;
+    }
+    if (mesh->faces)
+        mesh->faces[mesh->triangle_count] = (uint32_t)(b->face.number - 1);
+    const uint32_t place[3] = { i, j, k };
+    for (int c = 0; c < 3; c++) {
+        mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
+        if (!mesh->triangle_normals)
+            continue;
+        const uint32_t normal = b->desc->normal_corners[first_corner + place[c]];
+        mesh->triangle_normals[mesh->triangle_count][c] =
+            normal == GLINT_NO_NORMAL ? (uint32_t)b->desc->normal_count : normal; // the last is 0
+    }
+    mesh->triangle_count++;
+    return GLINT_OK;
+}
+
+static void polygon_normal(builder *b)
+{
+    polygon *face = &b->face;
+    double largest = 0, f[3], g[3], cross[3];
+    for (uint32_t i = 1; i < face->size; i++) {
+        vec_sub(f, vertex(b, i), vertex(b, 0));
+        largest = fmax(largest, vec_max_abs(f));
+    }
+    const double scale = largest > 0 ? power_of_two_scale(largest) : 1;
+    vec_scale(face->normal, face->normal, 0);
+    for (uint32_t i = 1; i + 1 < face->size; i++) {
+        vec_sub(f, vertex(b, i), vertex(b, 0));
+        vec_sub(g, vertex(b, i + 1), vertex(b, 0));
+        vec_scale(f, f, scale);
+        vec_scale(g, g, scale);
+        vec_cross(cross, f, g);
+        for (int c = 0; c < 3; c++)
+            face->normal[c] += cross[c];
+    }
+}
+
+/// A fan from the first corner stays within the polygon where no triangle of it is turned over.
+static bool fan_fits(const builder *b)
+{
+    double cross[3];
+    for (uint32_t i = 1; i + 1 < b->face.size; i++) {
+        triangle_normal(b, 0, i, i + 1, cross);
+        if (vec_dot(cross, b->face.normal) < 0)
+            return false;
+    }
+    return true;
+}
+
+static glint_status cut_fan(builder *b, size_t first_corner)
+{
+    glint_status status = GLINT_OK;
+    double cross[3];
+    for (uint32_t i = 1; i + 1 < b->face.size && !status; i++) {
+        triangle_normal(b, 0, i, i + 1, cross);
+        if (!is_zero(cross))
+            status = keep_triangle(b, first_corner, 0, i, i + 1);
+    }
+    return status;
+}
+
+/// Whether vertex p is in triangle i, j, k as seen along the polygon's normal, its sides included.
+static bool covers(const builder *b, uint32_t i, uint32_t j, uint32_t k, uint32_t p)
+{
+    double cross[3];
+    const uint32_t at[4] = { i, j, k, i };
+    for (int side = 0; side < 3; side++) {
+        triangle_normal(b, at[side], at[side + 1], p, cross);
+        if (vec_dot(cross, b->face.normal) < 0)
+            return false;
+    }
+    return true;
+}
+
+/// Whether the n-th corner that is left can be cut off.
+static bool is_ear(const builder *b, uint32_t n, uint32_t count)
+{
+    const uint32_t *left = b->face.left;
+    const uint32_t i = left[(n + count - 1) % count], j = left[n], k = left[(n + 1) % count];
+    double cross[3];
+    triangle_normal(b, i, j, k, cross);
+    if (vec_dot(cross, b->face.normal) < 0)
+        return false;
+    if (is_zero(cross))
+        return true; // nothing is lost with it
+    for (uint32_t m = 0; m < count; m++) {
+        const uint32_t p = left[m], *c = b->face.corners;
+        if (c[p] != c[i] && c[p] != c[j] && c[p] != c[k] && covers(b, i, j, k, p))
+            return false;
+    }
+    return true;
+}
+
+static glint_status cut_ears(builder *b, size_t first_corner)
+{
+    polygon *face = &b->face;
+    if (face->room < face->size) {
+        uint32_t *left = realloc(face->left, face->size * sizeof *left);
+        if (!left)
+            return glint_fail_nomem(b->error);
+        face->left = left;
+        face->room = face->size;
+    }
+    uint32_t count = face->size;
+    for (uint32_t i = 0; i < count; i++)
+        face->left[i] = i;
+    while (count > 2) {
+        uint32_t n = 0;
+        while (n < count && !is_ear(b, n, count))
+            n++;
+        if (n == count)
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: a polygon that does not cross itself expected",
+                              face->number);
+        const uint32_t i = face->left[(n + count - 1) % count], j = face->left[n], k = face->left[(n + 1) % count];
+        double cross[3];
+        triangle_normal(b, i, j, k, cross);
+        glint_status status = is_zero(cross) ? GLINT_OK : keep_triangle(b, first_corner, i, j, k);
+        if (status)
+            return status;
+        count--;
+        for (uint32_t m = n; m < count; m++)
+            face->left[m] = face->left[m + 1];
+    }
+    return GLINT_OK;
+}
+
+static glint_status cut_face(builder *b, size_t first_corner)
+{
+    polygon_normal(b);
+    if (is_zero(b->face.normal))
+        return glint_fail(b->error, GLINT_ERR_INVALID,
+                          "faces[%zu]: a face with an area expected: its vertices %u, %u, %u%s are on one line",
+                          b->face.number, b->face.corners[0] + 1, b->face.corners[1] + 1, b->face.corners[2] + 1,
+                          b->face.size > 3 ? ", ..." : "");
+    return b->face.size == 3 || fan_fits(b) ? cut_fan(b, first_corner) : cut_ears(b, first_corner);
+}
+
+// ---- Checks ----
+
+static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error)
+{
+    if (desc->vertex_count < 3 || desc->vertex_count > MOST)
+        return glint_fail(error, GLINT_ERR_INVALID, "vertices: 3 .. %zu expected, got %zu", MOST, desc->vertex_count);
+    if (desc->face_count < 1 || desc->face_count > MOST)
+        return glint_fail(error, GLINT_ERR_INVALID, "faces: 1 .. %zu expected, got %zu", MOST, desc->face_count);
+    if (desc->normals && (desc->normal_count < 1 || desc->normal_count > MOST))
+        return glint_fail(error, GLINT_ERR_INVALID, "normals: 1 .. %zu expected, got %zu", MOST, desc->normal_count);
+    if (desc->normals && !desc->normal_corners && desc->normal_count != desc->vertex_count)
+        return glint_fail(error, GLINT_ERR_INVALID, "normals: one a vertex (%zu) expected, got %zu", desc->vertex_count,
+                          desc->normal_count);
+    glint_status status = glint_check_transform("transform", &desc->transform, error);
+    return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
+}
+
+static glint_status check_vertices(const glint_mesh_desc *desc, glint_error *error)
+{
+    for (size_t i = 0; i < desc->vertex_count; i++) {
+        const double *v = desc->vertices + 3 * i;
+        if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]))
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "vertices[%zu]: three finite numbers expected, got {%.15g, %.15g, %.15g}", i + 1, v[0],
+                              v[1], v[2]);
+    }
+    for (size_t i = 0; desc->normals && i < desc->normal_count; i++) {
+        const double *v = desc->normals + 3 * i;
+        if (!isfinite(v[0]) || !isfinite(v[1]) || !isfinite(v[2]) || is_zero(v))
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "normals[%zu]: three finite numbers, not all 0, expected, got {%.15g, %.15g, %.15g}",
+                              i + 1, v[0], v[1], v[2]);
+    }
+    return GLINT_OK;
+}
+
+static glint_status check_face(const builder *b, size_t first_corner)
+{
+    const glint_mesh_desc *desc = b->desc;
+    if (b->face.size < 3)
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: 3 vertices or more expected, got %u",
+                          b->face.number, b->face.size);
+    for (uint32_t i = 0; i < b->face.size; i++) {
+        if (b->face.corners[i] >= desc->vertex_count)
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: vertex 1 .. %zu expected, got %llu",
+                              b->face.number, desc->vertex_count, (unsigned long long)b->face.corners[i] + 1);
+        const uint32_t normal = desc->normals && desc->normal_corners ? desc->normal_corners[first_corner + i] : 0;
+        if (normal != GLINT_NO_NORMAL && desc->normals && normal >= desc->normal_count)
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: normal 1 .. %zu expected, got %llu",
+                              b->face.number, desc->normal_count, (unsigned long long)normal + 1);
+    }
+    return GLINT_OK;
+}
+
+// ---- The mesh ----
+
+static glint_status copy_vertices(const glint_mesh_desc *desc, glint_mesh *mesh, glint_error *error)
+{
+    mesh->vertex_count = desc->vertex_count;
+    mesh->vertices = malloc(desc->vertex_count * sizeof *mesh->vertices);
+    if (desc->normals)
+        mesh->normals = malloc((desc->normal_count + 1) * sizeof *mesh->normals);
+    if (!mesh->vertices || (desc->normals && !mesh->normals))
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < desc->vertex_count; i++)
+        for (int c = 0; c < 3; c++)
+            mesh->vertices[i][c] = desc->vertices[3 * i + (size_t)c] + 0.0; // -0 and 0 are one place
+    for (size_t i = 0; desc->normals && i < desc->normal_count; i++)
+        vec_normalize(mesh->normals[i], desc->normals + 3 * i);
+    if (desc->normals)
+        vec_scale(mesh->normals[desc->normal_count], desc->vertices, 0);
+    return GLINT_OK;
+}
+
+static bool has_polygons(const glint_mesh_desc *desc)
+{
+    for (size_t i = 0; i < desc->face_count; i++)
+        if (desc->face_sizes[i] > 3)
+            return true;
+    return false;
+}
+
+static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_error *error)
+{
+    const bool polygons = has_polygons(desc);
+    builder b = { .desc = desc, .mesh = mesh, .room = desc->face_count, .error = error };
+    const bool numbered = desc->normals && desc->normal_corners;
+    glint_status status = copy_vertices(desc, mesh, error);
+    if (status)
+        return status;
+    mesh->triangles = malloc(b.room * sizeof *mesh->triangles);
+    mesh->triangle_normals = numbered ? malloc(b.room * sizeof *mesh->triangles) : NULL;
+    mesh->faces = polygons ? malloc(b.room * sizeof *mesh->faces) : NULL;
+    mesh->face_count = desc->face_count;
+    if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (polygons && !mesh->faces))
+        return glint_fail_nomem(error);
+    size_t first = 0;
+    for (size_t i = 0; i < desc->face_count && !status; i++) {
+        b.face.number = i + 1;
+        b.face.corners = desc->corners + first;
+        b.face.size = desc->face_sizes[i];
+        status = check_face(&b, first);
+        if (!status)
+            status = cut_face(&b, first);
+        first += b.face.size;
+    }
+    free(b.face.left);
+    return status;
+}
+
+static glint_status make_shape(const glint_mesh_desc *desc, glint_shape *shape, glint_error *error)
+{
+    shape->mesh = calloc(1, sizeof *shape->mesh);
+    if (!shape->mesh)
+        return glint_fail_nomem(error);
+    shape->materials[0] = glint_material_or_default(desc->material, error);
+    if (!shape->materials[0])
+        return GLINT_ERR_NOMEM;
+    shape->material_count = 1;
+    shape->desc.material = shape->materials[0];
+    glint_status status = fill(desc, shape->mesh, error);
+    if (!status)
+        status = glint_mesh_prepare(shape->mesh, shape->desc.shading, error);
+    shape->count = shape->mesh->triangle_count;
+    for (size_t i = 0; i < shape->mesh->vertex_count && !status; i++)
+        glint_shape_stretch(shape, shape->mesh->vertices[i], 0, i == 0);
+    return status;
+}
+
+glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
+{
+    glint_status status = check_counts(desc, error);
+    if (!status)
+        status = check_vertices(desc, error);
+    if (status)
+        return status;
+    glint_shape_desc base = glint_shape_desc_default(GLINT_SHAPE_MESH);
+    base.two_sided = desc->two_sided;
+    base.transform = desc->transform;
+    base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED;
+    memcpy(base.name, desc->name, sizeof base.name);
+    glint_shape *shape = glint_shape_alloc(&base, 1);
+    if (!shape)
+        return glint_fail_nomem(error);
+    status = make_shape(desc, shape, error);
+    if (status) {
+        glint_shape_release(shape);
+        return status;
+    }
+    *out = shape;
+    return GLINT_OK;
+}

@@ -1,0 +1,105 @@
+/// What smooth shading asks of a mesh: normals of its vertices, and where light is worked out once for several faces.
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/scene/objects.h"
+
+#include <stdlib.h>
+
+static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+/// Means of the faces around each vertex, by area.
+static glint_status make_normals(glint_mesh *mesh, glint_error *error)
+{
+    double(*normals)[3] = calloc(mesh->vertex_count, sizeof *normals);
+    if (!normals)
+        return glint_fail_nomem(error);
+    double largest = 0;
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (int c = 1; c < 3; c++) {
+            double side[3];
+            vec_sub(side, mesh->vertices[mesh->triangles[i][c]], mesh->vertices[mesh->triangles[i][0]]);
+            largest = fmax(largest, vec_max_abs(side));
+        }
+    const double scale = power_of_two_scale(largest);
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        const uint32_t *at = mesh->triangles[i];
+        double f[3], g[3], cross[3];
+        vec_sub(f, mesh->vertices[at[1]], mesh->vertices[at[0]]);
+        vec_sub(g, mesh->vertices[at[2]], mesh->vertices[at[0]]);
+        vec_scale(f, f, scale);
+        vec_scale(g, g, scale);
+        vec_cross(cross, f, g);
+        for (int c = 0; c < 9; c++)
+            normals[at[c / 3]][c % 3] += cross[c % 3];
+    }
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        if (!is_zero(normals[i]))
+            vec_normalize(normals[i], normals[i]);
+    mesh->normals = normals;
+    return GLINT_OK;
+}
+
+/// The sites of each vertex, one behind the other: those with a normal of their own.
+typedef struct chains {
+    uint32_t *first; ///< of each vertex; GLINT_NO_NORMAL: none
+    uint32_t *next, *normal; ///< of each site
+} chains;
+
+/// The number of the site of a vertex with a normal, a new one where it has none yet. A corner without a normal, which takes
+/// its face's, is a site of its own.
+static uint32_t site_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, size_t *count)
+{
+    const bool alone = is_zero(mesh->normals[normal]);
+    uint32_t at = alone ? GLINT_NO_NORMAL : c->first[vertex];
+    while (at != GLINT_NO_NORMAL && c->normal[at] != normal)
+        at = c->next[at];
+    if (at != GLINT_NO_NORMAL)
+        return at;
+    at = (uint32_t)(*count)++;
+    if (!alone) {
+        c->normal[at] = normal;
+        c->next[at] = c->first[vertex];
+        c->first[vertex] = at;
+    }
+    return at;
+}
+
+static glint_status number_sites(glint_mesh *mesh, glint_error *error)
+{
+    const size_t corners = 3 * mesh->triangle_count;
+    if (!mesh->triangle_normals) {
+        mesh->site_count = mesh->vertex_count;
+        return GLINT_OK;
+    }
+    if (corners >= GLINT_NO_NORMAL)
+        return glint_fail(error, GLINT_ERR_INVALID, "shading: at most %u triangles expected with gouraud, got %zu",
+                          GLINT_NO_NORMAL / 3, mesh->triangle_count);
+    chains c = { malloc(mesh->vertex_count * sizeof *c.first), malloc(corners * sizeof *c.next),
+                 malloc(corners * sizeof *c.normal) };
+    mesh->sites = malloc(mesh->triangle_count * sizeof *mesh->sites);
+    const bool room = c.first && c.next && c.normal && mesh->sites;
+    if (room) {
+        memset(c.first, 0xff, mesh->vertex_count * sizeof *c.first);
+        for (size_t i = 0; i < corners; i++)
+            mesh->sites[i / 3][i % 3] = site_of(mesh, &c, mesh->triangles[i / 3][i % 3],
+                                                mesh->triangle_normals[i / 3][i % 3], &mesh->site_count);
+    }
+    free(c.first);
+    free(c.next);
+    free(c.normal);
+    if (room)
+        return GLINT_OK;
+    free(mesh->sites);
+    mesh->sites = NULL;
+    return glint_fail_nomem(error);
+}
+
+glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if ((shading == GLINT_SHADING_PHONG || shading == GLINT_SHADING_GOURAUD) && !mesh->normals)
+        status = make_normals(mesh, error);
+    if (!status && shading == GLINT_SHADING_GOURAUD && !mesh->site_count)
+        status = number_sites(mesh, error);
+    return status;
+}

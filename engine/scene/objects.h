@@ -1,0 +1,103 @@
+/// What the described objects hold. Internal to the engine; nothing below engine/ itself includes it.
+#ifndef GLINT_OBJECTS_H
+#define GLINT_OBJECTS_H
+
+#include "engine/base/list.h"
+#include "engine/glint.h"
+
+struct glint_material {
+    size_t references;
+    glint_material_desc desc;
+};
+
+struct glint_light {
+    size_t references;
+    glint_light_desc desc; ///< its `vertices` are the light's own
+    double (*vertices)[3]; ///< or NULL
+};
+
+struct glint_camera {
+    size_t references;
+    glint_camera_desc desc;
+};
+
+/// A mesh's triangles.
+typedef struct glint_mesh {
+    double (*vertices)[3];
+    uint32_t (*triangles)[3]; ///< numbers of vertices
+    size_t vertex_count, triangle_count;
+    double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
+    uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
+    uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
+    size_t face_count;
+    uint32_t (
+        *sites)[3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
+    size_t site_count; ///< pairs; 0: not counted yet
+    double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
+} glint_mesh;
+
+struct glint_shape {
+    size_t references;
+    uint64_t revision; ///< another one after every change; no two shapes ever have the same
+    glint_shape_desc desc;
+    size_t count; ///< spheres, or triangles; 1 for other kinds
+    glint_mesh *mesh; ///< GLINT_SHAPE_MESH
+    glint_list children; ///< GLINT_SHAPE_GROUP
+    size_t level; ///< how many groups it has been within
+    uint64_t stamp; ///< of the last search that came by
+    size_t probed; ///< the level that search supposed
+    uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
+    uint64_t children_hash; ///< of their revisions then
+    double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
+    double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
+    uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
+    glint_material **materials;
+    size_t material_count;
+};
+
+typedef struct glint_geometry glint_geometry; ///< geometry/geometry.h
+void glint_geometry_release(glint_geometry *geometry); ///< NULL: nothing
+
+struct glint_scene {
+    size_t references;
+    glint_scene_desc desc;
+    glint_list shapes, lights;
+    glint_geometry *geometry; ///< made from the shapes by the last plan; a cache, see geometry.h
+};
+
+static inline glint_shape *glint_scene_shape(const glint_scene *scene, size_t i) { return scene->shapes.items[i]; }
+static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i) { return scene->lights.items[i]; }
+
+/// A shape of `count` primitives with room for `material_count` materials, none there yet; NULL: no memory.
+glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
+/// Makes the box of the shape hold a ball around the point, too; `first`: it holds nothing yet.
+void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first);
+/// Gives a shape a new revision.
+void glint_shape_changed(glint_shape *shape);
+/// Its revision; of a group, another one after every change of anything within.
+uint64_t glint_shape_revision(glint_shape *shape);
+
+bool glint_transform_is_identity(const glint_transform *t);
+/// Whether it keeps angles, but for rounding, and by what it multiplies lengths.
+bool glint_transform_similar(const glint_transform *t, double *factor);
+void glint_transform_point(const glint_transform *t, const double p[3], double out[3]);
+void glint_transform_linear(const glint_transform *t, double out[3][3]);
+/// Rows of the matrix that takes normals along, and its determinant.
+double glint_linear_cofactors(double m[3][3], double out[3][3]);
+glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
+
+/// Takes a reference to `material`, or makes one with default fields.
+glint_material *glint_material_or_default(glint_material *material, glint_error *error);
+void glint_mesh_free(glint_mesh *mesh);
+/// Makes what a mesh lacks to be shaded so: normals of the vertices, and the numbers of its sites.
+glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_error *error);
+glint_status glint_check_shading(glint_shading shading, glint_error *error);
+
+/// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
+void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);
+/// Whether it has a specular term that is not black.
+bool glint_material_is_shiny(const glint_material_desc *desc);
+void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size);
+void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size);
+
+#endif

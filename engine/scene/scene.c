@@ -1,0 +1,129 @@
+#include "engine/base/status.h"
+#include "engine/scene/objects.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+glint_status glint_scene_create(glint_scene **out, glint_error *error)
+{
+    glint_scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return glint_fail_nomem(error);
+    scene->references = 1;
+    *out = scene;
+    return GLINT_OK;
+}
+
+static glint_status check_depth_cue(const glint_scene_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if (desc->has_depth_cue_color)
+        status = glint_check_color("depth_cue.color", desc->depth_cue_color, error);
+    if (!status)
+        status = glint_check_range("depth_cue.near", desc->depth_cue_near, 0, DBL_MAX, "finite number >= 0", error);
+    if (!status && !(desc->depth_cue_far > desc->depth_cue_near && isfinite(desc->depth_cue_far)))
+        status =
+            glint_fail(error, GLINT_ERR_INVALID, "depth_cue.far: finite number above near, %.10g, expected, got %.10g",
+                       desc->depth_cue_near, desc->depth_cue_far);
+    return status;
+}
+
+glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_color("ambient", desc->ambient, error);
+    if (!status)
+        status = glint_check_color("background", desc->background, error);
+    if (!status && desc->has_depth_cue)
+        status = check_depth_cue(desc, error);
+    if (!status && desc->has_indirect)
+        status = glint_check_whole("indirect.samples", desc->indirect_samples, 1, 65536, error);
+    if (!status && desc->has_indirect)
+        status = glint_check_whole("indirect.bounces", desc->indirect_bounces, 0, 0x1p31, error);
+    if (status)
+        return status;
+    glint_camera_retain(desc->camera);
+    glint_camera_release(scene->desc.camera);
+    scene->desc = *desc;
+    return GLINT_OK;
+}
+
+const glint_scene_desc *glint_scene_get(const glint_scene *scene) { return &scene->desc; }
+
+glint_scene *glint_scene_retain(glint_scene *scene)
+{
+    if (scene)
+        scene->references++;
+    return scene;
+}
+
+void glint_scene_release(glint_scene *scene)
+{
+    if (!scene || --scene->references > 0)
+        return;
+    for (size_t i = 0; i < scene->shapes.count; i++)
+        glint_shape_release(glint_scene_shape(scene, i));
+    for (size_t i = 0; i < scene->lights.count; i++)
+        glint_light_release(glint_scene_light(scene, i));
+    glint_camera_release(scene->desc.camera);
+    glint_geometry_release(scene->geometry);
+    glint_list_free(&scene->shapes);
+    glint_list_free(&scene->lights);
+    free(scene);
+}
+
+static glint_status add(glint_list *list, void *object, const char *what, glint_error *error)
+{
+    if (glint_list_find(list, object) < list->count)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: already in the scene", what);
+    return glint_list_add(list, object, error);
+}
+
+static glint_status drop(glint_list *list, const void *object, const char *what, glint_error *error)
+{
+    const size_t index = glint_list_find(list, object);
+    if (index == list->count)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: not in the scene", what);
+    glint_list_remove(list, index);
+    return GLINT_OK;
+}
+
+glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint_error *error)
+{
+    glint_status status = add(&scene->shapes, shape, "shape", error);
+    if (!status)
+        glint_shape_retain(shape);
+    return status;
+}
+
+glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error)
+{
+    glint_status status = add(&scene->lights, light, "light", error);
+    if (!status)
+        glint_light_retain(light);
+    return status;
+}
+
+glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error)
+{
+    glint_status status = drop(&scene->shapes, shape, "shape", error);
+    if (!status)
+        glint_shape_release(shape);
+    return status;
+}
+
+glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error)
+{
+    glint_status status = drop(&scene->lights, light, "light", error);
+    if (!status)
+        glint_light_release(light);
+    return status;
+}
+
+size_t glint_scene_shape_count(const glint_scene *scene) { return scene->shapes.count; }
+
+size_t glint_scene_light_count(const glint_scene *scene) { return scene->lights.count; }
+
+glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index) { return glint_scene_shape(scene, index); }
+
+glint_light *glint_scene_light_at(const glint_scene *scene, size_t index) { return glint_scene_light(scene, index); }

@@ -1,0 +1,49 @@
+#include "engine/sheet/font.h"
+
+#include "engine/sheet/font_table.h"
+
+#define UNKNOWN 0xfffdu
+
+/// Reads one character of UTF-8; a byte that begins none is taken alone.
+static uint32_t next_code(const uint8_t **at)
+{
+    uint32_t first = *(*at)++;
+    int more = first < 0x80 ? 0 : first < 0xc2 ? -1 : first < 0xe0 ? 1 : first < 0xf0 ? 2 : first < 0xf5 ? 3 : -1;
+    if (more < 0)
+        return UNKNOWN;
+    uint32_t code = more ? first & (0x3fu >> more) : first;
+    for (int i = 0; i < more; i++) {
+        if (((*at)[i] & 0xc0) != 0x80)
+            return UNKNOWN;
+        code = code << 6 | ((*at)[i] & 0x3fu);
+    }
+    *at += more;
+    return code;
+}
+
+static const uint8_t *glyph_of(uint32_t code)
+{
+    for (size_t i = 0; i < sizeof font_ranges / sizeof *font_ranges; i++)
+        if (code >= font_ranges[i].first && code <= font_ranges[i].last)
+            return font_glyphs[font_ranges[i].glyph + (code - font_ranges[i].first)];
+    return glyph_of(UNKNOWN);
+}
+
+const uint8_t *glint_font_next(const char **text)
+{
+    const uint8_t *at = (const uint8_t *)*text;
+    uint32_t code = next_code(&at);
+    *text = (const char *)at;
+    return glyph_of(code);
+}
+
+size_t glint_font_count(const char *text, size_t size)
+{
+    const uint8_t *at = (const uint8_t *)text;
+    size_t count = 0;
+    while (*at && (size_t)(at - (const uint8_t *)text) < size) {
+        next_code(&at);
+        count++;
+    }
+    return count;
+}

@@ -1,0 +1,325 @@
+/// Contact sheets: finished pictures in rows, each with its label, on white.
+///
+///     title
+///               across ->
+///     d    [ picture ] [ picture ]
+///     o      label       label
+///     w    [difference][difference]    on request
+///     n      label       label
+#include "engine/base/status.h"
+#include "engine/sheet/canvas.h"
+#include "engine/file/file.h"
+#include "engine/sheet/font.h"
+#include "engine/file/png.h"
+#include "engine/file/write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define INK 0x222222
+#define FAINT_INK 0x6a6a6a
+#define MARK 0xd9594c // around the chosen cell
+#define LARGE_PICTURE 900 // pixels across from which labels are twice as large
+#define AREA_MAX ((int64_t)400000000) // pixels of a sheet: 1.2 GB while it is drawn
+#define PART_GAP 2 // characters between parts of a label on one line
+
+/// The sheet's measures, in pixels.
+typedef struct layout {
+    const glint_sheet_desc *desc;
+    int width, height; ///< of a picture
+    int scale; ///< of the text
+    int rows;
+    int column, label; ///< width of a column; height of the label below a picture
+    int left, top; ///< of the first picture
+    int band; ///< height of a row with its differences
+    int gap;
+    int note_lines; ///< at the bottom
+    char note[160]; ///< what a row of differences shows, in parts
+    int64_t sheet_width, sheet_height;
+} layout;
+
+// ---- Labels -------------------------------------------------------------------------------------------------------
+
+static int line_height(const layout *l) { return (GLINT_FONT_HEIGHT + 2) * l->scale; }
+
+static int text_width(const layout *l, const char *text, size_t size)
+{
+    size_t count = glint_font_count(text, size);
+    return (count < GLINT_SIDE_MAX ? (int)count : GLINT_SIDE_MAX) * GLINT_FONT_WIDTH * l->scale;
+}
+
+/// The longest part of a label.
+static int widest_part(const layout *l, const char *label)
+{
+    int widest = 0;
+    while (label && *label) {
+        size_t size = strcspn(label, "\n");
+        int width = text_width(l, label, size);
+        widest = width > widest ? width : widest;
+        label += size + (label[size] == '\n');
+    }
+    return widest;
+}
+
+/// Sets `label` on lines at most `room` wide, parts sharing a line where they fit; draws them from `y` down, centred on
+/// the room, which begins at `x`, unless `canvas` is NULL. Returns how many lines there are.
+static int set_label(const layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
+{
+    int lines = 0;
+    while (label && *label) {
+        const char *part = label;
+        int width = 0, gap = PART_GAP * GLINT_FONT_WIDTH * l->scale;
+        while (*part) { // how many parts this line takes
+            size_t size = strcspn(part, "\n");
+            int wider = (part > label ? width + gap : 0) + text_width(l, part, size);
+            if (part > label && wider > room)
+                break;
+            width = wider;
+            part += size + (part[size] == '\n');
+        }
+        for (int at = x + (room - width) / 2; label < part;) {
+            size_t size = strcspn(label, "\n");
+            if (canvas)
+                glint_canvas_text(canvas, at, y + lines * line_height(l), l->scale, label, size, INK);
+            at += text_width(l, label, size) + gap;
+            label += size + (label[size] == '\n');
+        }
+        lines++;
+    }
+    return lines;
+}
+
+// ---- Measuring ----------------------------------------------------------------------------------------------------
+
+/// The whole sheet: the grid, or what stands above and below it.
+static void measure_sheet(layout *l)
+{
+    const glint_sheet_desc *desc = l->desc;
+    int64_t least[2] = { 0, 0 };
+    l->sheet_width = (int64_t)l->left + (int64_t)desc->columns * (l->column + l->gap);
+    l->sheet_height = (int64_t)l->top + (int64_t)l->rows * l->band;
+    if (desc->title)
+        least[0] = l->left + 2 * (int64_t)text_width(l, desc->title, SIZE_MAX) + l->gap;
+    if (desc->difference) {
+        snprintf(l->note, sizeof l->note,
+                 "below each: |picture - cell %zu| x %g\nmax: the largest, in codes of 255\n%%: pixels that differ",
+                 desc->difference, desc->gain);
+        least[1] = l->left + widest_part(l, l->note) + l->gap;
+    }
+    for (int i = 0; i < 2; i++)
+        l->sheet_width = least[i] > l->sheet_width ? least[i] : l->sheet_width;
+    if (l->sheet_width <= GLINT_SIDE_MAX)
+        l->note_lines = set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, NULL, 0, 0);
+    l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
+}
+
+static layout measure(const glint_sheet_desc *desc, int width, int height)
+{
+    layout l = { .desc = desc, .width = width, .height = height };
+    int lines = 0;
+    bool differs = desc->difference > 0;
+    l.scale = width >= LARGE_PICTURE ? 2 : 1;
+    l.gap = 12 * l.scale;
+    l.rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
+    l.column = width;
+    for (size_t i = 0; i < desc->cell_count; i++) {
+        int widest = widest_part(&l, desc->cells[i].label);
+        l.column = widest > l.column ? widest : l.column;
+    }
+    for (size_t i = 0; i < desc->cell_count; i++) {
+        int count = set_label(&l, desc->cells[i].label, l.column, NULL, 0, 0);
+        lines = count > lines ? count : lines;
+    }
+    lines = differs && lines < 1 ? 1 : lines;
+    l.label = lines * line_height(&l) + (lines ? 4 * l.scale : 0);
+    l.left = l.gap + (desc->down ? line_height(&l) + l.gap / 2 : 0);
+    l.top = l.gap + (desc->title ? 2 * line_height(&l) + l.gap : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
+    l.band = (differs ? 2 : 1) * (height + l.label + l.gap);
+    measure_sheet(&l);
+    return l;
+}
+
+// ---- Drawing ------------------------------------------------------------------------------------------------------
+
+static uint8_t *row_at(glint_canvas *canvas, int x, int y)
+{
+    return canvas->rgb + ((size_t)y * (size_t)canvas->width + (size_t)x) * 3;
+}
+
+/// Where the picture of cell `i`, from 0, has its top left.
+static void place_cell(const layout *l, size_t i, int *x, int *y)
+{
+    int column = (int)(i % (size_t)l->desc->columns), row = (int)(i / (size_t)l->desc->columns);
+    *x = l->left + column * (l->column + l->gap) + (l->column - l->width) / 2;
+    *y = l->top + row * l->band;
+}
+
+/// |a - b| times the gain, of two pictures on the canvas, at the place below `a`; and what is to be said of it.
+static void draw_difference(const layout *l, glint_canvas *canvas, size_t a, size_t b)
+{
+    int ax, ay, bx, by, most = 0;
+    int64_t count = 0;
+    char label[96];
+    place_cell(l, a, &ax, &ay);
+    place_cell(l, b, &bx, &by);
+    int y = ay + l->band / 2;
+    for (int row = 0; row < l->height; row++) {
+        const uint8_t *from = row_at(canvas, ax, ay + row), *to = row_at(canvas, bx, by + row);
+        uint8_t *out = row_at(canvas, ax, y + row);
+        for (int x = 0; x < l->width; x++) {
+            int largest = 0;
+            for (int c = 0; c < 3; c++) {
+                int difference = abs(from[3 * x + c] - to[3 * x + c]);
+                double shown = difference * l->desc->gain + 0.5;
+                out[3 * x + c] = (uint8_t)(shown < 255 ? shown : 255);
+                largest = difference > largest ? difference : largest;
+            }
+            most = largest > most ? largest : most;
+            count += largest > 0;
+        }
+    }
+    if (a == b)
+        snprintf(label, sizeof label, "cell %zu", b + 1);
+    else
+        snprintf(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
+    set_label(l, label, l->column, canvas, ax - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+}
+
+static void draw_differences(const layout *l, glint_canvas *canvas)
+{
+    size_t chosen = l->desc->difference - 1;
+    int x, y;
+    for (size_t i = 0; i < l->desc->cell_count; i++)
+        draw_difference(l, canvas, i, chosen);
+    place_cell(l, chosen, &x, &y);
+    glint_canvas_frame(canvas, x, y, l->width, l->height, 3 * l->scale, MARK);
+    y = (int)l->sheet_height - l->note_lines * line_height(l) - l->gap / 2;
+    set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
+}
+
+/// "name ->" above the columns or beside the rows, in their middle.
+static void draw_titles(const layout *l, glint_canvas *canvas)
+{
+    const glint_sheet_desc *desc = l->desc;
+    char text[256];
+    if (desc->title)
+        glint_canvas_text(canvas, l->left, l->gap, 2 * l->scale, desc->title, SIZE_MAX, INK);
+    if (desc->across) {
+        int grid = desc->columns * (l->column + l->gap) - l->gap;
+        snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->across);
+        glint_canvas_text(canvas, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
+                          l->top - line_height(l) - l->gap / 2, l->scale, text, SIZE_MAX, FAINT_INK);
+    }
+    if (desc->down) {
+        int grid = l->rows * l->band - l->gap;
+        snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->down);
+        int y = l->top + (grid - text_width(l, text, SIZE_MAX)) / 2;
+        glint_canvas_text_down(canvas, l->gap + GLINT_FONT_HEIGHT * l->scale, y > 0 ? y : 0, l->scale, text, FAINT_INK);
+    }
+}
+
+static glint_status check_size(const layout *l, const glint_picture *picture, const char *path, glint_error *error)
+{
+    int width = glint_picture_width(picture), height = glint_picture_height(picture);
+    if (width == l->width && height == l->height)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%.200s: %dx%d pixels, as %.200s has, expected, got %dx%d", path,
+                      l->width, l->height, l->desc->cells[0].path, width, height);
+}
+
+static glint_status draw_cell(const layout *l, glint_canvas *canvas, size_t i, glint_error *error)
+{
+    const glint_sheet_cell *cell = &l->desc->cells[i];
+    glint_picture *picture = NULL;
+    int x, y;
+    place_cell(l, i, &x, &y);
+    glint_status status = glint_picture_read(cell->path, true, &picture, error);
+    if (!status)
+        status = check_size(l, picture, cell->path, error);
+    for (int row = 0; row < l->height && !status; row++)
+        glint_picture_row(picture, row, 255, row_at(canvas, x, y + row));
+    glint_picture_destroy(picture);
+    set_label(l, cell->label, l->column, canvas, x - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+    return status;
+}
+
+static const void *row_of_canvas(const void *user, int y, void *scratch)
+{
+    const glint_canvas *canvas = user;
+    (void)scratch;
+    return canvas->rgb + (size_t)y * (size_t)canvas->width * 3;
+}
+
+static glint_status write_canvas(const glint_canvas *canvas, const char *path, glint_error *error)
+{
+    glint_text text = { "Software", "glint " GLINT_VERSION };
+    glint_png_source source = {
+        .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas
+    };
+    glint_png_desc png = { GLINT_ENCODE_SMALL, &text, 1 };
+    glint_bytes bytes = { 0 };
+    source.tone = glint_tone_desc_default();
+    glint_status status = glint_png_encode(NULL, &source, &png, &bytes, NULL, error);
+    if (!status)
+        status = glint_file_write(path, bytes.data, bytes.size, error);
+    free(bytes.data);
+    return status;
+}
+
+static glint_status draw_sheet(const layout *l, const char *path, glint_error *error)
+{
+    glint_canvas canvas;
+    if (!glint_canvas_init(&canvas, (int)l->sheet_width, (int)l->sheet_height))
+        return glint_fail_nomem(error);
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < l->desc->cell_count && !status; i++)
+        status = draw_cell(l, &canvas, i, error);
+    if (!status && l->desc->difference)
+        draw_differences(l, &canvas);
+    draw_titles(l, &canvas);
+    if (!status)
+        status = write_canvas(&canvas, path, error);
+    free(canvas.rgb);
+    return status;
+}
+
+static glint_status check_desc(const glint_sheet_desc *desc, const char *path, glint_error *error)
+{
+    glint_file_kind kind;
+    glint_status status = glint_file_kind_of(path, &kind, error);
+    if (!status && kind != GLINT_FILE_PNG)
+        status = glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png expected, got '%.400s'", path);
+    if (!status)
+        status = glint_check_whole("cell_count", (double)desc->cell_count, 1, 1e6, error);
+    if (!status)
+        status = glint_check_whole("columns", desc->columns, 1, GLINT_SIDE_MAX, error);
+    if (!status)
+        status = glint_check_whole("difference", (double)desc->difference, 0, (double)desc->cell_count, error);
+    if (!status && desc->difference)
+        status = glint_check_range("gain", desc->gain, 1e-3, 1e6, "number 0.001 .. 1000000", error);
+    return status;
+}
+
+glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error)
+{
+    glint_picture *first = NULL;
+    glint_status status = check_desc(desc, path, error);
+    if (!status)
+        status = glint_picture_read(desc->cells[0].path, false, &first, error);
+    if (status)
+        return status;
+    layout l = measure(desc, glint_picture_width(first), glint_picture_height(first));
+    glint_picture_destroy(first);
+    if (l.sheet_width > GLINT_SIDE_MAX || l.sheet_height > GLINT_SIDE_MAX)
+        return glint_fail(
+            error, GLINT_ERR_INVALID,
+            "sheet: sides of at most %d pixels expected, got %lldx%lld; other columns or smaller pictures "
+            "make it fit",
+            GLINT_SIDE_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
+    if (l.sheet_width * l.sheet_height > AREA_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "sheet: at most %lld pixels expected, got %lldx%lld; smaller or fewer pictures make it fit",
+                          (long long)AREA_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
+    return draw_sheet(&l, path, error);
+}

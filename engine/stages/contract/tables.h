@@ -1,0 +1,158 @@
+/// The contract of the stages: what all of them share, and the tables that they look up. Begin with stages.h.
+#ifndef GLINT_CONTRACT_TABLES_H
+#define GLINT_CONTRACT_TABLES_H
+
+#include "engine/stages/contract/with.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define GLINT_GROUP 16
+#define GLINT_TILE_WIDTH 32
+#define GLINT_TILE_HEIGHT 24
+#define GLINT_TILE_GROUPS (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT / GLINT_GROUP)
+#define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
+#define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
+#define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< what float rounding may add to a distance, of the lengths it came from
+#define GLINT_LIGHT_CHUNK 16 ///< lights, or samples of one light, that one call of a stage takes at most
+
+// ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------
+
+typedef enum glint_prim_kind {
+    GLINT_PRIM_SPHERE,
+    GLINT_PRIM_PLANE,
+    GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH_MESH, 2),
+    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3)
+} glint_prim_kind;
+
+/// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
+typedef struct glint_prim {
+    _Alignas(64) uint16_t kind;
+    uint16_t two_sided; ///< 0: seen from behind it gets ambient light only
+    uint32_t id; ///< its number in order of definition, from 0
+    uint32_t material; ///< index in the material table
+    float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
+    float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
+    union {
+        struct {
+            double center[3]; ///< sphere, solid: centre; plane: a point of it
+            double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
+            double normal[3]; ///< plane: unit
+            double radius; ///< sphere, world units
+            double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+        };
+        struct {
+            double corner[3][3]; ///< triangle
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids
+            uint32_t sites; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
+        };
+    };
+} glint_prim;
+
+#define GLINT_NODE_WIDTH 16
+#define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the rest is the index of a primitive, not of a node
+#define GLINT_BVH_DEPTH 32 ///< nodes on the longest path from the root
+
+/// Sixteen boxes of the spatial index, a lane each. An empty slot has lower = +inf, upper = -inf.
+typedef struct glint_node {
+    float lower[3][GLINT_NODE_WIDTH], upper[3][GLINT_NODE_WIDTH];
+    uint32_t child[GLINT_NODE_WIDTH];
+} glint_node;
+
+/// Unit normals at the corners of a triangle that is shaded smoothly.
+typedef struct glint_corner_normals {
+    double normal[3][3];
+} glint_corner_normals;
+
+/// Where the light on a triangle is worked out once for all its samples: its corners, or its face three times.
+typedef struct glint_sites {
+    uint32_t at[3];
+} glint_sites;
+
+/// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
+/// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0.
+typedef enum glint_form {
+    GLINT_FORM_BALL,
+    GLINT_FORM_BOX,
+    GLINT_FORM_CYLINDER,
+    GLINT_FORM_CONE,
+    GLINT_FORM_DISK,
+    GLINT_FORM_TUBE, ///< a cylinder's and a cone's side alone, which has no inside
+    GLINT_FORM_FUNNEL
+} glint_form;
+
+/// The image of a unit shape under center + forward k.
+typedef struct glint_solid {
+    double inverse[3][3], forward[3][3]; ///< rows
+    uint32_t form;
+} glint_solid;
+
+/// Whether a place at `offset` from the centre is inside, not on, the solid; no place is inside a disk, tube or funnel.
+static inline bool glint_solid_holds(const glint_solid *solid, const double offset[3])
+{
+    double k[3];
+    for (int c = 0; c < 3; c++) {
+        const double *row = solid->inverse[c];
+        k[c] = (row[0] * offset[0] + row[1] * offset[1]) + row[2] * offset[2];
+    }
+    const double round = k[0] * k[0] + k[1] * k[1], z = k[2];
+    switch (solid->form) {
+    case GLINT_FORM_BALL:
+        return round + z * z < 1;
+    case GLINT_FORM_BOX:
+        return -1 < k[0] && k[0] < 1 && -1 < k[1] && k[1] < 1 && -1 < z && z < 1;
+    case GLINT_FORM_CYLINDER:
+        return round < 1 && -1 < z && z < 1;
+    case GLINT_FORM_CONE:
+        return round < z * z && 0 < z && z < 1;
+    default:
+        return false;
+    }
+}
+
+/// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
+typedef struct glint_geometry_table {
+    const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
+    uint32_t prim_count;
+    const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
+    const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
+    uint32_t unbounded_count;
+    double reference[3], scale; ///< scale is a power of two
+    double extent; ///< bound of every coordinate and radius, world units
+    bool triangles; ///< there are some
+    const glint_corner_normals *corner_normals;
+    const glint_solid *solids;
+    const glint_sites *sites;
+    uint32_t site_count; ///< 0: all light is worked out for each sample
+} glint_geometry_table;
+
+/// What the stages before shade find out for a material's specular term.
+typedef enum glint_highlight {
+    GLINT_HIGHLIGHT_NONE,
+    GLINT_HIGHLIGHT_PHONG,
+    GLINT_HIGHLIGHT_BLINN,
+    GLINT_HIGHLIGHT_FACETS ///< of microfacets: the stages `view` and `facet`
+} glint_highlight;
+
+/// What shade makes of that.
+typedef enum glint_lobe {
+    GLINT_LOBE_POWER,
+    GLINT_LOBE_POWER_COSINE, ///< times n.l
+    GLINT_LOBE_GGX,
+    GLINT_LOBE_BECKMANN
+} glint_lobe;
+
+typedef struct glint_shade_material {
+    double diffuse[3], specular[3];
+    double ambient[3]; ///< ka * Ia
+    float shininess;
+    float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is 0 for certain; 0: wherever that is not known
+    uint32_t highlight; ///< glint_highlight: what its specular term is of
+    uint32_t lobe; ///< glint_lobe
+    float alpha; ///< width of the distribution of microfacets, 1e-18 .. 1
+    double grazing[3]; ///< of microfacets: `specular` is ks f0, this is ks (1 - f0)
+} glint_shade_material;
+
+#endif

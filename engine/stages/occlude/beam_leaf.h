@@ -1,0 +1,185 @@
+// beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float finds pairs, and these are decided
+// a vector at a time, each lane with a triangle of its own. Contract: stages.h, occlude.
+
+/// Nothing is between this point and the light any more that matters.
+static inline void R(close_point)(R(beam) * beam, uint32_t i)
+{
+    const uint32_t at = beam->at[i], cell = beam->cell[i];
+    float far = -HUGE_VALF;
+    if (beam->w[i] == -HUGE_VALF)
+        return; // it is closed
+    beam->tile->args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
+    beam->w[i] = -HUGE_VALF;
+    beam->open--;
+    for (uint32_t j = beam->begin[cell]; j < beam->begin[cell + 1]; j++)
+        far = larger(far, beam->w[j]);
+    beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = far;
+}
+
+/// What is known of a point, as lane n of these arrays. Triangles ask for the ray that found it.
+static inline void R(copy_point)(const R(beam) * beam, uint32_t i, bool triangle, int n, real *const point[3],
+                                 real *const direction[3], real *slack)
+{
+    const glint_occlude_args *args = beam->tile->args;
+    const uint32_t at = beam->at[i], g = at / GLINT_GROUP, lane = at % GLINT_GROUP;
+    for (int k = 0; k < 3; k++)
+        point[k][n] = ((const real *)args->point[k])[at];
+    if (!triangle)
+        return;
+    const uint32_t across = args->camera ? args->camera->groups_across : 1;
+    const R(group_directions) viewing = R(directions_of)(args->camera, g % across, g / across);
+    slack[n] = ((const real *)args->slack)[at];
+    for (int k = 0; k < 3; k++)
+        direction[k][n] = viewing.across ? viewing.across[k * GLINT_GROUP + lane] + viewing.down[k * GLINT_GROUP + lane]
+                                         : ((const real *)args->direction[k])[at];
+}
+
+static inline void R(begin_beam_leaf)(R(beam_leaf) * leaf)
+{
+    memset(leaf->corner, 0, sizeof leaf->corner);
+    leaf->own = leaf->back = 0;
+    leaf->count = 0;
+}
+
+/// Loads the corners. Lanes without a triangle keep what they had.
+static inline void R(load_beam_leaf)(const R(beam) * beam, unsigned mask, R(beam_leaf) * leaf)
+{
+    const glint_geometry_table *geometry = beam->tile->args->geometry;
+    _Alignas(64) real moved[GLINT_NODE_WIDTH];
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        const glint_prim *prim = &geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                leaf->corner[j][k][slot] = (real)prim->corner[j][k];
+    }
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++) {
+            const vr reference = r_set(geometry->reference[k]), scale = r_set(geometry->scale);
+            for (int i = 0; i < GLINT_NODE_WIDTH; i += VR)
+                r_store(moved + i, (r_load(leaf->corner[j][k] + i) - reference) * scale - r_set(beam->view.exact[k]));
+            R(narrow)(moved, leaf->shown.corner[j][k]);
+        }
+}
+
+// ---- The decision ----
+
+/// Of VR pairs from number i on, those whose point has the triangle between it and the light.
+static unsigned R(pairs_blocked)(const R(beam) * beam, int i)
+{
+    const R(beam_leaf) *leaf = &beam->leaf;
+    const R(shadow_tile) *tile = beam->tile;
+    const glint_occlude_args *args = tile->args;
+    const unsigned all = (1u << VR) - 1, own = leaf->own >> i & all, back = leaf->back >> i & all;
+    const vr zero = r_set(0),
+             light[3] = { r_load(tile->position[0]), r_load(tile->position[1]), r_load(tile->position[2]) };
+    vr corner[3][3], point[3], d[3], ray[3];
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            corner[j][k] = r_pick(leaf->corner[j][k], leaf->slot + i);
+    for (int k = 0; k < 3; k++) {
+        point[k] = r_load(leaf->point[k] + i);
+        ray[k] = r_load(leaf->direction[k] + i);
+        d[k] = light[k];
+        if (!args->directional)
+            d[k] = (d[k] - point[k]) * r_set(args->scale);
+    }
+    const double scale = args->geometry->scale;
+    const R(triangle_plane) plane = R(plane_of)(corner, scale, light, args->directional);
+    unsigned blocked = own & ((rm_bits(r_lt(zero, plane.light)) & back) | (rm_bits(r_lt(plane.light, zero)) & ~back));
+    if (own != all)
+        blocked |= rm_bits(R(triangle_blocks)(corner, scale, point, d, r_load(leaf->slack + i), &plane, ray)) & ~own;
+    return blocked;
+}
+
+static void R(decide_beam_pairs)(R(beam) * beam)
+{
+    R(beam_leaf) *leaf = &beam->leaf;
+    uint64_t *tests = beam->tile->args->tests;
+    if (tests)
+        *tests += (unsigned)leaf->count;
+    for (int n = leaf->count; n % VR; n++) {
+        leaf->slot[n] = leaf->slot[0];
+        leaf->slack[n] = leaf->slack[0];
+        for (int k = 0; k < 3; k++) {
+            leaf->point[k][n] = leaf->point[k][0];
+            leaf->direction[k][n] = leaf->direction[k][0];
+        }
+    }
+    for (int i = 0; i < leaf->count; i += VR) {
+        const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
+        for (unsigned blocked = R(pairs_blocked)(beam, i) & there; blocked; blocked &= blocked - 1)
+            R(close_point)(beam, leaf->from[i + __builtin_ctz(blocked)]);
+    }
+    leaf->own = leaf->back = 0;
+    leaf->count = 0;
+}
+
+static inline void R(add_beam_pair)(R(beam) * beam, int slot, uint32_t i, bool own)
+{
+    R(beam_leaf) *leaf = &beam->leaf;
+    real *const point[3] = { leaf->point[0], leaf->point[1], leaf->point[2] };
+    real *const direction[3] = { leaf->direction[0], leaf->direction[1], leaf->direction[2] };
+    const int n = leaf->count++;
+    leaf->slot[n] = (uint32_t)slot;
+    leaf->from[n] = (uint16_t)i;
+    leaf->own |= (unsigned)own << n;
+    leaf->back |= (unsigned)((beam->own[i] & BEAM_BACK) != 0) << n;
+    R(copy_point)(beam, i, true, n, point, direction, leaf->slack);
+    if (leaf->count == GLINT_BEAM_PAIRS)
+        R(decide_beam_pairs)(beam);
+}
+
+// ---- The filter ----
+
+/// Tests the points from `i` on and before `end`.
+static void R(pair_run)(R(beam) * beam, int slot, own_side mine, uint32_t i, uint32_t end)
+{
+    const leaf_on_screen *shown = &beam->leaf.shown;
+    for (; i < end; i += VF) {
+        const unsigned in_run = end - i < VF ? (1u << (end - i)) - 1 : (1u << VF) - 1;
+        const unsigned behind = fm_bits(f_le(f_set(shown->near[slot]), f_load_any(beam->w + i))) & in_run;
+        if (!behind)
+            continue;
+        const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
+        const unsigned own = fm_bits(i_eq(i_and(owner, i_set(~BEAM_BACK)), i_set(mine.id)));
+        const unsigned dark = mine.any ? own : fm_bits(i_eq(owner, i_set(mine.id | mine.side)));
+        unsigned near = between_edges(shown, slot, f_load_any(beam->place[0] + i), f_load_any(beam->place[1] + i));
+        for (near = behind & ((near & ~own) | dark); near; near &= near - 1) {
+            const unsigned lane = (unsigned)__builtin_ctz(near);
+            R(add_beam_pair)(beam, slot, i + lane, own >> lane & 1);
+        }
+    }
+}
+
+/// Finds the points that the triangle in a slot may keep from the light.
+static void R(block_triangle)(R(beam) * beam, int slot)
+{
+    const R(beam_leaf) *leaf = &beam->leaf;
+    const screen_cells cells = leaf->cells[slot];
+    if (!any_behind((const float(*)[SCREEN_ACROSS])beam->far, leaf->shown.near[slot], cells))
+        return;
+    // the determinant is negative where the light is in front: seen from behind, that is the other side
+    const own_side mine = { leaf->node->child[slot] & ~GLINT_NODE_PRIM, leaf->shown.turned >> slot & 1 ? BEAM_BACK : 0,
+                            !(leaf->shown.certain >> slot & 1) };
+    const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
+    const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;
+    const int first = first_column(cells), end = last_column(cells) + 1;
+    if (end - first == SCREEN_ACROSS)
+        R(pair_run)(beam, slot, mine, *top, bottom[SCREEN_ACROSS]);
+    else
+        for (; top <= bottom; top += SCREEN_ACROSS)
+            R(pair_run)(beam, slot, mine, top[first], top[end]);
+}
+
+/// Takes out of args->open what the triangles in the slots of `mask` block.
+static void R(block_triangles)(R(beam) * beam, const glint_node *node, const node_on_screen *seen, unsigned mask)
+{
+    R(beam_leaf) *leaf = &beam->leaf;
+    leaf->node = node;
+    R(load_beam_leaf)(beam, mask, leaf);
+    show_leaf(&beam->view, seen, GLINT_REAL == 32, &leaf->shown);
+    for (mask = cells_of_leaf(&beam->view, seen, &leaf->shown, mask, leaf->cells); mask; mask &= mask - 1)
+        R(block_triangle)(beam, __builtin_ctz(mask));
+    R(decide_beam_pairs)(beam);
+}

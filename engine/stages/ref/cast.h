@@ -1,0 +1,146 @@
+// The reference of the cast and of scan conversion: included by ref/real.h for each type of real.
+
+/// The hybrid discriminant: from afar by the distance of the line from the centre, close by as b^2 - a c.
+static REAL NAME(discriminant)(NAME(vec3) f, NAME(vec3) direction, REAL a, REAL b, REAL c, REAL r2)
+{
+    bool near = b * b < a * r2;
+    return near ? b * b - a * c : a * r2 - NAME(length2)(NAME(cross)(f, direction));
+}
+
+/// The distance at which a ray meets a sphere; 0 stands for a miss.
+static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const glint_prim *prim)
+{
+    REAL scale = (REAL)prim->scale;
+    REAL a = NAME(length2)(direction);
+    REAL b = -NAME(dot)(f, direction);
+    REAL disc = NAME(discriminant)(f, direction, a, b, c, (REAL)prim->r2);
+    REAL s = NAME(square_root)(NAME(max)(disc, 0));
+    REAL q = b >= 0 ? b + s : b - s;
+    bool far_root = c <= 0 && b >= 0;
+    REAL t = (far_root ? q : c) / (far_root ? a * scale : q * scale);
+    return disc >= 0 && t > 0 ? t : 0;
+}
+
+/// The distance at which a ray meets a plane, h being the height of its origin; 0 stands for a miss.
+static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
+{
+    REAL nd = NAME(dot)(NAME(rounded)(prim->normal), direction);
+    REAL t = -h / nd;
+    return nd * nd >= NAME(PLANE_GRAZING) * NAME(length2)(direction) && t > 0 ? t : 0;
+}
+
+/// Likewise for any primitive.
+static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
+                         NAME(vec3) direction)
+{
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return NAME(triangle_t)(prim, geometry->scale, origin, direction);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return NAME(solid_t)(&geometry->solids[prim->item], prim, origin, direction);
+    if (prim->kind == GLINT_PRIM_PLANE) {
+        NAME(vec3) away = NAME(sub)(origin, NAME(rounded)(prim->center));
+        return NAME(plane_t)(NAME(dot)(NAME(rounded)(prim->normal), away), direction, prim);
+    }
+    NAME(vec3) f = NAME(from_center)(origin, prim);
+    return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
+}
+
+/// Whether ray i starts on the primitive, or on a triangle that it has not left for certain when it comes to this one's plane;
+/// then *t is where it meets it, or 0.
+static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
+                         uint32_t i, REAL *t)
+{
+    const glint_prim *prim = &args->geometry->prims[index];
+    if (!args->leaving || args->leaving[i] == GLINT_MISS)
+        return false;
+    if (args->leaving[i] != index)
+        return NAME(is_beside)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction, t);
+    *t = 0;
+    bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    if (prim->kind == GLINT_PRIM_SOLID && inward) {
+        const glint_solid *solid = &args->geometry->solids[prim->item];
+        NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
+        const bool open = solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
+        *t = solid->form != GLINT_FORM_DISK ? NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) : 0;
+        if (open)
+            *t = p.hit && !p.ends && p.out.t > 0 ? p.out.t : 0;
+    }
+    if (prim->kind != GLINT_PRIM_SPHERE || !inward)
+        return true;
+    NAME(vec3) f = NAME(from_center)(origin, prim);
+    REAL b = -NAME(dot)(f, direction);
+    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)prim->scale), (REAL)GLINT_LEAST_WAY);
+    return true;
+}
+
+/// `eye`: where all rays start; NULL: each has its own origin.
+static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, uint32_t i)
+{
+    REAL best = INFINITY;
+    uint32_t best_prim = GLINT_MISS;
+    if (args->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) {
+        NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
+        NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
+        for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
+            REAL t;
+            note_test(args->tests);
+            if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
+                t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
+            bool first = t == best && best_prim != GLINT_MISS &&
+                         args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
+            if (t > 0 && t < INFINITY && (t < best || first)) {
+                best = t;
+                best_prim = index;
+            }
+        }
+    }
+    ((REAL *)args->t)[i] = best;
+    args->prim[i] = best_prim;
+    if (best_prim != GLINT_MISS)
+        args->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+}
+
+static void NAME(cast)(const glint_cast_args *args, const double *eye)
+{
+    for (uint32_t group = 0; group < args->group_count; group++)
+        args->hits[group] = 0;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        NAME(cast_sample)(args, eye, i);
+}
+
+static void NAME(scan)(const glint_scan_args *args)
+{
+    const glint_cast_args *cast = &args->cast;
+    const glint_prim *prims = cast->geometry->prims;
+    bool eye = !cast->camera->orthographic;
+    for (uint32_t group = 0; group < cast->group_count; group++)
+        cast->hits[group] = 0;
+    for (uint32_t i = 0; i < cast->group_count * GLINT_GROUP; i++) {
+        REAL best = INFINITY;
+        uint32_t best_prim = GLINT_MISS;
+        bool active = cast->active[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+        NAME(vec3) direction = NAME(direction_of)(eye ? cast->camera : NULL, cast->direction, i);
+        NAME(vec3) origin = eye ? NAME(rounded)(cast->camera->eye) : NAME(load)(cast->origin, i);
+        for (uint32_t k = 0; active && k < args->entry_count; k++) {
+            uint32_t prim = args->entries[k].prim;
+            REAL t = NAME(triangle_t)(&prims[prim], cast->geometry->scale, origin, direction);
+            note_test(cast->tests);
+            bool first = t == best && best_prim != GLINT_MISS && prims[prim].id < prims[best_prim].id;
+            if (t > 0 && t < INFINITY && (t < best || first)) {
+                best = t;
+                best_prim = prim;
+            }
+        }
+        ((REAL *)cast->t)[i] = best;
+        cast->prim[i] = best_prim;
+        if (best_prim != GLINT_MISS)
+            cast->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+    }
+}
+
+/// The reference never rules a tile out but where there is nothing at all.
+static bool NAME(in_sight)(const glint_cast_args *args) { return args->geometry->prim_count > 0; }
+
+static void NAME(cast_bundle)(const glint_cast_args *args) { NAME(cast)(args, args->camera->eye); }
+
+static void NAME(cast_rays)(const glint_cast_args *args) { NAME(cast)(args, NULL); }

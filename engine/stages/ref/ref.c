@@ -1,0 +1,464 @@
+/// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
+/// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
+#include "engine/stages/simd/coefficients.h"
+#include "engine/stages/stages.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#if FLT_EVAL_METHOD != 0
+#error "float arithmetic must round to float and double arithmetic to double"
+#endif
+
+// ---- elementary functions ----------------------------------------------------------------------------------------
+
+/// log2 of (1 + f) 2^e for f in [sqrt(1/2) - 1, sqrt(2) - 1].
+static float log2_of_parts(float f, int e)
+{
+    static const float c[10] = { GLINT_LOG2_C0, GLINT_LOG2_C1, GLINT_LOG2_C2, GLINT_LOG2_C3, GLINT_LOG2_C4,
+                                 GLINT_LOG2_C5, GLINT_LOG2_C6, GLINT_LOG2_C7, GLINT_LOG2_C8, GLINT_LOG2_C9 };
+    float p = c[9];
+    for (int i = 8; i >= 0; i--)
+        p = p * f + c[i];
+    return (float)e + f * p;
+}
+
+/// log2 of x in [2^-126, 1], already rounded; `less_1` is x - 1, from before that.
+static float log2_of(float x, float less_1)
+{
+    if (x >= (float)GLINT_SQRT1_2)
+        return log2_of_parts(less_1, 0);
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int e = (int)(bits >> 23) - 127;
+    bits = (bits & 0x007fffffu) | 0x3f800000u;
+    float m;
+    memcpy(&m, &bits, sizeof m);
+    return m >= (float)GLINT_SQRT2 ? log2_of_parts(0.5f * m - 1, e + 1) : log2_of_parts(m - 1, e);
+}
+
+/// 2^y for y in [-126, 0].
+static float exp2_of(float y)
+{
+    static const float d[7] = { GLINT_EXP2_D0, GLINT_EXP2_D1, GLINT_EXP2_D2, GLINT_EXP2_D3,
+                                GLINT_EXP2_D4, GLINT_EXP2_D5, GLINT_EXP2_D6 };
+    float n = (y + 12582912.0f) - 12582912.0f;
+    float f = y - n;
+    float p = d[6];
+    for (int i = 5; i >= 0; i--)
+        p = p * f + d[i];
+    uint32_t bits = (uint32_t)((int)n + 127) << 23;
+    float power;
+    memcpy(&power, &bits, sizeof power);
+    return p * power;
+}
+
+/// Counts a decision about a ray and a primitive; `tests` NULL: nobody asks.
+static void note_test(uint64_t *tests)
+{
+    if (tests)
+        ++*tests;
+}
+
+/// x^exponent from log2(x) <= 0.
+static float highlight_strength(float shininess, float log2_specular)
+{
+    float y = shininess * log2_specular;
+    return y < GLINT_EXP2_LOWEST ? 0 : exp2_of(y);
+}
+
+// ---- errors of sums and products ---------------------------------------------------------------------------------
+
+typedef struct exact_pair {
+    double value, error;
+} exact_pair; ///< a number as value + error, value the rounded one
+
+static exact_pair two_sum(double a, double b)
+{
+    double s = a + b, v = s - a;
+    return (exact_pair) { s, (a - (s - v)) + (b - v) };
+}
+
+/// Upper half of a number, Veltkamp's way: the lower half, x - upper, fits 26 bits as well.
+static double upper_half(double x)
+{
+    double y = 134217729.0 * x; // 2^27 + 1
+    return y - (y - x);
+}
+
+/// x^2 with its error, Dekker's way: the parts of the product are exact.
+static exact_pair two_square(double x)
+{
+    double p = x * x, upper = upper_half(x), lower = x - upper;
+    double error = ((upper * upper - p) + 2 * (upper * lower)) + lower * lower;
+    return (exact_pair) { p, error };
+}
+
+/// |f|^2 - (radius scale)^2, rounded once.
+static double exact_c_double(double fx, double fy, double fz, const glint_prim *prim)
+{
+    exact_pair p0 = two_square(fx), p1 = two_square(fy), p2 = two_square(fz);
+    exact_pair x = two_sum(p0.value, p1.value);
+    exact_pair y = two_sum(x.value, p2.value);
+    exact_pair z = two_sum(y.value, -prim->r2);
+    double errors = (p0.error + p1.error) + p2.error;
+    return z.value + (((x.error + y.error) + z.error) + (errors - prim->r2_low));
+}
+
+static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
+{
+    return ((fx * fx + fy * fy) + fz * fz) - (float)prim->r2;
+}
+
+// ---- On which side of a primitive a light is ----------------------------------------------------------------------
+
+static int sign_of(double x) { return (x > 0) - (x < 0); }
+
+static double dot_of(const double a[3], const double b[3]) { return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]; }
+
+static int light_side_of_plane(bool directional, const double position[3], const glint_prim *prim)
+{
+    if (directional)
+        return sign_of(dot_of(prim->normal, position));
+    double away[3];
+    for (int k = 0; k < 3; k++)
+        away[k] = position[k] - prim->center[k];
+    return sign_of(dot_of(prim->normal, away));
+}
+
+static int light_side_of_sphere(bool directional, const double position[3], const glint_prim *prim)
+{
+    if (directional)
+        return 1;
+    double f[3];
+    for (int k = 0; k < 3; k++)
+        f[k] = (position[k] - prim->center[k]) * prim->scale;
+    return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
+}
+
+static bool is_within(const glint_solid *solid, const glint_prim *prim, const double position[3])
+{
+    double away[3];
+    for (int c = 0; c < 3; c++)
+        away[c] = position[c] - prim->center[c];
+    double x = dot_of(solid->inverse[0], away), y = dot_of(solid->inverse[1], away),
+           z = dot_of(solid->inverse[2], away);
+    bool between = z > -1 && z < 1;
+    if (solid->form == GLINT_FORM_BALL)
+        return (x * x + y * y) + z * z < 1;
+    if (solid->form == GLINT_FORM_BOX)
+        return x > -1 && x < 1 && y > -1 && y < 1 && between;
+    if (solid->form == GLINT_FORM_CYLINDER)
+        return x * x + y * y < 1 && between;
+    return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && z > 0 && z < 1;
+}
+
+/// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
+static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
+{
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return 0; // is asked for each lane
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return directional || !is_within(&solids[prim->item], prim, position) ? 1 : -1;
+    return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(directional, position, prim)
+                                           : light_side_of_plane(directional, position, prim);
+}
+
+// ---- geometry, in float and in double ----------------------------------------------------------------------------
+
+static float square_root_float(float x) { return sqrtf(x); }
+
+static double square_root_double(double x) { return sqrt(x); }
+
+#define PLANE_GRAZING_float 1e-30f
+#define PLANE_GRAZING_double 1e-60
+#define POINT_SLACK_float ((float)GLINT_POINT_SLACK_FLOAT)
+#define POINT_SLACK_double GLINT_POINT_SLACK_DOUBLE
+#define SPHERE_CLOSE_float GLINT_SPHERE_CLOSE_FLOAT
+#define SPHERE_CLOSE_double GLINT_SPHERE_CLOSE_DOUBLE
+
+#define REAL float
+#define ROUNDER GLINT_ROUNDER_FLOAT
+#define NAME(x) x##_float
+#include "engine/stages/ref/real.h"
+#include "engine/stages/ref/microfacets.h"
+#include "engine/stages/ref/scatter.h"
+#include "engine/stages/ref/soft.h"
+#undef REAL
+#undef ROUNDER
+#undef NAME
+
+#define REAL double
+#define ROUNDER GLINT_ROUNDER_DOUBLE
+#define NAME(x) x##_double
+#include "engine/stages/ref/real.h"
+#include "engine/stages/ref/microfacets.h"
+#include "engine/stages/ref/scatter.h"
+#include "engine/stages/ref/soft.h"
+#undef REAL
+#undef ROUNDER
+#undef NAME
+
+// ---- shade -------------------------------------------------------------------------------------------------------
+
+typedef struct terms {
+    double value[GLINT_TERM_COUNT][3];
+} terms; ///< of one sample
+
+/// Smith's masking for Beckmann's distribution, Lambda times x.
+static float beckmann_mask(float alpha, float x)
+{
+    float s = alpha * sqrtf(max_float(1 - x * x, 0));
+    float q = x / s;
+    return q < 1.6f ? (s * ((0.396f * q - 1.259f) * q + 1)) / (2.181f * q + 3.535f) : 0;
+}
+
+static float ggx(float alpha, float sine2, float l, float v)
+{
+    float aa = alpha * alpha, b = 1 - aa;
+    float u = alpha / (sine2 + aa * (1 - sine2));
+    float d = l * sqrtf(aa + b * (v * v)) + v * sqrtf(aa + b * (l * l));
+    return (u * u) * ((0.5f * l) / max_float(d, FLT_MIN));
+}
+
+static float beckmann(float alpha, float sine2, float l, float v)
+{
+    float aa = alpha * alpha, c = max_float(1 - sine2, 0x1p-40f);
+    float y = -((sine2 / c) * (GLINT_LOG2_E / aa));
+    float e = y < GLINT_EXP2_LEAST ? 0 : exp2_of(y);
+    float d = (l * v + v * beckmann_mask(alpha, l)) + l * beckmann_mask(alpha, v);
+    return (((e / c) / c) * (1 / aa)) * ((0.25f * l) / max_float(d, FLT_MIN));
+}
+
+/// The factors of a light and of those joined to it: w (n.l), w S, and of microfacets w S (1 - v.h)^5.
+typedef struct factors {
+    float diffuse, specular, grazing;
+} factors;
+
+/// w S of microfacets. Returns whether there is a half vector.
+static bool add_facets(const glint_shade_args *args, const glint_shade_light *light, float w, uint32_t i, factors *sum)
+{
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    float sine2 = light->sine2[i], l = light->cosine[i], v = args->facing[i];
+    if (!(sine2 > GLINT_NO_SPECULAR))
+        return false;
+    float s =
+        material->lobe == GLINT_LOBE_GGX ? ggx(material->alpha, sine2, l, v) : beckmann(material->alpha, sine2, l, v);
+    float f = min_float(w * min_float(s, GLINT_ATTENUATION_MAX), GLINT_ATTENUATION_MAX);
+    sum->specular += f;
+    sum->grazing += f * light->schlick[i];
+    return true;
+}
+
+/// Returns whether there is a highlight.
+static bool add_factors(const glint_shade_args *args, const glint_shade_light *light, uint32_t i, factors *sum)
+{
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    if (light->summed) {
+        bool shiny = args->highlights && material->highlight != GLINT_HIGHLIGHT_NONE;
+        sum->diffuse = light->cosine[i];
+        sum->specular = shiny ? light->highlight[i] : 0;
+        return shiny;
+    }
+    float w = light->attenuation ? light->attenuation[i] : 1;
+    sum->diffuse += w * light->cosine[i];
+    if (!args->highlights || material->highlight == GLINT_HIGHLIGHT_NONE)
+        return false;
+    if (material->highlight == GLINT_HIGHLIGHT_FACETS)
+        return add_facets(args, light, w, i, sum);
+    if (!(light->log2_specular[i] > GLINT_NO_SPECULAR))
+        return false;
+    float s = highlight_strength(material->shininess, light->log2_specular[i]);
+    sum->specular += w * (material->lobe == GLINT_LOBE_POWER_COSINE ? s * light->cosine[i] : s);
+    return true;
+}
+
+/// A light's share of a term is float; the term is a sum in double.
+static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
+
+static bool reaches(const glint_shade_light *light, uint32_t i)
+{
+    return light->lit[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
+
+/// Adds light k with those joined to it. Returns the next that is not.
+static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i, terms *sum)
+{
+    const glint_shade_light *light = &args->lights[k];
+    factors total = { 0, 0, 0 };
+    bool any = false, shiny = false;
+    do {
+        if (reaches(&args->lights[k], i)) {
+            shiny = add_factors(args, &args->lights[k], i, &total) || shiny;
+            any = true;
+        }
+        k++;
+    } while (k < args->light_count && args->lights[k].joined);
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    for (int c = 0; c < 3 && any; c++) {
+        float share = share_of(total.diffuse, material->diffuse[c] * light->diffuse[c]);
+        sum->value[GLINT_TERM_DIFFUSE][c] += (double)share;
+        share = share_of(total.specular, material->specular[c] * light->specular[c]);
+        if (material->highlight == GLINT_HIGHLIGHT_FACETS)
+            share += share_of(total.grazing, material->grazing[c] * light->specular[c]);
+        if (shiny)
+            sum->value[GLINT_TERM_SPECULAR][c] += (double)share;
+    }
+    return k;
+}
+
+/// Rounds the terms into the film and adds them up into the beauty. further: those there are besides the local ones, a bit each.
+static void write_film(const terms *sum, unsigned further, float *const film[GLINT_TERM_COUNT][3],
+                       float *const beauty[3], uint32_t i)
+{
+    for (int c = 0; c < 3; c++) {
+        float rounded[GLINT_TERM_COUNT];
+        for (int term = 0; term < GLINT_TERM_COUNT; term++) {
+            rounded[term] = (float)sum->value[term][c];
+            if (film[term][c] && (term < GLINT_TERM_LOCAL || further >> term & 1))
+                film[term][c][i] = rounded[term];
+        }
+        beauty[c][i] = ((rounded[GLINT_TERM_BACKGROUND] + rounded[GLINT_TERM_AMBIENT]) + rounded[GLINT_TERM_DIFFUSE]) +
+                       rounded[GLINT_TERM_SPECULAR];
+        for (int term = GLINT_TERM_LOCAL; term < GLINT_TERM_COUNT; term++)
+            if (further >> term & 1)
+                beauty[c][i] = beauty[c][i] + rounded[term];
+    }
+}
+
+static terms load_sums(double *const sum[GLINT_TERM_COUNT][3], uint32_t i)
+{
+    terms loaded;
+    for (int term = 0; term < GLINT_TERM_COUNT; term++)
+        for (int c = 0; c < 3; c++)
+            loaded.value[term][c] = sum[term][c] ? sum[term][c][i] : 0;
+    return loaded;
+}
+
+static void store_sums(const terms *total, double *const sum[GLINT_TERM_COUNT][3], uint32_t i)
+{
+    for (int term = 0; term < GLINT_TERM_COUNT; term++)
+        for (int c = 0; c < 3; c++)
+            if (sum[term][c])
+                sum[term][c][i] = total->value[term][c];
+}
+
+/// Adds the terms of one sample.
+static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
+{
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    bool active = args->active[group] >> lane & 1, hit = args->hits[group] >> lane & 1;
+    for (int c = 0; c < 3 && args->first; c++) {
+        if (active && !hit)
+            sum->value[GLINT_TERM_BACKGROUND][c] += args->background[c];
+        if (hit)
+            sum->value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
+    }
+    for (uint32_t k = 0; k < args->light_count;)
+        k = add_lights(args, k, i, sum);
+}
+
+static void shade_sample(const glint_shade_args *args, uint32_t i)
+{
+    terms sum = load_sums(args->sum, i);
+    add_sample(args, i, &sum);
+    if (args->sum[GLINT_TERM_BACKGROUND][0])
+        store_sums(&sum, args->sum, i);
+    else
+        write_film(&sum, 0, args->film, args->beauty, i);
+}
+
+static void shade(const glint_shade_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        shade_sample(args, i);
+}
+
+// ---- resolve -----------------------------------------------------------------------------------------------------
+
+static void resolve(const glint_resolve_args *args)
+{
+    unsigned further = 0;
+    for (int term = GLINT_TERM_LOCAL; term < GLINT_TERM_COUNT; term++)
+        further |= args->sum[term][0] ? 1u << term : 0;
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+        terms mean = load_sums(args->sum, i);
+        for (int term = 0; term < GLINT_TERM_COUNT; term++)
+            for (int c = 0; c < 3; c++)
+                mean.value[term][c] /= args->samples;
+        write_film(&mean, further, args->film, args->beauty, i);
+    }
+}
+
+static void resolve_samples(const glint_shade_args *sample, uint32_t count)
+{
+    for (uint32_t i = 0; i < sample->group_count * GLINT_GROUP; i++) {
+        terms mean = { 0 };
+        if (!sample->active[i / GLINT_GROUP])
+            continue;
+        for (uint32_t k = 0; k < count; k++)
+            add_sample(&sample[k], i, &mean);
+        for (int term = 0; term < GLINT_TERM_LOCAL; term++)
+            for (int c = 0; c < 3; c++)
+                mean.value[term][c] /= count;
+        write_film(&mean, GLINT_TERM_LOCAL, sample->film, sample->beauty, i);
+    }
+}
+
+// ---- tone --------------------------------------------------------------------------------------------------------
+
+static uint32_t tone_code(const uint32_t *table, float top, float value)
+{
+    float x = min_float(max_float(value, 0), top);
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    if (bits < GLINT_TONE_FIRST << 16)
+        return 0;
+    uint32_t entry = table[(bits >> 16) - GLINT_TONE_FIRST];
+    return (entry & 255) + ((bits & 0xffff) >= entry >> 8);
+}
+
+static void tone_sample(const glint_tone_args *args, uint32_t i)
+{
+    uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
+    size_t x = group % args->groups_across * 4 + lane % 4, y = group / args->groups_across * 4 + lane / 4;
+    bool clipped = false, finite = true;
+    if (!(args->active[group] >> lane & 1))
+        return;
+    for (size_t c = 0; c < 3; c++) {
+        float value = args->gain * args->beauty[c][i];
+        clipped = clipped || value > args->white;
+        finite = finite && isfinite(args->beauty[c][i]);
+        args->codes[y * args->stride + 3 * x + c] = (uint8_t)tone_code(args->table, args->top, value);
+    }
+    *args->clipped += clipped;
+    *args->nonfinite += !finite;
+}
+
+static void tone(const glint_tone_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++)
+        tone_sample(args, i);
+}
+
+// ------------------------------------------------------------------------------------------------------------------
+
+// Of one precision, a line each.
+#define GEOMETRY_STAGES(real) \
+    { \
+        .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
+        .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
+        .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .scan = scan_##real, \
+        .soft_light = soft_light_##real, \
+    }
+
+const glint_stages glint_stages_ref = {
+    .name = "ref",
+    .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
+    .shade = shade,
+    .resolve = resolve,
+    .resolve_samples = resolve_samples,
+    .tone = tone,
+};

@@ -1,0 +1,286 @@
+// The reference of triangles, for one type of real; included by ref/real.h. One line of stages.h after the other.
+
+static REAL NAME(abs)(REAL x) { return NAME(max)(x, -x); }
+
+static REAL NAME(component)(NAME(vec3) v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+
+static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v.x), NAME(abs)(v.y)), NAME(abs)(v.z)); }
+
+typedef struct NAME(seen_edges) {
+    REAL e[3], dz, depth, sum_of_sizes;
+    REAL low[2], high[2]; ///< of the corners, along each axis
+} NAME(seen_edges);
+
+static int NAME(main_axis)(NAME(vec3) d)
+{
+    int z = NAME(abs)(d.y) > NAME(abs)(d.x) ? 1 : 0;
+    return NAME(abs)(d.z) > NAME(abs)(NAME(component)(d, z)) ? 2 : z;
+}
+
+static NAME(seen_edges) NAME(see_edges)(const NAME(vec3) corner[3], NAME(vec3) d)
+{
+    int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3;
+    REAL dx = NAME(component)(d, x), dy = NAME(component)(d, y), dz = NAME(component)(d, z);
+    REAL px[3], py[3], pz[3];
+    NAME(seen_edges) out = { .dz = dz };
+    for (int j = 0; j < 3; j++) {
+        pz[j] = NAME(component)(corner[j], z);
+        px[j] = NAME(component)(corner[j], x) * dz - pz[j] * dx;
+        py[j] = NAME(component)(corner[j], y) * dz - pz[j] * dy;
+    }
+    out.e[0] = px[2] * py[1] - py[2] * px[1];
+    out.e[1] = px[0] * py[2] - py[0] * px[2];
+    out.e[2] = px[1] * py[0] - py[1] * px[0];
+    out.depth = (out.e[0] * pz[0] + out.e[1] * pz[1]) + out.e[2] * pz[2];
+    out.low[0] = NAME(min)(NAME(min)(px[0], px[1]), px[2]);
+    out.low[1] = NAME(min)(NAME(min)(py[0], py[1]), py[2]);
+    out.high[0] = NAME(max)(NAME(max)(px[0], px[1]), px[2]);
+    out.high[1] = NAME(max)(NAME(max)(py[0], py[1]), py[2]);
+    out.sum_of_sizes = NAME(abs)(px[0]) + NAME(abs)(py[0]);
+    for (int j = 1; j < 3; j++)
+        out.sum_of_sizes = (out.sum_of_sizes + NAME(abs)(px[j])) + NAME(abs)(py[j]);
+    return out;
+}
+
+static REAL NAME(sum_of_edges)(NAME(seen_edges) s) { return (s.e[0] + s.e[1]) + s.e[2]; }
+
+static bool NAME(all_on_one_side)(NAME(seen_edges) s, REAL reach)
+{
+    REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
+    return least >= -reach || most <= reach;
+}
+
+static bool NAME(between_corners)(NAME(seen_edges) s, REAL reach)
+{
+    return s.low[0] <= reach && s.low[1] <= reach && s.high[0] >= -reach && s.high[1] >= -reach;
+}
+
+static bool NAME(passes)(NAME(seen_edges) s)
+{
+    REAL least = NAME(min)(NAME(min)(s.e[0], s.e[1]), s.e[2]), most = NAME(max)(NAME(max)(s.e[0], s.e[1]), s.e[2]);
+    return least > 0 || most < 0 || ((least == 0 || most == 0) && NAME(between_corners)(s, 0));
+}
+
+static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double scale, NAME(vec3) out[3])
+{
+    for (int j = 0; j < 3; j++)
+        out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
+}
+
+/// The distance at which a ray crosses the plane of what it sees.
+static REAL NAME(way_to_plane)(NAME(seen_edges) seen, double scale)
+{
+    return seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
+}
+
+/// The distance at which a ray meets a triangle; 0 stands for a miss.
+static REAL NAME(triangle_t)(const glint_prim *prim, double scale, NAME(vec3) origin, NAME(vec3) direction)
+{
+    NAME(vec3) corner[3];
+    NAME(corners_seen)(prim, origin, scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL t = NAME(way_to_plane)(seen, scale);
+    return NAME(passes)(seen) && t > 0 ? t : 0;
+}
+
+static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
+{
+    double f[3], g[3], m[3];
+    for (int k = 0; k < 3; k++) {
+        f[k] = (prim->corner[1][k] - prim->corner[0][k]) * scale;
+        g[k] = (prim->corner[2][k] - prim->corner[0][k]) * scale;
+    }
+    m[0] = f[1] * g[2] - f[2] * g[1];
+    m[1] = f[2] * g[0] - f[0] * g[2];
+    m[2] = f[0] * g[1] - f[1] * g[0];
+    double length = sqrt(dot_of(m, m));
+    return NAME(vec)((REAL)(m[0] / length), (REAL)(m[1] / length), (REAL)(m[2] / length));
+}
+
+/// The point, the weights of the corners there, and how far rounding may have moved it.
+static NAME(vec3) NAME(triangle_point)(const glint_surface_args *args, const glint_prim *prim, NAME(vec3) origin,
+                                       NAME(vec3) direction, REAL weight[3], REAL *slack)
+{
+    NAME(vec3) corner[3], v0 = NAME(rounded)(prim->corner[0]);
+    NAME(corners_seen)(prim, origin, args->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL inverse = 1 / NAME(sum_of_edges)(seen);
+    for (int j = 0; j < 3; j++)
+        weight[j] = seen.e[j] * inverse;
+    NAME(vec3) f = NAME(sub)(NAME(rounded)(prim->corner[1]), v0), g = NAME(sub)(NAME(rounded)(prim->corner[2]), v0);
+    NAME(vec3) point = NAME(add)(v0, NAME(add)(NAME(times)(f, weight[1]), NAME(times)(g, weight[2])));
+    *slack = NAME(POINT_SLACK) * ((NAME(largest)(f) + NAME(largest)(g)) + NAME(largest)(point));
+    return point;
+}
+
+static NAME(vec3)
+    NAME(smooth_normal)(const glint_corner_normals *corners, const REAL weight[3], NAME(vec3) flat, bool back)
+{
+    NAME(vec3) s = NAME(times)(NAME(rounded)(corners->normal[0]), weight[0]);
+    s = NAME(add)(s, NAME(times)(NAME(rounded)(corners->normal[1]), weight[1]));
+    s = NAME(add)(s, NAME(times)(NAME(rounded)(corners->normal[2]), weight[2]));
+    REAL l = NAME(length2)(s);
+    s = l > 0 ? NAME(over)(s, NAME(square_root)(l)) : flat;
+    return NAME(dot)(s, back ? NAME(negated)(flat) : flat) < 0 ? NAME(negated)(s) : s;
+}
+
+// ---- occlude ----
+
+typedef struct NAME(parted) {
+    NAME(vec3) m, sizes;
+    REAL light;
+} NAME(parted);
+
+static NAME(parted) NAME(part)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position)
+{
+    REAL scale = (REAL)args->geometry->scale;
+    NAME(vec3) v0 = NAME(rounded)(prim->corner[0]);
+    NAME(vec3) f = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[1]), v0), scale);
+    NAME(vec3) g = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[2]), v0), scale);
+    NAME(parted) out = { .m = NAME(cross)(f, g) };
+    out.sizes = NAME(vec)(NAME(abs)(f.y * g.z) + NAME(abs)(f.z * g.y), NAME(abs)(f.z * g.x) + NAME(abs)(f.x * g.z),
+                          NAME(abs)(f.x * g.y) + NAME(abs)(f.y * g.x));
+    out.light = NAME(dot)(out.m, args->directional ? position : NAME(sub)(position, v0));
+    return out;
+}
+
+/// Whether a place is within a triangle's bounds, give or take `loose`.
+static bool NAME(in_box)(const NAME(vec3) corner[3], NAME(vec3) place, REAL loose)
+{
+    for (int k = 0; k < 3; k++) {
+        REAL a = NAME(component)(corner[0], k), b = NAME(component)(corner[1], k), c = NAME(component)(corner[2], k);
+        REAL at = NAME(component)(place, k);
+        if (!(NAME(min)(NAME(min)(a, b), c) <= at + loose && NAME(max)(NAME(max)(a, b), c) >= at - loose))
+            return false;
+    }
+    return true;
+}
+
+static bool NAME(touched_triangle_blocks)(const glint_occlude_args *args, NAME(parted) plane, NAME(seen_edges) seen,
+                                          const NAME(vec3) corner[3], REAL slack, NAME(vec3) ray)
+{
+    REAL r = 0;
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            r = NAME(max)(r, NAME(abs)(NAME(component)(corner[j], k)));
+    REAL loose = 2 * (slack * (REAL)args->geometry->scale) + NAME(POINT_SLACK) * r;
+    REAL move = NAME(abs)(seen.dz) * loose;
+    REAL reach = move * (seen.sum_of_sizes + 2 * move);
+    REAL away = NAME(dot)(plane.m, ray);
+    bool other_side = (away < 0 && plane.light < 0) || (away > 0 && plane.light > 0);
+    return other_side && NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move) &&
+           NAME(in_box)(corner, NAME(vec)(0, 0, 0), loose);
+}
+
+/// Sample i, of another surface.
+static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(parted) plane,
+                                  NAME(vec3) position, uint32_t i)
+{
+    NAME(vec3) point = NAME(load)(args->point, i);
+    NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
+    NAME(vec3) ray = NAME(direction_of)(args->camera, args->direction, i);
+    REAL slack = ((const REAL *)args->slack)[i];
+    NAME(vec3) corner[3], q = NAME(sub)(point, NAME(rounded)(prim->corner[0])), m = plane.m, sizes = plane.sizes;
+    NAME(corners_seen)(prim, point, args->geometry->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, d);
+    REAL h = NAME(dot)(m, q);
+    REAL rounding = NAME(dot)(sizes, NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z)));
+    REAL bound = ((NAME(abs)(m.x) + NAME(abs)(m.y)) + NAME(abs)(m.z)) * slack + NAME(POINT_SLACK) * rounding;
+    if (slack > 0 && NAME(abs)(h) <= bound)
+        return NAME(touched_triangle_blocks)(args, plane, seen, corner, slack, ray);
+    bool crosses = (h < 0 && plane.light > 0) || (h > 0 && plane.light < 0);
+    REAL det = NAME(sum_of_edges)(seen);
+    return crosses && NAME(passes)(seen) && (det < 0 || det > 0);
+}
+
+// ---- cast, of rays that leave a triangle ----
+
+/// The height of a place over a triangle's plane, and what rounding may make of it.
+static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) at, REAL *rounding)
+{
+    NAME(vec3) q = NAME(sub)(at, NAME(rounded)(prim->corner[0]));
+    NAME(vec3) sizes = NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z));
+    *rounding = NAME(POINT_SLACK) * NAME(dot)(plane.sizes, sizes);
+    return NAME(dot)(plane.m, q);
+}
+
+static REAL NAME(spread)(NAME(parted) plane)
+{
+    return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
+}
+
+/// Whether a corner of `other` is for certain on that side of the plane to which `way` points.
+static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL way, const glint_prim *other)
+{
+    for (int j = 0; j < 3; j++) {
+        NAME(vec3) corner = NAME(rounded)(other->corner[j]);
+        REAL rounding, h = NAME(height)(plane, prim, corner, &rounding);
+        if (NAME(abs)(h) > rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(corner)) &&
+            ((h > 0 && way > 0) || (h < 0 && way < 0)))
+            return true;
+    }
+    return false;
+}
+
+/// Whether the ray, which starts on triangle `from`, is in the planes of both triangles at once, as far as rounding lets us
+/// know; then *t is where it goes through `prim`, else 0.
+static bool NAME(is_beside)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
+                            NAME(vec3) origin, NAME(vec3) direction, REAL *t)
+{
+    if (from->kind != GLINT_PRIM_TRIANGLE || prim->kind != GLINT_PRIM_TRIANGLE)
+        return false;
+    const glint_occlude_args plane_of = { .geometry = table, .directional = true };
+    NAME(parted) here = NAME(part)(&plane_of, prim, direction), there = NAME(part)(&plane_of, from, direction);
+    NAME(vec3) v0 = NAME(rounded)(from->corner[0]), corner[3];
+    REAL slack = NAME(POINT_SLACK) * ((NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[1]), v0)) +
+                                       NAME(largest)(NAME(sub)(NAME(rounded)(from->corner[2]), v0))) +
+                                      NAME(largest)(origin));
+    REAL rounding, h = NAME(height)(here, prim, origin, &rounding);
+    bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
+    NAME(corners_seen)(prim, origin, table->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL way = NAME(way_to_plane)(seen, table->scale);
+    bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_BESIDE * table->extent);
+    bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
+    bool by_edge = way > 0 && !NAME(passes)(seen);
+    if (!begins && !(soon && still_on) && !by_edge)
+        return false;
+    REAL r = 0;
+    for (int j = 0; j < 3; j++)
+        r = NAME(max)(r, NAME(largest)(corner[j]));
+    REAL loose = 2 * (slack * (REAL)table->scale) + NAME(POINT_SLACK) * r;
+    REAL move = NAME(abs)(seen.dz) * loose, reach = move * (seen.sum_of_sizes + 2 * move);
+    NAME(vec3) at = NAME(times)(NAME(times)(direction, begins ? 0 : way), (REAL)table->scale);
+    bool through = NAME(has_corner)(there, from, there.light, prim) &&
+                   NAME(has_corner)(here, prim, -here.light, from) && NAME(in_box)(corner, at, loose) &&
+                   NAME(all_on_one_side)(seen, reach) && NAME(between_corners)(seen, move);
+    *t = !through ? 0 : begins ? (REAL)GLINT_LEAST_WAY : way;
+    return true;
+}
+
+// ---- vertex ----
+
+static void NAME(vertex)(const glint_vertex_args *args)
+{
+    for (uint32_t i = 0; i < args->group_count * GLINT_GROUP; i++) {
+        if (!(args->wanted[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
+            continue;
+        const glint_prim *prim = &args->prims[args->prim[i]];
+        const uint32_t *at = args->sites[prim->sites].at;
+        const glint_site_light *light = args->light[args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1];
+        NAME(vec3) corner[3], origin = args->camera ? NAME(rounded)(args->camera->eye) : NAME(load)(args->origin, i);
+        NAME(corners_seen)(prim, origin, args->scale, corner);
+        NAME(seen_edges) seen = NAME(see_edges)(corner, NAME(direction_of)(args->camera, args->direction, i));
+        REAL inverse = 1 / NAME(sum_of_edges)(seen), w[3];
+        for (int j = 0; j < 3; j++)
+            w[j] = seen.e[j] * inverse;
+        for (int term = 0; term < 2; term++)
+            for (int c = 0; c < 3 && args->sum[term][c]; c++) {
+                double x[3];
+                for (int j = 0; j < 3; j++)
+                    x[j] = light[at[j]].term[term][c];
+                double between = ((double)w[0] * x[0] + (double)w[1] * x[1]) + (double)w[2] * x[2];
+                args->sum[term][c][i] += at[0] == at[1] && at[0] == at[2] ? x[0] : between;
+            }
+    }
+}

@@ -1,0 +1,106 @@
+// The stages in the order a frame runs them, compiled for one instruction set: what isa_*.c have in common. Everything
+// is static but the table, so that no function compiled for one processor is ever run on another.
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/stages/simd/elementary.h"
+#include "engine/stages/stages.h"
+
+#include "engine/stages/index/walk.h"
+#include "engine/stages/index/screen.h"
+#include "engine/stages/index/leaf.h"
+#include "engine/stages/occlude/beam.h"
+
+#define GLINT_REAL 64
+#include "engine/stages/simd/real.h"
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/view.h"
+#include "engine/stages/cast/leaf.h"
+#include "engine/stages/cast/cast.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/raster.h"
+#include "engine/stages/surface/mesh.h"
+#include "engine/stages/surface/surface.h"
+#include "engine/stages/surface/vertex.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/light/light.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/shade/microfacets.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/beam_leaf.h"
+#include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/light/caps.h"
+#include "engine/stages/light/soft.h"
+#include "engine/stages/light/soft_light.h"
+#include "engine/stages/shade/bounce.h"
+#include "engine/stages/shade/scatter.h"
+
+#undef GLINT_REAL
+#define GLINT_REAL 32
+#include "engine/stages/simd/real.h"
+#include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/triangle.h"
+#include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/solid.h"
+#include "engine/stages/cast/meet.h"
+#include "engine/stages/index/candidate.h"
+#include "engine/stages/index/cover.h"
+#include "engine/stages/index/view.h"
+#include "engine/stages/cast/leaf.h"
+#include "engine/stages/cast/cast.h"
+#include "engine/stages/cast/rays.h"
+#include "engine/stages/cast/raster.h"
+#include "engine/stages/surface/mesh.h"
+#include "engine/stages/surface/surface.h"
+#include "engine/stages/surface/vertex.h"
+#include "engine/stages/light/light_sample.h"
+#include "engine/stages/light/light.h"
+#include "engine/stages/light/lit_surface.h"
+#include "engine/stages/shade/microfacets.h"
+#include "engine/stages/occlude/blocked.h"
+#include "engine/stages/occlude/occlude.h"
+#include "engine/stages/occlude/beam_points.h"
+#include "engine/stages/occlude/beam_leaf.h"
+#include "engine/stages/occlude/through_beam.h"
+#include "engine/stages/light/caps.h"
+#include "engine/stages/light/soft.h"
+#include "engine/stages/light/soft_light.h"
+#include "engine/stages/shade/bounce.h"
+#include "engine/stages/shade/scatter.h"
+
+#include "engine/stages/shade/shade.h"
+#include "engine/stages/film/resolve.h"
+#include "engine/stages/film/samples.h"
+#include "engine/stages/film/tone.h"
+
+// Of one precision.
+#define GEOMETRY_STAGES(real) \
+    { \
+        .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
+        .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
+        .view = GLINT_WITH_FACET ? view_##real : NULL, .light = light_##real, \
+        .facet = GLINT_WITH_FACET ? facet_##real : NULL, .occlude = GLINT_WITH_SHADOW ? occlude_##real : NULL, \
+        .soft_light = GLINT_WITH_LAMP && GLINT_WITH_SHADOW ? soft_light_##real : NULL, \
+        .scan = GLINT_WITH_SCAN ? scan_##real : NULL, \
+        .bounce = GLINT_WITH_BOUNCE ? bounce_##real : NULL, .vertex = GLINT_WITH_VERTEX ? vertex_##real : NULL, \
+        .scatter = GLINT_WITH_INDIRECT ? scatter_##real : NULL, \
+    }
+
+const glint_stages GLINT_STAGES_SYMBOL = {
+    .name = GLINT_STAGES_NAME,
+    .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
+    .shade = shade,
+    .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
+    .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,
+    .tone = tone,
+};

@@ -1,0 +1,208 @@
+/// What lies beyond the first surface of a tile: mirrored and refracted rays, and what they find.
+///
+/// Rays wait in levels of at most one tile's samples. A batch is all that waits in the highest level, and where a surface
+/// sends on two rays, the weaker goes a level up and the stronger stays: so a level never holds more than the batch that
+/// filled it, and a ray of level n has at most 2^-n of the first one's weight wherever mirror + transmission is at most 1.
+/// That bounds the memory, however long the chains are. The order of a pixel's rays, and so of its sums, depends on
+/// nothing but that pixel.
+///
+/// Where both rays of a surface were followed for ever, their number would double with each. Beyond GLINT_BOUNCE_SPLITS
+/// surfaces one, drawn by lot as they weigh, stands for both with the weight of the two: no light is lost, and work no longer
+/// doubles. The lot is made of the ray's own bits, so that it falls the same everywhere.
+///
+/// A ray too weak to be seen is not followed: all that a sample loses so is at most GLINT_BOUNCE_LOSS of linear light, by
+/// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct glint_bounce {
+    glint_batch batch;
+    glint_batch_ray levels[GLINT_BOUNCE_LEVELS][GLINT_TILE_SAMPLES];
+    uint32_t counts[GLINT_BOUNCE_LEVELS];
+    double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
+};
+
+/// Its pages are the system's until a level is used.
+struct glint_bounce *glint_bounce_create(void) { return glint_alloc(1, sizeof(struct glint_bounce)); }
+
+void glint_bounce_destroy(struct glint_bounce *bounce) { free(bounce); }
+
+bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_bounce_material *materials = frame->plan->bouncing;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        if (glint_has_lane(tile->at.hits, i) &&
+            (materials[tile->material[i]].mirrors || materials[tile->material[i]].transmits))
+            return true;
+    return false;
+}
+
+// ---- From a surface on ----
+
+/// The hits of `tile` whose materials send rays on, and whose chain is not at its end.
+static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    bool any = false;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        bounce->batch.wanted[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_bounce_material *m = &plan->bouncing[tile->material[i]];
+            const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.ray[i].depth : 0;
+            if ((m->mirrors || m->transmits) && depth < plan->desc.max_depth)
+                bounce->batch.wanted[g] |= (uint16_t)(left & -left);
+        }
+        any = any || bounce->batch.wanted[g];
+    }
+    return any;
+}
+
+static double total_weight(const glint_batch_ray *ray) { return (ray->weight[0] + ray->weight[1]) + ray->weight[2]; }
+
+/// Whether a ray must be followed; if not, what it might have brought is off the budget.
+static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const glint_batch_ray *ray)
+{
+    const double weight = fmax(ray->weight[0], fmax(ray->weight[1], ray->weight[2]));
+    double *budget = &bounce->budget[ray->pixel];
+    if (weight == 0)
+        return false;
+    const double lost = weight * plan->brightest;
+    if (!(4 * lost <= *budget))
+        return true;
+    *budget -= lost;
+    return false;
+}
+
+static void push(struct glint_bounce *bounce, uint32_t level, const glint_batch_ray *ray)
+{
+    if (level < GLINT_BOUNCE_LEVELS)
+        bounce->levels[level][bounce->counts[level]++] = *ray;
+}
+
+/// A number in 0 .. 1 that is the ray's own: made of its direction's bits (the finish of splitmix64).
+static double lot_of(const glint_batch_ray *ray)
+{
+    uint64_t z = ray->depth;
+    for (int c = 0; c < 3; c++) {
+        uint64_t bits;
+        memcpy(&bits, &ray->direction[c], sizeof bits);
+        z = (z ^ bits) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+        z ^= z >> 31;
+    }
+    return (double)(z >> 11) * 0x1p-53;
+}
+
+/// One of two rays, by lot as they weigh, gets the weight of both, the other none.
+static void stand_for_both(glint_batch_ray *a, glint_batch_ray *b)
+{
+    const bool first = lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a);
+    glint_batch_ray *one = first ? a : b, *other = first ? b : a;
+    for (int c = 0; c < 3; c++) {
+        one->weight[c] = fmin(one->weight[c] + other->weight[c], GLINT_WEIGHT_MAX);
+        other->weight[c] = 0;
+    }
+}
+
+/// The mirrored and the refracted ray of one sample, the stronger one staying in `level`.
+static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                    uint32_t level)
+{
+    glint_batch_ray mirror, through;
+    glint_batch_split(&bounce->batch, tile, frame, i, &mirror, &through);
+    if (tile != &bounce->batch.tile) {
+        mirror.term = GLINT_TERM_MIRROR;
+        through.term = GLINT_TERM_TRANSMISSION;
+    } else if (glint_has_lane(bounce->batch.total, i)) { // both go the same way
+        for (int c = 0; c < 3; c++)
+            mirror.weight[c] = fmin(mirror.weight[c] + through.weight[c], GLINT_WEIGHT_MAX);
+        through.weight[0] = through.weight[1] = through.weight[2] = 0;
+    } else if (mirror.depth > GLINT_BOUNCE_SPLITS) {
+        stand_for_both(&mirror, &through);
+    }
+    const bool mirrors = matters(bounce, frame->plan, &mirror), transmits = matters(bounce, frame->plan, &through);
+    const bool weaker_mirror = mirrors && transmits && total_weight(&mirror) < total_weight(&through);
+    if (mirrors)
+        push(bounce, level + weaker_mirror, &mirror);
+    if (transmits)
+        push(bounce, level + (mirrors && !weaker_mirror), &through);
+}
+
+/// Sends on what the samples of `tile` have hit; `level` is that of the batch, and empty.
+static void spawn(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t level)
+{
+    if (!choose(bounce, tile, frame))
+        return;
+    glint_batch_find_ways(&bounce->batch, tile, frame);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
+            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), level);
+}
+
+// ---- A batch ----
+
+/// Takes all rays of a level into the batch.
+static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_counts *counts)
+{
+    glint_tile *tile = &bounce->batch.tile;
+    const uint32_t count = bounce->counts[level];
+    memcpy(bounce->batch.ray, bounce->levels[level], count * sizeof *bounce->batch.ray);
+    bounce->counts[level] = 0;
+    tile->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t left = count - g * GLINT_GROUP;
+        tile->active[g] = (uint16_t)(left < GLINT_GROUP ? (1u << left) - 1 : 0xffff);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        counts->mirror += bounce->batch.ray[i].term == GLINT_TERM_MIRROR;
+        counts->refraction += bounce->batch.ray[i].term == GLINT_TERM_TRANSMISSION;
+    }
+}
+
+/// Adds what the rays found to their pixels.
+static void collect(const glint_batch *batch, glint_tile *to)
+{
+    for (uint32_t i = 0; i < batch->tile.group_count * GLINT_GROUP; i++) {
+        const glint_batch_ray *ray = &batch->ray[i];
+        for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++)
+            to->sum[ray->term][c][ray->pixel] += ray->weight[c] * glint_batch_found(batch, c, i);
+    }
+}
+
+static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_tile_frame *frame, uint32_t level)
+{
+    take_level(bounce, level, &to->counts);
+    glint_batch_load(&bounce->batch, frame->plan->desc.precision);
+    const bool any = glint_batch_cast(&bounce->batch, frame);
+    glint_batch_light(&bounce->batch, frame, any);
+    collect(&bounce->batch, to);
+    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
+        glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
+    if (any)
+        spawn(bounce, &bounce->batch.tile, frame, level);
+}
+
+void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
+{
+    struct glint_bounce *bounce = tile->bounce;
+    glint_batch_begin(&bounce->batch, tile, frame);
+    memset(bounce->counts, 0, sizeof bounce->counts);
+    for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
+        bounce->budget[i] = GLINT_BOUNCE_LOSS;
+    spawn(bounce, tile, frame, 0);
+    for (uint32_t level = 1;;) {
+        while (level > 0 && bounce->counts[level] == 0)
+            level--;
+        if (bounce->counts[level] == 0 || glint_tile_cancelled(frame))
+            break;
+        run_batch(bounce, tile, frame, level);
+        if (level + 1 < GLINT_BOUNCE_LEVELS)
+            level++;
+    }
+    glint_batch_end(&bounce->batch, tile);
+}

@@ -1,0 +1,250 @@
+/// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
+#include "engine/base/alloc.h"
+#include "engine/tile/tile.h"
+
+#include <math.h>
+
+void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_reuse *reuse = frame->reuse;
+    const glint_kept_tile *kept = tile->kept;
+    bool points = false;
+    if (tile->index + 1 < reuse->tile_count)
+        glint_prefetch(kept + 1, sizeof *kept); // asked for, not read: it may be another worker's
+    if (!glint_key_equal(kept->cast, plan->keys[GLINT_STAGE_CAST]))
+        return;
+    glint_prefetch(kept->hits, GLINT_TILE_GROUPS * sizeof *kept->hits);
+    for (uint32_t i = 0; i < reuse->light_count; i++) {
+        const glint_kept_light *light = &kept->lights[i];
+        if (!glint_key_equal(light->light, plan->lights[i].key)) {
+            points = true;
+            continue;
+        }
+        glint_prefetch(light->cosine, GLINT_TILE_SAMPLES * sizeof *light->cosine);
+        if (plan->powers)
+            glint_prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
+    }
+    if (points)
+        glint_prefetch(kept->t, GLINT_TILE_SAMPLES * reuse->real_size);
+    if (points && kept->only == GLINT_MISS)
+        glint_prefetch(kept->prim, GLINT_TILE_SAMPLES * sizeof *kept->prim);
+}
+
+/// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
+/// asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
+bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_reuse *reuse = frame->reuse;
+    glint_kept_tile *kept = tile->kept;
+    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
+    const bool known = kept && glint_key_equal(kept->cast, frame->plan->keys[GLINT_STAGE_CAST]);
+    tile->at.box = NULL;
+    tile->at.t = tile->t;
+    tile->at.prim = tile->prim;
+    tile->at.hits = tile->hits;
+    tile->at.sampled = tile->hits;
+    if (known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
+        tile->at.t = (char *)kept->t + first * reuse->real_size;
+        tile->at.prim = kept->prim + first;
+        tile->at.hits = kept->hits + first / GLINT_GROUP;
+        tile->at.sampled = tile->at.hits;
+    }
+    return known;
+}
+
+static bool has_occlude(const glint_kept_light *kept, const glint_plan_light *light)
+{
+    return kept->open && (kept->visible || !light->cap);
+}
+
+void glint_tile_use_own_light(glint_tile *tile, uint32_t slot)
+{
+    glint_tile_light *own = &tile->lights[tile->own_lights + slot];
+    tile->at.light[slot].cosine = own->cosine;
+    tile->at.light[slot].attenuation = own->attenuation;
+    tile->at.light[slot].log2_specular = own->log2_specular;
+    tile->at.light[slot].lit = own->lit;
+    tile->at.light[slot].open = own->open;
+    tile->at.light[slot].visible = own->visible;
+    tile->at.light[slot].brightest = GLINT_NO_SPECULAR;
+    tile->at.light[slot].summed = false;
+}
+
+void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
+                             bool *light_known, bool *occlude_known)
+{
+    const glint_plan_light *l = &frame->plan->lights[light];
+    glint_reuse *reuse = frame->reuse;
+    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
+    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
+    *light_known = kept && glint_key_equal(kept->light, l->key);
+    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
+    glint_tile_use_own_light(tile, slot);
+    if (*light_known ||
+        (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
+        tile->at.light[slot].cosine = kept->cosine + first;
+        tile->at.light[slot].attenuation = kept->attenuation + first;
+        tile->at.light[slot].log2_specular = kept->log2_specular + first;
+        tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
+        tile->at.light[slot].brightest = kept->kept_brightest;
+    }
+    if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
+                           (k ? has_occlude(kept, l) : glint_reuse_hold_occlude(reuse, kept, l->cap)))) {
+        tile->at.light[slot].open = kept->open + first / GLINT_GROUP;
+        if (l->cap)
+            tile->at.light[slot].visible = kept->visible + first;
+    }
+}
+
+/// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
+void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_reuse *reuse = frame->reuse;
+    glint_kept_tile *kept = tile->kept;
+    if (!kept)
+        return;
+    if (reuse->keep_cast && kept->t)
+        kept->cast = plan->keys[GLINT_STAGE_CAST];
+    for (uint32_t i = 0; i < reuse->light_count; i++) {
+        if (reuse->keep_light[i] && kept->lights[i].cosine) {
+            kept->lights[i].light = plan->lights[i].key;
+            kept->lights[i].kept_brightest = kept->lights[i].brightest;
+        }
+        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&kept->lights[i], &plan->lights[i]))
+            kept->lights[i].occlude = plan->lights[i].key;
+    }
+    if (plan->runs[GLINT_STAGE_FACET])
+        glint_tile_sign_facets(tile, frame);
+}
+
+// ---- What the tile shows ----
+
+/// Whether light is worked out for the faces or vertices of what is there.
+static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
+
+static void note_material(glint_kept_tile *kept, uint32_t material)
+{
+    for (uint32_t i = 0; i < kept->shown_count && i < GLINT_SHOWN_MAX; i++)
+        if (kept->shown[i] == material)
+            return;
+    if (kept->shown_count < GLINT_SHOWN_MAX)
+        kept->shown[kept->shown_count] = material;
+    if (kept->shown_count <= GLINT_SHOWN_MAX)
+        kept->shown_count++;
+}
+
+/// Notes a sample's materials, and whether there is background among it.
+void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_kept_tile *kept = tile->kept;
+    if (k == 0) {
+        kept->shown_count = 0;
+        kept->background = kept->sites = false;
+    }
+    uint32_t last = k ? kept->only : GLINT_MISS;
+    bool several = k && kept->only == GLINT_MISS;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const uint32_t prim = tile->at.prim[i];
+        if (prim == last || prim == GLINT_MISS)
+            continue;
+        note_material(kept, frame->geometry.prims[prim].material);
+        kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
+        several = several || last != GLINT_MISS;
+        last = prim;
+    }
+    kept->only = several ? GLINT_MISS : last;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        kept->background = kept->background || tile->at.hits[g] != tile->active[g];
+}
+
+/// Notes whether a light reaches any point of a sample, and the most that its highlights may be there.
+void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
+{
+    glint_kept_light *kept = &tile->kept->lights[index];
+    const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= lanes[g];
+    kept->reaches = (k && kept->reaches) || any;
+    kept->brightest = fmaxf(k ? kept->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
+}
+
+/// The same where nothing is hit.
+void glint_tile_note_nothing(const glint_tile *tile, uint32_t k)
+{
+    if (k == 0) {
+        tile->kept->shown_count = 0;
+        tile->kept->only = GLINT_MISS;
+    }
+    tile->kept->background = true;
+}
+
+void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
+{
+    glint_kept_tile *kept = tile->kept;
+    const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];
+    if (!kept || tile->boxed != tile->sample || glint_key_equal(kept->boxed, surface))
+        return;
+    if (tile->sample == 0) {
+        kept->boxed = (glint_key) { 0 }; // until all samples are in it: others may not be asked for their points
+        kept->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
+    }
+    for (int c = 0; c < 3 && box; c++) {
+        kept->box.lower[c] = fmin(kept->box.lower[c], box->lower[c]);
+        kept->box.upper[c] = fmax(kept->box.upper[c], box->upper[c]);
+    }
+    kept->box.only = box && frame->plan->desc.samples == 1 ? box->only : GLINT_MISS;
+    if (++tile->boxed == (uint32_t)frame->plan->desc.samples)
+        kept->boxed = surface;
+}
+
+// ---- The tile's pixels ----
+
+static bool is_per_light(glint_stage_id id)
+{
+    return id == GLINT_STAGE_LIGHT || id == GLINT_STAGE_FACET || id == GLINT_STAGE_OCCLUDE;
+}
+
+static bool is_known(glint_key key) { return !glint_key_equal(key, (glint_key) { 0 }); }
+
+/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
+/// from before.
+bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_image *last = frame->last;
+    if (!tile->kept || !last || !last->film)
+        return false;
+    const glint_key key = glint_reuse_film_key(frame->reuse, tile->kept, plan);
+    if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
+        return false;
+    if (!glint_key_equal(key, frame->image->film[tile->index].key))
+        glint_tile_copy(tile, frame);
+    frame->image->film[tile->index] = last->film[tile->index];
+    tile->counts.clipped += tile->kept->clipped;
+    tile->counts.nonfinite += tile->kept->nonfinite;
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
+        if (plan->runs[id])
+            tile->counts.reuses[id] += is_per_light((glint_stage_id)id) ? plan->light_count : 1;
+    return true;
+}
+
+/// Writes down what the tile shows now.
+void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
+{
+    glint_kept_tile *kept = tile->kept;
+    if (!kept)
+        return;
+    kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
+    for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
+        kept->lights[i].place = frame->plan->lights[i].place_key;
+    const glint_key key = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
+    const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
+    const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
+    frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
+    kept->clipped = tile->counts.clipped - before.clipped;
+    kept->nonfinite = tile->counts.nonfinite - before.nonfinite;
+}

@@ -1,0 +1,77 @@
+/// The way from the eye to the first surface of a sample. What absorbs around the eye leaves exp(-absorption x way) of the
+/// light; a depth cue then fades it towards a colour. What is left is scaled in every term, and the colour's share goes to
+/// the term of the background, whose place it takes: so passes still add up.
+///
+/// All of it is double, and the same code for every instruction set: a frame without either has none of it.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/tile.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct glint_cue {
+    double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the samples that are done
+    double left[3][GLINT_TILE_SAMPLES]; ///< of the light in each pixel of the current sample
+    double share[GLINT_TILE_SAMPLES]; ///< of the colour there
+};
+
+struct glint_cue *glint_cue_create(void) { return glint_alloc(1, sizeof(struct glint_cue)); }
+void glint_cue_destroy(struct glint_cue *cue) { free(cue); }
+
+/// The way to what pixel i sees; infinite: to nothing.
+static double way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    double d[3];
+    if (!(tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) &&
+        !(plan->runs[GLINT_STAGE_GLOW] && glint_tile_sees_light(tile, i)))
+        return HUGE_VAL;
+    for (int c = 0; c < 3; c++)
+        d[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
+    return glint_real_at(tile->at.t, plan->desc.precision, i) * sqrt(vec_dot(d, d));
+}
+
+/// The background does not fade towards the colour.
+static double share_of(const glint_plan *plan, double way)
+{
+    const double x = (way - plan->cue.near) / (plan->cue.far - plan->cue.near);
+    return plan->cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
+}
+
+void glint_tile_find_cue(glint_tile *tile, const glint_plan *plan, bool any)
+{
+    struct glint_cue *cue = tile->cue;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const double way = any ? way_of(tile, plan, i) : HUGE_VAL;
+        cue->share[i] = share_of(plan, way);
+        for (int c = 0; c < 3; c++) {
+            const double a = plan->veil.absorption[c];
+            cue->left[c][i] = (1 - cue->share[i]) * (a > 0 ? glint_exp(-a * way) : 1);
+        }
+    }
+}
+
+void glint_tile_cue(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const double *share = tile->cue->share;
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
+            double *sum = tile->sum[k][c], *total = tile->cue->total[k][c];
+            const double *left = tile->cue->left[c];
+            const double color = k == GLINT_TERM_BACKGROUND ? plan->cue.color[c] : 0;
+            for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+                const double before = tile->sample == 0 ? 0 : total[i];
+                total[i] = before + ((left[i] > 0 ? sum[i] * left[i] : 0) + share[i] * color);
+                sum[i] = 0;
+            }
+        }
+    glint_tile_book(tile, frame, GLINT_STAGE_CUE, false);
+}
+
+void glint_tile_take_cued(glint_tile *tile, const glint_plan *plan)
+{
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        if (glint_plan_has_term(plan, (glint_term)k))
+            memcpy(tile->sum[k], tile->cue->total[k], sizeof tile->sum[k]);
+}

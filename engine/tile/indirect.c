@@ -1,0 +1,373 @@
+/// Indirect light: from each matt point some ways of light are followed backwards, over directions as dense as their
+/// cosine, and the mean of what they find, times kd, is what the point gives on.
+///
+/// A way never parts. Where it meets a surface it takes the light that the lights send there, and goes on in one of the
+/// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
+/// weighed by one over it. So the memory is one batch, however long ways are. They stay in the lane of their point: what
+/// a way finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
+///
+/// Of an area light each way asks one sample at each point, another from way to way. Light that is asked for at each point
+/// and found by chance as well would count twice: ways do not see lights, whether rays of the eye do or not.
+///
+/// A way too weak to be seen ends: what a sample loses so is, in the mean, a quarter of GLINT_BOUNCE_LOSS at most.
+#include "engine/base/alloc.h"
+#include "engine/base/sequence.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define GOLDEN 0x1.9e3779b97f4a8p-1 ///< multiples of it, less their whole part, fill 0 .. 1 evenly from the first on
+#define STRENGTH_MAX 1e150
+
+typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
+
+struct glint_indirect {
+    glint_batch batch;
+    glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
+    glint_tile_frame frame; ///< likewise
+    glint_plan_light *lights; ///< of that plan; NULL: there are none
+    uint32_t ways[GLINT_TILE_SAMPLES]; ///< that each point gets
+    uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that get any
+    uint64_t
+        block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
+    uint32_t lane[GLINT_TILE_SAMPLES]; ///< which of these pixels
+    uint16_t scattered[GLINT_TILE_GROUPS]; ///< rays that go on so
+    _Alignas(64) double square[2][GLINT_TILE_SAMPLES];
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+};
+
+struct glint_indirect *glint_indirect_create(const glint_plan *plan)
+{
+    struct glint_indirect *indirect = glint_alloc(1, sizeof *indirect);
+    if (!indirect)
+        return NULL;
+    indirect->lights = glint_alloc(plan->indirect.light_count, sizeof *indirect->lights);
+    if (!indirect->lights) {
+        free(indirect);
+        return NULL;
+    }
+    return indirect;
+}
+
+void glint_indirect_destroy(struct glint_indirect *indirect)
+{
+    if (!indirect)
+        return;
+    free(indirect->lights);
+    free(indirect);
+}
+
+static double mean(const double c[3]) { return ((c[0] + c[1]) + c[2]) / 3; }
+
+static double largest(const double c[3]) { return fmax(c[0], fmax(c[1], c[2])); }
+
+// ---- Numbers that are as good as random ----
+
+/// Pixels of 2 x 2 belong together first, so that these have an even set as well.
+static uint32_t lane_order(uint32_t lane)
+{
+    const uint32_t x = lane & 3, y = lane >> 2;
+    return (x & 1) | (y & 1) << 1 | (x >> 1) << 2 | (y >> 1) << 3;
+}
+
+/// Notes which block of pixels point i of `seen` belongs to.
+static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
+                       const glint_batch_ray *ray, uint32_t i)
+{
+    const uint32_t pixel = ray ? ray->pixel : i, group = pixel / GLINT_GROUP;
+    const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
+    const uint64_t place = ray ? 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR) : 0;
+    uint64_t block = glint_sequence_mix(x | (uint64_t)y << 32, (uint64_t)plan->desc.seed);
+    indirect->block[i] = glint_sequence_mix(block, place);
+    indirect->lane[i] = lane_order(pixel % GLINT_GROUP);
+}
+
+/// The point of the unit square for way `number` of a pixel's point i: two for each turn, `which` says what for.
+static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
+{
+    const uint64_t each = (uint64_t)indirect->plan.indirect.samples * (uint64_t)indirect->plan.desc.samples;
+    const uint64_t k = indirect->lane[i] * each + number;
+    glint_sequence_scrambled((uint32_t)k, glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32), out);
+}
+
+/// One sample of each light, as strong as all of them: another for each way and turn.
+static void take_lights(struct glint_indirect *indirect, const glint_plan *plan, uint64_t number, uint32_t step)
+{
+    for (uint32_t i = 0; i < plan->indirect.light_count; i++) {
+        const uint32_t first = plan->indirect.light_rows[i], count = plan->indirect.light_rows[i + 1] - first;
+        double part = (double)(number % (1u << 20)) * GOLDEN + step * (GOLDEN * GOLDEN);
+        part -= floor(part);
+        glint_plan_light *light = &indirect->lights[i];
+        *light = plan->lights[first + (uint32_t)(part * count)];
+        light->joined = false;
+        for (int c = 0; c < 3; c++) {
+            light->diffuse[c] = fmin(light->diffuse[c] * count, STRENGTH_MAX);
+            light->specular[c] = fmin(light->specular[c] * count, STRENGTH_MAX);
+        }
+    }
+}
+
+// ---- Where ways begin ----
+
+/// How many ways each point gets: fewer where it is seen by mirrors that leave little of it. Returns the most.
+static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
+                            const glint_tile *seen, const glint_batch *from)
+{
+    const glint_plan *plan = frame->plan;
+    uint32_t most = 0;
+    for (uint32_t g = 0; g < seen->group_count; g++) {
+        indirect->matt[g] = 0;
+        for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_batch_ray *ray = from ? &from->ray[i] : NULL;
+            const double weight = ray ? largest(ray->weight) : 1;
+            const double samples = plan->indirect.samples;
+            if (largest(plan->materials[seen->material[i]].diffuse) == 0)
+                continue;
+            indirect->ways[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
+            indirect->matt[g] |= (uint16_t)(left & -left);
+            most = indirect->ways[i] > most ? indirect->ways[i] : most;
+            find_block(indirect, to, plan, ray, i);
+        }
+    }
+    return most;
+}
+
+/// Directions for the rays in indirect->scattered, around the normals of `tile`.
+static void scatter(struct glint_indirect *indirect, const glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_scatter_args args = { .group_count = tile->group_count, .wanted = indirect->scattered };
+    for (int c = 0; c < 3; c++) {
+        args.normal[c] = tile->normal[c];
+        args.direction[c] = indirect->direction[c];
+    }
+    args.square[0] = indirect->square[0];
+    args.square[1] = indirect->square[1];
+    frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
+}
+
+/// Sends ray i along its direction from a point of `tile`.
+static void leave(const struct glint_indirect *indirect, const glint_tile *tile, glint_precision precision,
+                  const double share[3], double factor, uint32_t i, glint_batch_ray *ray)
+{
+    ray->inward = glint_has_lane(tile->back, i);
+    ray->scatters++;
+    for (int c = 0; c < 3; c++) {
+        ray->direction[c] = glint_real_at(indirect->direction[c], precision, i);
+        ray->weight[c] = fmin(ray->weight[c] * (share[c] * factor), GLINT_WEIGHT_MAX);
+    }
+}
+
+/// The first rays of way `way` of every point. Returns whether there are any.
+static bool begin_ways(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
+                       const glint_batch *from, uint32_t way, uint64_t number)
+{
+    glint_batch *batch = &indirect->batch;
+    unsigned any = 0;
+    batch->tile.group_count = seen->group_count;
+    for (uint32_t g = 0; g < seen->group_count; g++) {
+        indirect->scattered[g] = 0;
+        for (unsigned left = indirect->matt[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            double square[2];
+            if (way >= indirect->ways[i])
+                continue;
+            draw(indirect, i, number, 0, square);
+            indirect->square[0][i] = square[0];
+            indirect->square[1][i] = square[1];
+            indirect->scattered[g] |= (uint16_t)(left & -left);
+        }
+        any |= batch->tile.active[g] = indirect->scattered[g];
+    }
+    if (!any)
+        return false;
+    scatter(indirect, seen, frame);
+    for (uint32_t g = 0; g < seen->group_count; g++)
+        for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const double share = 1.0 / indirect->ways[i];
+            glint_batch_ray *ray = &batch->ray[i];
+            *ray = glint_batch_start_ray(from ? from : batch, seen, frame, i);
+            if (!from)
+                ray->term = GLINT_TERM_INDIRECT;
+            ray->least = largest(ray->weight) * share * frame->plan->indirect.least;
+            leave(indirect, seen, frame->plan->desc.precision, frame->plan->materials[seen->material[i]].diffuse, share,
+                  i, ray);
+        }
+    return true;
+}
+
+// ---- Where they go on ----
+
+/// Rays that mirrors and transparent materials may send on; finds where to.
+static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
+{
+    glint_batch *batch = &indirect->batch;
+    const glint_plan *plan = frame->plan;
+    unsigned any = 0;
+    for (uint32_t g = 0; g < batch->tile.group_count; g++) {
+        batch->wanted[g] = 0;
+        for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const glint_bounce_material *m = &plan->bouncing[batch->tile.material[i]];
+            if ((m->mirrors || m->transmits) && batch->ray[i].depth < plan->desc.max_depth)
+                batch->wanted[g] |= (uint16_t)(left & -left);
+        }
+        any |= batch->wanted[g];
+    }
+    if (any)
+        glint_batch_find_ways(batch, &batch->tile, frame);
+}
+
+/// Chooses how ray i goes on, and starts it there unless it is scattered.
+static turn choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
+                   glint_batch_ray *next)
+{
+    glint_batch *batch = &indirect->batch;
+    const glint_batch_ray *ray = &batch->ray[i];
+    const double *diffuse = frame->plan->materials[batch->tile.material[i]].diffuse;
+    double share[3] = { 0 }, least = 0;
+    glint_batch_ray split[2];
+    if (ray->scatters < frame->plan->indirect.bounces)
+        for (int c = 0; c < 3; c++)
+            share[0] += diffuse[c] * ray->weight[c];
+    if (glint_has_lane(batch->wanted, i)) {
+        glint_batch_split(batch, &batch->tile, frame, i, &split[0], &split[1]);
+        share[1] = 3 * mean(split[0].weight);
+        share[2] = 3 * mean(split[1].weight);
+    }
+    const double all = (share[0] + share[1]) + share[2];
+    if (!(all > 0))
+        return TURN_NONE;
+    int chosen = share[0] > 0 ? 0 : share[1] > 0 ? 1 : 2;
+    if (share[chosen] < all) {
+        double number_of[2];
+        draw(indirect, i, number, 2 * (ray->scatters + ray->depth) + 1, number_of);
+        chosen = number_of[0] * all < share[0]                                 ? 0
+                 : number_of[0] * all < share[0] + share[1] || !(share[2] > 0) ? 1
+                                                                               : 2;
+    }
+    const double chance = share[chosen] / all;
+    *next = chosen ? split[chosen - 1] : glint_batch_start_ray(batch, &batch->tile, frame, i);
+    for (int c = 0; c < 3; c++) {
+        next->weight[c] = fmin(next->weight[c] / chance, GLINT_WEIGHT_MAX);
+        least = fmax(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
+    }
+    if (least <= ray->least)
+        return TURN_NONE;
+    return (turn)(TURN_SCATTERED + chosen);
+}
+
+/// Sends every ray on that has found a surface to go on from. Returns whether any does.
+static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number)
+{
+    glint_batch *batch = &indirect->batch;
+    glint_tile *tile = &batch->tile;
+    unsigned any = 0;
+    find_ways(indirect, frame);
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        indirect->scattered[g] = 0;
+        tile->active[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const uint16_t bit = (uint16_t)(left & -left);
+            glint_batch_ray next;
+            double square[2];
+            const turn chosen = choose(indirect, frame, number, i, &next);
+            if (chosen == TURN_NONE)
+                continue;
+            batch->ray[i] = next;
+            tile->active[g] |= bit;
+            if (chosen != TURN_SCATTERED)
+                continue;
+            draw(indirect, i, number, 2 * (next.scatters + next.depth), square);
+            indirect->square[0][i] = square[0];
+            indirect->square[1][i] = square[1];
+            indirect->scattered[g] |= bit;
+        }
+        any |= tile->active[g];
+    }
+    if (!any)
+        return false;
+    scatter(indirect, tile, frame);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            leave(indirect, tile, frame->plan->desc.precision, frame->plan->materials[tile->material[i]].diffuse, 1, i,
+                  &batch->ray[i]);
+        }
+    return true;
+}
+
+// ---- What they find ----
+
+/// Adds the light that the rays have found to their pixels.
+static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
+{
+    for (uint32_t i = 0; i < batch->tile.group_count * GLINT_GROUP; i++) {
+        const glint_batch_ray *ray = &batch->ray[i];
+        const bool last = glint_has_lane(batch->tile.at.hits, i) && ray->scatters == plan->indirect.bounces;
+        for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++) {
+            const double rest = last ? plan->indirect.rest[batch->tile.material[i]][c] : 0;
+            to->sum[ray->term][c][ray->pixel] += ray->weight[c] * (glint_batch_found(batch, c, i) + rest);
+        }
+    }
+}
+
+static void count_rays(const glint_batch *batch, glint_tile *to)
+{
+    for (uint32_t g = 0; g < batch->tile.group_count; g++)
+        to->counts.indirect += (unsigned)__builtin_popcount(batch->tile.active[g]);
+}
+
+/// The light of faces and vertices is kept for all who ask: it is made of every sample of the lights.
+static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
+{
+    glint_batch *batch = &indirect->batch;
+    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = sites ? glint_tile_choose_sampled(&batch->tile, frame) : any;
+    glint_batch_shine(batch, &indirect->frame, lit);
+    if (sites && glint_tile_has_sites(&batch->tile))
+        glint_tile_vertex(&batch->tile, frame);
+}
+
+/// One way of each point, to its end.
+static void follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to, uint64_t number)
+{
+    glint_batch *batch = &indirect->batch;
+    bool any = true;
+    for (uint32_t step = 0; any && !glint_tile_cancelled(frame); step++) {
+        count_rays(batch, to);
+        glint_batch_load(batch, frame->plan->desc.precision);
+        take_lights(indirect, frame->plan, number, step);
+        any = glint_batch_cast(batch, &indirect->frame);
+        light(indirect, frame, any);
+        collect(batch, frame->plan, to);
+        any = any && go_on(indirect, frame, number);
+    }
+}
+
+void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
+                         const glint_batch *from)
+{
+    struct glint_indirect *indirect = tile->indirect;
+    glint_batch *batch = &indirect->batch;
+    indirect->plan = *frame->plan;
+    indirect->plan.lights = indirect->lights;
+    indirect->plan.light_count = frame->plan->indirect.light_count;
+    indirect->plan.runs[GLINT_STAGE_GLOW] = false;
+    indirect->plan.glow_count = 0;
+    indirect->frame = *frame;
+    indirect->frame.plan = &indirect->plan;
+    const uint32_t ways = find_points(indirect, tile, frame, seen, from);
+    glint_batch_begin(batch, tile, frame);
+    for (uint32_t way = 0; way < ways && !glint_tile_cancelled(frame); way++) {
+        const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + way;
+        batch->tile.sample = (uint32_t)number;
+        if (begin_ways(indirect, frame, seen, from, way, number))
+            follow(indirect, frame, tile, number);
+    }
+    glint_batch_end(batch, tile);
+}

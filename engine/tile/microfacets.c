@@ -1,0 +1,94 @@
+/// What only frames with materials of microfacets have: the stages view and facet, and where their results are kept.
+#include "engine/base/vec.h"
+#include "engine/tile/tile.h"
+
+bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_kept_tile *kept = tile->kept;
+    const bool known = kept && glint_key_equal(kept->view, frame->plan->keys[GLINT_STAGE_VIEW]);
+    tile->at.facing = tile->facets->facing;
+    if (known ||
+        (kept && frame->reuse->keep_view && (k ? kept->facing != NULL : glint_reuse_hold_view(frame->reuse, kept))))
+        tile->at.facing = kept->facing + (size_t)k * GLINT_TILE_SAMPLES;
+    return known;
+}
+
+bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot)
+{
+    glint_reuse *reuse = frame->reuse;
+    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
+    const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
+    const bool known = kept && glint_key_equal(kept->facet, frame->plan->lights[light].key);
+    tile->at.light[slot].sine2 = tile->facets->sine2[slot];
+    tile->at.light[slot].schlick = tile->facets->schlick[slot];
+    if (known ||
+        (kept && reuse->keep_light[light] && (k ? kept->sine2 != NULL : glint_reuse_hold_facet(reuse, kept)))) {
+        tile->at.light[slot].sine2 = kept->sine2 + first;
+        tile->at.light[slot].schlick = kept->schlick + first;
+    }
+    return known;
+}
+
+void glint_tile_lend_facets(glint_tile *to, const glint_tile *from)
+{
+    to->at.facing = from->facets->facing;
+    for (int i = 0; i < GLINT_LIGHT_CHUNK; i++) {
+        to->at.light[i].sine2 = from->facets->sine2[i];
+        to->at.light[i].schlick = from->facets->schlick[i];
+    }
+}
+
+void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_reuse *reuse = frame->reuse;
+    glint_kept_tile *kept = tile->kept;
+    if (reuse->keep_view && kept->facing)
+        kept->view = plan->keys[GLINT_STAGE_VIEW];
+    for (uint32_t i = 0; i < reuse->light_count; i++)
+        if (reuse->keep_light[i] && kept->lights[i].sine2)
+            kept->lights[i].facet = plan->lights[i].key;
+}
+
+void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_view_args args = { .group_count = tile->group_count,
+                             .hits = tile->at.hits,
+                             .camera = glint_tile_rays_of(tile),
+                             .facing = tile->at.facing };
+    for (int c = 0; c < 3; c++) {
+        args.normal[c] = tile->normal[c];
+        args.direction[c] = tile->direction[c];
+    }
+    frame->stages->geometry[frame->plan->desc.precision].view(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_VIEW, false);
+}
+
+void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
+    glint_facet_args args = { .group_count = tile->group_count,
+                              .camera = glint_tile_rays_of(tile),
+                              .material = tile->material,
+                              .materials = plan->materials,
+                              .directional = light->directional,
+                              .scale = light->scale,
+                              .sample_count = count };
+    vec_copy(args.position, light->position);
+    for (uint32_t i = 0; i < count; i++) {
+        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lit[i] = tile->at.light[slot[i]].lit;
+        args.sine2[i] = tile->at.light[slot[i]].sine2;
+        args.schlick[i] = tile->at.light[slot[i]].schlick;
+    }
+    for (int c = 0; c < 3; c++) {
+        args.point[c] = tile->point[c];
+        args.normal[c] = tile->normal[c];
+        args.direction[c] = tile->direction[c];
+    }
+    frame->stages->geometry[plan->desc.precision].facet(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_FACET, false);
+    tile->counts.runs[GLINT_STAGE_FACET] += count - 1;
+}

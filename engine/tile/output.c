@@ -1,0 +1,267 @@
+#include "engine/tile/tile.h"
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+
+#include <string.h>
+
+/// Copies a group-ordered array of a tile into an image plane.
+static void store_plane(const glint_tile *tile, const float *groups, float *plane, int stride)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
+        const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
+        const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
+        float *to = plane + (size_t)(tile->y0 + y) * (size_t)stride + tile->x0 + x;
+        for (uint32_t r = 0; r < rows; r++, to += stride) {
+            const float *from = groups + g * GLINT_GROUP + 4 * r;
+            if (columns == 4)
+                memcpy(to, from, 4 * sizeof *to);
+            else
+                memcpy(to, from, columns * sizeof *to);
+        }
+    }
+}
+
+/// `groups`: the channels one after the other.
+static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass, const float *groups)
+{
+    if (!(frame->plan->desc.passes >> pass & 1))
+        return;
+    for (int c = 0; c < glint_pass_channels(pass); c++)
+        store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
+}
+
+double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
+{
+    if (tile->camera.orthographic)
+        return glint_real_at(tile->direction[c], precision, i);
+    const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
+    const uint32_t lane = i % GLINT_GROUP;
+    const double d = glint_real_at(tile->across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
+                     glint_real_at(tile->down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
+    return precision == GLINT_FLOAT ? (float)d : d;
+}
+
+bool glint_tile_wants_geometry(const glint_plan *plan)
+{
+    return plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
+}
+
+static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    return plan->glow_count && glint_tile_sees_light(tile, i);
+}
+
+static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    float depth[GLINT_TILE_SAMPLES];
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        double d[3];
+        depth[i] = HUGE_VALF;
+        if (!glint_has_lane(tile->at.hits, i) && !sees_light(tile, frame->plan, i))
+            continue;
+        for (int c = 0; c < 3; c++)
+            d[c] = glint_tile_direction(tile, precision, c, i);
+        depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
+    }
+    store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
+}
+
+static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float normal[3][GLINT_TILE_SAMPLES];
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        double n[3] = { 0 };
+        if (!hit && sees_light(tile, frame->plan, i))
+            glint_tile_glow_normal(tile, frame, i, n);
+        for (int c = 0; c < 3; c++)
+            normal[c][i] = (float)(hit ? glint_real_at(tile->normal[c], frame->plan->desc.precision, i) : n[c]);
+    }
+    store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
+}
+
+static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float id[GLINT_TILE_SAMPLES], object = 0;
+    uint32_t last = GLINT_MISS;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        if (hit && tile->at.prim[i] != last) {
+            last = tile->at.prim[i];
+            object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[last].id) + 1);
+        }
+        id[i] = hit ? object : 0;
+    }
+    store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
+}
+
+void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t passes = frame->plan->desc.passes;
+    if (passes >> GLINT_PASS_DEPTH & 1)
+        store_depth(tile, frame);
+    if (passes >> GLINT_PASS_NORMAL & 1)
+        store_normal(tile, frame);
+    if (passes >> GLINT_PASS_OBJECT_ID & 1)
+        store_object_id(tile, frame);
+}
+
+// ---- Coverage -----------------------------------------------------------------------------------------------------
+
+bool glint_tile_wants_coverage(const glint_plan *plan)
+{
+    return plan->desc.alpha || plan->desc.passes >> GLINT_PASS_ALPHA & 1;
+}
+
+void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
+{
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool light = plan->glow_count && glint_tile_sees_light(tile, i);
+        tile->covered[i] =
+            (k ? tile->covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
+    }
+}
+
+static float coverage_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+{
+    return (float)(tile->covered[i] / plan->desc.samples);
+}
+
+static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float alpha[GLINT_TILE_SAMPLES];
+    if (!(frame->plan->desc.passes >> GLINT_PASS_ALPHA & 1))
+        return;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        alpha[i] = coverage_at(tile, frame->plan, i);
+    store_pass(tile, frame, GLINT_PASS_ALPHA, alpha);
+}
+
+// ---- Light --------------------------------------------------------------------------------------------------------
+
+/// Without adaptive sampling every pixel has all samples.
+static void store_refined(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float all[GLINT_TILE_SAMPLES];
+    if (frame->base || !(frame->plan->desc.passes >> GLINT_PASS_REFINED & 1))
+        return;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        all[i] = 1;
+    store_pass(tile, frame, GLINT_PASS_REFINED, all);
+}
+
+void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
+{
+    store_coverage(tile, frame);
+    store_refined(tile, frame);
+    for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
+        if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
+            frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
+            memset(tile->film[k], 0, sizeof tile->film[k]);
+    store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);
+}
+
+/// Where in the tile's arrays pixel (x, y) of it is.
+static uint32_t place_of(const glint_tile *tile, uint32_t x, uint32_t y)
+{
+    return ((y / 4) * tile->groups_across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
+}
+
+static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
+{
+    float row[3][GLINT_TILE_WIDTH], alpha[GLINT_TILE_WIDTH];
+    const glint_image *image = frame->image;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        for (uint32_t x = 0; x < tile->width; x++) {
+            const uint32_t i = place_of(tile, x, y);
+            alpha[x] = coverage_at(tile, frame->plan, i);
+            for (int c = 0; c < 3; c++)
+                row[c][x] = tile->beauty[c][i];
+        }
+        const size_t at = (size_t)(tile->y0 + y) * (size_t)image->width + tile->x0;
+        glint_tone_row_alpha(frame->tone_table, frame->gain, (const float *const[3]) { row[0], row[1], row[2] }, alpha,
+                             tile->width, (char *)image->codes + at * glint_image_pixel_bytes(image),
+                             &tile->counts.clipped, &tile->counts.nonfinite);
+    }
+}
+
+static void tone16(glint_tile *tile, const glint_tile_frame *frame)
+{
+    float row[3][GLINT_TILE_WIDTH];
+    uint16_t *codes = frame->image->codes;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        for (uint32_t x = 0; x < tile->width; x++)
+            for (int c = 0; c < 3; c++)
+                row[c][x] = tile->beauty[c][place_of(tile, x, y)];
+        uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
+        glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
+                         &tile->counts.nonfinite);
+    }
+}
+
+void glint_tile_foresee_codes(const glint_tile *tile, const glint_image *image)
+{
+    const size_t pixel = glint_image_pixel_bytes(image), stride = (size_t)image->width * pixel;
+    for (size_t y = 0; y < tile->height; y++)
+        glint_prefetch((const char *)image->codes + (tile->y0 + y) * stride + tile->x0 * pixel, tile->width * pixel);
+}
+
+void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (frame->plan->desc.alpha) {
+        tone_alpha(tile, frame);
+        return;
+    }
+    if (frame->plan->desc.tone.bits == 16) {
+        tone16(tile, frame);
+        return;
+    }
+    const size_t stride = 3 * (size_t)frame->image->width;
+    glint_tone_args args = { .group_count = tile->group_count,
+                             .groups_across = tile->groups_across,
+                             .active = tile->active,
+                             .gain = frame->gain,
+                             .white = frame->tone_table->white,
+                             .top = frame->tone_table->top,
+                             .table = frame->tone_table->lut,
+                             .fit = frame->tone_table->has_fit ? &frame->tone_table->fit : NULL,
+                             .codes = (uint8_t *)frame->image->codes + tile->y0 * stride + 3 * (size_t)tile->x0,
+                             .stride = stride,
+                             .clipped = &tile->counts.clipped,
+                             .nonfinite = &tile->counts.nonfinite };
+    for (int c = 0; c < 3; c++)
+        args.beauty[c] = tile->beauty[c];
+    frame->stages->tone(&args);
+}
+
+bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b)
+{
+    const size_t pixel = glint_image_pixel_bytes(a), stride = (size_t)a->width * pixel;
+    const size_t at = tile->y0 * stride + tile->x0 * pixel;
+    for (size_t y = 0; a->codes && y < tile->height; y++)
+        if (memcmp((const char *)a->codes + at + y * stride, (const char *)b->codes + at + y * stride,
+                   tile->width * pixel) != 0)
+            return false;
+    return true;
+}
+
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_image *from = frame->last;
+    const size_t stride = (size_t)from->width, at = (size_t)tile->y0 * stride + tile->x0;
+    const size_t pixel = from->codes ? glint_image_pixel_bytes(from) : 0;
+    for (size_t y = 0; y < tile->height; y++) {
+        const size_t row = at + y * stride;
+        if (pixel)
+            memcpy((char *)frame->image->codes + row * pixel, (const char *)from->codes + row * pixel,
+                   tile->width * pixel);
+        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+            for (int c = 0; c < 3; c++)
+                if (from->plane[pass][c])
+                    memcpy(frame->image->plane[pass][c] + row, from->plane[pass][c] + row, tile->width * sizeof(float));
+    }
+}

@@ -1,0 +1,95 @@
+/// The part of a tile that gets all samples, and the rest, which has its one.
+#include "engine/tile/tile.h"
+
+#include <string.h>
+
+/// Where the pixels of a group are, and how many of them the image has.
+typedef struct group_pixels {
+    size_t first; ///< in a plane of the image
+    uint32_t columns, rows;
+} group_pixels;
+
+static group_pixels pixels_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
+    return (group_pixels) { .first = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0 + x,
+                            .columns = tile->width - x < 4 ? tile->width - x : 4,
+                            .rows = tile->height - y < 4 ? tile->height - y : 4 };
+}
+
+bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const group_pixels at = pixels_of(tile, frame, g);
+        unsigned lanes = 0;
+        for (uint32_t y = 0; y < at.rows; y++)
+            for (uint32_t x = 0; x < at.columns; x++)
+                lanes |= (unsigned)(frame->refined[at.first + y * (size_t)frame->image->width + x] != 0) << (4 * y + x);
+        tile->active[g] = (uint16_t)lanes;
+        any |= lanes;
+    }
+    return any;
+}
+
+/// Takes the lanes of a plane that were not refined from the base.
+static void take_plane(const glint_tile *tile, const glint_tile_frame *frame, const float *plane, float *groups)
+{
+    const size_t stride = (size_t)frame->image->width;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const group_pixels at = pixels_of(tile, frame, g);
+        const unsigned refined = tile->active[g];
+        for (uint32_t y = 0; y < at.rows; y++) {
+            const float *from = plane + at.first + y * stride;
+            float *to = groups + g * GLINT_GROUP + 4 * y;
+            if (!(refined >> 4 * y & 15) && at.columns == 4) {
+                memcpy(to, from, 4 * sizeof *to);
+                continue;
+            }
+            for (uint32_t x = 0; x < at.columns; x++)
+                if (!(refined >> (4 * y + x) & 1))
+                    to[x] = from[x];
+        }
+    }
+}
+
+/// The base has one sample: what it covers, it covers whole.
+static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
+{
+    float alpha[GLINT_TILE_SAMPLES] = { 0 };
+    take_plane(tile, frame, frame->base->plane[GLINT_PASS_ALPHA][0], alpha);
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+        if (!glint_has_lane(tile->active, i))
+            tile->covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
+}
+
+/// What is of the base for all pixels, and which were refined.
+static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    static const glint_pass whole[] = { GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID };
+    const uint32_t passes = frame->plan->desc.passes;
+    for (uint32_t y = 0; y < tile->height; y++) {
+        const size_t row = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0;
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; passes >> whole[k] & 1 && c < glint_pass_channels(whole[k]); c++)
+                memcpy(frame->image->plane[whole[k]][c] + row, frame->base->plane[whole[k]][c] + row,
+                       tile->width * sizeof(float));
+        for (uint32_t x = 0; passes >> GLINT_PASS_REFINED & 1 && x < tile->width; x++)
+            frame->image->plane[GLINT_PASS_REFINED][0][row + x] = frame->refined[row + x];
+    }
+}
+
+void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_image *base = frame->base;
+    for (int c = 0; c < 3; c++) {
+        take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->beauty[c]);
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            if (frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
+                take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film[k][c]);
+    }
+    if (glint_tile_wants_coverage(frame->plan))
+        take_coverage(tile, frame);
+    copy_whole(tile, frame);
+    glint_tile_activate(tile);
+}

@@ -1,0 +1,139 @@
+/// The calls of shade and resolve: of one sample, whose terms are added to sums where there are several, or of all samples
+/// of a tile together, whose sums never leave the registers.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/tile.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// The light in slot i as shade sees it; `lit`: the lanes that it reaches.
+static glint_shade_light shade_light(const glint_tile *tile, const glint_plan_light *light, uint32_t i,
+                                     const uint16_t *lit)
+{
+    glint_shade_light out = { .joined = light->joined && i > 0,
+                              .lit = lit,
+                              .cosine = tile->at.light[i].cosine,
+                              .attenuation = light->cap          ? tile->at.light[i].visible
+                                             : light->attenuated ? tile->at.light[i].attenuation
+                                                                 : NULL,
+                              .log2_specular = tile->at.light[i].log2_specular,
+                              .sine2 = tile->at.light[i].sine2,
+                              .schlick = tile->at.light[i].schlick,
+                              .summed = tile->at.light[i].summed,
+                              .highlight = tile->at.light[i].log2_specular };
+    vec_copy(out.diffuse, light->diffuse);
+    vec_copy(out.specular, light->specular);
+    return out;
+}
+
+glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
+                                       uint32_t count, glint_shade_light *lights)
+{
+    const glint_plan *plan = frame->plan;
+    glint_shade_args args = { .group_count = tile->group_count,
+                              .active = tile->active,
+                              .hits = tile->at.hits,
+                              .material = tile->material,
+                              .only = tile->at.only ? &frame->geometry.prims[*tile->at.only].material : NULL,
+                              .materials = plan->materials,
+                              .facing = tile->at.facing,
+                              .highlights = plan->highlights,
+                              .first = from == 0,
+                              .lights = lights };
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_plan_light *light = &plan->lights[from + i];
+        const uint16_t *open = light->shadows ? tile->at.light[i].open : tile->at.light[i].lit;
+        if (!tile->at.light[i].summed || !light->joined || i == 0) // else it is in the sum
+            lights[args.light_count++] = shade_light(tile, light, i, open);
+    }
+    if (!tile->transparent)
+        vec_copy(args.background, plan->background);
+    return args;
+}
+
+void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3], float *beauty[3])
+{
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < GLINT_TERM_COUNT; k++)
+            film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
+        beauty[c] = tile->beauty[c];
+    }
+}
+
+void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
+    glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights);
+    if (plan->dims && count > 0)
+        glint_tile_find_dim(tile, frame);
+    for (uint32_t i = 0; i < count && plan->dims; i++) { // no light is summed
+        if (!plan->lights[from + i].shadows)
+            continue;
+        for (uint32_t g = 0; g < tile->group_count; g++)
+            whole[i][g] = lights[i].lit[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
+        lights[i].lit = whole[i];
+    }
+    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+        args.active = glint_tile_unlit_lanes(tile, unlit);
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3; c++)
+            args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
+    glint_tile_point_film(tile, plan, args.film, args.beauty);
+    frame->stages->shade(&args);
+    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+        glint_tile_add_glow(tile, frame);
+    glint_tile_count_powers(tile, frame, from, count);
+    glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
+}
+
+void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
+    for (int k = 0; k < GLINT_TERM_COUNT; k++)
+        for (int c = 0; c < 3; c++)
+            args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->sum[k][c] : NULL;
+    glint_tile_point_film(tile, plan, args.film, args.beauty);
+    frame->stages->resolve(&args);
+    glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
+}
+
+// ---- Samples that are shaded together ----
+
+struct glint_samples {
+    _Alignas(64) uint32_t material[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
+    uint16_t hits[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
+    glint_shade_light lights[GLINT_LIGHT_CHUNK];
+    glint_shade_args shade[GLINT_LIGHT_CHUNK];
+};
+
+struct glint_samples *glint_samples_create(void) { return glint_alloc(1, sizeof(struct glint_samples)); }
+
+void glint_samples_destroy(struct glint_samples *samples) { free(samples); }
+
+void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count)
+{
+    struct glint_samples *samples = tile->samples;
+    const uint32_t k = tile->sample;
+    glint_shade_args *shade = &samples->shade[k];
+    *shade = glint_tile_shade_args(tile, frame, 0, light_count, &samples->lights[tile->own_lights]);
+    memcpy(samples->hits[k], tile->at.hits, tile->group_count * sizeof *samples->hits[k]);
+    shade->hits = samples->hits[k];
+    memcpy(samples->material[k], tile->material, tile->group_count * GLINT_GROUP * sizeof *samples->material[k]);
+    shade->material = samples->material[k];
+    glint_tile_count_powers(tile, frame, 0, light_count);
+}
+
+void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const uint32_t count = (uint32_t)frame->plan->desc.samples;
+    glint_shade_args *shade = tile->samples->shade;
+    glint_tile_point_film(tile, frame->plan, shade->film, shade->beauty);
+    frame->stages->resolve_samples(shade, count);
+    glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
+    tile->counts.runs[GLINT_STAGE_SHADE] += count - 1;
+    glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
+}

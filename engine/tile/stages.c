@@ -1,0 +1,387 @@
+/// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
+#include "engine/tile/tile.h"
+#include "engine/base/sequence.h"
+#include "engine/base/vec.h"
+#include "engine/stages/simd/coefficients.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+uint64_t glint_tile_now_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
+}
+
+/// Books the time since the last call on a stage, when stages are timed.
+static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage)
+{
+    if (!frame->time_stages)
+        return;
+    const uint64_t now = glint_tile_now_ns();
+    tile->counts.ns[stage] += now - tile->clock;
+    tile->clock = now;
+}
+
+/// Counts a stage's call; `reused`: its result was at hand.
+void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused)
+{
+    if (reused)
+        tile->counts.reuses[stage]++;
+    else
+        tile->counts.runs[stage]++;
+    lap(tile, frame, stage);
+}
+
+void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_camera *camera = &plan->camera;
+    glint_camera_args *args = &tile->camera;
+    *args = (glint_camera_args) { .group_count = tile->group_count,
+                                  .groups_across = tile->groups_across,
+                                  .x0 = tile->x0,
+                                  .y0 = tile->y0,
+                                  .width = plan->desc.width,
+                                  .height = plan->desc.height,
+                                  .orthographic = camera->orthographic };
+    tile->sample = k;
+    glint_plan_sample_offset(plan, k, args->offset);
+    vec_copy(args->eye, camera->eye);
+    vec_copy(args->forward, camera->forward);
+    vec_copy(args->right, camera->right);
+    vec_copy(args->up, camera->up);
+    args->across = tile->across;
+    args->down = tile->down;
+    for (int c = 0; c < 3; c++) {
+        args->origin[c] = tile->origin[c];
+        args->direction[c] = tile->direction[c];
+    }
+}
+
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame)
+{
+    frame->stages->geometry[frame->plan->desc.precision].camera(&tile->camera);
+    glint_tile_book(tile, frame, GLINT_STAGE_CAMERA, false);
+}
+
+static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint_cast_args *args)
+{
+    *args = (glint_cast_args) { .group_count = tile->group_count,
+                                .active = tile->active,
+                                .geometry = &frame->geometry,
+                                .stop = frame->cancelled,
+                                .camera = &tile->camera,
+                                .view = &tile->view,
+                                .parallel = frame->plan->camera.orthographic,
+                                .t = tile->at.t,
+                                .prim = tile->at.prim,
+                                .hits = tile->at.hits,
+                                .tests = glint_tile_tests_of(tile, frame) };
+    for (int c = 0; c < 3; c++) {
+        args->origin[c] = tile->origin[c];
+        args->direction[c] = tile->direction[c];
+    }
+}
+
+bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_cast_args args;
+    if (frame->scan)
+        return glint_tile_scan_in_sight(tile, frame);
+    if (frame->plan->camera.orthographic)
+        return true;
+    set_cast_args(tile, frame, &args);
+    return frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
+}
+
+/// Pixels that a sample of is taken.
+static uint64_t count_active(const glint_tile *tile)
+{
+    uint64_t count = 0, four;
+    uint32_t g = 0;
+    for (; g + 4 <= tile->group_count; g += 4) {
+        memcpy(&four, tile->active + g, sizeof four);
+        count += (uint64_t)__builtin_popcountll(four);
+    }
+    for (; g < tile->group_count; g++)
+        count += (uint64_t)__builtin_popcount(tile->active[g]);
+    return count;
+}
+
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
+    glint_cast_args args;
+    set_cast_args(tile, frame, &args);
+    if (frame->scan)
+        glint_tile_scan(tile, frame, &args);
+    else if (frame->plan->camera.orthographic)
+        stages->cast_rays(&args);
+    else
+        stages->cast_bundle(&args);
+    tile->counts.primary += count_active(tile);
+    glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
+}
+
+/// Whether the box of the tile's points is known from an earlier frame: of the only sample of each pixel, since others have
+/// boxes of their own, less wide than that of all.
+static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    return tile->kept && frame->plan->desc.samples == 1 &&
+           glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
+}
+
+/// The box that a call of the stage filled in, or the known one.
+static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *filled)
+{
+    if (filled)
+        glint_tile_keep_box(tile, frame, filled);
+    tile->at.box = filled ? filled : &tile->kept->box;
+}
+
+static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_surface_args args = { .group_count = tile->group_count,
+                                .hits = tile->at.hits,
+                                .prim = tile->at.prim,
+                                .only = tile->at.only,
+                                .prims = frame->geometry.prims,
+                                .mixed = frame->geometry.triangles || frame->geometry.solids,
+                                .scale = frame->geometry.scale,
+                                .solids = frame->geometry.solids,
+                                .corner_normals = frame->geometry.corner_normals,
+                                .slack = frame->geometry.triangles ? tile->slack : NULL,
+                                .camera = glint_tile_rays_of(tile),
+                                .t = tile->at.t,
+                                .material = tile->material,
+                                .back = tile->back,
+                                .dark = tile->dark,
+                                .box = has_box(tile, frame) ? NULL : &tile->box };
+    for (int c = 0; c < 3; c++) {
+        args.origin[c] = tile->origin[c];
+        args.direction[c] = tile->direction[c];
+        args.point[c] = tile->point[c];
+        args.normal[c] = tile->normal[c];
+    }
+    return args;
+}
+
+void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_surface_args args = surface_args(tile, frame);
+    frame->stages->geometry[frame->plan->desc.precision].surface(&args);
+    take_box(tile, frame, args.box);
+    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+}
+
+void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_prim *prims = frame->geometry.prims;
+    uint32_t last = GLINT_MISS, material = 0;
+    for (uint32_t g = 0; tile->at.only && g < tile->group_count; g++)
+        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+            tile->material[g * GLINT_GROUP + lane] = prims[*tile->at.only].material;
+    if (tile->at.only)
+        return;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const uint32_t prim = tile->at.prim[i];
+        if (prim != last && prim != GLINT_MISS)
+            material = prims[last = prim].material;
+        tile->material[i] = material;
+    }
+}
+
+/// Whether nobody but this frame's shading reads the highlights.
+static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, const uint32_t *slot, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (tile->at.light[slot[i]].log2_specular != glint_tile_own_light(tile, slot[i])->log2_specular)
+            return false;
+    return !frame->count_work;
+}
+
+/// Highlights that were spared may be as bright as any that shade does not see.
+static void bound_brightest(glint_tile *tile, const glint_tile_frame *frame, const glint_light_args *args,
+                            const uint32_t *slot)
+{
+    float bound = GLINT_NO_SPECULAR;
+    if (!tile->kept || !args->sparing || !args->highlights)
+        return;
+    for (uint32_t i = 0; i < tile->kept->shown_count && i < GLINT_SHOWN_MAX; i++) {
+        const glint_shade_material *material = &frame->plan->materials[tile->kept->shown[i]];
+        if (material->least > 0) // half the logarithm of `least`, rounded up
+            bound = fmaxf(bound, GLINT_EXP2_LOWEST / material->shininess - 5e-5f);
+    }
+    for (uint32_t i = 0; i < args->sample_count; i++)
+        tile->at.light[slot[i]].brightest = fmaxf(tile->at.light[slot[i]].brightest, bound);
+}
+
+glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                       const uint32_t *slot, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
+    glint_light_args args = { .group_count = tile->group_count,
+                              .hits = tile->at.sampled,
+                              .camera = glint_tile_rays_of(tile),
+                              .material = tile->material,
+                              .materials = plan->materials,
+                              .dark = tile->dark,
+                              .directional = light->directional,
+                              .scale = light->scale,
+                              .spot = light->is_spot ? &light->spot : NULL,
+                              .sample_count = count,
+                              .attenuated = light->attenuated,
+                              .highlights = plan->powers,
+                              .sparing = is_sparing(tile, frame, slot, count) };
+    vec_copy(args.position, light->position);
+    vec_copy(args.coefficients, light->coefficients);
+    for (uint32_t i = 0; i < count; i++) {
+        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lit[i] = tile->at.light[slot[i]].lit;
+        args.cosine[i] = tile->at.light[slot[i]].cosine;
+        args.attenuation[i] = tile->at.light[slot[i]].attenuation;
+        args.log2_specular[i] = tile->at.light[slot[i]].log2_specular;
+        args.brightest[i] = &tile->at.light[slot[i]].brightest;
+    }
+    for (int c = 0; c < 3; c++) {
+        args.point[c] = tile->point[c];
+        args.normal[c] = tile->normal[c];
+        args.direction[c] = tile->direction[c];
+    }
+    return args;
+}
+
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count)
+{
+    const glint_light_args args = glint_tile_light_args(tile, frame, first, slot, count);
+    frame->stages->geometry[frame->plan->desc.precision].light(&args);
+    bound_brightest(tile, frame, &args, slot);
+    glint_tile_count_light(tile, frame, count);
+    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+    tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
+}
+
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light)
+{
+    const uint32_t slot = 0;
+    const glint_surface_args surface = surface_args(tile, frame);
+    const glint_light_args args = glint_tile_light_args(tile, frame, light, &slot, 1);
+    frame->stages->geometry[frame->plan->desc.precision].lit_surface(&surface, &args);
+    bound_brightest(tile, frame, &args, &slot);
+    take_box(tile, frame, surface.box);
+    glint_tile_count_light(tile, frame, 1);
+    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+}
+
+/// What is seen of a light, times its attenuation; within its radius a radiant one is as strong as at it.
+static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->at.light[slot].open[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            double way[3], most = HUGE_VAL;
+            for (int c = 0; c < 3 && light->radiant_cap; c++)
+                way[c] = light->position[c] - glint_real_at(tile->point[c], precision, i);
+            if (light->radiant_cap && vec_dot(way, way) < light->cap->radius * light->cap->radius)
+                most = 1 / (light->cap->radius * light->cap->radius);
+            if (light->attenuated)
+                tile->at.light[slot].visible[i] *= (float)fmin(tile->at.light[slot].attenuation[i], most);
+        }
+}
+
+/// Leaves those lanes of a group from whose surface the light's middle is not behind.
+static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, const double middle[3], uint32_t g,
+                             unsigned lanes)
+{
+    uint16_t facing = 0;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        double way[3], normal[3];
+        for (int c = 0; c < 3; c++) {
+            way[c] = middle[c] - glint_real_at(tile->point[c], plan->desc.precision, i);
+            normal[c] = glint_real_at(tile->normal[c], plan->desc.precision, i);
+        }
+        if (!(vec_dot(normal, way) < 0))
+            facing |= (uint16_t)(lanes & -lanes);
+    }
+    return facing;
+}
+
+/// One ray to the middle of an area light decides for all samples of the call.
+static void occlude_middle(const glint_tile *tile, const glint_tile_frame *frame, const glint_occlude_args *samples)
+{
+    uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
+    glint_occlude_args args = *samples;
+    args.sample_count = 1;
+    args.lamp[0] = NULL;
+    args.lit[0] = lit;
+    args.open[0] = open;
+    for (uint32_t s = 0; s < samples->sample_count; s++)
+        for (uint32_t g = 0; g < args.group_count; g++)
+            lit[g] |= samples->lit[s][g];
+    for (uint32_t g = 0; g < args.group_count; g++)
+        lit[g] = facing_lanes(tile, frame->plan, samples->position, g, lit[g]);
+    frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
+    for (uint32_t s = 0; s < samples->sample_count; s++)
+        for (uint32_t g = 0; g < args.group_count; g++)
+            samples->open[s][g] = samples->lit[s][g] & open[g];
+}
+
+glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                           const uint32_t *slot, uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
+    glint_occlude_args args = { .group_count = tile->group_count,
+                                .sample_count = count,
+                                .prim = tile->owner ? tile->owner : tile->at.prim,
+                                .back = tile->back,
+                                .directional = light->directional,
+                                .scale = light->scale,
+                                .geometry = &frame->geometry,
+                                .stop = frame->cancelled,
+                                .camera = glint_tile_rays_of(tile),
+                                .slack = tile->slack,
+                                .box = tile->at.box,
+                                .rays = &tile->counts.shadow,
+                                .tests = glint_tile_tests_of(tile, frame) };
+    vec_copy(args.position, light->position);
+    for (uint32_t i = 0; i < count; i++) {
+        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.lit[i] = tile->at.light[slot[i]].lit;
+        args.open[i] = tile->at.light[slot[i]].open;
+    }
+    for (int c = 0; c < 3; c++) {
+        args.point[c] = tile->point[c];
+        args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->direction[c];
+    }
+    return args;
+}
+
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_light *light = &plan->lights[first + slot[0]];
+    glint_occlude_args args = glint_tile_occlude_args(tile, frame, first, slot, count);
+    if (light->cap) {
+        args.lamp[0] = light->cap;
+        args.visible = tile->at.light[slot[0]].visible;
+        args.overlaps = &tile->counts.work.overlaps;
+    }
+    if (light->hard)
+        occlude_middle(tile, frame, &args);
+    else
+        frame->stages->geometry[plan->desc.precision].occlude(&args);
+    if (light->cap)
+        weaken(tile, frame, light, slot[0]);
+    glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
+    tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
+}

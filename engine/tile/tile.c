@@ -1,0 +1,341 @@
+/// The walk of a tile: which stages run, in what order, and where their results go.
+#include "engine/tile/tile.h"
+
+#include <string.h>
+
+#define TIMED_TILES 17 ///< one in so many; no divisor of a picture's width in tiles that is common
+
+void glint_tile_activate(glint_tile *tile)
+{
+    memset(tile->active, 0xff, sizeof tile->active);
+    if (tile->width == GLINT_TILE_WIDTH && tile->height == GLINT_TILE_HEIGHT)
+        return;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t columns = tile->width - 4 * (g % tile->groups_across);
+        const uint32_t rows = tile->height - 4 * (g / tile->groups_across);
+        const uint32_t in_row = columns < 4 ? (1u << columns) - 1 : 15;
+        const uint32_t in_rows = rows < 4 ? (1u << 4 * rows) - 1 : 0xffff;
+        tile->active[g] = (uint16_t)(in_row * 0x1111 & in_rows);
+    }
+}
+
+static void place(glint_tile *tile, const glint_plan *plan, uint32_t column, uint32_t row)
+{
+    const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
+    tile->x0 = column * GLINT_TILE_WIDTH;
+    tile->y0 = row * GLINT_TILE_HEIGHT;
+    tile->transparent = plan->desc.alpha;
+    tile->width = width - tile->x0 < GLINT_TILE_WIDTH ? width - tile->x0 : GLINT_TILE_WIDTH;
+    tile->height = height - tile->y0 < GLINT_TILE_HEIGHT ? height - tile->y0 : GLINT_TILE_HEIGHT;
+    tile->groups_across = (tile->width + 3) / 4;
+    tile->group_count = tile->groups_across * ((tile->height + 3) / 4);
+    glint_tile_activate(tile);
+}
+
+// ---- A sample ----
+
+static bool any_hit(const glint_tile *tile)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= tile->at.hits[g];
+    return any;
+}
+
+/// Rays, hits and, as soon as somebody needs them, points: of one sample.
+typedef struct walk {
+    uint32_t sample;
+    bool rays, points; ///< made already
+    bool lit; ///< points and the only light's work are made, and no normals
+} walk;
+
+static void need_rays(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (!w->rays)
+        glint_tile_make_rays(tile, frame);
+    w->rays = true;
+}
+
+static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (w->points)
+        return;
+    need_rays(tile, frame, w);
+    glint_tile_find_surfaces(tile, frame);
+    w->points = true;
+}
+
+/// Returns whether anything is hit.
+static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    const glint_plan *plan = frame->plan;
+    const bool known = glint_tile_hit_memory(tile, frame, w->sample);
+    if (!plan->runs[GLINT_STAGE_CAST]) {
+        memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
+    } else if (known) {
+        glint_tile_book(tile, frame, GLINT_STAGE_CAST, true);
+    } else {
+        if (glint_tile_in_sight(tile, frame))
+            need_rays(tile, frame, w);
+        glint_tile_cast(tile, frame);
+    }
+    if (plan->runs[GLINT_STAGE_GLOW]) {
+        if (glint_tile_glow_in_sight(tile, frame)) {
+            need_rays(tile, frame, w);
+            glint_tile_see_lights(tile, frame, tile->active);
+        }
+        glint_tile_book(tile, frame, GLINT_STAGE_GLOW, false);
+    }
+    const bool any = any_hit(tile);
+    if (!any)
+        glint_tile_keep_box(tile, frame, NULL);
+    if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
+        if (any)
+            glint_tile_note_surfaces(tile, frame, w->sample);
+        else
+            glint_tile_note_nothing(tile, w->sample);
+    }
+    tile->at.only = tile->kept && tile->kept->only != GLINT_MISS ? &tile->kept->only : NULL;
+    if (glint_tile_wants_coverage(plan))
+        glint_tile_count_hits(tile, plan, w->sample);
+    if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
+        if (any)
+            need_points(tile, frame, w);
+        glint_tile_store_geometry(tile, frame);
+    }
+    return any;
+}
+
+/// What else a light's rows do to microfacets.
+static void find_facets(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+                        uint32_t count)
+{
+    uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
+    for (uint32_t i = slot; i < slot + count; i++) {
+        if (glint_tile_facet_memory(tile, frame, w->sample, first + i, i))
+            glint_tile_book(tile, frame, GLINT_STAGE_FACET, true);
+        else
+            unknown[left++] = i;
+    }
+    if (!left)
+        return;
+    need_points(tile, frame, w);
+    glint_tile_facet(tile, frame, first, unknown, left);
+}
+
+/// The angles that microfacets are seen at.
+static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (glint_tile_view_memory(tile, frame, w->sample)) {
+        glint_tile_book(tile, frame, GLINT_STAGE_VIEW, true);
+        return;
+    }
+    need_points(tile, frame, w);
+    glint_tile_view(tile, frame);
+}
+
+/// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
+/// nobody asks for normals. Where stages are timed, each runs by itself.
+static bool is_plain(const glint_tile_frame *frame, const walk *w)
+{
+    const glint_plan *plan = frame->plan;
+    return !w->points && !frame->time_stages && plan->light_count == 1 && !plan->lights[0].lamps &&
+           !plan->lights[0].is_spot && !frame->geometry.triangles && !frame->geometry.solids;
+}
+
+/// What one light does to this sample: `count` rows of the plan from `first + slot` on.
+static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+                       uint32_t count)
+{
+    const glint_plan_light *light = &frame->plan->lights[first + slot];
+    uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining = 0, occluding = 0;
+    for (uint32_t i = slot; i < slot + count; i++) {
+        bool light_known, occlude_known;
+        glint_tile_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
+        if (light_known)
+            glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, true);
+        else
+            shine[shining++] = i;
+        if (light->shadows && occlude_known)
+            glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, true);
+        else if (light->shadows)
+            occlude[occluding++] = i;
+    }
+    if (shining && is_plain(frame, w)) {
+        need_rays(tile, frame, w);
+        glint_tile_find_lit_surfaces(tile, frame, first);
+        w->lit = true;
+    } else {
+        if (shining || occluding)
+            need_points(tile, frame, w);
+        if (shining == count && glint_tile_sum_light(tile, frame, first, slot, count))
+            occluding = 0;
+        else if (shining)
+            glint_tile_shine(tile, frame, first, shine, shining);
+    }
+    if (occluding)
+        glint_tile_occlude(tile, frame, first, occlude, occluding);
+    if (frame->plan->runs[GLINT_STAGE_FACET])
+        find_facets(tile, frame, w, first, slot, count);
+    for (uint32_t i = slot; i < slot + count; i++)
+        if (tile->kept && first + i < frame->reuse->light_count)
+            glint_tile_note_light(tile, first + i, i, light->shadows, w->sample);
+}
+
+/// A chunk of lights; the samples of one are found together.
+static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t count)
+{
+    for (uint32_t slot = 0, next; slot < count; slot = next) {
+        for (next = slot + 1; next < count && frame->plan->lights[first + next].joined; next++)
+            continue;
+        find_light(tile, frame, w, first, slot, next - slot);
+    }
+}
+
+/// What a light gives through transparent objects.
+static void find_tint(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index, uint32_t slot)
+{
+    if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, frame->plan, slot))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_tint(tile, frame, index, slot);
+}
+
+/// What other surfaces and the background light.
+static void find_indirect(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    need_points(tile, frame, w);
+    glint_tile_indirect(tile, frame, tile, NULL);
+    glint_tile_book(tile, frame, GLINT_STAGE_INDIRECT, false);
+}
+
+/// What materials send on.
+static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (!glint_tile_sends_on(tile, frame))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_bounce(tile, frame);
+    glint_tile_book(tile, frame, GLINT_STAGE_BOUNCE, false);
+}
+
+/// The light of faces and vertices.
+static void find_sites(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (!glint_tile_has_sites(tile))
+        return;
+    need_points(tile, frame, w);
+    glint_tile_vertex(tile, frame);
+}
+
+static void find_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
+{
+    const bool seen = any || frame->plan->runs[GLINT_STAGE_GLOW];
+    if (seen)
+        need_rays(tile, frame, w);
+    glint_tile_find_cue(tile, frame->plan, seen);
+}
+
+/// One sample of every pixel: hits, then the lights, a chunk at a time.
+static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    walk w = { .sample = k };
+    tile->boxed = k ? tile->boxed : 0;
+    tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
+    glint_tile_aim(tile, frame, k);
+    const bool any = find_hits(tile, frame, &w);
+    if (frame->plan->runs[GLINT_STAGE_CUE])
+        find_cue(tile, frame, &w, any);
+    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = sites ? glint_tile_choose_sampled(tile, frame) : any;
+    const uint32_t lights = lit ? frame->plan->light_count : 0;
+    uint32_t from = 0;
+    if (lit && frame->plan->runs[GLINT_STAGE_VIEW])
+        find_view(tile, frame, &w);
+    do {
+        const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
+        find_lights(tile, frame, &w, from, count);
+        if (from == 0 && any && !w.points && !w.lit) {
+            glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
+            glint_tile_name_materials(tile, frame);
+        }
+        if (lit && frame->plan->dims) // which points are inside what absorbs
+            need_points(tile, frame, &w);
+        if (frame->plan->together)
+            glint_tile_remember_sample(tile, frame, count);
+        else
+            glint_tile_shade(tile, frame, from, count);
+        for (uint32_t i = 0; i < count && frame->plan->tints; i++)
+            find_tint(tile, frame, &w, from + i, i);
+        from += count;
+    } while (from < lights && !glint_tile_cancelled(frame));
+    if (sites)
+        find_sites(tile, frame, &w);
+    if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
+        find_indirect(tile, frame, &w);
+    if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
+        find_bounces(tile, frame, &w);
+    if (frame->plan->runs[GLINT_STAGE_CUE])
+        glint_tile_cue(tile, frame);
+}
+
+/// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
+static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    return frame->time_stages || tile->index % TIMED_TILES == 0 ? glint_tile_now_ns() : 0;
+}
+
+/// Every stage that the tile needs.
+static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_film_counts before = { .clipped = tile->counts.clipped,
+                                       .nonfinite = tile->counts.nonfinite,
+                                       .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
+    if (tile->kept) {
+        frame->image->film[tile->index] = (glint_film_stamp) { 0 };
+        glint_tile_foresee(tile, frame);
+    }
+    if (plan->runs[GLINT_STAGE_TONE])
+        glint_tile_foresee_codes(tile, frame->image);
+    for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
+        if (glint_plan_has_term(plan, (glint_term)k))
+            memset(tile->sum[k], 0, sizeof tile->sum[k]);
+    const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
+    for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
+        sample(tile, frame, k);
+        if (glint_tile_cancelled(frame))
+            return;
+    }
+    glint_tile_sign_kept(tile, frame);
+    if (plan->runs[GLINT_STAGE_CUE] && refined)
+        glint_tile_take_cued(tile, plan);
+    if (plan->together && refined)
+        glint_tile_resolve_samples(tile, frame);
+    else if (plan->accumulate && refined)
+        glint_tile_resolve(tile, frame);
+    if (frame->base)
+        glint_tile_take_base(tile, frame);
+    glint_tile_store_light(tile, frame);
+    const uint64_t rendered = clock_of(tile, frame);
+    if (plan->runs[GLINT_STAGE_TONE]) {
+        glint_tile_tone(tile, frame);
+        tile->counts.runs[GLINT_STAGE_TONE]++;
+    }
+    tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
+    glint_tile_sign_film(tile, frame, before);
+}
+
+void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)
+{
+    const glint_plan *plan = frame->plan;
+    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    tile->index = (size_t)row * across + column;
+    const uint64_t start = clock_of(tile, frame);
+    tile->clock = start;
+    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
+    place(tile, plan, column, row);
+    if (!glint_tile_is_unchanged(tile, frame))
+        run_stages(tile, frame);
+    tile->counts.tile_ns += clock_of(tile, frame) - start;
+}

@@ -1,0 +1,365 @@
+/// One tile's walk through the stages of a plan. Internal.
+#ifndef GLINT_TILE_H
+#define GLINT_TILE_H
+
+#include "engine/film/image.h"
+#include "engine/film/tone.h"
+#include "engine/plan/plan.h"
+#include "engine/reuse/reuse.h"
+#include "engine/plan/raster.h"
+#include "engine/tile/shading_points.h"
+
+/// What one worker counted in one frame.
+typedef struct glint_tile_counts {
+    uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
+    uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
+    glint_work work;
+    uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
+} glint_tile_counts;
+
+/// What all tiles of a frame share.
+typedef struct glint_tile_frame {
+    const glint_plan *plan;
+    const glint_image *base; ///< adaptive sampling: the picture of one sample a pixel; else NULL
+    const uint8_t *refined; ///< of it, a byte a pixel: whether all samples are taken
+    const glint_image *last; ///< the last picture, of the same format, or NULL
+    glint_geometry_table geometry; ///< the plan's, with its index
+    const glint_stages *stages;
+    glint_image *image;
+    const glint_tone_table *tone_table; ///< NULL: no codes
+    float gain; ///< of the exposure
+    glint_reuse *reuse;
+    const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
+    bool time_stages, count_work;
+    glint_sites_kept *sites; ///< for the stage vertex
+    const glint_scan *scan; ///< NULL: everything is cast
+} glint_tile_frame;
+
+/// One light's results for one sample of each pixel, when they are not kept.
+typedef struct glint_tile_light {
+    _Alignas(64) float cosine[GLINT_TILE_SAMPLES];
+    _Alignas(64) float attenuation[GLINT_TILE_SAMPLES];
+    _Alignas(64) float log2_specular[GLINT_TILE_SAMPLES];
+    _Alignas(64) float visible[GLINT_TILE_SAMPLES];
+    uint16_t lit[GLINT_TILE_GROUPS], open[GLINT_TILE_GROUPS];
+} glint_tile_light;
+
+/// The same of the stages view and facet.
+typedef struct glint_tile_facets {
+    _Alignas(64) float facing[GLINT_TILE_SAMPLES];
+    _Alignas(64) float sine2[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES], schlick[GLINT_LIGHT_CHUNK][GLINT_TILE_SAMPLES];
+} glint_tile_facets;
+
+/// Where the results of the current sample are: in the tile's own memory or in what is kept between frames.
+typedef struct glint_tile_sample {
+    void *t;
+    uint32_t *prim;
+    uint16_t *hits;
+    const uint32_t *only; ///< the primitive of all hits, where they have one; NULL: not known
+    const glint_point_box *box; ///< of the points, NULL: not known
+    const uint16_t *sampled; ///< of these, the lanes whose light is worked out for themselves
+    struct {
+        float *cosine, *attenuation, *log2_specular;
+        float *sine2, *schlick; ///< only in frames with microfacets, as `facing`
+        uint16_t *lit, *open;
+        float *visible; ///< of lights with caps
+        float brightest; ///< the largest log2_specular of the sample, or of all
+        bool summed; ///< of samples of an area light: their sum alone is there, in place of the first's cosine and
+            ///< log2_specular, and each has the `lit` and `open` of all
+    } light[GLINT_LIGHT_CHUNK];
+    float *facing;
+} glint_tile_sample;
+
+/// A worker's memory for one tile. Arrays of real are as long as doubles need.
+typedef struct glint_tile {
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double across[GLINT_TILE_WIDTH / 4][3][GLINT_GROUP], down[GLINT_TILE_HEIGHT / 4][3][GLINT_GROUP];
+    _Alignas(64) double t[GLINT_TILE_SAMPLES];
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double slack[GLINT_TILE_SAMPLES]; ///< see glint_surface_args
+    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
+    _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
+    glint_tile_light lights[GLINT_LIGHT_CHUNK];
+    uint32_t covered[GLINT_TILE_SAMPLES]; ///< samples so far that hit something, where the plan asks for coverage
+    bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
+    uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+    glint_camera_args camera; ///< of the current sample
+    glint_cast_view view; ///< of the frame's cameras
+    glint_point_box box; ///< what at.box points to
+    uint32_t sample; ///< which it is
+    uint32_t boxed; ///< samples so far whose points are in the kept box
+    glint_tile_sample at;
+    size_t index; ///< of the tile in the picture
+    glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
+
+    uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
+    uint32_t group_count, groups_across;
+    uint16_t own_light[GLINT_TILE_GROUPS]; ///< what at.sampled points to in frames with the stage vertex
+    const uint32_t *owner; ///< for occlude: the primitives that points are on; NULL: those that were hit
+    const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
+    struct glint_bounce *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
+    struct glint_tint *tint;
+    struct glint_samples *samples; ///< memory of tile/shade.c; likewise
+    uint32_t own_lights; ///< the first of `lights` that is the current sample's
+    const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
+    struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
+    struct glint_cue *cue; ///< of tile/depth_cue.c; NULL until a frame fades
+    struct glint_beside *beside; ///< likewise, of tile/raster.c
+    struct glint_glow *glow; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
+    struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
+    uint64_t clock; ///< end of the last timed stage, ns
+    glint_tile_counts counts;
+    glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
+} glint_tile;
+
+static inline bool glint_has_lane(const uint16_t *mask, uint32_t i)
+{
+    return mask[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
+
+/// The current sample's own memory for the light in a slot.
+static inline const glint_tile_light *glint_tile_own_light(const glint_tile *tile, uint32_t slot)
+{
+    return &tile->lights[tile->own_lights + slot];
+}
+
+static inline bool glint_tile_cancelled(const glint_tile_frame *frame)
+{
+    return atomic_load_explicit(frame->cancelled, memory_order_relaxed);
+}
+
+/// tile/memory.c: makes what this plan's stages need beside the tile. False: out of memory.
+bool glint_tile_extend(glint_tile *tile, const glint_plan *plan);
+void glint_tile_destroy(glint_tile *tile); ///< NULL: nothing
+
+/// All pixels of the tile that the image has are active.
+void glint_tile_activate(glint_tile *tile);
+
+/// Renders tile (column, row) into the frame's image, and adds to tile->counts.
+void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row);
+
+/// tile/cached.c: points the results of the light in `slot` at the tile's own memory.
+void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
+/// Points the results of sample k at kept memory where this frame keeps them or has them, else at the tile's
+/// own. Memory is asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are
+/// known.
+bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// The same of light `light` of the plan, in `slot`.
+void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
+                             bool *light_known, bool *occlude_known);
+/// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
+void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame);
+/// Notes a sample's materials, and whether there is background among it; the latter where nothing is hit; whether a light
+/// reaches any point of a sample, and the most that its highlights may be there.
+void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+void glint_tile_note_nothing(const glint_tile *tile, uint32_t k);
+void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k);
+/// Adds the points of the current sample to the box that is kept of all; NULL: it has none.
+void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box);
+/// Whether the tile's pixels are those of the last picture; then they are copied, unless they are in this one's memory
+/// from before.
+bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame);
+/// What the worker had counted before a tile.
+typedef struct glint_film_counts {
+    uint64_t clipped, nonfinite;
+    uint64_t lights; ///< calls of the stage light
+} glint_film_counts;
+/// Writes down what the tile shows now.
+void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
+
+/// tile/cached.c: asks memory for what the tile has kept and will read, of its first sample.
+void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame);
+
+/// Each calls one stage for the current sample, and books it.
+void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
+void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame);
+/// False: no ray of the tile hits anything. Not booked.
+bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame);
+/// What is not in sight needs no rays.
+void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame);
+/// The same and light number `light` of the plan, a plain one, in slot 0; without normals.
+void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *frame, uint32_t light);
+/// One light, or samples of one: light `first + slot[i]` of the plan, for each of `count` slots of the chunk.
+void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count);
+void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                        uint32_t count);
+/// The arguments of these two.
+glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                       const uint32_t *slot, uint32_t count);
+glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
+                                           const uint32_t *slot, uint32_t count);
+/// tile/soft_shadow.c: both in one, and books them, for the samples of a light in slots `slot` and on, where their sum is all that
+/// anybody reads. Returns whether it is, and marks the slots. The points are found.
+bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
+                          uint32_t count);
+/// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in.
+glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
+                                       uint32_t count, glint_shade_light *lights);
+/// Where what is asked for of the picture goes.
+void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3],
+                           float *beauty[3]);
+void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame);
+/// tile/shade.c: for plans whose samples are shaded together. Remembers what the current sample needs for that, and
+/// after the last shades and resolves all.
+struct glint_samples *glint_samples_create(void);
+void glint_samples_destroy(struct glint_samples *samples);
+void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
+void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
+/// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
+void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
+uint64_t glint_tile_now_ns(void);
+
+/// Names the material of each hit, where no surfaces were found.
+void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/work.c: when work is counted, adds what the last call of a stage took.
+/// Every hit looks at one light, or at `count` samples of it.
+void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
+/// Where kernels count what they decide; NULL: nobody asks.
+static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_frame *frame)
+{
+    return frame->count_work ? &tile->counts.work.tests : NULL;
+}
+void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+
+/// tile/bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
+struct glint_bounce *glint_bounce_create(void);
+void glint_bounce_destroy(struct glint_bounce *bounce);
+void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether any material in sight sends rays on. They have been named.
+bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/depth_cue.c: light that fades with the way from the eye.
+struct glint_cue *glint_cue_create(void);
+void glint_cue_destroy(struct glint_cue *cue);
+/// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
+void glint_tile_find_cue(glint_tile *tile, const glint_plan *plan, bool any);
+/// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
+void glint_tile_cue(glint_tile *tile, const glint_tile_frame *frame);
+/// Puts the totals where resolve reads.
+void glint_tile_take_cued(glint_tile *tile, const glint_plan *plan);
+
+/// tile/visible_lights.c: lights that are seen.
+struct glint_glow *glint_glow_create(void);
+void glint_glow_destroy(struct glint_glow *glow);
+/// Makes room for the plan's lights; false: no memory.
+bool glint_glow_fits(struct glint_glow *glow, const glint_plan *plan);
+/// Forgets what was seen. False: no ray of the tile can see a light.
+bool glint_tile_glow_in_sight(glint_tile *tile, const glint_tile_frame *frame);
+/// Of the rays in `lanes`, which are made and whose hits are known, those that see a light become misses at its distance.
+void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
+/// Whether ray i sees one; the normal of its surface there, turned to the eye.
+bool glint_tile_sees_light(const glint_tile *tile, uint32_t i);
+void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3]);
+/// Fills in the active lanes that see no light.
+const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
+/// Adds what lights look like to the sums, as background.
+void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
+bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
+/// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
+void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/indirect.c: follows ways of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
+/// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
+struct glint_batch;
+struct glint_indirect *glint_indirect_create(const glint_plan *plan);
+void glint_indirect_destroy(struct glint_indirect *indirect);
+void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const glint_tile *seen,
+                         const struct glint_batch *from);
+
+/// tile/transparent_shadow.c: light through transparent objects.
+struct glint_tint *glint_tint_create(void);
+void glint_tint_destroy(struct glint_tint *tint);
+/// Finds the points whose light goes through what absorbs from its first step on. The points are found.
+void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
+/// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
+/// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
+bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot);
+/// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely, or not
+/// whole. The points are found.
+void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
+
+/// The camera, where the rays are not in arrays.
+static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile)
+{
+    return tile->camera.orthographic ? NULL : &tile->camera;
+}
+
+/// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
+static inline const glint_lamp *glint_tile_lamp_of(const glint_tile *tile, const glint_plan_light *light)
+{
+    return light->lamps ? &light->lamps[tile->sample % light->turn_count] : NULL;
+}
+
+/// Arrays of real.
+static inline double glint_real_at(const void *array, glint_precision precision, uint32_t i)
+{
+    return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
+static inline void glint_real_put(void *array, glint_precision precision, uint32_t i, double x)
+{
+    if (precision == GLINT_FLOAT)
+        ((float *)array)[i] = (float)x;
+    else
+        ((double *)array)[i] = x;
+}
+
+/// tile/microfacets.c: for frames with microfacets. The first two point `at` to where results are or go, in sample k of each
+/// pixel, and return whether they are there already.
+bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light,
+                             uint32_t slot);
+void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
+                      uint32_t count);
+/// Lets a tile write view's and facet's results into the own memory of another, which has shaded its sample.
+void glint_tile_lend_facets(glint_tile *to, const glint_tile *from);
+/// Writes down what the kept arrays hold now.
+void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/vertex.c: flat and Gouraud shading.
+struct glint_vertex *glint_vertex_create(void);
+void glint_vertex_destroy(struct glint_vertex *vertex);
+/// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.
+bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether there are others, of triangles with sites.
+bool glint_tile_has_sites(const glint_tile *tile);
+/// Adds the light of sites to the sums of these others, whose points are found; after `shade`.
+void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/raster.c: scan conversion.
+struct glint_beside *glint_beside_create(void);
+void glint_beside_destroy(struct glint_beside *beside);
+bool glint_tile_scan_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
+/// `args`: as for a cast of everything.
+void glint_tile_scan(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
+
+/// tile/output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
+bool glint_tile_wants_geometry(const glint_plan *plan);
+/// A component of the ray of sample i.
+double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i);
+void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame);
+bool glint_tile_wants_coverage(const glint_plan *plan);
+/// Counts the hits of sample k, from 0.
+void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
+void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
+/// Asks for the memory of the tile's codes, as tone will.
+void glint_tile_foresee_codes(const glint_tile *tile, const glint_image *image);
+void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
+/// Whether two pictures of one format have the same codes, if any, in the tile's pixels.
+bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b);
+/// Takes the tile's pixels from the last picture.
+void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame);
+
+#endif

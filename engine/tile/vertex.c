@@ -1,0 +1,350 @@
+/// The stage vertex: works out the light of faces and vertices as it is asked for, and gives each sample of their
+/// triangles what it has of them.
+///
+/// A site lies on a surface and on none of its triangles: what touches it there neither shadows it nor is its own, so
+/// that neighbours never shadow a face's middle or each other's common vertex by rounding. What stands away from it
+/// does, as from any point.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+#include "engine/tile/shading_points.h"
+
+#include <float.h>
+#include <sched.h>
+#include <stdlib.h>
+
+struct glint_vertex {
+    glint_batch batch; ///< of one block
+    _Alignas(64) uint32_t nobody[GLINT_SITE_BLOCK]; ///< GLINT_MISS
+    _Alignas(64) double nowhere[GLINT_SITE_BLOCK]; ///< 0
+    uint16_t wanted[GLINT_TILE_GROUPS];
+};
+
+struct glint_vertex *glint_vertex_create(void)
+{
+    struct glint_vertex *vertex = glint_alloc(1, sizeof *vertex);
+    for (int i = 0; vertex && i < GLINT_SITE_BLOCK; i++)
+        vertex->nobody[i] = GLINT_MISS;
+    return vertex;
+}
+
+void glint_vertex_destroy(struct glint_vertex *vertex) { free(vertex); }
+
+// ---- Where a site is ----
+
+typedef struct site {
+    double point[3], normal[3]; ///< the normal is that of the front
+    double slack; ///< as surface gives it, in units of a rounding
+    uint32_t prim; ///< its place among the arranged primitives
+} site;
+
+/// Twice the area of a triangle, along its normal, in units of the table.
+static void area_of(const glint_prim *prim, double scale, double out[3])
+{
+    double f[3], g[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    vec_scale(f, f, scale);
+    vec_scale(g, g, scale);
+    vec_cross(out, f, g);
+}
+
+/// A place on the triangle; w: weights of its second and third corner.
+static void put_on(site *s, const glint_prim *prim, const double w[2])
+{
+    double f[3], g[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    for (int c = 0; c < 3; c++)
+        s->point[c] = prim->corner[0][c] + (w[0] * f[c] + w[1] * g[c]);
+    s->slack = (vec_max_abs(f) + vec_max_abs(g)) + vec_max_abs(s->point);
+}
+
+/// The triangles that one face was cut into follow each other.
+static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32_t number)
+{
+    uint32_t count = 1;
+    const glint_part *part = &geometry->parts[geometry->prim_part[first]];
+    const uint32_t end = part->first_prim + (uint32_t)part->shape->count;
+    while (first + count < end &&
+           geometry->sites[geometry->prims[geometry->places[first + count]].sites].at[0] == number)
+        count++;
+    return count;
+}
+
+/// Weights, as of put_on, of the foot of a point on a triangle, along the normal of a face. Returns the least of all three.
+static double weights_of(const glint_prim *prim, double scale, const double point[3], const double normal[3],
+                         double w[2])
+{
+    double f[3], g[3], q[3], cross[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    vec_sub(q, point, prim->corner[0]);
+    vec_scale(f, f, scale);
+    vec_scale(g, g, scale);
+    vec_scale(q, q, scale);
+    vec_cross(cross, f, g);
+    const double area = vec_dot(cross, normal);
+    vec_cross(cross, q, g);
+    w[0] = vec_dot(cross, normal) / area;
+    vec_cross(cross, f, q);
+    w[1] = vec_dot(cross, normal) / area;
+    return fmin(fmin(w[0], w[1]), 1 - w[0] - w[1]);
+}
+
+/// The middle of a polygon, on the triangle of it that has it; of one whose middle is outside, that of its largest.
+static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, uint32_t count, site *s)
+{
+    const double scale = geometry->table.scale;
+    double total = 0, largest = 0, middle[3] = { 0 }, w[2] = { 1 / 3.0, 1 / 3.0 };
+    const double *origin = geometry->prims[geometry->places[first]].corner[0];
+    uint32_t best = first;
+    vec_scale(s->normal, s->normal, 0);
+    for (uint32_t id = first; id < first + count; id++) {
+        const glint_prim *prim = &geometry->prims[geometry->places[id]];
+        double area[3];
+        area_of(prim, scale, area);
+        const double size = sqrt(vec_dot(area, area));
+        for (int c = 0; c < 3; c++) {
+            s->normal[c] += area[c];
+            middle[c] += size * (((prim->corner[0][c] - origin[c]) + (prim->corner[1][c] - origin[c])) +
+                                 (prim->corner[2][c] - origin[c]));
+        }
+        total += size;
+        best = size > largest ? id : best;
+        largest = fmax(largest, size);
+    }
+    for (int c = 0; c < 3; c++)
+        middle[c] = origin[c] + middle[c] / (3 * total);
+    if (vec_max_abs(s->normal) > 0)
+        vec_normalize(s->normal, s->normal);
+    for (uint32_t id = first; id < first + count; id++) {
+        double x[2];
+        if (!(weights_of(&geometry->prims[geometry->places[id]], scale, middle, s->normal, x) >= -0x1p-40))
+            continue;
+        best = id;
+        w[0] = x[0], w[1] = x[1];
+        break;
+    }
+    s->prim = geometry->places[best];
+    put_on(s, &geometry->prims[s->prim], w);
+}
+
+/// The corner of its triangle that a site is.
+static void find_corner(const glint_geometry *geometry, const glint_prim *prim, uint32_t number, site *s)
+{
+    static const double corners[3][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 } };
+    const uint32_t *at = geometry->sites[prim->sites].at;
+    const int j = at[0] == number ? 0 : at[1] == number ? 1 : 2;
+    const double *normal = geometry->normals[prim->item].normal[j];
+    put_on(s, prim, corners[j]);
+    vec_copy(s->point, prim->corner[j]);
+    if (vec_dot(normal, normal) > 0)
+        vec_scale(s->normal, normal, vec_dot(normal, s->normal) < 0 ? -1 : 1);
+}
+
+static void find_site(const glint_geometry *geometry, uint32_t number, site *s)
+{
+    static const double middle[2] = { 1 / 3.0, 1 / 3.0 };
+    const uint32_t first = geometry->site_prims[number];
+    s->prim = geometry->places[first];
+    const glint_prim *prim = &geometry->prims[s->prim];
+    area_of(prim, geometry->table.scale, s->normal);
+    if (vec_max_abs(s->normal) > 0)
+        vec_normalize(s->normal, s->normal);
+    if (prim->item != GLINT_MISS) {
+        find_corner(geometry, prim, number, s);
+        return;
+    }
+    const uint32_t count = face_size(geometry, first, number);
+    if (count == 1)
+        put_on(s, prim, middle);
+    else
+        find_polygon_middle(geometry, first, count, s);
+}
+
+// ---- A block ----
+
+/// From the eye to a point, unit.
+static void view_of(const glint_plan_camera *camera, const double point[3], double out[3])
+{
+    vec_sub(out, point, camera->eye);
+    if (camera->orthographic || vec_max_abs(out) == 0)
+        vec_copy(out, camera->forward);
+    else
+        vec_normalize(out, out);
+}
+
+static void put_site(glint_tile *tile, const glint_tile_frame *frame, uint32_t i, const site *s, bool back)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    const double rounding = precision == GLINT_FLOAT ? GLINT_POINT_SLACK_FLOAT : GLINT_POINT_SLACK_DOUBLE;
+    double view[3];
+    view_of(&frame->plan->camera, s->point, view);
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(tile->point[c], precision, i, s->point[c]);
+        glint_real_put(tile->normal[c], precision, i, back ? -s->normal[c] : s->normal[c]);
+        glint_real_put(tile->direction[c], precision, i, view[c]);
+    }
+    glint_real_put(tile->slack, precision, i, rounding * s->slack);
+    tile->prim[i] = s->prim;
+    tile->material[i] = frame->geometry.prims[s->prim].material;
+}
+
+/// Puts a block's sites into the arrays. The backs of one-sided surfaces have no light.
+static void load_block(struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
+{
+    glint_tile *tile = &vertex->batch.tile;
+    const uint32_t blocks = frame->sites->blocks;
+    const bool back = block >= blocks;
+    const uint32_t first = (back ? block - blocks : block) * GLINT_SITE_BLOCK;
+    const uint32_t left = frame->geometry.site_count - first;
+    tile->group_count = GLINT_SITE_BLOCK / GLINT_GROUP;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        tile->hits[g] = tile->dark[g] = 0;
+        tile->back[g] = back ? 0xffff : 0;
+    }
+    for (uint32_t i = 0; i < GLINT_SITE_BLOCK; i++) {
+        const bool there = i < left && frame->plan->geometry->site_prims[first + i] != GLINT_MISS;
+        site s = { .point = { 0 }, .normal = { 0, 0, 1 }, .prim = 0 };
+        if (there)
+            find_site(frame->plan->geometry, first + i, &s);
+        put_site(tile, frame, i, &s, back);
+        if (there && (!back || frame->geometry.prims[s.prim].two_sided))
+            tile->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        tile->active[g] = tile->hits[g];
+}
+
+static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
+{
+    const glint_tile *tile = &vertex->batch.tile;
+    glint_site_light *light = frame->sites->light + (size_t)block * GLINT_SITE_BLOCK;
+    for (uint32_t i = 0; i < GLINT_SITE_BLOCK; i++)
+        for (int term = 0; term < 2; term++)
+            for (int c = 0; c < 3; c++)
+                light[i].term[term][c] = (float)fmin(tile->sum[GLINT_TERM_DIFFUSE + term][c][i], FLT_MAX);
+}
+
+static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t block)
+{
+    struct glint_vertex *vertex = to->vertex;
+    glint_tile *tile = &vertex->batch.tile;
+    glint_batch_begin(&vertex->batch, to, frame);
+    tile->sample = 0;
+    tile->owner = vertex->nobody;
+    for (int c = 0; c < 3; c++)
+        tile->viewed[c] = vertex->nowhere;
+    load_block(vertex, frame, block);
+    glint_batch_shine(&vertex->batch, frame, true);
+    glint_batch_end(&vertex->batch, to);
+    keep_block(vertex, frame, block);
+    for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
+        to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hits[g]);
+    to->counts.runs[GLINT_STAGE_VERTEX]++;
+}
+
+// ---- A tile ----
+
+/// The light of a tile's site is worked out by this worker, unless another has begun to.
+static void ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+{
+    unsigned char none = GLINT_BLOCK_NONE;
+    atomic_uchar *state = &frame->sites->state[block];
+    if (atomic_load_explicit(state, memory_order_acquire) != GLINT_BLOCK_NONE ||
+        !atomic_compare_exchange_strong(state, &none, GLINT_BLOCK_CLAIMED))
+        return;
+    work_out(tile, frame, block);
+    atomic_store_explicit(state, GLINT_BLOCK_DONE, memory_order_release);
+}
+
+static void wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
+{
+    (void)tile;
+    while (atomic_load_explicit(&frame->sites->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
+        sched_yield();
+}
+
+/// Does something with the block of each site that the wanted samples have.
+static void each_block(glint_tile *tile, const glint_tile_frame *frame,
+                       void (*act)(glint_tile *, const glint_tile_frame *, uint32_t))
+{
+    uint32_t last = GLINT_MISS, last_side = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->vertex->wanted[g]; left; left &= left - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(left), prim = tile->at.prim[g * GLINT_GROUP + lane];
+            const uint32_t side = tile->back[g] >> lane & 1;
+            if (prim == last && side == last_side)
+                continue;
+            const uint32_t *at = frame->geometry.sites[frame->geometry.prims[prim].sites].at;
+            for (int j = 0; j < 3; j++)
+                act(tile, frame, side * frame->sites->blocks + at[j] / GLINT_SITE_BLOCK);
+            last = prim;
+            last_side = side;
+        }
+}
+
+static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
+
+bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
+{
+    uint32_t last = GLINT_MISS;
+    unsigned any = 0;
+    bool sites = false;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        tile->own_light[g] = 0;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t prim = tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
+            if (prim != last)
+                sites = has_sites(&frame->geometry.prims[prim]);
+            last = prim;
+            tile->own_light[g] |= sites ? 0 : (uint16_t)(left & -left);
+        }
+        any |= tile->own_light[g];
+    }
+    tile->at.sampled = tile->own_light;
+    return any;
+}
+
+bool glint_tile_has_sites(const glint_tile *tile)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= tile->at.hits[g] & ~(unsigned)tile->own_light[g];
+    return any;
+}
+
+/// What the sites of each sample's triangle give to it.
+static void spread(glint_tile *tile, const glint_tile_frame *frame)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_sites_kept *sites = frame->sites;
+    glint_vertex_args args = { .group_count = tile->group_count,
+                               .wanted = tile->vertex->wanted,
+                               .back = tile->back,
+                               .prim = tile->at.prim,
+                               .prims = frame->geometry.prims,
+                               .scale = frame->geometry.scale,
+                               .sites = frame->geometry.sites,
+                               .light = { sites->light, sites->light + (size_t)sites->blocks * GLINT_SITE_BLOCK },
+                               .camera = glint_tile_rays_of(tile) };
+    for (int c = 0; c < 3; c++) {
+        args.origin[c] = tile->origin[c];
+        args.direction[c] = tile->direction[c];
+        for (int term = 0; term < (plan->highlights ? 2 : 1); term++)
+            args.sum[term][c] = tile->sum[GLINT_TERM_DIFFUSE + term][c];
+    }
+    frame->stages->geometry[plan->desc.precision].vertex(&args);
+}
+
+void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->dark[g]));
+    each_block(tile, frame, ask_for);
+    each_block(tile, frame, wait_for);
+    spread(tile, frame);
+    glint_tile_book(tile, frame, GLINT_STAGE_VERTEX, false);
+    tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
+}

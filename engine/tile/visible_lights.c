@@ -1,0 +1,264 @@
+/// Lights that are seen: which rays meet one before any surface. What such a ray sees is the light's surface: it is a miss
+/// to all that follows but `shade`, where the light takes the background's place.
+///
+/// All of it is double, and the same code for every instruction set: few pixels see a light.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/tile/tile.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// Of the lengths it came from, what rounding may have moved a point off a plane by: by the precision of the hits.
+static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
+
+struct glint_glow {
+    uint32_t *near; ///< the lights that the rays at hand may see
+    uint32_t near_count;
+    uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light
+    uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
+};
+
+struct glint_glow *glint_glow_create(void) { return glint_alloc(1, sizeof(struct glint_glow)); }
+
+void glint_glow_destroy(struct glint_glow *glow)
+{
+    if (glow)
+        free(glow->near);
+    free(glow);
+}
+
+bool glint_glow_fits(struct glint_glow *glow, const glint_plan *plan)
+{
+    uint32_t *near = glow ? realloc(glow->near, plan->glow_count * sizeof *near) : NULL;
+    if (near)
+        glow->near = near;
+    return near;
+}
+
+// ---- One ray and one light ----
+
+typedef struct glow_ray {
+    double origin[3], direction[3];
+    double slack; ///< of the frame's precision
+} glow_ray;
+
+/// Where a ray meets the ball first, or leaves it where it begins inside; 0: nowhere. The formula is that of cast.
+static double meet_ball(const glint_plan_glow *glow, const glow_ray *ray)
+{
+    double f[3], x[3];
+    const double scale = power_of_two_scale(glow->radius), r = glow->radius * scale, r2 = r * r;
+    vec_sub(f, ray->origin, glow->center);
+    vec_scale(f, f, scale);
+    const double length = sqrt(vec_dot(f, f)), c = (length - r) * (length + r);
+    const double a = vec_dot(ray->direction, ray->direction), b = -vec_dot(f, ray->direction);
+    vec_cross(x, f, ray->direction);
+    const double disc = b * b < a * r2 ? b * b - a * c : a * r2 - vec_dot(x, x);
+    if (!(disc >= 0) || (c > 0 && !(b > 0)))
+        return 0;
+    const double q = b >= 0 ? b + sqrt(disc) : b - sqrt(disc);
+    return (c <= 0 && b >= 0 ? q / a : c / q) / scale;
+}
+
+/// The height of a point over the light's plane; 0 where rounding does not let us know its side.
+static double height_over(const glint_plan_glow *glow, const double point[3], double lengths, double slack)
+{
+    double away[3];
+    vec_sub(away, point, glow->center);
+    const double height = vec_dot(glow->normal, away);
+    return fabs(height) <= slack * (lengths + vec_max_abs(point) + vec_max_abs(glow->center)) ? 0 : height;
+}
+
+static bool within(const glint_plan_glow *glow, const double p[3])
+{
+    double away[3];
+    for (size_t i = 0; i < glow->edge_count; i++) {
+        vec_sub(away, p, glow->edges[i].corner);
+        if (!(vec_dot(glow->edges[i].inwards, away) >= 0))
+            return false;
+    }
+    vec_sub(away, p, glow->center);
+    return glow->edge_count > 0 || vec_dot(away, away) <= glow->radius * glow->radius;
+}
+
+/// Where a ray meets a disk or polygon from a side that shines; 0: nowhere. In its plane a ray meets it nowhere.
+static double meet_flat(const glint_plan_glow *glow, const glow_ray *ray)
+{
+    double p[3];
+    const double along = vec_dot(glow->normal, ray->direction);
+    const double height = height_over(glow, ray->origin, 0, ray->slack);
+    const double t = -height / along;
+    if (!(t > 0 && t < HUGE_VAL) || (glow->one_sided && along > 0))
+        return 0;
+    for (int c = 0; c < 3; c++)
+        p[c] = ray->origin[c] + t * ray->direction[c];
+    return within(glow, p) ? t : 0;
+}
+
+/// Whether a surface at `t` lies in the light's plane, as far as rounding lets us know.
+static bool lies_in(const glint_plan_glow *glow, const glow_ray *ray, double t)
+{
+    double p[3], way[3];
+    if (glow->ball || !(t < HUGE_VAL))
+        return false;
+    vec_scale(way, ray->direction, t);
+    for (int c = 0; c < 3; c++)
+        p[c] = ray->origin[c] + way[c];
+    return height_over(glow, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
+}
+
+/// The light that a ray sees before `*t`, where its surface is; GLINT_MISS: none. Equally far, the one defined first.
+static uint32_t see(const struct glint_glow *glow, const glint_plan *plan, const glow_ray *ray, double *t)
+{
+    const double surface = *t;
+    uint32_t best = GLINT_MISS;
+    for (uint32_t i = 0; i < glow->near_count; i++) {
+        const glint_plan_glow *light = &plan->glows[glow->near[i]];
+        const double at = light->ball ? meet_ball(light, ray) : meet_flat(light, ray);
+        const double bound = best == GLINT_MISS && at >= surface && lies_in(light, ray, surface) ? HUGE_VAL : *t;
+        if (!(at > 0 && at < bound))
+            continue;
+        *t = at;
+        best = glow->near[i];
+    }
+    return best;
+}
+
+// ---- Those of a tile ----
+
+/// Whether a ball is outside of the side of a pyramid of rays from the eye that two of its edges span.
+static bool beyond_side(const double a[3], const double b[3], const double middle[3], const double away[3],
+                        double radius)
+{
+    double n[3];
+    vec_cross(n, a, b);
+    if (vec_dot(n, middle) > 0)
+        vec_scale(n, n, -1);
+    return vec_dot(n, away) > sqrt(vec_dot(n, n)) * (radius * (1 + 1e-9) + 1e-9 * vec_max_abs(away));
+}
+
+/// Notes the lights that a tile of a perspective camera may show.
+static void find_near(struct glint_glow *glow, const glint_tile *tile, const glint_plan *plan)
+{
+    const glint_camera_args *camera = &tile->camera;
+    double corner[4][3], middle[3] = { 0 };
+    for (int k = 0; k < 4; k++)
+        for (int c = 0; c < 3; c++) {
+            const double px = camera->x0 + (k == 1 || k == 2 ? tile->width : 0);
+            const double py = camera->y0 + (k >= 2 ? tile->height : 0);
+            corner[k][c] = (camera->forward[c] + (2 * px - camera->width) * camera->right[c]) +
+                           (camera->height - 2 * py) * camera->up[c];
+            middle[c] += corner[k][c];
+        }
+    glow->near_count = 0;
+    for (uint32_t i = 0; i < plan->glow_count; i++) {
+        const glint_plan_glow *light = &plan->glows[i];
+        double away[3];
+        bool outside = false;
+        vec_sub(away, light->center, camera->eye);
+        for (int k = 0; k < 4 && !outside; k++)
+            outside = beyond_side(corner[k], corner[(k + 1) & 3], middle, away, light->radius);
+        if (!outside)
+            glow->near[glow->near_count++] = i;
+    }
+}
+
+bool glint_tile_glow_in_sight(glint_tile *tile, const glint_tile_frame *frame)
+{
+    struct glint_glow *glow = tile->glow;
+    memset(glow->seen, 0, sizeof glow->seen);
+    if (!glint_tile_rays_of(tile)) {
+        glow->near_count = frame->plan->glow_count;
+        for (uint32_t i = 0; i < glow->near_count; i++)
+            glow->near[i] = i;
+    } else {
+        find_near(glow, tile, frame->plan);
+    }
+    return glow->near_count > 0;
+}
+
+/// The sample's hits become the tile's own, where they are kept between frames.
+static void own_hits(glint_tile *tile, glint_precision precision)
+{
+    const size_t count = tile->group_count * GLINT_GROUP;
+    if (tile->at.hits == tile->hits)
+        return;
+    memcpy(tile->t, tile->at.t, count * (precision == GLINT_FLOAT ? sizeof(float) : sizeof(double)));
+    memcpy(tile->prim, tile->at.prim, count * sizeof *tile->prim);
+    memcpy(tile->hits, tile->at.hits, tile->group_count * sizeof *tile->hits);
+    tile->at.t = tile->t;
+    tile->at.prim = tile->prim;
+    tile->at.hits = tile->hits;
+    tile->at.sampled = tile->hits;
+}
+
+static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
+    uint16_t *hits = &tile->at.hits[i / GLINT_GROUP];
+    glow_ray ray = { .slack = plane_slack[precision] };
+    for (int c = 0; c < 3; c++) {
+        ray.origin[c] = glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->origin[c], precision, i);
+        ray.direction[c] = glint_tile_direction(tile, precision, c, i);
+    }
+    double t = *hits & bit ? glint_real_at(tile->at.t, precision, i) : HUGE_VAL;
+    const uint32_t which = see(tile->glow, frame->plan, &ray, &t);
+    if (which == GLINT_MISS)
+        return;
+    tile->glow->seen[i / GLINT_GROUP] |= bit;
+    tile->glow->which[i] = which;
+    tile->counts.work.lights_seen += frame->count_work;
+    *hits = (uint16_t)(*hits & ~bit);
+    tile->at.prim[i] = GLINT_MISS;
+    glint_real_put(tile->at.t, precision, i, t);
+}
+
+void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes)
+{
+    own_hits(tile, frame->plan->desc.precision);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = lanes[g]; left; left &= left - 1)
+            see_lane(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+}
+
+// ---- What they look like ----
+
+bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
+{
+    return tile->glow && tile->glow->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+}
+
+void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3])
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    const glint_plan_glow *light = &frame->plan->glows[tile->glow->which[i]];
+    double d[3];
+    for (int c = 0; c < 3; c++) {
+        const double from =
+            glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->origin[c], precision, i);
+        d[c] = glint_tile_direction(tile, precision, c, i);
+        normal[c] =
+            light->ball ? from + glint_real_at(tile->at.t, precision, i) * d[c] - light->center[c] : light->normal[c];
+    }
+    vec_normalize(normal, normal);
+    if (vec_dot(normal, d) > 0)
+        vec_scale(normal, normal, -1);
+}
+
+const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS])
+{
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        lanes[g] = (uint16_t)(tile->active[g] & ~tile->glow->seen[g]);
+    return lanes;
+}
+
+void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame)
+{
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = tile->glow->seen[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            for (int c = 0; c < 3; c++)
+                tile->sum[GLINT_TERM_BACKGROUND][c][i] += frame->plan->glows[tile->glow->which[i]].shown[c];
+        }
+}

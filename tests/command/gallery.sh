@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# gallery.sh [check|update]: the pictures of scripts/README.md, a page with one for every script. They are what the scripts
+# render now, pixel for pixel, each script has one, and the page names each. `update` (make gallery) writes those that differ.
+set -u
+build=${BUILD:-build}
+glint=${GLINT:-$build/glint}
+out=$build/tests/gallery page=scripts/README.md
+mode=${1:-check}
+bad=0
+
+say() { # STATUS NAME
+    echo "$1 - $2"
+    [ "$1" = ok ] || bad=1
+}
+
+# picture NAME OPTION...: scripts/NAME.lua; of several frames, --frames chooses one.
+picture() {
+    local name=$1 kept=scripts/pictures/$1.png made
+    shift
+    rm -f "$out/$name"*.png
+    "$glint" "scripts/$name.lua" --size 320x200 "$@" --encode small --quiet --force -o "$out/$name.png" || {
+        say "not ok" "$name: no picture"
+        return
+    }
+    made=$(ls "$out/$name.png" "$out/$name"_[0-9]*[0-9].png 2>/dev/null | head -n 1)
+    if "$glint" compare "$kept" "$made" --fail 0 --warn 0 >/dev/null 2>&1; then
+        say ok "$name is current"
+    elif [ "$mode" = update ]; then
+        cp "$made" "$kept"
+        echo "$kept: written"
+    else
+        say "not ok" "$name: $kept is not what the script renders; make gallery writes it anew"
+    fi
+}
+
+mkdir -p "$out"
+picture adaptive --frames 3
+picture caps --frames 6
+picture furnace
+picture gr_scene --dialect gr
+picture indirect --set samples=32 --frames 3 --samples 4
+picture lamps
+picture lampshade
+picture lobes --size 400x160
+picture mesh_and_sphere --size 400x200
+picture mirror_and_glass --size 320x180 --samples 9
+picture molecule --set style=sticks
+picture moving_light --frames 31 --samples 4
+"$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet
+picture nff --set file="$out/flake.nff"
+picture particle_box --samples 9
+picture phong_and_blinn --frames 4 --samples 4
+picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb
+picture protein --size 320x180
+picture roughness --size 400x160
+picture shading --size 400x200 --frames 5
+picture shininess_sweep --frames 5 --samples 4
+picture soft_shadows --frames 11 --samples 4
+picture sphereflake --samples 4
+picture spotlights --size 320x180
+picture workshop --samples 9
+
+for script in scripts/*.lua; do
+    name=$(basename "$script" .lua)
+    if [ -e "scripts/pictures/$name.png" ] && grep -q "(pictures/$name.png)" "$page" && grep -q "($name.lua)" "$page"; then
+        say ok "$name is on the page"
+    else
+        say "not ok" "$name is not on the page: $page and tests/command/gallery.sh list every script"
+    fi
+done
+while read -r file; do
+    if [ -e "scripts/$file" ]; then say ok "$file is there"; else say "not ok" "$page: $file is not there"; fi
+done < <(grep -o '([A-Za-z_./]*)' "$page" | tr -d '()' | sort -u)
+exit $bad

@@ -1,0 +1,227 @@
+/// Rays for the tests of the stages, as a frame has them: a camera's tile, parallel rays, rays of their own; and scenes
+/// in which these rays pass close by everything.
+#ifndef GLINT_STAGE_RAYS_H
+#define GLINT_STAGE_RAYS_H
+
+#include "tests/engine/stage_scene.h"
+
+typedef enum ray_kind {
+    RAYS_OF_EYE, ///< cast_bundle
+    RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
+    RAYS_PARALLEL, ///< likewise, another direction for each group
+    RAYS_FREE, ///< cast_rays
+    RAY_KINDS
+} ray_kind;
+
+/// A case of cast: arrays are inputs of stage_case.h.
+typedef struct ray_case {
+    ray_kind kind;
+    int precision;
+    scene_plan plan;
+    test_scene *scene;
+    glint_camera_args camera;
+    glint_cast_args cast;
+    const void *origin[3], *direction[3]; ///< of rays that are in arrays
+} ray_case;
+
+// ---- Cameras -----------------------------------------------------------------------------------------------------
+
+/// Where the tile is in the image, and how much of it there is. Returns the height of the image.
+static inline double random_tile(glint_camera_args *camera)
+{
+    const uint32_t most = one_in(3) ? 20000 : 300, width = 1 + below(most), height = 1 + below(most);
+    camera->width = width;
+    camera->height = height;
+    camera->x0 = GLINT_TILE_WIDTH * below((width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH);
+    camera->y0 = GLINT_TILE_HEIGHT * below((height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT);
+    camera->groups_across = GLINT_TILE_WIDTH / 4;
+    uint32_t down = GLINT_TILE_HEIGHT / 4;
+    if (one_in(3)) {
+        camera->groups_across = 1 + below(GLINT_TILE_WIDTH / 4);
+        down = 1 + below(GLINT_TILE_HEIGHT / 4);
+    }
+    camera->group_count = camera->groups_across * down;
+    for (int c = 0; c < 2; c++)
+        camera->offset[c] = one_in(2) ? 0.5 : one_in(4) ? below(2) : between(0, 1);
+    return height;
+}
+
+/// A camera that looks at the middle of the scene from within, from nearby or from up to 1e7 sizes away. Returns the
+/// distance to the middle.
+static inline double random_camera(const scene_plan *plan, bool orthographic, glint_camera_args *camera)
+{
+    *camera = (glint_camera_args) { .orthographic = orthographic };
+    const double height = random_tile(camera), size = plan->size;
+    const double distance = size * (one_in(4) ? power_of_ten(4, 7) : one_in(5) ? between(0, 1) : between(1, 10));
+    const double seen = size * (one_in(4) ? power_of_ten(-4, 0) : between(0.3, 3)); // from the axis up to the edge
+    random_unit(camera->forward);
+    random_across(camera->forward, camera->right);
+    if (one_in(3)) { // upright: what touches a box touches the border of a group
+        const uint32_t axis = below(3);
+        memset(camera->forward, 0, sizeof camera->forward);
+        memset(camera->right, 0, sizeof camera->right);
+        camera->forward[axis] = either_sign(1);
+        camera->right[(axis + 1) % 3] = either_sign(1);
+    }
+    cross3(camera->right, camera->forward, camera->up);
+    along3(plan->middle, -distance, camera->forward, camera->eye);
+    const double edge = orthographic ? seen : one_in(10) ? power_of_ten(0, 1.5) : fmin(seen / distance, 30);
+    for (int c = 0; c < 3; c++) {
+        camera->right[c] *= edge / height;
+        camera->up[c] *= edge / height;
+    }
+    return distance;
+}
+
+/// Pixels of the tile that are in the image; now and then any.
+static inline uint16_t *active_pixels(const glint_camera_args *camera)
+{
+    uint16_t *active = masks(camera->group_count);
+    if (one_in(4))
+        return active;
+    for (uint32_t i = 0; i < camera->group_count * GLINT_GROUP; i++) {
+        const uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP, bit = 1u << lane;
+        const double x = camera->x0 + 4 * (group % camera->groups_across) + lane % 4;
+        const double y = camera->y0 + 4 * (group / camera->groups_across) + lane / 4;
+        active[group] =
+            (uint16_t)(x < camera->width && y < camera->height ? active[group] | bit : active[group] & ~bit);
+    }
+    return active;
+}
+
+static inline void make_axes(glint_camera_args *camera, int precision)
+{
+    camera->across = input(real_kind(precision), 3 * GLINT_GROUP * camera->groups_across);
+    camera->down = input(real_kind(precision), 3 * GLINT_GROUP * (camera->group_count / camera->groups_across));
+}
+
+/// Makes the camera's rays, anew after a change of it.
+static inline void shoot_camera(ray_case *c)
+{
+    glint_camera_args args = c->camera;
+    memcpy(args.origin, c->origin, sizeof args.origin);
+    memcpy(args.direction, c->direction, sizeof args.direction);
+    glint_stages_ref.geometry[c->precision].camera(&args);
+}
+
+// ---- Rays --------------------------------------------------------------------------------------------------------
+
+static inline void get3(const void *const array[3], int precision, uint32_t i, double v[3])
+{
+    for (int c = 0; c < 3; c++)
+        v[c] = get(array[c], precision, i);
+}
+
+static inline void get_ray(const ray_case *c, uint32_t i, double origin[3], double direction[3])
+{
+    if (c->kind != RAYS_OF_EYE) {
+        get3(c->origin, c->precision, i, origin);
+        get3(c->direction, c->precision, i, direction);
+        return;
+    }
+    const uint32_t lane = i % GLINT_GROUP, group = i / GLINT_GROUP, across = c->camera.groups_across;
+    for (uint32_t k = 0; k < 3; k++) {
+        direction[k] = get(c->camera.across, c->precision, (3 * (group % across) + k) * GLINT_GROUP + lane) +
+                       get(c->camera.down, c->precision, (3 * (group / across) + k) * GLINT_GROUP + lane);
+        direction[k] = c->precision == GLINT_FLOAT ? (float)direction[k] : direction[k];
+        origin[k] = c->precision == GLINT_FLOAT ? (float)c->camera.eye[k] : c->camera.eye[k];
+    }
+}
+
+/// Rays from around one place, or from everywhere, most of them towards the scene.
+static inline void shoot_free(ray_case *c)
+{
+    const scene_plan *plan = &c->plan;
+    double source[3], direction[3], origin[3], target[3];
+    const double distance = plan->size * power_of_ten(-2, one_in(4) ? 7 : 1);
+    const double jitter = one_in(3) ? 0 : plan->size * power_of_ten(-16, 1);
+    random_unit(direction);
+    along3(plan->middle, -distance, direction, source);
+    for (uint32_t i = 0; i < c->cast.group_count * GLINT_GROUP; i++) {
+        for (int k = 0; k < 3; k++) {
+            origin[k] = source[k] + jitter * between(-1, 1);
+            target[k] = plan->middle[k] + plan->size * between(-1, 1);
+        }
+        const bool same = c->kind == RAYS_PARALLEL && i % GLINT_GROUP;
+        if (!same) {
+            const double length = power_of_ten(-1, 1) / (distance + plan->size);
+            random_unit(direction);
+            for (int k = 0; k < 3 && !one_in(5); k++)
+                direction[k] = (target[k] - origin[k]) * length;
+            if (one_in(6)) // along an axis or two
+                direction[below(3)] = direction[below(3)] = either_sign(0);
+            if (!(length3(direction) > 0))
+                random_unit(direction);
+        }
+        put3(c->origin, c->precision, i, origin);
+        put3(c->direction, c->precision, i, direction);
+    }
+}
+
+/// Some of the case's rays become lines that the scene is built around; half of them at the border of the tile.
+static inline void choose_lines(ray_case *c, double length)
+{
+    const uint32_t across = c->camera.groups_across, down = c->cast.group_count / across;
+    for (uint32_t k = 0; k < 64; k++) {
+        uint32_t i = below(c->cast.group_count * GLINT_GROUP);
+        double origin[3], direction[3];
+        if (one_in(2)) { // the first or last column or row
+            uint32_t x = below(4 * across), y = below(4 * down);
+            if (one_in(2))
+                x = one_in(2) ? 0 : 4 * across - 1;
+            else
+                y = one_in(2) ? 0 : 4 * down - 1;
+            i = (y / 4 * across + x / 4) * GLINT_GROUP + y % 4 * 4 + x % 4;
+        }
+        get_ray(c, i, origin, direction);
+        const double size = length3(direction);
+        if (size > 0 && isfinite(size) && isfinite(length3(origin)))
+            add_line(&c->plan, origin, direction, length);
+    }
+    if (c->plan.line_count == 0)
+        add_line(&c->plan, c->plan.middle, (const double[3]) { 0, 0, 1 }, c->plan.size);
+}
+
+/// Rays of one kind, and a scene around them. Ends with end_rays.
+static inline void start_rays(ray_case *c, ray_kind kind, int precision)
+{
+    memset(c, 0, sizeof *c);
+    c->kind = kind;
+    c->precision = precision;
+    random_place(&c->plan, true);
+    double length = random_camera(&c->plan, kind == RAYS_OF_ORTHOGRAPHIC_CAMERA, &c->camera);
+    const uint32_t n = c->camera.group_count * GLINT_GROUP;
+    c->cast = (glint_cast_args) { .group_count = c->camera.group_count, .parallel = kind != RAYS_FREE };
+    c->cast.active = active_pixels(&c->camera);
+    if (kind == RAYS_OF_EYE) {
+        make_axes(&c->camera, precision);
+    } else {
+        input3(c->origin, real_kind(precision), n);
+        input3(c->direction, real_kind(precision), n);
+    }
+    if (kind == RAYS_PARALLEL || kind == RAYS_FREE) {
+        shoot_free(c);
+        length = c->plan.size;
+    } else {
+        shoot_camera(c);
+    }
+    choose_lines(c, length);
+    c->scene = random_scene(&c->plan);
+    c->cast.geometry = &c->scene->table;
+    c->cast.camera = &c->camera;
+    memcpy(c->cast.origin, c->origin, sizeof c->cast.origin);
+    memcpy(c->cast.direction, c->direction, sizeof c->cast.direction);
+}
+
+static inline void end_rays(ray_case *c) { free_scene(c->scene); }
+
+/// Casts on one instruction set.
+static inline void cast_on(const glint_stages *stages, const ray_case *c, const glint_cast_args *args)
+{
+    if (c->kind == RAYS_OF_EYE)
+        stages->geometry[c->precision].cast_bundle(args);
+    else
+        stages->geometry[c->precision].cast_rays(args);
+}
+
+#endif

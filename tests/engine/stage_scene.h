@@ -1,0 +1,420 @@
+/// Scenes for the tests of the stages that look at geometry: primitives placed where it is hard to tell whether a ray
+/// meets them, and the tables that stages.h promises the kernels, made from its words alone. The index is the engine's
+/// tree over boxes that are made here.
+#ifndef GLINT_STAGE_SCENE_H
+#define GLINT_STAGE_SCENE_H
+
+#include "engine/geometry/bvh.h"
+#include "tests/engine/stage_case.h"
+
+enum { MOST_PRIMS = 3000, MOST_LINES = 256 };
+
+/// A ray, or the way from a point to a light, around which primitives are placed.
+typedef struct test_line {
+    double origin[3];
+    double direction[3]; ///< unit
+    double length; ///< how far away it matters; of a segment, all of it
+} test_line;
+
+/// What a random scene is like.
+typedef struct scene_plan {
+    double middle[3], size; ///< where primitives are that no line attracts
+    double spread; ///< radii are smaller than `size` by up to so many powers of ten
+    bool triangles, solids; ///< some are
+    uint32_t line_count;
+    test_line lines[MOST_LINES];
+} scene_plan;
+
+typedef struct test_scene {
+    glint_geometry_table table;
+    glint_bvh bvh;
+    glint_prim prims[MOST_PRIMS];
+    glint_solid solids[MOST_PRIMS];
+    uint32_t unbounded[MOST_PRIMS];
+} test_scene;
+
+// ---- Primitives --------------------------------------------------------------------------------------------------
+
+static inline void set_sphere(glint_prim *prim, const double center[3], double radius)
+{
+    *prim = (glint_prim) { .kind = GLINT_PRIM_SPHERE, .radius = radius, .scale = ldexp(1, -ilogb(radius)) };
+    memcpy(prim->center, center, sizeof prim->center);
+    double r = radius * prim->scale;
+    prim->r2 = r * r;
+    prim->r2_low = fma(r, r, -prim->r2);
+}
+
+static inline void set_plane(glint_prim *prim, const double point[3], const double normal[3])
+{
+    *prim = (glint_prim) { .kind = GLINT_PRIM_PLANE };
+    memcpy(prim->center, point, sizeof prim->center);
+    memcpy(prim->normal, normal, sizeof prim->normal);
+}
+
+/// 0, or anything down to the last digit of 1.
+static inline double slight(void) { return one_in(5) ? 0 : either_sign(power_of_ten(-16, -1)); }
+
+/// A sphere whose outline the line passes within 1e-1 .. 1e-16 of its radius.
+static inline void set_grazing(glint_prim *prim, const test_line *line, double radius)
+{
+    double center[3], across[3];
+    double distance = one_in(2) ? line->length * between(-0.2, 1.3) : line->length + radius * between(-2, 2);
+    random_across(line->direction, across);
+    along3(line->origin, distance, line->direction, center);
+    if (one_in(4)) { // to the side, along an axis
+        memset(across, 0, sizeof across);
+        across[below(3)] = either_sign(1);
+    }
+    along3(center, radius * (1 + slight()), across, center);
+    set_sphere(prim, center, radius);
+}
+
+/// A sphere with the place `distance` along the line on its surface, or nearly.
+static inline void set_touching(glint_prim *prim, const test_line *line, double distance, double radius)
+{
+    double place[3], center[3], outwards[3];
+    along3(line->origin, distance, line->direction, place);
+    random_unit(outwards);
+    if (one_in(4)) { // exactly, along an axis
+        memset(outwards, 0, sizeof outwards);
+        outwards[below(3)] = either_sign(1);
+    }
+    along3(place, -radius * (1 + (one_in(2) ? 0 : slight())), outwards, center);
+    set_sphere(prim, center, radius);
+}
+
+/// A plane through some place of the line or of the scene; one in a few holds the line.
+static inline void set_random_plane(glint_prim *prim, const scene_plan *plan, const test_line *line)
+{
+    double point[3], normal[3];
+    for (int c = 0; c < 3; c++)
+        point[c] = plan->middle[c] + plan->size * between(-1, 1);
+    random_unit(normal);
+    if (one_in(3)) {
+        memset(normal, 0, sizeof normal);
+        normal[below(3)] = either_sign(1);
+    }
+    const uint32_t where = below(6);
+    if (where < 2)
+        along3(line->origin, where ? line->length : 0, line->direction, point);
+    if (where == 2)
+        random_across(line->direction, normal);
+    set_plane(prim, point, normal);
+}
+
+/// Three corners around a place on the line or anywhere; some share an edge with the triangle before, or lie in its plane, or
+/// have the line in theirs.
+static inline void set_random_triangle(glint_prim *prim, const glint_prim *last, const test_line *line,
+                                       const double center[3], double size)
+{
+    const bool joined = last && last->kind == GLINT_PRIM_TRIANGLE && one_in(3), near = one_in(2);
+    double away[3], place[3];
+    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .sites = GLINT_MISS };
+    along3(line->origin, line->length * between(-0.2, 1.2), line->direction, place);
+    for (int j = 0; j < 3; j++) {
+        random_unit(away);
+        along3(near ? place : center, size * between(0.1, 2), away, out.corner[j]);
+        if (joined && j < 2)
+            memcpy(out.corner[j], last->corner[1 - j], sizeof out.corner[j]);
+    }
+    if (joined && one_in(2))
+        for (int k = 0; k < 3; k++)
+            out.corner[2][k] = last->corner[0][k] + (last->corner[1][k] - last->corner[2][k]);
+    else if (one_in(6))
+        along3(out.corner[0], size, line->direction, out.corner[1]);
+    *prim = out;
+}
+
+/// An affine image of any unit shape: turned, stretched and leaning.
+static inline void set_random_solid(test_scene *scene, uint32_t i, const double center[3], double size)
+{
+    glint_solid *solid = &scene->solids[i];
+    double column[3][3], det = 0;
+    solid->form = below(GLINT_FORM_FUNNEL + 1);
+    do {
+        for (int k = 0; k < 3; k++) {
+            const double length = size * power_of_ten(-1, 0);
+            random_unit(column[k]);
+            for (int c = 0; c < 3; c++)
+                solid->forward[c][k] = column[k][c] *= length;
+        }
+        for (int k = 0; k < 3; k++)
+            for (int c = 0; c < 3; c++) {
+                const double *a = column[(k + 1) % 3], *b = column[(k + 2) % 3];
+                solid->inverse[k][c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+            }
+        det = 0;
+        for (int c = 0; c < 3; c++)
+            det += column[0][c] * solid->inverse[0][c];
+    } while (!(fabs(det) > 1e-4 * size * size * size));
+    for (int c = 0; c < 9; c++)
+        solid->inverse[c / 3][c % 3] /= det;
+    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1 };
+    scene->prims[i].item = i;
+    memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
+}
+
+/// A place on a solid, in the world.
+static inline void place_on_solid(const test_scene *scene, const glint_prim *prim, double point[3])
+{
+    const glint_solid *solid = &scene->solids[prim->item];
+    double k[3];
+    random_unit(k);
+    const double round = sqrt(k[0] * k[0] + k[1] * k[1]), z = between(0, 1);
+    const bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    for (int c = 0; c < 3 && solid->form == GLINT_FORM_BOX; c++)
+        k[c] = between(-1, 1);
+    if (solid->form == GLINT_FORM_BOX)
+        k[below(3)] = either_sign(1);
+    else if (solid->form == GLINT_FORM_DISK)
+        k[2] = 0;
+    else if (solid->form != GLINT_FORM_BALL)
+        for (int c = 0; c < 3; c++)
+            k[c] = c < 2 ? k[c] / round * (cone ? z : 1) : cone ? z : 2 * z - 1;
+    for (int c = 0; c < 3; c++)
+        point[c] =
+            prim->center[c] + (solid->forward[c][0] * k[0] + solid->forward[c][1] * k[1] + solid->forward[c][2] * k[2]);
+}
+
+static inline void random_prim(const scene_plan *plan, test_scene *scene, uint32_t i, uint32_t count)
+{
+    glint_prim *prim = &scene->prims[i];
+    const test_line *line = &plan->lines[below(plan->line_count)];
+    // of many, most are small: else nothing but the nearest would ever be met
+    double radius = plan->size * power_of_ten(-plan->spread, 0.2) / (one_in(50) ? 1 : cbrt(count));
+    double center[3];
+    for (int c = 0; c < 3; c++)
+        center[c] = plan->middle[c] + plan->size * between(-1, 1);
+    const uint32_t kind = below(20);
+    const double largest = plan->size * 1e15; // volumes are within the range of double
+    if (plan->triangles && one_in(2))
+        set_random_triangle(prim, i ? prim - 1 : NULL, line, center, radius);
+    else if (plan->solids && one_in(2) && largest < 1e60 && largest > 1e-30)
+        set_random_solid(scene, i, center, radius);
+    else if (kind < 6)
+        set_grazing(prim, line, radius);
+    else if (kind == 6)
+        set_touching(prim, line, 0, radius);
+    else if (kind == 7)
+        set_touching(prim, line, line->length, radius);
+    else if (kind == 8) // hits at one distance
+        set_touching(prim, line, line->length - plan->size / 4, radius);
+    else if (kind == 9 && i > 0 && scene->prims[i - 1].kind == GLINT_PRIM_SPHERE)
+        *prim = scene->prims[i - 1];
+    else if (kind == 9 && i > 0 && !plan->triangles && !plan->solids)
+        *prim = scene->prims[below(i)];
+    else if (kind == 10 && (count < 30 || one_in(count / 10)))
+        set_random_plane(prim, plan, line);
+    else
+        set_sphere(prim, center, radius);
+}
+
+/// The ground many scenes stand on: so large that one can take it for a plane.
+static inline void set_ground(const scene_plan *plan, glint_prim *prim)
+{
+    double center[3] = { plan->middle[0], plan->middle[1] - plan->size * (1 + 1e7), plan->middle[2] };
+    set_sphere(prim, center, 1e7 * plan->size);
+}
+
+// ---- Tables ------------------------------------------------------------------------------------------------------
+
+static inline float rounded_up(long double x)
+{
+    float rounded = (float)x;
+    return (long double)rounded < x ? nextafterf(rounded, INFINITY) : rounded;
+}
+
+static inline float rounded_down(long double x) { return -rounded_up(-x); }
+
+/// The ends of a primitive, which has some, in the world.
+static inline void ends_of(const test_scene *scene, const glint_prim *prim, long double lower[3], long double upper[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double *m = scene->solids[prim->kind == GLINT_PRIM_SOLID ? prim->item : 0].forward[c];
+        const long double reach =
+            prim->kind == GLINT_PRIM_SOLID ? (fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2]) : prim->radius;
+        lower[c] = (long double)prim->center[c] - reach;
+        upper[c] = (long double)prim->center[c] + reach;
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            lower[c] = fmin(prim->corner[0][c], fmin(prim->corner[1][c], prim->corner[2][c]));
+            upper[c] = fmax(prim->corner[0][c], fmax(prim->corner[1][c], prim->corner[2][c]));
+        }
+    }
+}
+
+/// Any frame will do; most are around the scene, in its own units.
+static inline void choose_frame(const scene_plan *plan, test_scene *scene)
+{
+    glint_geometry_table *table = &scene->table;
+    const glint_prim *some = &scene->prims[below(table->prim_count)];
+    const uint32_t kind = below(5);
+    double largest = DBL_MIN;
+    for (int c = 0; c < 3; c++)
+        table->reference[c] = kind == 0                                        ? 0
+                              : kind == 1 && some->kind == GLINT_PRIM_TRIANGLE ? some->corner[0][c]
+                              : kind == 1                                      ? some->center[c]
+                                                                               : plan->middle[c];
+    table->extent = 0;
+    for (uint32_t i = 0; i < table->prim_count; i++)
+        for (int c = 0; c < 3; c++) {
+            const glint_prim *prim = &scene->prims[i];
+            long double lower[3], upper[3];
+            ends_of(scene, prim, lower, upper);
+            if (prim->kind == GLINT_PRIM_SPHERE)
+                largest = fmax(largest, fabs(prim->center[c] - table->reference[c]) + prim->radius);
+            else if (prim->kind != GLINT_PRIM_PLANE)
+                largest = fmax(largest, (double)fmaxl(fabsl(lower[c] - table->reference[c]),
+                                                      fabsl(upper[c] - table->reference[c])));
+            if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
+                table->extent = fmax(table->extent, (double)fmaxl(fabsl(lower[c]), fabsl(upper[c])) * (1 + 1e-15));
+            else
+                table->extent = fmax(table->extent, fmax(fabs(prim->center[c]), prim->radius));
+        }
+    const int exponent = -ilogb(largest) + (one_in(3) ? (int)below(17) - 8 : 0);
+    table->scale = ldexp(1, exponent > 1000 ? 1000 : exponent);
+}
+
+static inline glint_box place_sphere(const glint_geometry_table *table, glint_prim *prim)
+{
+    glint_box box;
+    const long double radius = (long double)prim->radius * table->scale;
+    double away[3];
+    for (int c = 0; c < 3; c++) {
+        const long double center = ((long double)prim->center[c] - table->reference[c]) * table->scale;
+        const long double slack = 0x1p-60L * (fabsl((long double)prim->center[c] * table->scale) + radius);
+        away[c] = (double)center;
+        prim->filter_center[c] = (float)center;
+        box.lower[c] = rounded_down(center - radius - slack);
+        box.upper[c] = rounded_up(center + radius + slack);
+    }
+    prim->filter_bound = rounded_up(radius * (1 + 2e-6L) + 16 * 0x1p-24L * length3(away) * (1 + 0x1p-40L));
+    return box;
+}
+
+/// The same of what has no radius.
+static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
+{
+    const glint_geometry_table *table = &scene->table;
+    glint_box box;
+    long double lower[3], upper[3], radius2 = 0;
+    double away[3];
+    ends_of(scene, prim, lower, upper);
+    for (int c = 0; c < 3; c++) {
+        const long double low = (lower[c] - table->reference[c]) * table->scale,
+                          high = (upper[c] - table->reference[c]) * table->scale;
+        const long double slack = 0x1p-60L * (fabsl(lower[c]) + fabsl(upper[c])) * table->scale,
+                          half = (high - low) / 2;
+        away[c] = (double)((low + high) / 2);
+        prim->filter_center[c] = (float)away[c];
+        box.lower[c] = rounded_down(low - slack);
+        box.upper[c] = rounded_up(high + slack);
+        radius2 += (half + slack) * (half + slack);
+    }
+    prim->filter_bound = rounded_up(sqrtl(radius2) * (1 + 2e-6L) + 16 * 0x1p-24L * length3(away) * (1 + 0x1p-40L));
+    return box;
+}
+
+/// Leaves of the tree hold the numbers of boxes; those of the kernels hold primitives.
+static inline void build_index(test_scene *scene)
+{
+    static glint_box boxes[MOST_PRIMS];
+    static uint32_t bounded[MOST_PRIMS];
+    uint32_t count = 0;
+    glint_geometry_table *table = &scene->table;
+    table->unbounded_count = 0;
+    for (uint32_t i = 0; i < table->prim_count; i++) {
+        glint_prim *prim = &scene->prims[i];
+        prim->filter_bound = INFINITY;
+        if (prim->kind == GLINT_PRIM_PLANE) {
+            scene->unbounded[table->unbounded_count++] = i;
+            continue;
+        }
+        boxes[count] = prim->kind == GLINT_PRIM_SPHERE ? place_sphere(table, prim) : place_corners_of(scene, prim);
+        bounded[count++] = i;
+    }
+    glint_error error;
+    assert_int_equal(glint_bvh_build(boxes, count, NULL, &scene->bvh, &error), GLINT_OK);
+    for (uint32_t n = 0; n < scene->bvh.node_count; n++) {
+        glint_node *node = &scene->bvh.nodes[n];
+        for (int k = 0; k < GLINT_NODE_WIDTH; k++)
+            if (node->lower[0][k] <= node->upper[0][k] && node->child[k] & GLINT_NODE_PRIM)
+                node->child[k] = GLINT_NODE_PRIM | bounded[node->child[k] & ~GLINT_NODE_PRIM];
+    }
+    table->nodes = scene->bvh.nodes;
+    table->unbounded = scene->unbounded;
+    table->prims = scene->prims;
+    table->solids = scene->solids;
+}
+
+/// The order of definition: that of the array, or any.
+static inline void number_prims(test_scene *scene)
+{
+    const bool shuffled = one_in(2);
+    for (uint32_t i = 0; i < scene->table.prim_count; i++) {
+        const uint32_t at = shuffled ? below(i + 1) : i;
+        scene->prims[i].id = scene->prims[at].id;
+        scene->prims[at].id = i;
+    }
+}
+
+/// Fills what follows from kind, centre, normal and radius of the primitives; prim_count is set.
+static inline void finish_scene(const scene_plan *plan, test_scene *scene)
+{
+    number_prims(scene);
+    for (uint32_t i = 0; i < scene->table.prim_count; i++) {
+        scene->prims[i].material = below(4);
+        scene->prims[i].two_sided = one_in(2);
+    }
+    choose_frame(plan, scene);
+    build_index(scene);
+}
+
+static inline uint32_t random_count(void)
+{
+    return 1 + below(one_in(8) ? MOST_PRIMS : one_in(3) ? 300 : one_in(2) ? 40 : 8);
+}
+
+/// A scene around the lines of the plan. free_scene belongs to it.
+static inline test_scene *random_scene(const scene_plan *plan)
+{
+    static test_scene scene;
+    const uint32_t count = scene.table.prim_count = random_count();
+    for (uint32_t i = 0; i < count; i++)
+        random_prim(plan, &scene, i, count);
+    scene.table.triangles = plan->triangles;
+    if (one_in(6))
+        set_ground(plan, &scene.prims[below(count)]);
+    finish_scene(plan, &scene);
+    return &scene;
+}
+
+static inline void free_scene(test_scene *scene) { glint_bvh_free(&scene->bvh); }
+
+// ---- Where scenes are --------------------------------------------------------------------------------------------
+
+/// Ordinary sizes, at the origin or up to 1e7 away; one in a few of sizes whose squares leave the range of float. With
+/// `beyond`, some are themselves out of that range.
+static inline void random_place(scene_plan *plan, bool beyond)
+{
+    const bool extreme = one_in(6);
+    const double offset = one_in(2) ? 0 : one_in(3) ? 1e7 : power_of_ten(-3, 6), exponent = beyond ? 60 : 25;
+    plan->size = extreme ? power_of_ten(-exponent, exponent) : power_of_ten(-3, 5);
+    plan->spread = one_in(4) ? 6 : one_in(2) ? 2 : 0.5;
+    for (int c = 0; c < 3; c++)
+        plan->middle[c] = (extreme ? plan->size : 1) * either_sign(offset) * between(0.5, 1);
+    plan->triangles = plan->solids = false;
+    plan->line_count = 0;
+}
+
+static inline void add_line(scene_plan *plan, const double origin[3], const double direction[3], double length)
+{
+    test_line *line = &plan->lines[plan->line_count++];
+    const double size = length3(direction);
+    *line = (test_line) { .length = length };
+    for (int c = 0; c < 3; c++) {
+        line->origin[c] = origin[c];
+        line->direction[c] = direction[c] / size;
+    }
+}
+
+#endif

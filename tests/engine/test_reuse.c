@@ -1,0 +1,670 @@
+/// Random edits of a scene, one after the other: the frame that reuses what it can must have the bits of a fresh one.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "engine/film/image.h"
+#include "engine/stages/stages.h"
+
+#define SHAPES 6
+#define LIGHTS 6 ///< one of each kind
+
+static uint64_t state;
+
+static uint32_t draw(uint32_t below)
+{
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (uint32_t)((state >> 33) % below);
+}
+
+static double uniform(double low, double high) { return low + (high - low) * (draw(1u << 30) / (double)(1u << 30)); }
+
+typedef struct world {
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_material *materials[SHAPES];
+    glint_shape *shapes[SHAPES];
+    bool in_scene[SHAPES];
+    glint_light *lights[LIGHTS];
+    bool shining[LIGHTS];
+    glint_render_desc render;
+} world;
+
+static void random_color(double c[3])
+{
+    for (int i = 0; i < 3; i++)
+        c[i] = draw(4) ? uniform(0, 1) : 0;
+}
+
+// ---- Every field of every description --------------------------------------------------------------------------------
+
+typedef enum kind {
+    COLOR, ///< three numbers, some of them 0
+    VECTOR,
+    NUMBER,
+    WHOLE, ///< a whole number in a double
+    FLAG,
+    CHOICE, ///< an enumeration or int below `high`
+    BITS, ///< a mask of `high` bits
+    DEPTH, ///< 8 or 16
+    TRANSFORM,
+    FIXED ///< not a field to set here: a name, a kind, what is set another way
+} kind;
+
+typedef struct field {
+    const char *name;
+    size_t offset, size;
+    kind kind;
+    double low, high;
+} field;
+
+#define FIELD(type, member, kind, low, high) \
+    { \
+#member, offsetof(type, member), sizeof(((type *)0)->member), kind, low, high \
+    }
+
+static const field material_fields[] = {
+#define M(...) FIELD(glint_material_desc, __VA_ARGS__)
+    M(model, CHOICE, 0, 4),       M(has_specular, FLAG, 0, 1), M(normalized, FLAG, 0, 1),
+    M(matched, FLAG, 0, 1),       M(roughness, NUMBER, 0, 1),  M(distribution, CHOICE, 0, 2),
+    M(has_f0, FLAG, 0, 1),        M(f0, COLOR, 0, 1),          M(has_ambient, FLAG, 0, 1),
+    M(ambient, COLOR, 0, 1),      M(diffuse, COLOR, 0, 1),     M(specular, COLOR, 0, 1),
+    M(shininess, NUMBER, 0, 300), M(has_mirror, FLAG, 0, 1),   M(mirror, COLOR, 0, 1),
+    M(transmission, COLOR, 0, 1), M(ior, NUMBER, 0.5, 2),      M(fresnel, FLAG, 0, 1),
+    M(absorption, COLOR, 0, 1),   M(name, FIXED, 0, 0),
+#undef M
+};
+
+static const field light_fields[] = {
+#define L(...) FIELD(glint_light_desc, __VA_ARGS__)
+    L(kind, FIXED, 0, 0),         L(color, COLOR, 0, 1),        L(intensity, NUMBER, 0, 2), L(has_diffuse, FLAG, 0, 1),
+    L(has_specular, FLAG, 0, 1),  L(ambient, COLOR, 0, 1),      L(diffuse, COLOR, 0, 1),    L(specular, COLOR, 0, 1),
+    L(attenuation, VECTOR, 0, 1), L(shadows, FLAG, 0, 1),       L(shadow, CHOICE, 0, 3),    L(visible, FLAG, 0, 1),
+    L(position, VECTOR, -6, 6),   L(direction, VECTOR, -1, 1),  L(name, FIXED, 0, 0),       L(inner_rad, NUMBER, 0, 1),
+    L(outer_rad, NUMBER, 0.5, 3), L(exponent, NUMBER, 0, 20),   L(normal, VECTOR, -1, 1),   L(radius, NUMBER, 0, 2),
+    L(vertices, FIXED, 0, 0),     L(vertex_count, FIXED, 0, 0), L(two_sided, FLAG, 0, 1),   L(samples, WHOLE, 1, 20),
+    L(has_radiance, FLAG, 0, 1),  L(radiance, NUMBER, 0, 9),
+#undef L
+};
+
+static const field camera_fields[] = {
+#define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
+    C(projection, CHOICE, 0, 2),   C(eye, VECTOR, -2, 8), C(has_direction, FLAG, 0, 1), C(at, VECTOR, -1, 1),
+    C(direction, VECTOR, -1, 1),   C(up, VECTOR, -1, 1),  C(fov_y_rad, NUMBER, 0.3, 2), C(height, NUMBER, 1, 10),
+    C(pixel_offset, NUMBER, 0, 1), C(name, FIXED, 0, 0),
+#undef C
+};
+
+static const field shape_fields[] = {
+#define S(...) FIELD(glint_shape_desc, __VA_ARGS__)
+    S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
+    S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 4),
+    S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
+    S(top, VECTOR, -2, 2),         S(capped, FLAG, 0, 1),    S(name, FIXED, 0, 0),
+#undef S
+};
+
+static const field scene_fields[] = {
+    FIELD(glint_scene_desc, camera, FIXED, 0, 0),
+    FIELD(glint_scene_desc, ambient, COLOR, 0, 1),
+    FIELD(glint_scene_desc, background, COLOR, 0, 1),
+    FIELD(glint_scene_desc, has_depth_cue, FLAG, 0, 1),
+    FIELD(glint_scene_desc, has_depth_cue_color, FLAG, 0, 1),
+    FIELD(glint_scene_desc, depth_cue_color, COLOR, 0, 1),
+    FIELD(glint_scene_desc, depth_cue_near, NUMBER, 0, 6),
+    FIELD(glint_scene_desc, depth_cue_far, NUMBER, 4, 15),
+    FIELD(glint_scene_desc, has_indirect, FLAG, 0, 1),
+    FIELD(glint_scene_desc, indirect_samples, WHOLE, 1, 3),
+    FIELD(glint_scene_desc, indirect_bounces, WHOLE, 0, 3),
+};
+
+static const field render_fields[] = {
+#define R(...) FIELD(glint_render_desc, __VA_ARGS__)
+    R(width, WHOLE, 60, 75),        R(height, WHOLE, 40, 55),
+    R(samples, WHOLE, 1, 4),        R(adaptive, NUMBER, 0, 0.5),
+    R(max_depth, WHOLE, 0, 4),      R(precision, CHOICE, 0, 2),
+    R(seed, WHOLE, 0, 2),           R(passes, BITS, 0, GLINT_PASS_COUNT),
+    R(codes, FLAG, 0, 1),           R(alpha, FLAG, 0, 1),
+    R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
+    R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
+    R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
+#undef R
+};
+
+#define COUNT(fields) (sizeof(fields) / sizeof *(fields))
+
+/// The identity, a similarity, or one that makes ellipsoids.
+static void set_transform(glint_transform *out)
+{
+    const double axis[3] = { uniform(-1, 1), uniform(-1, 1), 1 }, by[3] = { uniform(0.5, 1.5), -1, uniform(0.5, 1.5) };
+    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), scale = glint_transform_scale(by);
+    const uint32_t which = draw(3);
+    *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
+}
+
+static void set_field(const field *f, void *desc)
+{
+    void *at = (char *)desc + f->offset;
+    double numbers[3];
+    int32_t whole;
+    for (int c = 0; c < 3; c++)
+        numbers[c] = uniform(f->low, f->high);
+    switch (f->kind) {
+    case COLOR:
+        random_color(numbers);
+        memcpy(at, numbers, sizeof numbers);
+        break;
+    case VECTOR:
+        memcpy(at, numbers, sizeof numbers);
+        break;
+    case NUMBER:
+        numbers[0] = draw(5) ? numbers[0] : f->low;
+        memcpy(at, numbers, sizeof *numbers);
+        break;
+    case WHOLE:
+        numbers[0] = f->low + draw((uint32_t)(f->high - f->low) + 1);
+        memcpy(at, numbers, sizeof *numbers);
+        break;
+    case FLAG:
+        *(bool *)at = draw(2);
+        break;
+    case TRANSFORM:
+        set_transform(at);
+        break;
+    default:
+        whole = f->kind == CHOICE  ? (int32_t)draw((uint32_t)f->high)
+                : f->kind == DEPTH ? (draw(2) ? 8 : 16)
+                                   : (int32_t)draw(1u << (int)f->high);
+        memcpy(at, &whole, sizeof whole);
+    }
+}
+
+/// A field that can be set, at random.
+static const field *pick(const field *fields, size_t count)
+{
+    const field *f;
+    do
+        f = &fields[draw((uint32_t)count)];
+    while (f->kind == FIXED);
+    return f;
+}
+
+/// The tables above must name every byte of every description but padding: who adds a field adds it here, and the edits
+/// below find out whether the plan's keys know of it.
+static void table_names_all(const char *what, const field *fields, size_t count, size_t size)
+{
+    char *named = calloc(1, size);
+    assert_non_null(named);
+    for (size_t i = 0; i < count; i++)
+        memset(named + fields[i].offset, 1, fields[i].size);
+    for (size_t from = 0, to; from < size; from = to + 1) {
+        for (to = from; to < size && !named[to]; to++)
+            ;
+        if (to - from >= 8)
+            fail_msg("%s: bytes %zu .. %zu belong to a field that tests/engine/test_reuse.c does not edit", what, from,
+                     to - 1);
+    }
+    free(named);
+}
+
+static void tables_name_every_field(void **unused)
+{
+    (void)unused;
+    table_names_all("material", material_fields, COUNT(material_fields), sizeof(glint_material_desc));
+    table_names_all("light", light_fields, COUNT(light_fields), sizeof(glint_light_desc));
+    table_names_all("camera", camera_fields, COUNT(camera_fields), sizeof(glint_camera_desc));
+    table_names_all("shape", shape_fields, COUNT(shape_fields), sizeof(glint_shape_desc));
+    table_names_all("scene", scene_fields, COUNT(scene_fields), sizeof(glint_scene_desc));
+    table_names_all("render", render_fields, COUNT(render_fields), sizeof(glint_render_desc));
+}
+
+// ---- Edits: a value that is refused leaves the object as it was ------------------------------------------------------
+
+static void edit_material(world *w)
+{
+    glint_material *material = w->materials[draw(SHAPES)];
+    glint_material_desc d = *glint_material_get(material);
+    set_field(pick(material_fields, COUNT(material_fields)), &d);
+    glint_material_set(material, &d, NULL);
+}
+
+static double corners[4][3] = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } };
+
+static void edit_light(world *w)
+{
+    uint32_t i = draw(LIGHTS);
+    glint_light_desc d = *glint_light_get(w->lights[i]);
+    if (draw(8) == 0) {
+        if (w->shining[i])
+            glint_scene_remove_light(w->scene, w->lights[i], NULL);
+        else
+            glint_scene_add_light(w->scene, w->lights[i], NULL);
+        w->shining[i] = !w->shining[i];
+        return;
+    }
+    if (d.kind == GLINT_LIGHT_POLYGON && draw(4) == 0) {
+        corners[2][0] = corners[2][2] = uniform(0.5, 3);
+        d.vertices = (const double(*)[3])corners;
+        d.vertex_count = 3 + draw(2);
+    } else {
+        set_field(pick(light_fields, COUNT(light_fields)), &d);
+        d.intensity = d.has_radiance ? 1 : d.intensity;
+    }
+    glint_light_set(w->lights[i], &d, NULL);
+}
+
+static void edit_shape(world *w)
+{
+    uint32_t i = draw(SHAPES);
+    glint_shape *shape = w->shapes[i];
+    if (glint_group_count(shape) && draw(2)) // what is in a group changes too
+        shape = glint_group_child(shape, draw((uint32_t)glint_group_count(shape)));
+    glint_shape_desc d = *glint_shape_get(shape);
+    if (draw(6) == 0) {
+        if (w->in_scene[i])
+            glint_scene_remove_shape(w->scene, w->shapes[i], NULL);
+        else
+            glint_scene_add_shape(w->scene, w->shapes[i], NULL);
+        w->in_scene[i] = !w->in_scene[i];
+        return;
+    }
+    if (draw(5) == 0)
+        d.material = w->materials[draw(SHAPES)];
+    else
+        set_field(pick(shape_fields, COUNT(shape_fields)), &d);
+    glint_shape_set(shape, &d, NULL);
+}
+
+static void edit_frame(world *w)
+{
+    glint_camera_desc c = *glint_camera_get(w->camera);
+    glint_scene_desc s = *glint_scene_get(w->scene);
+    switch (draw(3)) {
+    case 0:
+        set_field(pick(camera_fields, COUNT(camera_fields)), &c);
+        break;
+    case 1:
+        set_field(pick(scene_fields, COUNT(scene_fields)), &s);
+        break;
+    default:
+        set_field(pick(render_fields, COUNT(render_fields)), &w->render);
+    }
+    glint_camera_set(w->camera, &c, NULL);
+    glint_scene_set(w->scene, &s, NULL);
+}
+
+static glint_shape *new_mesh(const glint_shape_desc *like)
+{
+    glint_mesh_desc d = glint_mesh_desc_default();
+    glint_shape *shape = NULL;
+    d.material = like->material;
+    d.has_shading = true;
+    d.shading = GLINT_SHADING_GOURAUD;
+    assert_int_equal(glint_sphere_mesh_create(like->center, 1.5, 9, &d, &shape, NULL), GLINT_OK);
+    return shape;
+}
+
+/// A cone and a cylinder, and, smaller, both again.
+static glint_shape *new_group(const glint_shape_desc *like)
+{
+    glint_shape *outer, *inner, *part;
+    const double by[3] = { -1, 0.5, 0.5 };
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_GROUP);
+    assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
+    d.transform = glint_transform_scale(by);
+    assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
+    for (int k = GLINT_SHAPE_BOX; k <= GLINT_SHAPE_CONE; k++) {
+        d = glint_shape_desc_default((glint_shape_kind)k);
+        d.material = like->material;
+        d.radius = 0.5;
+        d.base[0] = d.center[2] = k;
+        assert_int_equal(glint_shape_create(&d, &part, NULL), GLINT_OK);
+        assert_int_equal(glint_group_add(outer, part, NULL), GLINT_OK);
+        assert_int_equal(glint_group_add(inner, part, NULL), GLINT_OK);
+        glint_shape_release(part);
+    }
+    assert_int_equal(glint_group_add(outer, inner, NULL), GLINT_OK);
+    glint_shape_release(inner);
+    return outer;
+}
+
+static void make_world(world *w)
+{
+    memset(w, 0, sizeof *w);
+    glint_camera_desc c = glint_camera_desc_default();
+    c.eye[1] = 2;
+    assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
+    glint_scene_desc s = {
+        .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2
+    };
+    assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
+    for (int i = 0; i < SHAPES; i++) {
+        glint_material_desc m = glint_material_desc_default();
+        random_color(m.diffuse);
+        random_color(m.specular);
+        assert_int_equal(glint_material_create(&m, &w->materials[i], NULL), GLINT_OK);
+        glint_shape_desc d = glint_shape_desc_default(i == 0 ? GLINT_SHAPE_PLANE : GLINT_SHAPE_SPHERE);
+        d.material = w->materials[i];
+        d.point[1] = -2;
+        for (int k = 0; k < 3; k++)
+            d.center[k] = uniform(-2, 2);
+        w->shapes[i] = i == 1 ? new_mesh(&d) : i == 2 ? new_group(&d) : NULL;
+        if (!w->shapes[i])
+            assert_int_equal(glint_shape_create(&d, &w->shapes[i], NULL), GLINT_OK);
+        assert_int_equal(glint_scene_add_shape(w->scene, w->shapes[i], NULL), GLINT_OK);
+        w->in_scene[i] = true;
+    }
+    for (int i = 0; i < LIGHTS; i++) {
+        glint_light_desc d = glint_light_desc_default((glint_light_kind)i);
+        d.vertices = (const double(*)[3])corners;
+        d.vertex_count = 4;
+        d.samples = 3;
+        d.position[1] = 5;
+        d.position[0] = i;
+        assert_int_equal(glint_light_create(&d, &w->lights[i], NULL), GLINT_OK);
+        assert_int_equal(glint_scene_add_light(w->scene, w->lights[i], NULL), GLINT_OK);
+        w->shining[i] = true;
+    }
+    w->render = glint_render_desc_default();
+    w->render.width = 70;
+    w->render.height = 50;
+}
+
+static void free_world(world *w)
+{
+    for (int i = 0; i < SHAPES; i++) {
+        glint_material_release(w->materials[i]);
+        glint_shape_release(w->shapes[i]);
+    }
+    for (int i = 0; i < LIGHTS; i++)
+        glint_light_release(w->lights[i]);
+    glint_camera_release(w->camera);
+    glint_scene_release(w->scene);
+}
+
+static bool same_pixels(const glint_image *a, const glint_image *b, uint32_t passes)
+{
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (!(passes >> pass & 1))
+            continue;
+        for (int y = 0; y < glint_image_height(a); y++)
+            for (int x = 0; x < glint_image_width(a); x++) {
+                float p[3], q[3];
+                glint_image_pixel(a, (glint_pass)pass, x, y, p, NULL);
+                glint_image_pixel(b, (glint_pass)pass, x, y, q, NULL);
+                if (memcmp(p, q, sizeof p))
+                    return false;
+            }
+    }
+    return true;
+}
+
+static bool same_codes(const glint_image *a, const glint_image *b)
+{
+    if (!a->codes || !b->codes)
+        return a->codes == b->codes;
+    return a->channels == b->channels &&
+           memcmp(a->codes, b->codes, (size_t)a->width * (size_t)a->height * glint_image_pixel_bytes(a)) == 0;
+}
+
+/// Rows of tiles with equal stamps hold equal codes.
+static bool stamps_hold(const glint_image *a, const glint_image *b)
+{
+    if (!a->codes || !b->codes || a->width != b->width || a->height != b->height || a->channels != b->channels ||
+        memcmp(&a->code_tone, &b->code_tone, sizeof a->code_tone))
+        return true;
+    const size_t row = (size_t)a->width * glint_image_pixel_bytes(a);
+    for (size_t i = 0; i < glint_image_stamps(a); i++) {
+        const size_t from = i * GLINT_TILE_HEIGHT, rest = (size_t)a->height - from;
+        const size_t rows = rest < GLINT_TILE_HEIGHT ? rest : GLINT_TILE_HEIGHT;
+        if (a->row_stamp[i] && a->row_stamp[i] == b->row_stamp[i] &&
+            memcmp((char *)a->codes + from * row, (char *)b->codes + from * row, rows * row))
+            return false;
+    }
+    return true;
+}
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/// Renders after each of many edits with two renderers, one of which forgets everything.
+static void edits(size_t memory, int threads, double limit_s)
+{
+    world w;
+    glint_renderer *reusing, *fresh;
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    desc.threads = threads;
+    desc.reuse_memory = memory;
+    assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
+    desc.no_reuse = true;
+    assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+    make_world(&w);
+    const double start = seconds();
+    uint64_t reused = 0, edit = 0;
+    glint_image *last = NULL; ///< held, so that the renderer may not write into it again
+    void (*const kinds[])(world *) = { edit_material, edit_material, edit_light, edit_light, edit_shape, edit_frame };
+    for (; seconds() - start < limit_s; edit++) {
+        if (draw(8)) // now and then nothing changes
+            kinds[draw(edit % 4 ? 4 : 6)](&w);
+        glint_plan *plan;
+        glint_image *a, *b;
+        glint_frame_stats stats;
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(reusing, plan, &a, &stats, NULL), GLINT_OK);
+        assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
+        for (int i = 0; i < stats.stage_count; i++)
+            reused += stats.stage_reused[i] > 0;
+        if (!same_pixels(a, b, w.render.passes) || !same_codes(a, b))
+            fail_msg("edit %llu: the reused frame differs from the fresh one", (unsigned long long)edit);
+        if (last && !stamps_hold(last, a))
+            fail_msg("edit %llu: equal stamps, other codes", (unsigned long long)edit);
+        glint_image_release(last);
+        last = a;
+        glint_image_release(b);
+        glint_plan_destroy(plan);
+    }
+    print_message("%llu edits, %llu stage results reused\n", (unsigned long long)edit, (unsigned long long)reused);
+    assert_true(memory > 0 || reused > edit / 2);
+    glint_image_release(last);
+    free_world(&w);
+    glint_renderer_destroy(reusing);
+    glint_renderer_destroy(fresh);
+}
+
+/// A seed of its own for each test; `make soak` takes others than the check.
+static uint64_t seed(uint64_t test)
+{
+    const char *other = getenv("GLINT_SEED");
+    return test + (other ? 1000 * strtoull(other, NULL, 10) : 0);
+}
+
+static double limit_s(double usual)
+{
+    const char *soak = getenv("GLINT_SOAK_SECONDS");
+    return soak ? atof(soak) / 3 : usual;
+}
+
+static void reused_equals_fresh(void **unused)
+{
+    (void)unused;
+    state = seed(1);
+    edits(0, 2, limit_s(4));
+}
+
+static void reused_equals_fresh_without_memory(void **unused)
+{
+    (void)unused;
+    state = seed(2);
+    edits(1, 2, limit_s(1));
+}
+
+static void reused_equals_fresh_with_little_memory(void **unused)
+{
+    (void)unused;
+    state = seed(3);
+    for (size_t memory = 20000; memory < 4000000; memory = memory * 3 / 2)
+        edits(memory, 8, limit_s(2) / 14);
+}
+
+/// The samples of an area light are added up a call of shade at a time: a lamp before it that shines into a closed ball,
+/// and so reaches nothing that is seen, still moves where the calls begin.
+static void a_lamp_that_reaches_nothing(void **unused)
+{
+    (void)unused;
+    world w;
+    glint_renderer *reusing, *fresh;
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    assert_int_equal(glint_renderer_create(&desc, &reusing, NULL), GLINT_OK);
+    desc.no_reuse = true;
+    assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
+    state = 5;
+    make_world(&w);
+    for (int i = 0; i < LIGHTS; i++)
+        if (w.shining[i])
+            glint_scene_remove_light(w.scene, w.lights[i], NULL);
+    glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_light_desc inner = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light_desc outer = glint_light_desc_default(GLINT_LIGHT_SPHERE);
+    ball.center[0] = inner.position[0] = 3;
+    outer.position[1] = 6;
+    outer.radius = 2;
+    outer.samples = 20;
+    glint_shape *shape;
+    glint_light *hidden, *lamp;
+    assert_int_equal(glint_shape_create(&ball, &shape, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&inner, &hidden, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&outer, &lamp, NULL), GLINT_OK);
+    glint_scene_add_shape(w.scene, shape, NULL);
+    for (int frame = 0; frame < 12; frame++) {
+        const bool both = frame / 3 % 2;
+        glint_plan *plan;
+        glint_image *a, *b;
+        glint_material_desc paint = *glint_material_get(w.materials[1]);
+        paint.diffuse[0] = frame / 12.0; // some tiles change, the others do not
+        glint_material_set(w.materials[1], &paint, NULL);
+        if (both)
+            glint_scene_add_light(w.scene, hidden, NULL);
+        glint_scene_add_light(w.scene, lamp, NULL);
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(reusing, plan, &a, NULL, NULL), GLINT_OK);
+        assert_int_equal(glint_render(fresh, plan, &b, NULL, NULL), GLINT_OK);
+        if (!same_pixels(a, b, w.render.passes))
+            fail_msg("frame %d: the reused frame differs from the fresh one", frame);
+        glint_image_release(a);
+        glint_image_release(b);
+        glint_plan_destroy(plan);
+        glint_scene_remove_light(w.scene, lamp, NULL);
+        if (both)
+            glint_scene_remove_light(w.scene, hidden, NULL);
+    }
+    glint_shape_release(shape);
+    glint_light_release(hidden);
+    glint_light_release(lamp);
+    free_world(&w);
+    glint_renderer_destroy(reusing);
+    glint_renderer_destroy(fresh);
+}
+
+static double reused_share(const glint_frame_stats *stats, const char *stage)
+{
+    for (int i = 0; i < stats->stage_count; i++)
+        if (strcmp(stats->stage_name[i], stage) == 0)
+            return stats->stage_reused[i];
+    fail_msg("no stage %s", stage);
+    return 0;
+}
+
+/// A sweep of shininess runs the tiles that the highlight is in: of a ball before the eye lit from beside it, a few. Where
+/// the exponent is so low that the highlight is wherever light is, the others do not stay.
+static void a_highlight_that_a_tile_does_not_show(void **unused)
+{
+    (void)unused;
+    static const double shininess[] = { 2000, 2500, 3000, 1, 2 };
+    glint_scene *scene;
+    glint_camera *camera;
+    glint_shape *ball;
+    glint_light *lamp;
+    glint_material *paint;
+    glint_renderer *renderers[2];
+    glint_shape_desc place = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_light_desc light = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
+    glint_material_desc look = glint_material_desc_default();
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    glint_render_desc render = glint_render_desc_default();
+    glint_camera_desc view = glint_camera_desc_default();
+    view.eye[2] = 4;
+    for (int c = 0; c < 3; c++) {
+        view.at[c] = 0;
+        light.direction[c] = -1;
+        look.specular[c] = 1;
+    }
+    render.width = render.height = 480;
+    render.codes = true;
+    assert_int_equal(glint_scene_create(&scene, NULL), GLINT_OK);
+    assert_int_equal(glint_camera_create(&view, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_light_create(&light, &lamp, NULL), GLINT_OK);
+    assert_int_equal(glint_material_create(&look, &paint, NULL), GLINT_OK);
+    place.material = paint;
+    assert_int_equal(glint_shape_create(&place, &ball, NULL), GLINT_OK);
+    glint_scene_desc whole = *glint_scene_get(scene);
+    whole.camera = camera;
+    assert_int_equal(glint_scene_set(scene, &whole, NULL), GLINT_OK);
+    glint_scene_add_shape(scene, ball, NULL);
+    glint_scene_add_light(scene, lamp, NULL);
+    for (int i = 0; i < 2; i++) {
+        desc.no_reuse = i;
+        assert_int_equal(glint_renderer_create(&desc, &renderers[i], NULL), GLINT_OK);
+    }
+    for (int frame = 0; frame < 5; frame++) {
+        glint_plan *plan;
+        glint_image *image[2];
+        glint_frame_stats stats;
+        look.shininess = shininess[frame];
+        assert_int_equal(glint_material_set(paint, &look, NULL), GLINT_OK);
+        assert_int_equal(glint_plan_create(scene, &render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(renderers[1], plan, &image[1], NULL, NULL), GLINT_OK);
+        assert_int_equal(glint_render(renderers[0], plan, &image[0], &stats, NULL), GLINT_OK);
+        const double share = reused_share(&stats, "shade");
+        if (frame == 1 || frame == 2)
+            assert_true(share > 0.95 && share < 1);
+        if (frame == 4)
+            assert_true(share < 0.8);
+        assert_true(same_pixels(image[0], image[1], render.passes));
+        for (int i = 0; i < 2; i++)
+            glint_image_release(image[i]);
+        glint_plan_destroy(plan);
+    }
+    for (int i = 0; i < 2; i++)
+        glint_renderer_destroy(renderers[i]);
+    glint_material_release(paint);
+    glint_light_release(lamp);
+    glint_shape_release(ball);
+    glint_camera_release(camera);
+    glint_scene_release(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_name_every_field),
+        cmocka_unit_test(a_lamp_that_reaches_nothing),
+        cmocka_unit_test(a_highlight_that_a_tile_does_not_show),
+        cmocka_unit_test(reused_equals_fresh),
+        cmocka_unit_test(reused_equals_fresh_without_memory),
+        cmocka_unit_test(reused_equals_fresh_with_little_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

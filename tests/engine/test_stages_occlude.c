@@ -1,0 +1,428 @@
+/// occlude and soft_light on every instruction set against the scalar reference, which asks every primitive about every point: neither
+/// the index nor the list of a tile nor a filter loses a shadow or makes one.
+#include "tests/engine/stage_scene.h"
+
+enum { CASES = 3000 };
+
+typedef struct shadow_case {
+    int precision;
+    scene_plan plan;
+    test_scene *scene;
+    glint_occlude_args args;
+    uint32_t *prim;
+    uint16_t *back;
+    void *slack;
+    bool soft; ///< an area light
+} shadow_case;
+
+// ---- Lights and points -------------------------------------------------------------------------------------------
+
+/// In the scene, around it, far away, or without a place. Returns how far from the middle.
+static double place_light(shadow_case *c)
+{
+    const double size = c->plan.size;
+    const double distance = size * (one_in(3) ? between(0, 1) : one_in(3) ? power_of_ten(1, 12) : between(1, 10));
+    double direction[3];
+    random_unit(direction);
+    if (one_in(4)) {
+        memset(direction, 0, sizeof direction);
+        direction[below(3)] = either_sign(1);
+    }
+    c->args.scale = 1;
+    c->args.directional = one_in(3);
+    if (c->args.directional) {
+        memcpy(c->args.position, direction, sizeof direction);
+        return size;
+    }
+    c->args.scale = ldexp(1, -ilogb(distance));
+    along3(c->plan.middle, distance, direction, c->args.position);
+    return distance;
+}
+
+static glint_lamp lamps[GLINT_LIGHT_CHUNK];
+
+/// Makes an area light of the light: a ball, or a patch of a plane, of any size.
+static void place_lamps(shadow_case *c, double distance)
+{
+    const double radius = one_in(8) ? 0 : distance * power_of_ten(-6, 0.5);
+    const bool flat = one_in(2);
+    double axis[3], out[3], lower[3], upper[3];
+    random_unit(axis);
+    c->soft = true;
+    c->args.directional = false;
+    c->args.sample_count = 1 + below(GLINT_LIGHT_CHUNK);
+    for (int k = 0; k < 3; k++)
+        lower[k] = upper[k] = c->args.position[k];
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        for (int lane = 0; lane < GLINT_GROUP; lane++) {
+            if (flat)
+                random_across(axis, out);
+            else
+                random_unit(out);
+            for (int k = 0; k < 3; k++) {
+                const double x = c->args.position[k] + radius * out[k];
+                lamps[s].position[k][lane] = x;
+                lower[k] = fmin(lower[k], x);
+                upper[k] = fmax(upper[k], x);
+            }
+        }
+    for (uint32_t s = 0; s < c->args.sample_count; s++) {
+        memcpy(lamps[s].lower, lower, sizeof lower);
+        memcpy(lamps[s].upper, upper, sizeof upper);
+        memcpy(lamps[s].center, c->args.position, sizeof lamps[s].center);
+        lamps[s].radius = radius;
+        c->args.lamp[s] = &lamps[s];
+    }
+}
+
+/// What a tile sees lies together more often than not; else its shaft holds half the scene.
+static void place_points(shadow_case *c, double light_distance)
+{
+    const scene_plan *plan = &c->plan;
+    const double width = plan->size * (one_in(3) ? 1 : power_of_ten(-6, 0)), deep = one_in(8) ? 100 : 1;
+    double near[3], point[3];
+    for (int k = 0; k < 3; k++)
+        near[k] = plan->middle[k] + deep * plan->size * between(-1, 1);
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        for (int k = 0; k < 3; k++) {
+            point[k] = near[k] + width * between(-1, 1);
+            put(c->args.point[k], c->precision, i, point[k]);
+            point[k] = get(c->args.point[k], c->precision, i);
+        }
+        if (c->plan.line_count == MOST_LINES || !one_in(3))
+            continue;
+        double way[3];
+        for (int k = 0; k < 3; k++)
+            way[k] = c->args.position[k] - (c->args.directional ? 0 : point[k]);
+        const double length = length3(way);
+        if (length > 0 && isfinite(length))
+            add_line(&c->plan, point, way, c->args.directional ? light_distance : length);
+    }
+    if (c->plan.line_count == 0)
+        add_line(&c->plan, plan->middle, (const double[3]) { 0, 0, 1 }, plan->size);
+}
+
+/// A point of a triangle, and what rounding may have made of it, as surface says.
+static void place_on_triangle(shadow_case *c, uint32_t i, const glint_prim *prim)
+{
+    const double slack = c->precision == GLINT_DOUBLE ? GLINT_POINT_SLACK_DOUBLE : GLINT_POINT_SLACK_FLOAT;
+    const double u = one_in(6) ? below(2) : between(0, 1), v = (1 - u) * (one_in(6) ? below(2) : between(0, 1));
+    double point[3], f = 0, g = 0, far = 0;
+    for (int k = 0; k < 3; k++) {
+        const double along = prim->corner[1][k] - prim->corner[0][k], across = prim->corner[2][k] - prim->corner[0][k];
+        point[k] = prim->corner[0][k] + (u * along + v * across);
+        f = fmax(f, fabs(along));
+        g = fmax(g, fabs(across));
+        far = fmax(far, fabs(point[k]));
+    }
+    put3(c->args.point, c->precision, i, point);
+    put(c->slack, c->precision, i, slack * ((f + g) + far));
+}
+
+/// Some of the points go onto the primitive they are said to be on; the others are on none that could shadow them.
+static void place_on_surfaces(shadow_case *c)
+{
+    const test_scene *scene = c->scene;
+    const uint32_t few = below(4);
+    double out[3], point[3];
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        c->prim[i] = below(one_in(4) ? scene->table.prim_count : (few + scene->table.prim_count) / (few + 1));
+        const glint_prim *prim = &scene->prims[c->prim[i]];
+        if (one_in(3)) {
+            c->back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP);
+            if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_SOLID)
+                c->prim[i] = GLINT_MISS; // their rules ask where on them a point is
+            continue;
+        }
+        if (prim->kind == GLINT_PRIM_TRIANGLE) {
+            place_on_triangle(c, i, prim);
+            continue;
+        }
+        if (prim->kind == GLINT_PRIM_SOLID) {
+            place_on_solid(scene, prim, point);
+        } else if (prim->kind == GLINT_PRIM_SPHERE) {
+            random_unit(out);
+            along3(prim->center, prim->radius, out, point);
+        } else {
+            random_across(prim->normal, out);
+            along3(prim->center, c->plan.size * between(-1, 1), out, point);
+        }
+        put3(c->args.point, c->precision, i, point);
+    }
+}
+
+// ---- occlude -----------------------------------------------------------------------------------------------------
+
+static void start_shadows(shadow_case *c, int precision, bool odd)
+{
+    memset(c, 0, sizeof *c);
+    c->precision = precision;
+    random_place(&c->plan, precision == GLINT_DOUBLE); // there are no points where float overflows
+    const uint32_t groups = c->args.group_count = 1 + below(GLINT_TILE_GROUPS), n = groups * GLINT_GROUP;
+    c->args.sample_count = 1;
+    c->args.prim = c->prim = input(KIND_U32, n);
+    c->args.back = c->back = masks(groups);
+    for (uint32_t g = 0; g < groups; g++)
+        c->back[g] = one_in(2) ? 0 : c->back[g];
+    // float takes what rounding makes of them for hits far away from them, which the index does not look up
+    c->plan.triangles = precision == GLINT_DOUBLE && !odd && one_in(2);
+    c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
+    input3(c->args.point, real_kind(precision), n);
+    input3(c->args.direction, real_kind(precision), n);
+    c->args.slack = c->slack = input(real_kind(precision), n);
+    for (uint32_t i = 0; i < n; i++) {
+        double way[3];
+        random_unit(way);
+        put3(c->args.direction, precision, i, way);
+        put(c->slack, precision, i, 0);
+    }
+    const double distance = place_light(c);
+    if (!c->args.directional && one_in(2))
+        place_lamps(c, distance);
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        c->args.lit[s] = masks(groups);
+    place_points(c, distance);
+    c->scene = random_scene(&c->plan);
+    c->args.geometry = &c->scene->table;
+    place_on_surfaces(c);
+}
+
+static uint64_t lit_lanes(const shadow_case *c)
+{
+    uint64_t lanes = 0;
+    for (uint32_t s = 0; s < c->args.sample_count; s++)
+        for (uint32_t g = 0; g < c->args.group_count; g++)
+            lanes += (unsigned)__builtin_popcount(c->args.lit[s][g]);
+    return lanes;
+}
+
+static bool is_triangle(const shadow_case *c, uint32_t prim)
+{
+    return prim != GLINT_MISS && c->scene->prims[prim].kind == GLINT_PRIM_TRIANGLE;
+}
+
+/// A box as surface gives it: around the lit points, and maybe around more.
+static void make_box(const shadow_case *c, glint_point_box *box)
+{
+    *box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, GLINT_MISS };
+    const bool all = one_in(2);
+    bool several = false;
+    for (uint32_t i = 0; i < c->args.group_count * GLINT_GROUP; i++) {
+        bool lit = all;
+        for (uint32_t s = 0; s < c->args.sample_count; s++)
+            lit = lit || lane_of(c->args.lit[s], i);
+        if (!lit)
+            continue;
+        several = several || lane_of(c->back, i) || is_triangle(c, c->prim[i]) ||
+                  (box->only != GLINT_MISS && box->only != c->prim[i]);
+        box->only = c->prim[i];
+        for (int k = 0; k < 3; k++) {
+            const double x = get(c->args.point[k], c->precision, i);
+            box->lower[k] = x < box->lower[k] ? x : box->lower[k];
+            box->upper[k] = x > box->upper[k] ? x : box->upper[k];
+        }
+    }
+    if (several)
+        box->only = GLINT_MISS;
+}
+
+static uint32_t settled; ///< cases in which the whole of an area light settled something
+
+static void occlude_all(shadow_case *c)
+{
+    glint_occlude_args args = c->args;
+    glint_point_box box;
+    make_box(c, &box);
+    args.box = one_in(2) ? &box : NULL;
+    FOR_EACH_TESTED
+    {
+        uint64_t rays = 5;
+        args.rays = &rays;
+        for (uint32_t s = 0; s < args.sample_count; s++)
+            args.open[s] = output("open", KIND_U16, args.group_count);
+        geometry(c->precision)->occlude(&args);
+        if (c->soft) // what the whole light settles is not counted
+            settled += running != &glint_stages_ref && rays < lit_lanes(c) + 5;
+        else
+            *(double *)output("rays", KIND_DOUBLE, 1) = (double)rays;
+        assert_true(rays <= lit_lanes(c) + 5);
+        compare_outputs("occlude");
+    }
+}
+
+/// Some shadow somewhere, and some light: a test of nothing but one of them would be none.
+static uint32_t open_lanes, dark_lanes;
+
+static void count_lanes(const shadow_case *c)
+{
+    const uint16_t *open = array_elements(wanted_array("open"));
+    for (uint32_t g = 0; g < c->args.group_count; g++) {
+        open_lanes += (unsigned)__builtin_popcount(open[g]);
+        dark_lanes += (unsigned)__builtin_popcount(c->args.lit[0][g] & ~(unsigned)open[g]);
+    }
+}
+
+// ---- soft_light --------------------------------------------------------------------------------------------------
+
+static uint64_t summed, highlights; ///< lanes that were reached; of them, those with a highlight
+
+static void count_sums(const glint_light_args *light)
+{
+    const uint16_t *reached = array_elements(wanted_array("reached"));
+    const float *specular = light->highlights ? array_elements(wanted_array("specular")) : NULL;
+    for (uint32_t i = 0; i < light->group_count * GLINT_GROUP; i++) {
+        summed += lane_of(reached, i);
+        highlights += specular && lane_of(reached, i) && specular[i] > 0;
+    }
+}
+
+/// Normals and rays of all kinds; more often than not, ones that show what the light does.
+static void look_at_points(const shadow_case *c, glint_light_args *light, bool odd)
+{
+    const uint32_t n = light->group_count * GLINT_GROUP;
+    uint32_t *material = input(KIND_U32, n);
+    light->material = material;
+    input3(light->normal, real_kind(c->precision), n);
+    input3(light->direction, real_kind(c->precision), n);
+    const uint32_t one = below(6);
+    for (uint32_t i = 0; i < n; i++) {
+        double normal[3], direction[3], way[3];
+        for (int k = 0; k < 3; k++)
+            way[k] = c->args.position[k] - get(light->point[k], c->precision, i);
+        const double length = length3(way);
+        random_unit(normal);
+        random_unit(direction);
+        for (int k = 0; k < 3; k++) {
+            if (length > 0 && i % 3)
+                normal[k] = 0.3 * normal[k] + way[k] / length;
+            if (length > 0 && i % 5)
+                direction[k] = 0.4 * direction[k] - way[k] / length;
+            normal[k] = maybe_odd(odd, normal[k]);
+            direction[k] = maybe_odd(odd, direction[k] * 3);
+        }
+        put3(light->normal, c->precision, i, normal);
+        put3(light->direction, c->precision, i, direction);
+        material[i] = one_in(4) ? below(6) : one;
+    }
+}
+
+static void make_gloss(glint_shade_material materials[6])
+{
+    for (int m = 0; m < 6; m++)
+        materials[m] = (glint_shade_material) { .highlight = below(GLINT_HIGHLIGHT_FACETS),
+                                                .lobe = below(GLINT_LOBE_POWER_COSINE + 1),
+                                                .shininess = one_in(6) ? 0 : (float)power_of_ten(-1, 5),
+                                                .least = one_in(3) ? 0 : (float)between(0, 1) };
+}
+
+static const glint_point_box *hit_box(const shadow_case *c, const uint16_t *hits, glint_point_box *box)
+{
+    shadow_case hit = *c;
+    hit.args.lit[0] = hits;
+    hit.args.sample_count = 1;
+    make_box(&hit, box);
+    return box;
+}
+
+static void soft_light_all(const shadow_case *c, bool odd)
+{
+    static const uint32_t emissions[] = { GLINT_EMIT_ALL,         GLINT_EMIT_ALL,           GLINT_EMIT_ALL,
+                                          GLINT_EMIT_FRONT,       GLINT_EMIT_RADIANT_FRONT, GLINT_EMIT_RADIANT_BOTH,
+                                          GLINT_EMIT_RADIANT_BALL };
+    const uint32_t groups = c->args.group_count, emission = emissions[below(COUNT_OF(emissions))];
+    glint_shade_material materials[6];
+    glint_light_args light = { .group_count = groups,
+                               .hits = masks(groups),
+                               .dark = masks(groups),
+                               .materials = materials,
+                               .scale = c->args.scale,
+                               .sample_count = c->args.sample_count,
+                               .attenuated = one_in(2) || emission >= GLINT_EMIT_RADIANT_FRONT,
+                               .coefficients = { 1, 0.1, 0.01 },
+                               .highlights = !one_in(4),
+                               .sparing = one_in(2) };
+    glint_occlude_args occlude = c->args;
+    glint_point_box box;
+    make_gloss(materials);
+    for (uint32_t s = 0; s < light.sample_count; s++) {
+        lamps[s].emission = emission;
+        light.lamp[s] = &lamps[s];
+        for (int lane = 0; lane < GLINT_GROUP; lane++) {
+            double out[3];
+            random_unit(out);
+            for (int k = 0; k < 3; k++)
+                lamps[s].normal[k][lane] = out[k];
+        }
+        occlude.lit[s] = light.hits;
+    }
+    for (uint32_t g = 0; g < groups; g++)
+        ((uint16_t *)light.dark)[g] &= (uint16_t)(random_bits() & light.hits[g]);
+    memcpy(light.point, c->args.point, sizeof light.point);
+    look_at_points(c, &light, odd);
+    occlude.box = one_in(2) ? hit_box(c, light.hits, &box) : NULL;
+    const bool shadows = !one_in(9);
+    FOR_EACH_TESTED
+    {
+        uint64_t rays = 0;
+        occlude.rays = &rays;
+        const glint_soft_args args = { .light = &light,
+                                       .occlude = shadows ? &occlude : NULL,
+                                       .reached = output("reached", KIND_U16, groups),
+                                       .diffuse = output("diffuse", KIND_FLOAT, groups * GLINT_GROUP),
+                                       .specular = output("specular", KIND_FLOAT, groups * GLINT_GROUP) };
+        if (geometry(c->precision)->soft_light(&args))
+            compare_outputs("soft_light");
+        else
+            free_arrays(gotten, &gotten_count); // too much lies between
+        assert_true(rays <= (uint64_t)groups * GLINT_GROUP * light.sample_count);
+    }
+    count_sums(&light);
+}
+
+static void soft_light_case(int precision, bool odd)
+{
+    shadow_case c;
+    start_shadows(&c, precision, odd);
+    if (c.soft)
+        soft_light_all(&c, odd);
+    free_scene(c.scene);
+}
+
+static void test_soft_light(void **state)
+{
+    (void)state;
+    summed = highlights = 0;
+    run_cases(CASES, 900000, soft_light_case);
+    assert_true(summed > 10000 && highlights > 1000);
+}
+
+static void occlude_case(int precision, bool odd)
+{
+    shadow_case c;
+    start_shadows(&c, precision, odd);
+    for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
+        for (int k = 0; k < 3 && one_in(8); k++) {
+            c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more
+            put(c.args.point[k], precision, i, odd_number());
+        }
+    occlude_all(&c);
+    count_lanes(&c);
+    free_scene(c.scene);
+}
+
+static void test_occlude(void **state)
+{
+    (void)state;
+    open_lanes = dark_lanes = 0;
+    run_cases(CASES, 9000, occlude_case);
+    assert_true(open_lanes > 10000 && dark_lanes > 10000 && settled > 100);
+}
+
+int main(void)
+{
+    find_tested();
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_soft_light) };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
+}

@@ -1,0 +1,163 @@
+/// Directions for indirect light: every instruction set against the scalar reference, that against closed forms; and the
+/// numbers they are made from.
+#include "engine/base/sequence.h"
+#include "tests/engine/stage_rays.h"
+
+#define ALIGNED _Alignas(64)
+
+#define CASES 300
+
+static void scatter_case(int precision, bool odd)
+{
+    const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
+    const void *normal[3];
+    input3(normal, real_kind(precision), n);
+    double *square[2] = { input(KIND_DOUBLE, n), input(KIND_DOUBLE, n) };
+    for (uint32_t i = 0; i < n; i++) {
+        double v[3];
+        random_unit(v);
+        if (one_in(6))
+            v[2] = copysign(one_in(2) ? 0 : 1e-9, v[2]);
+        for (int k = 0; k < 3; k++)
+            v[k] = maybe_odd(odd, v[k]);
+        put3(normal, precision, i, v);
+        for (int k = 0; k < 2; k++)
+            square[k][i] = maybe_odd(odd, one_in(5) ? below(9) / 8.0 : between(0, 1));
+    }
+    glint_scatter_args args = { .group_count = groups, .wanted = masks(groups) };
+    memcpy(args.normal, normal, sizeof normal);
+    args.square[0] = square[0];
+    args.square[1] = square[1];
+    FOR_EACH_TESTED
+    {
+        for (int k = 0; k < 3; k++)
+            args.direction[k] = output("direction", real_kind(precision), n);
+        geometry(precision)->scatter(&args);
+        for (uint32_t i = 0; i < n; i++) // elsewhere anything goes
+            for (int k = 0; k < 3 && args.wanted[i / GLINT_GROUP] && !lane_of(args.wanted, i); k++)
+                put(args.direction[k], precision, i, 0);
+        compare_outputs("scatter");
+    }
+}
+
+static void test_scatter(void **state)
+{
+    (void)state;
+    run_cases(CASES, 17000, scatter_case);
+}
+
+/// One direction around `n`.
+static void ask(const double n[3], double u, double v, double out[3])
+{
+    static ALIGNED double normal[3][GLINT_GROUP], square[2][GLINT_GROUP], direction[3][GLINT_GROUP];
+    const uint16_t first = 1;
+    glint_scatter_args args = { .group_count = 1, .wanted = &first, .square = { square[0], square[1] } };
+    square[0][0] = u;
+    square[1][0] = v;
+    for (int c = 0; c < 3; c++) {
+        normal[c][0] = n[c];
+        args.normal[c] = normal[c];
+        args.direction[c] = direction[c];
+    }
+    running->geometry[GLINT_DOUBLE].scatter(&args);
+    for (int c = 0; c < 3; c++)
+        out[c] = direction[c][0];
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// The cosine with the normal is sqrt(1 - u); v turns around it by 2 pi.
+static void test_closed_forms(void **state)
+{
+    (void)state;
+    random_state = 18000;
+    for (int k = 0; k < 3000; k++) {
+        double n[3], zero[3], d[3];
+        random_unit(n);
+        const double u = between(0, 1), v = between(0, 1);
+        FOR_EACH_TESTED
+        {
+            ask(n, u, v, d);
+            ask(n, u, 0, zero);
+            assert_true(fabs(sqrt(dot(d, d)) - 1) < 2e-9);
+            assert_true(fabs(dot(d, n) - sqrt(1 - u)) < 1e-14);
+            const double cosine = (dot(d, zero) - (1 - u)) / u; // of the angle between both, seen along n
+            assert_true(u < 1e-3 || fabs(cosine - cos(2 * acos(-1) * v)) < 1e-8);
+        }
+    }
+}
+
+/// Means over the hemisphere: of 1, of the direction, and of its squares.
+static void test_means(void **state)
+{
+    (void)state;
+    enum { COUNT = 1 << 14 };
+    const double n[3] = { 0.36, -0.48, 0.8 };
+    double mean[3] = { 0 }, square = 0;
+    running = &glint_stages_ref;
+    for (uint32_t k = 0; k < COUNT; k++) {
+        double uv[2], d[3];
+        glint_sequence_scrambled(k, 5, uv);
+        ask(n, uv[0], uv[1], d);
+        for (int c = 0; c < 3; c++)
+            mean[c] += d[c] / COUNT;
+        square += dot(d, n) * dot(d, n) / COUNT;
+    }
+    for (int c = 0; c < 3; c++)
+        assert_true(fabs(mean[c] - 2.0 / 3 * n[c]) < 2e-4); // the mean of cos over cos / pi
+    assert_true(fabs(square - 0.5) < 2e-4);
+}
+
+/// Every 2^m points from a multiple of 2^m on have one point in each of the 2^m boxes of any shape, for any seed.
+static void test_evenness(void **state)
+{
+    (void)state;
+    static bool taken[1 << 8];
+    random_state = 19000;
+    for (int k = 0; k < 400; k++) {
+        const int m = (int)below(9), wide = (int)below((uint32_t)m + 1);
+        const uint32_t from = below(1u << 20) << m;
+        const uint64_t seed = random_bits();
+        memset(taken, 0, sizeof taken);
+        for (uint32_t i = 0; i < 1u << m; i++) {
+            double p[2];
+            glint_sequence_scrambled(from + i, seed, p);
+            assert_true(p[0] >= 0 && p[0] < 1 && p[1] >= 0 && p[1] < 1);
+            const uint32_t box = (uint32_t)(p[0] * (1 << wide)) << (m - wide) | (uint32_t)(p[1] * (1 << (m - wide)));
+            if (taken[box])
+                fail_msg("seed %llx, 2^%d points from %u: two in box %u of 2^%d x 2^%d", (unsigned long long)seed, m,
+                         from, box, wide, m - wide);
+            taken[box] = true;
+        }
+    }
+}
+
+/// Sequences of different seeds are as independent as random numbers: correlations of first points over many seeds.
+static void test_independence(void **state)
+{
+    (void)state;
+    enum { COUNT = 20000 };
+    double mean[3] = { 0 };
+    for (uint64_t seed = 0; seed < COUNT; seed++) {
+        double a[2], b[2];
+        glint_sequence_scrambled((uint32_t)(seed % 16), glint_sequence_mix(7, seed), a);
+        glint_sequence_scrambled((uint32_t)(seed % 16), glint_sequence_mix(7, seed + 1), b);
+        mean[0] += (a[0] - 0.5) * (a[1] - 0.5) * 12 / COUNT;
+        mean[1] += (a[0] - 0.5) * (b[0] - 0.5) * 12 / COUNT;
+        mean[2] += (a[1] - 0.5) * (b[1] - 0.5) * 12 / COUNT;
+    }
+    for (int i = 0; i < 3; i++)
+        assert_true(fabs(mean[i]) < 5 / sqrt(COUNT));
+}
+
+int main(void)
+{
+    find_tested();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scatter),  cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_means),
+        cmocka_unit_test(test_evenness), cmocka_unit_test(test_independence),
+    };
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
+}

@@ -1,0 +1,94 @@
+/// The engine, through engine/glint.h alone; and the counting of checks that every program here does.
+#ifndef HARD_DRIVE_H
+#define HARD_DRIVE_H
+
+#include "engine/glint.h"
+#include "tests/hard/oracle/oracle.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+
+// ---- Counting ----
+
+/// Reads the arguments: --table prints Markdown tables, --rays N sets how many rays the fuzz casts, --seed N which.
+/// Anything else ends the program. HARD_RAYS in the environment is another way to set the rays.
+void hard_begin(int argc, char **argv);
+extern bool hard_table;
+extern uint64_t hard_rays; ///< 1e6 unless told
+
+/// Begins a test: what is checked from here to the next one belongs to it. `id` as in the list of hard cases.
+void hard_test(const char *id, const char *what);
+/// Checks one thing; prints the message when it fails (of a program, the first ten). Returns `ok`.
+__attribute__((format(printf, 2, 3))) bool hard_check(bool ok, const char *format, ...);
+/// Counts checks that were right, where they are too many for a message each.
+void hard_right(uint64_t checks);
+/// A case about something that the engine does not have.
+void hard_absent(const char *id, const char *what);
+/// Prints the totals; what main returns.
+int hard_end(void);
+
+/// In tables: the heading, and a line for each test as it ends, for programs whose tests have no numbers to show.
+void hard_list_tests(const char *title);
+/// In tables: the heading of lines of values.
+void hard_columns(const char *title);
+/// What a line of values shows; HARD_BLANK: nothing there.
+#define HARD_BLANK (-HUGE_VAL)
+typedef struct hard_values {
+    double truth, in_double, in_float; ///< the oracle's, the engine's
+    double naive_double, naive_float; ///< the textbook's formula
+} hard_values;
+void hard_row(const char *id, const char *what, const hard_values *values, bool right);
+
+// ---- Random numbers ----
+
+uint64_t random_bits(void);
+void random_seed(uint64_t seed);
+double uniform(double low, double high);
+double log_uniform(double low, double high);
+bool chance(double share);
+void random_direction(double v[3]); ///< unit to the last bits
+
+// ---- Objects ----
+
+/// What cannot fail here ends the program with the engine's message.
+void must(glint_status status, const glint_error *error);
+
+glint_scene *scene_new(void);
+void scene_light_up(glint_scene *scene, double ambient, const double background[3]);
+void scene_camera(glint_scene *scene, const glint_camera_desc *desc);
+/// The scene holds the only reference to what these add.
+glint_shape *scene_sphere(glint_scene *scene, const hard_sphere *sphere, glint_material *material);
+glint_shape *scene_plane(glint_scene *scene, const hard_plane *plane, glint_material *material);
+void scene_light(glint_scene *scene, const glint_light_desc *desc);
+
+glint_material *material_new(glint_model model, const double diffuse[3], double specular, double shininess);
+
+/// Makes an empty file of a name nobody else has, for the caller to remove. `ending` with its dot.
+void temporary_file(char path[64], const char *ending);
+
+/// Casts one ray.
+bool cast(const glint_scene *scene, const hard_ray *ray, glint_hit *hit);
+
+typedef struct frame_desc {
+    int width, height;
+    glint_precision precision;
+    uint32_t passes; ///< bits 1u << GLINT_PASS_...
+    int threads; ///< 0: 1
+    const char *isa; ///< NULL: as the environment says, else the best
+} frame_desc;
+
+/// Whether this machine and build can render with an instruction set.
+bool isa_usable(const char *isa);
+
+/// Renders a frame; `stats` may be NULL.
+glint_image *frame(const glint_scene *scene, const frame_desc *desc, glint_frame_stats *stats);
+glint_image *frame_to_depth(const glint_scene *scene, const frame_desc *desc, double max_depth,
+                            glint_frame_stats *stats);
+/// The same, of one pixel, along the ray: 1 x 1 pixels of a camera that looks there.
+glint_image *frame_of_ray(glint_scene *scene, const hard_ray *ray, glint_precision precision, uint32_t passes);
+void pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3]);
+/// How many pixels of a pass differ in any bit; -0 and 0 are the same.
+long pixels_that_differ(const glint_image *a, const glint_image *b, glint_pass pass);
+
+#endif

@@ -1,0 +1,35 @@
+/// What the engine may be off by: 4 ulp of t, times how much the inputs' own rounding is magnified on its way to t. Half an
+/// ulp of the direction, of the radius, and of o - c where that is not exact, moves the hit by so much that a sharper
+/// answer would mean nothing. (Where o - c is exact the roundings of o and c are not counted: a user may mean them.)
+#ifndef HARD_JUDGE_H
+#define HARD_JUDGE_H
+
+#include "engine/glint.h"
+#include "tests/hard/oracle/oracle.h"
+
+typedef enum verdict {
+    RIGHT,
+    TOO_CLOSE, ///< within 8 * 2^-53 of tangency, or of the surface where o - c is not exact: either answer will do
+    WRONG_DECISION,
+    WRONG_T,
+    WRONG_NORMAL
+} verdict;
+
+#define TANGENCY (8 * 0x1p-53) ///< decisions further away than this, in units of |f| + r, must be right
+#define SURFACE (2 * 0x1p-53) ///< the rounding of an inexact o - c, in the same units
+
+extern const char *const verdict_name[];
+
+typedef struct judgement {
+    verdict verdict;
+    double ulp; ///< error of t, in ulp
+    double t_share; ///< that error's share of what is allowed: 4 ulp x how the inputs' rounding is magnified
+    double normal_share;
+} judgement;
+
+double ulp_of(double x);
+judgement judge_sphere(const hard_ray *ray, const hard_sphere *sphere, const truth *want, bool hit,
+                       const glint_hit *got);
+judgement judge_plane(const hard_ray *ray, const hard_plane *plane, const truth *want, bool hit, const glint_hit *got);
+
+#endif

@@ -1,0 +1,24 @@
+/// A closed mesh, convex but for the rounding of its corners, and rays at its seams.
+#ifndef HARD_SHELL_H
+#define HARD_SHELL_H
+
+#include "tests/hard/oracle/drive.h"
+
+#define SIDE 4 ///< quadrangles along an edge of the box
+#define VERTICES (6 * (SIDE + 1) * (SIDE + 1))
+#define QUADS (6 * SIDE * SIDE)
+
+typedef struct shell {
+    double vertex[VERTICES][3];
+    uint32_t corner[QUADS][4], size[QUADS];
+    double middle[3];
+} shell;
+
+/// A box, or a ball, made of quadrangles that need not be flat, somewhere; its seams have the same numbers on both sides.
+void make_shell(shell *s, bool ball, double size, double away);
+void add_shell(glint_scene *scene, const shell *s, glint_material *material);
+
+/// A ray from within at a corner, at a place on an edge or diagonal, or next to one.
+hard_ray aim_at_seam(const shell *s, double size);
+
+#endif

@@ -1,0 +1,44 @@
+/// A still life of spheres under one point light with hard shadows, as the engine and the textbook tracers see it.
+#ifndef HARD_STILL_H
+#define HARD_STILL_H
+
+#include "tests/hard/oracle/drive.h"
+
+#define STILL_MAX 16
+
+typedef struct still_paint {
+    double diffuse[3], specular, shininess; ///< Phong
+} still_paint;
+
+typedef struct hard_still {
+    const char *name;
+    int count;
+    hard_sphere spheres[STILL_MAX];
+    still_paint paint[STILL_MAX];
+    double light[3];
+    double eye[3], at[3], fov_y_rad;
+    double ambient, background[3];
+} hard_still;
+
+/// What a tracer says of one pixel.
+typedef struct still_pixel {
+    int object; ///< counted from 1; 0: background
+    bool lit; ///< the light reaches it and shines on its front
+    double color[3]; ///< linear
+} still_pixel;
+
+/// The textbook's tracer: (-b +- sqrt(b^2 - 4ac)) / 2a, p = o + t d, n = (p - c) / r, shadows beyond an epsilon. In 113
+/// bits it is the truth about scenes whose numbers span no more than twelve digits; in 24 and in 53 it is the contrast.
+still_pixel still_trace_113(const hard_still *still, int width, int height, int x, int y);
+still_pixel still_trace_53(const hard_still *still, int width, int height, int x, int y);
+still_pixel still_trace_24(const hard_still *still, int width, int height, int x, int y);
+
+/// Spheres of about the size `scale` in a heap within `away` of the origin, at times on a ground, in a room, or both.
+hard_still still_random(double scale, double away);
+
+/// The same for the engine.
+glint_scene *still_scene(const hard_still *still);
+/// From an image with the passes beauty, diffuse and object_id.
+still_pixel still_engine_pixel(const glint_image *image, int x, int y);
+
+#endif

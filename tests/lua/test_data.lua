@@ -1,0 +1,592 @@
+-- scripts/lib/glint: the readers on good and bad files, elements, builder; and the scripts that make figures of them.
+local build = os.getenv "BUILD" or "build"
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+package.path = "scripts/lib/?.lua;" .. package.path
+local glint = require "glint"
+local elements, particles, xyz = require "glint.elements", require "glint.particles", require "glint.xyz"
+local pdb, lammps, points = require "glint.pdb", require "glint.lammps", require "glint.points"
+local bonds = require "glint.bonds"
+local nff, helix, sphereflake = require "glint.nff", require "glint.helix", require "glint.sphereflake"
+
+local function near(got, want, tolerance, what)
+  check(math.abs(got - want) <= tolerance, "%s: %.17g expected, got %.17g", what, want, got)
+end
+
+local folder = build .. "/tests/data"
+assert(os.execute(("rm -rf '%s' && mkdir -p '%s'"):format(folder, folder)))
+
+local function write(name, text)
+  local path = folder .. "/" .. name
+  local file = assert(io.open(path, "wb"))
+  assert(file:write(text))
+  assert(file:close())
+  return path
+end
+
+local function slurp(path)
+  local file = assert(io.open(path, "rb"))
+  local text = file:read "a"
+  file:close()
+  return text
+end
+
+-- All that a frame has, as a list of { label, x, y, z, radius }.
+local function all(frame)
+  local list = {}
+  for label, x, y, z, radius in frame:atoms() do list[#list + 1] = { label, x, y, z, radius } end
+  return list
+end
+
+local function is(atom, ...)
+  local want = { ... }
+  for i = 1, 5 do
+    if atom[i] ~= want[i] then return false end
+  end
+  return true
+end
+
+-- What reads a file of this text raises exactly FILE:LINE: the message.
+local function refuses(text, line, message, f)
+  local path = write("bad", text)
+  local ok, got = pcall(f, path)
+  local want = ("%s:%d: %s"):format(path, line, message)
+  check(not ok and got == want, "<%s> expected, got <%s>", want, tostring(got))
+end
+
+local function read_all(each)
+  for frame in each do all(frame) end
+end
+local function read_xyz(path) read_all(xyz.frames(path)) end
+local function read_pdb(path) read_all(pdb.frames(path)) end
+local function read_lammps(path) read_all(lammps.frames(path)) end
+local function read_points(path) all(points.frame(path)) end
+
+local tests = {}
+
+function tests.elements()
+  check(elements.H.number == 1 and elements.C.number == 6 and elements.U.number == 92 and elements.Mt.number == 109,
+    "numbers")
+  check(elements.C.color == "#909090" and elements.O.color == "#ff0d0d" and elements.Au.color == "#ffd123" and
+    elements.Mt.color == "#eb0026", "colours")
+  check(elements.H.radius == 1.2 and elements.C.radius == 1.7 and elements.I.radius == 1.98 and
+    elements.Fe.radius == 2 and elements.Fe.guessed and not elements.C.guessed, "radii")
+  check(elements.symbol "CL" == "Cl" and elements.symbol "8" == "O" and elements.symbol "d" == "H", "symbols")
+  check(not elements.symbol "Xx" and not elements.symbol "0" and not elements.symbol "110" and
+    not elements.symbol "Symbol" and not elements.symbol "6.5", "no symbols")
+  local count = 0
+  for _, element in pairs(elements) do
+    if type(element) == "table" then
+      count = count + 1
+      check(element.color:match "^#%x%x%x%x%x%x$" and element.radius > 0, "element %d", element.number)
+    end
+  end
+  check(count == 109, "109 elements, got %d", count)
+end
+
+-- Bonds are pairs nearer than a bond of their elements can be long.
+function tests.caffeine()
+  local frame = xyz.frame "scripts/data/caffeine.xyz"
+  local atoms, formula, joins = all(frame), {}, {}
+  check(frame.count == 24 and #atoms == 24, "24 atoms, got %d", #atoms)
+  for i, a in ipairs(atoms) do
+    formula[a[1]] = (formula[a[1]] or 0) + 1
+    for j = 1, i - 1 do
+      local b = atoms[j]
+      local distance = math.sqrt((a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2 + (a[4] - b[4]) ^ 2)
+      check(distance > 1, "atoms %d and %d are %g apart", i, j, distance)
+      if distance < ((a[1] == "H" or b[1] == "H") and 1.25 or 1.65) then joins[#joins + 1] = { i, j } end
+    end
+  end
+  check(formula.C == 8 and formula.H == 10 and formula.N == 4 and formula.O == 2, "C8H10N4O2")
+  check(#joins == 25, "25 bonds (24 atoms, two rings), got %d", #joins)
+end
+
+function tests.xyz()
+  local path = write("two.xyz", "2\nfirst\nO 0 0.5 -1e1\r\nh 1 2 3 extra 7\n\n1\n\n 8 +4 5. .5\n")
+  local seen = {}
+  for frame in xyz.frames(path) do seen[#seen + 1] = { frame.number, frame.count, frame.comment, all(frame) } end
+  check(#seen == 2 and seen[1][1] == 1 and seen[1][2] == 2 and seen[1][3] == "first" and seen[2][3] == "", "frames")
+  check(is(seen[1][4][1], "O", 0, 0.5, -10) and is(seen[1][4][2], "h", 1, 2, 3), "frame 1")
+  check(#seen[2][4] == 1 and is(seen[2][4][1], "8", 4, 5, 0.5), "frame 2")
+  check(is(all(xyz.frame(path, 2))[1], "8", 4, 5, 0.5), "frame 2 alone; the atoms of frame 1 are read over")
+  check(select(2, pcall(xyz.frame, path, 3)) == path .. ": frame 3 expected, got a file of 2", "frame 3")
+  check(select(2, pcall(xyz.frame, folder .. "/none")) == folder .. "/none: No such file or directory", "no file")
+  local frame = xyz.frame(path)
+  all(frame)
+  check(not pcall(frame.atoms, frame), "atoms are read once")
+  local whole = "the number of atoms"
+  refuses("", 1, whole .. " expected, got the end of the file", read_xyz)
+  refuses("two\n\n", 1, whole .. ' expected, got "two"', read_xyz)
+  refuses("0\n\n", 1, whole .. ' (a whole number >= 1) expected, got "0"', read_xyz)
+  refuses("1", 2, "a line of comment expected, got the end of the file", read_xyz)
+  refuses("2\n\nC 0 0 0\n", 4, "atom 2 of 2 expected, got the end of the file", read_xyz)
+  refuses("2\n\nC 0 0 0\nC 0 0\n", 4, 'atom 2 of 2 (element x y z) expected, got "C 0 0"', read_xyz)
+  refuses("1\n\nC 0 zero 0\n", 3, 'y (a finite number) expected, got "zero"', read_xyz)
+  refuses("1\n\nC 0 0 nan\n", 3, 'z (a finite number) expected, got "nan"', read_xyz)
+  refuses("1\n\nC 1e999 0 0\n", 3, 'x (a finite number) expected, got "1e999"', read_xyz)
+  refuses("1\n\nC 0x10 0 0\n", 3, 'x (a finite number) expected, got "0x10"', read_xyz)
+  refuses("1\n\nC 0 0 0\nC 0 0 1\n", 4,
+    'the number of atoms of frame 2 (the frame before it is complete) expected, got "C 0 0 1"', read_xyz)
+  refuses(("x"):rep(100), 1, whole .. ' expected, got "' .. ("x"):rep(40) .. '"...', read_xyz)
+end
+
+local ATOM = "ATOM      1  CA  ALA A   1      11.104  -6.134   0.500  1.00  0.00           C\n"
+local CALCIUM = "HETATM    2 CA    CA A   2       1.000   2.000   3.000\n"
+
+function tests.pdb()
+  local atoms = all(pdb.frame(write("a.pdb", "HEADER\n" .. ATOM .. "TER\n" .. CALCIUM .. "END\n")))
+  check(#atoms == 2 and is(atoms[1], "C", 11.104, -6.134, 0.5) and is(atoms[2], "CA", 1, 2, 3), "atoms")
+  check(#all(pdb.frame(folder .. "/a.pdb", 1, { hetatm = false })) == 1, "ATOM alone")
+  local two = write("b.pdb", "MODEL        1\n" .. ATOM .. "ENDMDL\nMODEL        2\n" .. CALCIUM .. ATOM .. "ENDMDL\nEND\n")
+  check(pdb.frame(two, 2).model == 2 and #all(pdb.frame(two, 2)) == 2, "models")
+  local other = ATOM:sub(1, 16) .. "B" .. ATOM:sub(18)
+  check(#all(pdb.frame(write("c.pdb", ATOM .. other))) == 1, "alternate locations: the first alone")
+  local nameless = ATOM:sub(1, 12) .. "HG11" .. ATOM:sub(17, 60) .. "\n"
+  check(is(all(pdb.frame(write("d.pdb", nameless)))[1], "H", 11.104, -6.134, 0.5), "a hydrogen by its name")
+  refuses("HEADER\n", 2, "an ATOM or HETATM record expected, got the end of the file", read_pdb)
+  refuses(ATOM:sub(1, 50), 1, "a record of at least 54 columns (z is in 47-54) expected, got \"" .. ATOM:sub(1, 40) ..
+    '"...', read_pdb)
+  refuses((ATOM:gsub("%-6.134", "*6.134")), 1, 'y, columns 39-46, (a finite number) expected, got "  *6.134"', read_pdb)
+  refuses("MODEL        1\n" .. ATOM, 3, "ENDMDL expected, got the end of the file", read_pdb)
+  refuses("MODEL        1\n" .. ATOM .. "MODEL        2\n", 3, 'ENDMDL expected, got "MODEL        2"', read_pdb)
+  refuses("MODEL      one\n", 1, 'the number of the model (a whole number >= 0) expected, got "     one"', read_pdb)
+end
+
+local function dump(step, count, bounds, columns, body)
+  return ("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS %s\nITEM: ATOMS %s\n%s"):format(step, count,
+    bounds, columns, body)
+end
+local BOX = "pp pp ff\n-1 3\n0 2\n0 10"
+local TILTED = "xy xz yz pp pp pp\n0 5 1\n0 4 0\n0 4 0"
+
+function tests.lammps()
+  local path = write("a.dump", dump(100, 2, BOX, "id type xs ys zs", "1 1 0.25 0.5 0.1\n2 3 1.25 0 1.5\n") ..
+    dump(200, 1, BOX, "type id z y x diameter", "2 1 9 8 7 3\n"))
+  local frame = lammps.frame(path)
+  local atoms = all(frame)
+  check(frame.step == 100 and frame.count == 2 and frame.box.size[1] == 4 and frame.box.periodic[2] and
+    not frame.box.periodic[3], "header")
+  check(is(atoms[1], "type1", 0, 1, 1) and is(atoms[2], "type3", 4, 0, 15), "scaled")
+  check(is(all(lammps.frame(path, 1, { wrap = true }))[2], "type3", 0, 0, 15), "wrapped where the box is periodic")
+  check(is(all(lammps.frame(path, 2))[1], "type2", 7, 8, 9, 1.5), "frame 2: unscaled, columns in another order")
+  check(is(all(lammps.frame(path, 2, { types = { "Na", "Cl", "Ar" } }))[1], "Cl", 7, 8, 9, 1.5), "types")
+  local tilted = write("b.dump", dump(0, 2, TILTED, "element xsu ysu zsu", "Ar 0.5 0.5 0.5\nAr 0.5 1.5 0.5\n"))
+  local box = lammps.frame(tilted).box
+  check(box.low[1] == 0 and box.high[1] == 4 and box.xy == 1, "a tilted box: what is around it is longer by its tilt")
+  check(is(all(lammps.frame(tilted))[1], "Ar", 2.5, 2, 2), "scaled and tilted")
+  check(is(all(lammps.frame(tilted, 1, { wrap = true }))[2], "Ar", 2.5, 2, 2), "wrapped and tilted")
+  local unwrapped = write("c.dump", dump(0, 1, TILTED, "element xu yu zu", "Ar 7.5 6 2\n"))
+  check(is(all(lammps.frame(unwrapped, 1, { wrap = true }))[1], "Ar", 2.5, 2, 2), "unscaled, wrapped and tilted")
+  refuses("", 1, "ITEM: TIMESTEP expected, got the end of the file", read_lammps)
+  refuses("LAMMPS\n", 1, 'ITEM: TIMESTEP expected, got "LAMMPS"', read_lammps)
+  refuses("ITEM: TIMESTEP\nlate\n", 2, 'the time step (a whole number >= 0) expected, got "late"', read_lammps)
+  refuses("ITEM: ATOMS id\n", 1, 'the step of the frame above ITEM: ATOMS expected, got "ITEM: ATOMS"', read_lammps)
+  refuses(dump(0, 2, BOX, "type x y z", "1 0 0 0\n"), 11, "atom 2 of 2 expected, got the end of the file", read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "1 0 0\n"), 10, 'atom 1 of 1, with 4 columns expected, got "1 0 0"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y", ""), 9,
+    'columns x y z, xs ys zs, xu yu zu or xsu ysu zsu expected, got " type x y"', read_lammps)
+  refuses(dump(0, 1, BOX, "x y z", ""), 9, 'a column element or type expected, got " x y z"', read_lammps)
+  refuses(dump(0, 1, "pp pp\n0 1\n", "type x y z", ""), 5, "ITEM: BOX BOUNDS with three boundary kinds such as " ..
+    'pp pp pp, after xy xz yz when tilted expected, got " pp pp"', read_lammps)
+  refuses(dump(0, 1, "pp pp pp\n3 1\n0 1\n0 1", "type x y z", ""), 6,
+    'x bounds of the box, the lower one first expected, got "3 1"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "1 0 0 0\n1 0 0 1\n"), 11,
+    'ITEM: ... of frame 2 (the frame before it is complete) expected, got "1 0 0 1"', read_lammps)
+  refuses(dump(0, 1, BOX, "type x y z", "3 0 0 0\n"), 10, 'a type among the 2 of the option types expected, got "3"',
+    function(bad) read_all(lammps.frames(bad, { types = { "Na", "Cl" } })) end)
+end
+
+function tests.points()
+  local list = all(points.frame(write("a.csv", "# stars\nName,X,Z,Y,radius,Label\n\"a \"\"b\"\", c\",1,3,2,0.5,\"C\"\n\nd,4,6,5,1,O\n")))
+  check(#list == 2 and is(list[1], "C", 1, 2, 3, 0.5) and is(list[2], "O", 4, 5, 6, 1), "named columns, quotes")
+  check(is(all(points.frame(write("c.txt", " 1 2  3\n")))[1], "point", 1, 2, 3), "blanks")
+  check(is(all(points.frame(write("d.tsv", "1\t2\t3\t4\n")))[1], "point", 1, 2, 3, 4), "tabs, a radius")
+  check(is(all(points.frame(write("e.csv", "1;2;3;C\n"), { columns = { "z", "y", "x", "label" } }))[1], "C", 3, 2, 1),
+    "columns by options")
+  refuses("# nothing\n", 2, "a line of points expected, got the end of the file", read_points)
+  refuses("x,y,w\n", 1, 'a column named z expected, got "x,y,w"', read_points)
+  refuses("1,2\n", 1, 'a column named z expected, got "1,2"', read_points)
+  refuses("x,y,z\n1,2\n", 2, '3 columns, as many as in the first line, expected, got "1,2"', read_points)
+  refuses("x,y,z\n1,2,three\n", 2, 'z (a finite number) expected, got "three"', read_points)
+  refuses("x,1,2\n", 1, 'numbers, or the names of the columns expected, got "x,1,2"', read_points)
+  refuses("x,y,z\n1,2,\"3\n", 2, 'a closing quote in this line expected, got "1,2,\\"3"', read_points)
+end
+
+function tests.particles()
+  for _, format in ipairs { "f64", "f32" } do
+    local set = particles.new { format = format, scale = 2, material = { specular = 0.25 }, kinds = {
+      A = { color = "red", radius = 3 }, B = { material = glint.material { name = "mine" } } } }
+    for i = 0, 999 do set:add(({ "C", "o", "A", "8", "type2" })[i % 5 + 1], 10 * i, 0.5, -1) end
+    set:add("B", -5, 0, 0, 0.25)
+    check(set.count == 1001 and set.counts.O == 400 and set.counts.A == 200 and set.counts.B == 1, "%s: counts", format)
+    check(set.low[1] == -5.25 and set.high[1] == 9990 + 1 and set.high[2] == 0.5 + 6, "%s: extent", format)
+    local spheres = set:spheres { name = "all" }
+    check(spheres.count == 1001 and spheres.name == "all" and #spheres.materials == 5, "%s: a material a kind", format)
+    check(spheres.materials[2].name == "O" and spheres.materials[2].specular.r == 0.25, "%s: the material of O", format)
+    check(spheres.materials[5].name == "mine", "%s: a material of one's own", format)
+    local hit = glint.scene { spheres }:cast({ 6020, 50, -1 }, { 0, -1, 0 })
+    near(hit.point.y, 6.5, 1e-6, format .. ": the top of an A")
+    check(hit.element == 603, "%s: the 603rd, got %d", format, hit.element)
+    check(not pcall(set.spheres, set), "%s: the spheres are taken once", format)
+  end
+  local ok, message = pcall(particles.new, { colour = "red" })
+  check(not ok and message:find("particles.colour: no such option", 1, true), "unknown option: %s", message)
+  check(not pcall(particles.new, { format = "f16" }), "unknown format")
+  local set = particles.new()
+  check(select(2, pcall(set.add, set, "Xx", 0, 0, 0)):find(
+    'an element, its number, or one of the option kinds expected, got "Xx"', 1, true), "unknown element")
+  check(not pcall(set.add, set, "C", 0, 0, 0, 0) and set.count == 0, "no radius")
+  check(not pcall(set.spheres, set), "no spheres")
+  local function add_xyz(path) particles.new():add_frame(xyz.frame(path)) end
+  refuses("2\n\nC 0 0 0\nXx 0 0 0\n", 4, 'an element, its number, or one of the option kinds expected, got "Xx"', add_xyz)
+  refuses("x,y,z,radius\n0,0,0,-1\n", 2, 'a radius > 0 expected, got "-1"',
+    function(path) particles.new():add_frame(points.frame(path)) end)
+end
+
+-- What is kept of an atom while a file is read: 36 bytes, not a table.
+function tests.memory()
+  local path = write("large.xyz", "50000\n" .. ("\nC 1 2.5 0"):rep(50000))
+  collectgarbage()
+  collectgarbage() -- what has a finalizer goes in the second round
+  local before, set = collectgarbage "count", particles.new()
+  set:add_frame(xyz.frame(path))
+  collectgarbage()
+  collectgarbage()
+  local bytes = (collectgarbage "count" - before) * 1024 / 50000
+  check(set.count == 50000 and bytes > 30 and bytes < 45, "36 bytes an atom and little more, got %g", bytes)
+end
+
+-- The camera of a set sees the box around it whole.
+function tests.camera()
+  local set = particles.new { radius = 0.1 }
+  for _, x in ipairs { -3, 5 } do set:add("C", x, 2 * x, 1) end
+  local center, radius = set:extent()
+  near(center[1], 1, 1e-12, "centre")
+  near(radius, math.sqrt(4.1 ^ 2 + 8.1 ^ 2 + 0.1 ^ 2), 1e-12, "radius")
+  local camera = set:camera { from = { 0, 0, 2 }, fov = 60, up = { 1, 0, 0 } }
+  near(camera.eye.z - 1, 2 * radius, 1e-9, "distance for 60 degrees")
+  check(camera.fov == 60 and camera.up.x == 1 and camera.at.x == center[1], "camera")
+end
+
+function tests.helix()
+  local place, count = {}, 0
+  helix.each(2, 12, function(atom, x, y, z, residue, chain)
+    count = count + 1
+    place[atom .. residue .. "/" .. chain] = { x, y, z }
+  end)
+  check(count == 2 * 12 * 5, "atoms: %d", count)
+  local function distance(a, b)
+    a, b = place[a], place[b]
+    return math.sqrt((a[1] - b[1]) ^ 2 + (a[2] - b[2]) ^ 2 + (a[3] - b[3]) ^ 2)
+  end
+  for _, bond in ipairs { { "N3/1", "CA3/1", 1.458 }, { "CA3/1", "C3/1", 1.525 }, { "C3/1", "N4/1", 1.329 },
+    { "C3/1", "O3/1", 1.231 }, { "CA3/2", "CB3/2", 1.53 }, { "O3/2", "N7/2", 2.9 } } do
+    near(distance(bond[1], bond[2]), bond[3], 0.03, bond[1] .. " to " .. bond[2])
+  end
+  near(distance("CA3/1", "CB3/1"), distance("CA9/1", "CB9/1"), 1e-9, "every residue alike")
+  local path = folder .. "/chain.pdb"
+  helix.write_pdb(path, 2, 12)
+  local atoms = all(pdb.frame(path))
+  check(#atoms == count and atoms[1][1] == "N" and atoms[5][1] == "C", "what is written is read")
+  near(atoms[5][2], place["CB1/1"][1], 0.0005, "x of CB 1")
+end
+
+function tests.bonds()
+  local set = particles.new()
+  set:add_frame(xyz.frame "scripts/data/caffeine.xyz")
+  local found = {}
+  local group, count = bonds.new(set)
+  local x, y, z, place = set:places_of_all()
+  check(count == 25 and group.count == 50, "caffeine has 25 bonds, got %d", count)
+  local reach = {}
+  for i = 1, #x do
+    reach[i] = elements[set.materials[place[i]].name].covalent + 0.225
+    found[i] = {}
+  end
+  bonds.each(x, y, z, reach, 0.4, function(i, j) found[i][j] = (found[i][j] or 0) + 1 end)
+  for i = 1, #x do
+    for j = 1, i - 1 do
+      local d = math.sqrt((x[i] - x[j]) ^ 2 + (y[i] - y[j]) ^ 2 + (z[i] - z[j]) ^ 2)
+      check((found[i][j] or 0) == ((d <= reach[i] + reach[j] and d > 0.4) and 1 or 0), "pair %d, %d at %g", i, j, d)
+    end
+  end
+  set = particles.new { format = "f32" } -- a grid of 13 x 13 x 13, in another order
+  for n = 0, 13 ^ 3 - 1 do
+    local i = n * 1000 % 2197
+    set:add("point", i % 13 - 50, i // 13 % 13 + 1e3, i // 169)
+  end
+  local _, joined = bonds.new(set, { distance = 1.1 })
+  check(joined == 3 * 12 * 13 * 13, "bonds of a grid: %d", joined)
+  local ok, message = pcall(bonds.new, set)
+  check(not ok and message:find('"point" is no element and has no covalent radius', 1, true), "%s", message)
+  ok, message = pcall(bonds.new, set, { raduis = 1 })
+  check(not ok and message:find("bonds.raduis: no such option", 1, true), "%s", message)
+  check(not pcall(bonds.new, set, { radius = 0 }) and not pcall(bonds.new, set, { radius = "1" }), "wrong radius")
+  local alone = particles.new()
+  alone:add("He", 0, 0, 0)
+  local none, zero = bonds.new(alone)
+  check(none == nil and zero == 0, "no bonds, no group")
+  check(elements.C.covalent == 0.76 and elements.Cm.covalent == 1.69 and elements.Hs.covalent == 1.7, "covalent radii")
+  local cue = set:depth_cue(set:camera { from = { 0, 0, 1 } }, 0.5)
+  near(cue.far - cue.near, 2 * 13, 1e-9, "a depth cue over the depth of all spheres")
+  set:spheres()
+  check(not pcall(bonds.new, set, { distance = 1 }), "after spheres() there is nothing left")
+end
+
+-- The bonds of atoms in a box against every pair and every repetition of it, one by one.
+local function count_across(box, atoms, longest)
+  local count, s = 0, box.size
+  for i, a in ipairs(atoms) do
+    for j = 1, i do
+      for p = -3, 3 do
+        for q = -3, 3 do
+          for r = -3, 3 do
+            local x, y = a[1] - atoms[j][1] + p * s[1] + q * box.xy + r * box.xz, a[2] - atoms[j][2] + q * s[2] + r * box.yz
+            local d = math.sqrt(x * x + y * y + (a[3] - atoms[j][3] + r * s[3]) ^ 2)
+            if d > 0 and d <= longest then count = count + (i == j and 0.5 or 1) end
+          end
+        end
+      end
+    end
+  end
+  return count
+end
+
+function tests.periodic_bonds()
+  local path = write("wall.dump", dump(0, 2, "pp pp pp\n0 10\n0 10\n0 10", "element x y z", "C 0.5 5 5\nO 9.5 5 5\n"))
+  local function load() return particles.new():add_frame(lammps.frame(path)) end
+  local _, group, count
+  group, count = bonds.new(load())
+  check(count == 1 and group.count == 2, "one bond across a face, got %d", count)
+  local scene = glint.scene { group }
+  for _, case in ipairs { { 0.25, "C" }, { -0.1, nil }, { 9.75, "O" }, { 10.1, nil }, { 5, nil } } do
+    local hit = scene:cast({ case[1], 5, 20 }, { 0, 0, -1 })
+    check((hit and hit.object.material.name) == case[2], "at x = %g: %s", case[1], tostring(case[2]))
+  end
+  check(select(2, bonds.new(load(), { box = false })) == 0, "none across a face on request")
+  check(select(2, bonds.new(load(), { box = { size = { 12, 10, 10 } } })) == 0, "another box")
+  local set = particles.new()
+  set:add("C", 0.5, 5, 5)
+  set:add("C", -9.5 + 10 * 7, 5, 5) -- unwrapped, seven boxes away
+  _, count = bonds.new(set, { box = { size = { 10, 10, 10 }, periodic = { true, false, false } } })
+  check(count == 0, "the same place, not a bond: %d", count)
+  set = particles.new()
+  set:add("C", 0.5, 5, 5)
+  set:add("C", -9.5 + 10 * 7 + 1.2, 5, 5)
+  group, count = bonds.new(set, { box = { size = { 10, 10, 10 } } })
+  check(count == 1 and glint.scene { group }:cast({ 61.5, 5, 20 }, { 0, 0, -1 }), "halves set out from where the atoms are")
+  local state = 7
+  local function draw(size)
+    state = state * 48271 % 0x7fffffff
+    return state / 0x7fffffff * size
+  end
+  for _, tilt in ipairs { { 0, 0, 0 }, { 1.5, -1, 0.7 }, { -2, 1.9, -1.5 } } do
+    for _, size in ipairs { { 4, 4, 4 }, { 9, 4, 5 }, { 1.3, 3, 4 } } do
+      local box = { size = size, low = { -3, 1, 2 }, periodic = { true, true, true }, xy = tilt[1], xz = tilt[2], yz = tilt[3] }
+      local atoms = {}
+      set = particles.new()
+      for i = 1, 12 do
+        local u, v, w = draw(1), draw(1), draw(1)
+        local x, y, z = -3 + u * size[1] + v * box.xy + w * box.xz, 1 + v * size[2] + w * box.yz, 2 + w * size[3]
+        atoms[i] = { x, y, z }
+        set:add("point", x, y, z)
+      end
+      _, count = bonds.new(set, { distance = 1.25, box = box })
+      local want = count_across(box, atoms, 1.25)
+      check(count == want and want > 0, "a box of %g, %g, %g: %g bonds, got %d", size[1], size[2], size[3], want, count)
+    end
+  end
+  set = particles.new()
+  set:add("point", 0, 0, 0) -- a crystal of one atom: a bond along each side
+  _, count = bonds.new(set, { distance = 1.1, box = { size = { 1, 1, 1 } } })
+  check(count == 3, "a simple cubic crystal has three bonds an atom, got %d", count)
+  for given, message in pairs {
+    [3] = "bonds.box: a box expected, got 3", [{}] = "bonds.box.size: three finite numbers expected, got nil",
+    [{ size = { 1, 0, 1 } }] = "bonds.box.size: numbers > 0 expected, got 0",
+    [{ size = { 0.1, 1, 1 } }] = "bonds: a periodic box of at least 1/8 of the longest bond expected, got 0.1 for one of 1.1",
+    [{ size = { 1, 1, 1 }, periodic = { 1, 2, 3 } }] = "bonds.box.periodic: three booleans expected, got 1 at 1",
+  } do
+    local ok, got = pcall(bonds.new, set, { distance = 1.1, box = given })
+    check(not ok and got:find(message, 1, true), "<%s> expected, got <%s>", message, tostring(got))
+  end
+  set = load()
+  set:add_frame(lammps.frame(write("other.dump", dump(0, 1, "pp pp pp\n0 11\n0 10\n0 10", "element x y z", "C 3 5 5\n"))))
+  local ok, message = pcall(bonds.new, set)
+  check(not ok and message:find("different boxes; give box", 1, true), "two boxes: %s", tostring(message))
+end
+
+function tests.sphereflake()
+  local list = {}
+  sphereflake.each(2, function(x, y, z, radius) list[#list + 1] = { x, y, z, radius } end)
+  check(#list == 91, "1 + 9 + 81 spheres, got %d", #list)
+  for i = 2, #list do -- each touches its parent: for those of the first ring that is the first sphere
+    local s = list[i]
+    if s[4] > 0.1 then near(math.sqrt(s[1] ^ 2 + s[2] ^ 2 + s[3] ^ 2), 2 / 3, 1e-12, "distance of a child") end
+  end
+  near(list[2][1], math.sqrt(2 / 27), 1e-12, "x of the first child, as published: 0.272166")
+  near(list[2][3], math.sqrt(8 / 27), 1e-12, "z of the first child, as published: 0.544331")
+  near(list[12][1], 0.643951, 5e-7, "x of the second child, as published")
+  near(list[12][2], 0.172546, 5e-7, "y of the second child, as published")
+end
+
+function tests.nff()
+  local path = folder .. "/flake.nff"
+  sphereflake.write_nff(path, 2)
+  local picture = nff.load(path)
+  check(picture.width == 512 and picture.height == 512 and picture.set.count == 91 and picture.material_count == 1, "size")
+  check(picture.scene.camera.fov == 45 and picture.scene.camera.up.z == 1 and picture.scene.background.b == 0.753, "view")
+  local hit = picture.scene:cast({ 0, 0, -5 }, { 0, 0, 1 })
+  near(hit.point.z, -0.5, 1e-12, "the first sphere from below")
+  check(hit.object.materials[1].diffuse.g == 0.45 and hit.object.materials[1].shininess == 5, "material")
+  sphereflake.write_nff(path, 0, true)
+  picture = nff.load(path)
+  hit = picture.scene:cast({ 3, 2, 5 }, { 0, 0, -1 })
+  check(hit and hit.t == 5.5 and hit.object.count == 2, "the floor is a mesh of two triangles")
+  near(hit.object.material.diffuse.g, 0.6, 1e-15, "its material")
+  check(picture.polygon_count == 1 and picture.set.count == 1 and picture.material_count == 2, "counts")
+  local head, f = sphereflake.NFF_HEADER, sphereflake.NFF_SPHERES
+  refuses("b 0 0 0\n", 2, "v (a view) expected, got the end of the file", nff.load)
+  refuses("v\nfrom 0 0 1\nup 0 1 0\n", 3, 'at, 3 numbers, expected, got "up 0 1 0"', nff.load)
+  refuses("v\nfrom 0 0\n", 2, 'from, 3 numbers, expected, got "0 0"', nff.load)
+  refuses((head:gsub("angle 45", "angle 180")), 7, 'an angle between 0 and 180 expected, got "180"', nff.load)
+  refuses((head:gsub("512 512", "512 0")), 7, 'resolution (a whole number >= 1) expected, got "0"', nff.load)
+  refuses(head .. "l 1 2\n", 12, 'l (a light, x y z, or x y z r g b), 3 to 6 numbers, expected, got " 1 2"', nff.load)
+  refuses(head .. "l 1 2 3 4\n", 12, '3 or 6 numbers of a light expected, got " 1 2 3 4"', nff.load)
+  refuses(head .. "s 0 0 0 1\n", 12, 'f (a material) before the first primitive expected, got "s 0 0 0 1"', nff.load)
+  refuses(head .. f .. "s 0 0 0\n", 13, 's (a sphere, x y z radius) expected, got " 0 0 0"', nff.load)
+  refuses(head .. f .. "s 0 0 0 0\n", 13, 'a radius > 0 expected, got "0"', nff.load)
+  refuses(head .. f .. "s 0 0 z 1\n", 13, 'z (a finite number) expected, got "z"', nff.load)
+  refuses(head .. "f 1 1 1 1 0 0 0.5 0\n", 12,
+    'an index of refraction > 0 where T is above 0 expected, got " 1 1 1 1 0 0 0.5 0"', nff.load)
+  refuses(head .. "f 1 1 1 1 0 0 -0.5 1\n", 12, 'no negative number in f expected, got " 1 1 1 1 0 0 -0.5 1"', nff.load)
+  local glass = write("glass.nff", head .. "f 1 1 1 0.5 0.25 9 0.5 1.5\ns 0 0 0 1\n")
+  local look = nff.load(glass).scene:cast({ 0, 0, -5 }, { 0, 0, 1 }).object.materials[1]
+  check(look.mirror.r == 0.25 and look.transmission.r == 0.5 and look.ior == 1.5, "mirror and transmission of f")
+  look = nff.load(glass, { mirrors = false }).scene:cast({ 0, 0, -5 }, { 0, 0, 1 }).object.materials[1]
+  check(look.mirror.r == 0 and look.transmission.r == 0, "left out on request")
+  refuses(head .. "f 1 1 1\n", 12, 'f (r g b Kd Ks Shine T index), 8 numbers, expected, got " 1 1 1"', nff.load)
+  local patch = write("patch.nff", head .. f .. "pp 3\n0 0 0 0 0.6 0.8\n1 0 0 0 0.6 0.8\n0 1 0 0 0.6 0.8\n")
+  hit = nff.load(patch).scene:cast({ 0.2, 0.2, 1 }, { 0, 0, -1 })
+  near(hit.normal.z, 1, 1e-12, "the geometric normal of a patch")
+  check(hit.object.shading == "phong", "a patch has normals of its own")
+  refuses(head .. "p 3\n0 0 0\n", 12, 'f (a material) before the first primitive expected, got "p 3"', nff.load)
+  refuses(head .. f .. "p 2\n", 13, 'the number of corners of p (a whole number >= 3) expected, got " 2"', nff.load)
+  refuses(head .. f .. "p 3\n0 0 0\n1 0 0\n", 16, "corner 3 of 3 expected, got the end of the file", nff.load)
+  refuses(head .. f .. "p 3\n0 0 0\n1 0 0 1\n", 15, 'corner 2 of 3, 3 numbers, expected, got "1 0 0 1"', nff.load)
+  refuses(head .. f .. "pp 3\n0 0 0\n", 14, 'corner 1 of 3, 6 numbers, expected, got "0 0 0"', nff.load)
+  refuses(head .. f .. "p 3\n0 0 0\n1 0 0\n0 1 0\np 3\n0 0 0\n1 0 0\n2 0 0\n", 17,
+    "a face with an area expected: its vertices 4, 5, 6 are on one line", nff.load)
+  refuses(head .. "c\n0 0 0 1\n0 0 1 1\n", 12, 'f (a material) before the first primitive expected, got "c"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 1\n", 15, "the apex of c, x y z radius expected, got the end of the file", nff.load)
+  refuses(head .. f .. "c\n0 0 0\n0 0 1 1\n", 14, 'the base of c, x y z radius, 4 numbers, expected, got "0 0 0"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 -1\n0 0 1 1\n", 14, 'a radius >= 0 expected, got "0 0 0 -1"', nff.load)
+  refuses(head .. f .. "c\n0 0 0 0\n0 0 1 0\n", 15, 'a radius > 0 at one of the ends of c expected, got "0"', nff.load)
+  refuses(head .. f .. "c\n0 0 1 1\n0 0 1 2\n", 15, 'another place for the apex of c than for its base expected, got "the same"', nff.load)
+  picture = nff.load(write("cone.nff", head .. f .. "c\n0 0 0 1\n0 0 2 1\nc\n5 0 2 0\n5 0 0 1\nc\n9 0 0 2\n9 0 2 1\n"))
+  check(#picture.cones == 3, "cones")
+  local scene = picture.scene
+  near(scene:cast({ 0, -9, 1 }, { 0, 1, 0 }).t, 8, 1e-12, "a cylinder")
+  check(not scene:cast({ 0, 0, 9 }, { 0, 0, -1 }), "is open")
+  near(scene:cast({ 5, -9, 1 }, { 0, 1, 0 }).t, 8.5, 1e-12, "a cone, its point first")
+  near(scene:cast({ 9, -9, 1 }, { 0, 1, 0 }).t, 7.5, 1e-3, "a cut cone")
+  near(scene:cast({ 9, -9, 1 }, { 0, 1, 0 }).point.z, 1, 1e-12, "at its middle")
+  check(not scene:cast({ 9, 0, 9 }, { 0, 0, -1 }), "is open, too")
+  refuses(head .. "torus 1 2\n", 12, 'v, b, l, f, s, p, pp, c or # expected, got "torus 1 2"', nff.load)
+end
+
+-- A script by the command, in a folder that is not its own; what it printed.
+local root = assert(io.popen "pwd"):read "l"
+local command = os.getenv "GLINT" or root .. "/" .. build .. "/glint"
+local function run(arguments)
+  local pipe = assert(io.popen(("cd '%s' && '%s' %s 2>&1"):format(folder, command, arguments)))
+  local text = pipe:read "a"
+  local ok = pipe:close()
+  return ok, text
+end
+
+-- Numbers of a .pfm: width, height, and a function of x, y (from the top left), channel.
+local function read_pfm(path)
+  local text = slurp(path)
+  local kind, width, height, start = text:match "^(P[Ff])%s(%d+)%s(%d+)%s%-[%d.]+%s()"
+  local channels = kind == "PF" and 3 or 1
+  width, height = tonumber(width), tonumber(height)
+  return width, height, function(x, y, channel)
+    return (("<f"):unpack(text, start + 4 * (((height - 1 - y) * width + x) * channels + channel - 1)))
+  end
+end
+
+-- How many different colours a picture has, of those on a grid.
+local function colors_of(path)
+  local width, height, at = read_pfm(path)
+  local seen, count = {}, 0
+  for y = 0, height - 1, 2 do
+    for x = 0, width - 1, 2 do
+      local key = ("%.3f %.3f %.3f"):format(at(x, y, 1), at(x, y, 2), at(x, y, 3))
+      if not seen[key] then
+        seen[key] = true
+        count = count + 1
+      end
+    end
+  end
+  return count
+end
+
+function tests.pictures()
+  for _, case in ipairs { "molecule", "protein --set residues=20", "sphereflake --set size=2 --set nff=balls.nff",
+    "particle_box --set count=4000", "nff --set file=balls.nff --set mirrors=false" } do
+    local name = case:match "^%S+"
+    local ok, text = run(("%s/scripts/%s.lua %s --size 96x72 --samples 1 -o %s.pfm --quiet"):format(root, name,
+      case:sub(#name + 1), name))
+    check(ok, "%s: %s", name, text)
+    if ok then
+      local count = colors_of(folder .. "/" .. name .. ".pfm")
+      check(count > 60, "%s: a picture of more than 60 colours, got %d", name, count)
+    end
+  end
+  local same, difference = run "compare sphereflake.pfm nff.pfm --fail 0 --warn 0"
+  check(same, "the sphereflake and what is read of its file: %s", difference)
+  local ok, text = run(("%s/scripts/molecule.lua --set file=nothing.xyz"):format(root))
+  check(not ok and text:find("nothing.xyz: No such file", 1, true), "no file: %s", text)
+end
+
+-- Lights from the third on cost no cast; what they show is the albedo times n.l of the normal map.
+function tests.photometric()
+  local ok, text = run(root .. "/scripts/photometric.lua --json --size 64x64 --set lights=7 --set shadows=false " ..
+    "--set spread=30 --set exact=true")
+  check(ok, "photometric: %s", text)
+  local frames, reused = 0, 0
+  for line in text:gmatch '[^\n]*"event":"frame"[^\n]*' do
+    frames = frames + 1
+    local is_reused = line:find('"cast":"reused"', 1, true) and line:find('"primary":0,"shadow":0', 1, true)
+    if is_reused then reused = reused + 1 end
+  end
+  check(frames == 8 and reused == 5, "7 lights and the truth, 5 with kept hits; got %d and %d", frames, reused)
+  local set, lights = folder .. "/photometric/", {}
+  for file, x, y, z, intensity in slurp(set .. "lights.csv"):gmatch "(light_%d+.pfm),([^,]+),([^,]+),([^,]+),([^\n]+)" do
+    local _, _, at = read_pfm(set .. file)
+    lights[#lights + 1] = { tonumber(x), tonumber(y), tonumber(z), at = at }
+    near(x ^ 2 + y ^ 2 + z ^ 2, 1, 1e-12, "unit direction")
+    check(tonumber(intensity) == 1, "intensity")
+  end
+  check(#lights == 7, "lights.csv: 7 lights, got %d", #lights)
+  local _, _, normal = read_pfm(set .. "normal.pfm")
+  local _, _, depth = read_pfm(set .. "depth.pfm")
+  check(normal(0, 0, 3) == 0 and depth(0, 0, 1) == math.huge, "nothing in the corner")
+  near(normal(32, 32, 3), 1, 1e-3, "the middle faces the camera")
+  near(depth(32, 32, 1), 8.4, 1e-2, "and is 8.4 away")
+  for _, p in ipairs { { 32, 32 }, { 26, 34 }, { 38, 40 } } do
+    local x, y = p[1], p[2]
+    for k = 1, 7 do -- red is 0.75 (n.l) on the large ball
+      local l = lights[k]
+      local n_l = normal(x, y, 1) * l[1] + normal(x, y, 2) * l[2] + normal(x, y, 3) * l[3]
+      near(l.at(x, y, 1), 0.75 * n_l, 1e-6, ("light %d at %d, %d"):format(k, x, y))
+    end
+  end
+  for _, name in ipairs { "mask.png", "normal.png", "depth.png" } do
+    check(slurp(set .. name):sub(25, 25):byte() == 16, "%s has 16 bits", name)
+  end
+end
+
+tally.run(tests)
+tally.finish()
