@@ -52,10 +52,41 @@ static void make_materials(glint_shade_material *material, uint32_t count)
         random_color(material[i].ambient);
         material[i].shininess = (float)(one_in(8) ? 0 : power_of_ten(-2, 4));
         random_color(material[i].grazing);
+        material[i].planes = 0;
         material[i].highlight = below(4);
         material[i].alpha = (float)(one_in(6) ? 1 : one_in(6) ? 1e-18 : power_of_ten(-6, 0));
         material[i].lobe = material[i].highlight == GLINT_HIGHLIGHT_FACETS ? GLINT_LOBE_GGX + below(2) : below(2);
     }
+}
+
+/// Planes for half of the cases: some materials have some of their numbers there.
+static const glint_shade_planes *make_planes(glint_shade_material *material, uint32_t count, uint32_t n,
+                                             glint_shade_planes *planes)
+{
+    if (one_in(2))
+        return NULL;
+    for (uint32_t i = 0; i < count; i++)
+        material[i].planes = one_in(3) ? 0 : below(64);
+    float *shininess = input(KIND_FLOAT, n), *alpha = input(KIND_FLOAT, n);
+    for (int c = 0; c < 3; c++) {
+        float *diffuse = input(KIND_FLOAT, n), *ambient = input(KIND_FLOAT, n), *specular = input(KIND_FLOAT, n);
+        for (uint32_t i = 0; i < n; i++) {
+            diffuse[i] = (float)(one_in(6) ? 0 : one_in(9) ? 0x1p100 : between(0, 2));
+            ambient[i] = (float)between(0, 2);
+            specular[i] = (float)(one_in(6) ? 0 : power_of_ten(-4, 1));
+        }
+        planes->diffuse[c] = diffuse;
+        planes->ambient[c] = ambient;
+        planes->specular[c] = specular;
+        planes->ambient_light[c] = between(0, 2);
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        shininess[i] = (float)(one_in(8) ? 0 : power_of_ten(-2, 4));
+        alpha[i] = (float)(one_in(6) ? 1 : power_of_ten(-6, 0));
+    }
+    planes->shininess = shininess;
+    planes->alpha = alpha;
+    return planes;
 }
 
 /// The shade outputs of the set that is running: sums that start as `before` says, or the film and the beauty.
@@ -137,6 +168,8 @@ static void shade_case(int precision, bool odd)
                               .first = !before || one_in(2) };
     random_color(args.background);
     make_shade_hits(&args, COUNT_OF(material_table));
+    glint_shade_planes planes;
+    args.planes = make_planes(material_table, COUNT_OF(material_table), n, &planes);
     make_shade_lights(&args, lights, one_in(3) ? 1 : below(GLINT_LIGHT_CHUNK + 1), sums);
     FOR_EACH_TESTED
     {
@@ -162,6 +195,8 @@ static void resolve_samples_case(int precision, bool odd)
     samples[0].active = active;
     make_materials(material_table, COUNT_OF(material_table));
     random_color(samples[0].background);
+    glint_shade_planes planes;
+    samples[0].planes = make_planes(material_table, COUNT_OF(material_table), groups * GLINT_GROUP, &planes);
     for (uint32_t k = 0; k < count; k++) {
         samples[k] = samples[0];
         make_shade_hits(&samples[k], COUNT_OF(material_table));

@@ -112,12 +112,21 @@ typedef struct glint_shade_light {
     double diffuse[3], specular[3]; ///< colour times intensity
 } glint_shade_light;
 
+/// Numbers of materials that differ from sample to sample: read in lanes whose material says so, finite and >= 0 there.
+/// NULL: no material has them.
+typedef struct glint_shade_planes {
+    const float *diffuse[3], *ambient[3], *specular[3];
+    const float *shininess, *alpha;
+    double ambient_light[3]; ///< what a plane of ambient reflectances is multiplied by
+} glint_shade_planes;
+
 typedef struct glint_shade_args {
     uint32_t group_count;
     const uint16_t *active, *hits;
     const uint32_t *material;
     const uint32_t *only; ///< the material of all hits, where they have one; NULL: not known
     const glint_shade_material *materials;
+    const glint_shade_planes *planes; ///< NULL: no material has any
     double background[3];
     const float *facing; ///< read for materials of GLINT_HIGHLIGHT_FACETS
     bool highlights; ///< false: the specular term is not computed
@@ -150,6 +159,8 @@ typedef struct glint_shade_args {
 //                otherwise 0
 //     S = min(S, GLINT_ATTENUATION_MAX), f = min(w S, GLINT_ATTENUATION_MAX)
 //     specular[c] += f (ks[c] specular[c]) + (f schlick) (grazing[c] specular[c])
+//     Of a material with planes: shininess and alpha are those of the lane; the products of colours are plane (kd[c] diffuse[c])
+//     with kd[c] of the table, likewise specular and grazing; ambient += plane ambient_light[c]; all in double
 //     joined lights: w cosine and w S (f and f schlick) are added up first, in order, in float from 0, over those with the lit bit set
 // Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.

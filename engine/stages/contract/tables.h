@@ -144,15 +144,26 @@ typedef enum glint_lobe {
     GLINT_LOBE_BECKMANN
 } glint_lobe;
 
+/// What of a material differs from sample to sample, a bit each: it is then read from planes, see glint_shade_planes.
+enum {
+    GLINT_PLANE_DIFFUSE = 1,
+    GLINT_PLANE_AMBIENT = 2,
+    GLINT_PLANE_AMBIENT_IS_DIFFUSE = 4, ///< the plane of the diffuse reflectance is the ambient one's, too
+    GLINT_PLANE_SPECULAR = 8,
+    GLINT_PLANE_SHININESS = 16,
+    GLINT_PLANE_ALPHA = 32
+};
+
 typedef struct glint_shade_material {
-    double diffuse[3], specular[3];
+    double diffuse[3], specular[3]; ///< of what is in planes: what the plane is multiplied by
     double ambient[3]; ///< ka * Ia
     float shininess;
     float least; ///< of (r.v)^2 or (n.h)^2: below it the highlight is 0 for certain; 0: wherever that is not known
     uint32_t highlight; ///< glint_highlight: what its specular term is of
     uint32_t lobe; ///< glint_lobe
     float alpha; ///< width of the distribution of microfacets, 1e-18 .. 1
-    double grazing[3]; ///< of microfacets: `specular` is ks f0, this is ks (1 - f0)
+    double grazing[3]; ///< of microfacets: `specular` is ks f0, this is ks (1 - f0); with a plane of ks, without the ks
+    uint32_t planes; ///< GLINT_PLANE_...; 0: all is here
 } glint_shade_material;
 
 #endif

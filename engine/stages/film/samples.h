@@ -50,7 +50,7 @@ static inline const glint_shade_material *only_material(const samples_frame *fra
         if (sample->hits[g] != 0xffff)
             return NULL;
         const glint_shade_material *shown = material_of(sample, (size_t)g * GLINT_GROUP, &lanes);
-        if (lanes != 0xffff || (material && shown != material))
+        if (lanes != 0xffff || (material && shown != material) || shown->planes)
             return NULL;
         material = shown;
     }
@@ -66,7 +66,7 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
     factors.count = 0;
     factors.shiny = false;
     for (uint32_t k = 0; k < frame->count; k++)
-        add_factors(&frame->sample[k], material, specular, g, &factors);
+        add_factors(&frame->sample[k], material, NULL, specular, g, &factors);
     for (int c = 0; c < 3; c++)
         ambient[c] = mean_of_equal(frame, material->ambient[c]);
     for (int i = 0; i < GLINT_GROUP; i += VF) {

@@ -202,6 +202,13 @@ static double square_root_double(double x) { return sqrt(x); }
 
 // ---- shade -------------------------------------------------------------------------------------------------------
 
+/// A material's number at a sample: its own, or what a plane has in its place.
+static float number_at(const glint_shade_material *material, unsigned which, float number, const float *plane,
+                       uint32_t i)
+{
+    return material->planes & which ? plane[i] : number;
+}
+
 typedef struct terms {
     double value[GLINT_TERM_COUNT][3];
 } terms; ///< of one sample
@@ -243,8 +250,9 @@ static bool add_facets(const glint_shade_args *args, const glint_shade_light *li
     float sine2 = light->sine2[i], l = light->cosine[i], v = args->facing[i];
     if (!(sine2 > GLINT_NO_SPECULAR))
         return false;
-    float s =
-        material->lobe == GLINT_LOBE_GGX ? ggx(material->alpha, sine2, l, v) : beckmann(material->alpha, sine2, l, v);
+    float alpha =
+        number_at(material, GLINT_PLANE_ALPHA, material->alpha, args->planes ? args->planes->alpha : NULL, i);
+    float s = material->lobe == GLINT_LOBE_GGX ? ggx(alpha, sine2, l, v) : beckmann(alpha, sine2, l, v);
     float f = min_float(w * min_float(s, GLINT_ATTENUATION_MAX), GLINT_ATTENUATION_MAX);
     sum->specular += f;
     sum->grazing += f * light->schlick[i];
@@ -269,13 +277,22 @@ static bool add_factors(const glint_shade_args *args, const glint_shade_light *l
         return add_facets(args, light, w, i, sum);
     if (!(light->log2_specular[i] > GLINT_NO_SPECULAR))
         return false;
-    float s = highlight_strength(material->shininess, light->log2_specular[i]);
+    float exponent = number_at(material, GLINT_PLANE_SHININESS, material->shininess,
+                               args->planes ? args->planes->shininess : NULL, i);
+    float s = highlight_strength(exponent, light->log2_specular[i]);
     sum->specular += w * (material->lobe == GLINT_LOBE_POWER_COSINE ? s * light->cosine[i] : s);
     return true;
 }
 
 /// A light's share of a term is float; the term is a sum in double.
 static float share_of(float factor, double color) { return factor * (color < FLT_MAX ? (float)color : FLT_MAX); }
+
+/// A reflectance at a sample: that of the table, times what a plane has.
+static double reflectance(const glint_shade_material *material, unsigned which, double table, const float *plane,
+                          uint32_t i, double light)
+{
+    return material->planes & which ? (double)plane[i] * (table * light) : table * light;
+}
 
 static bool reaches(const glint_shade_light *light, uint32_t i)
 {
@@ -297,11 +314,16 @@ static uint32_t add_lights(const glint_shade_args *args, uint32_t k, uint32_t i,
     } while (k < args->light_count && args->lights[k].joined);
     const glint_shade_material *material = &args->materials[args->material[i]];
     for (int c = 0; c < 3 && any; c++) {
-        float share = share_of(total.diffuse, material->diffuse[c] * light->diffuse[c]);
+        const float *kd = args->planes ? args->planes->diffuse[c] : NULL;
+        const float *ks = args->planes ? args->planes->specular[c] : NULL;
+        double color = reflectance(material, GLINT_PLANE_DIFFUSE, material->diffuse[c], kd, i, light->diffuse[c]);
+        float share = share_of(total.diffuse, color);
         sum->value[GLINT_TERM_DIFFUSE][c] += (double)share;
-        share = share_of(total.specular, material->specular[c] * light->specular[c]);
+        color = reflectance(material, GLINT_PLANE_SPECULAR, material->specular[c], ks, i, light->specular[c]);
+        share = share_of(total.specular, color);
+        color = reflectance(material, GLINT_PLANE_SPECULAR, material->grazing[c], ks, i, light->specular[c]);
         if (material->highlight == GLINT_HIGHLIGHT_FACETS)
-            share += share_of(total.grazing, material->grazing[c] * light->specular[c]);
+            share += share_of(total.grazing, color);
         if (shiny)
             sum->value[GLINT_TERM_SPECULAR][c] += (double)share;
     }
@@ -344,6 +366,16 @@ static void store_sums(const terms *total, double *const sum[GLINT_TERM_COUNT][3
                 sum[term][c][i] = total->value[term][c];
 }
 
+static double ambient_at(const glint_shade_args *args, uint32_t i, int c)
+{
+    const glint_shade_material *material = &args->materials[args->material[i]];
+    if (material->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE)
+        return (double)args->planes->diffuse[c][i] * args->planes->ambient_light[c];
+    if (material->planes & GLINT_PLANE_AMBIENT)
+        return (double)args->planes->ambient[c][i] * args->planes->ambient_light[c];
+    return material->ambient[c];
+}
+
 /// Adds the terms of one sample.
 static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
 {
@@ -353,7 +385,7 @@ static void add_sample(const glint_shade_args *args, uint32_t i, terms *sum)
         if (active && !hit)
             sum->value[GLINT_TERM_BACKGROUND][c] += args->background[c];
         if (hit)
-            sum->value[GLINT_TERM_AMBIENT][c] += args->materials[args->material[i]].ambient[c];
+            sum->value[GLINT_TERM_AMBIENT][c] += ambient_at(args, i, c);
     }
     for (uint32_t k = 0; k < args->light_count;)
         k = add_lights(args, k, i, sum);

@@ -16,10 +16,10 @@ static inline bool has_facets(const glint_shade_material *material)
     return GLINT_WITH_FACET && material->highlight == GLINT_HIGHLIGHT_FACETS;
 }
 
-/// w (n.l) and w S of one light or sample, for a group. `add`: to what is there, of the light it is joined to. Returns
-/// whether w S may be more than 0 anywhere.
-INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, bool specular, size_t at,
-                       bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
+/// w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a constant: the
+/// material's. `add`: to what is there, of the light it is joined to. Returns whether w S may be more than 0 anywhere.
+INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
+                       bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
     bool any = false;
@@ -33,7 +33,8 @@ INNER bool put_factors(const glint_shade_light *light, const glint_shade_materia
             share = f_load(diffuse + i) + share;
         f_store(diffuse + i, share);
         if (specular) {
-            const vf log2 = f_load(light->log2_specular + at + i), y = f_set(material->shininess) * log2;
+            const vf log2 = f_load(light->log2_specular + at + i);
+            const vf y = (exponent ? f_load(exponent + i) : f_set(material->shininess)) * log2;
             const fm there = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
             share = f_set(0);
             if (fm_bits(fm_andnot(there, f_lt(y, f_set(GLINT_EXP2_LOWEST))))) {
@@ -57,18 +58,18 @@ static inline vf beckmann_mask(vf alpha, vf x)
 }
 
 /// pi D G / (4 n.v) of the GGX distribution; l, v: the cosines.
-static inline vf ggx_lobe(const glint_shade_material *material, vf sine2, vf l, vf v)
+static inline vf ggx_lobe(vf alpha, vf sine2, vf l, vf v)
 {
-    const vf one = f_set(1), alpha = f_set(material->alpha), aa = alpha * alpha, b = one - aa;
+    const vf one = f_set(1), aa = alpha * alpha, b = one - aa;
     const vf u = alpha / (sine2 + aa * (one - sine2));
     const vf d = l * f_sqrt(aa + b * (v * v)) + v * f_sqrt(aa + b * (l * l));
     return (u * u) * ((f_set(0.5f) * l) / f_max(d, f_set(FLT_MIN)));
 }
 
 /// The same of Beckmann's.
-static inline vf beckmann_lobe(const glint_shade_material *material, vf sine2, vf l, vf v)
+static inline vf beckmann_lobe(vf alpha, vf sine2, vf l, vf v)
 {
-    const vf alpha = f_set(material->alpha), aa = alpha * alpha;
+    const vf aa = alpha * alpha;
     const vf c = f_max(f_set(1) - sine2, f_set(0x1p-40f));
     const vf e = f_exp2_above(-((sine2 / c) * (f_set(GLINT_LOG2_E) / aa)), GLINT_EXP2_LEAST);
     const vf d = (l * v + v * beckmann_mask(alpha, l)) + l * beckmann_mask(alpha, v);
@@ -90,6 +91,8 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
     const bool facets = has_facets(material);
+    const float *exponent = material->planes & GLINT_PLANE_SHININESS ? args->planes->shininess + at : NULL;
+    const float *width = material->planes & GLINT_PLANE_ALPHA ? args->planes->alpha + at : NULL;
     const vf most = f_set(GLINT_ATTENUATION_MAX), zero = f_set(0);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         vf w = f_set(1), share;
@@ -99,15 +102,16 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
         const vf angle = f_load((facets ? light->sine2 : light->log2_specular) + at + i);
         const fm mask = fm_and(fm_from_bits(lit >> i & ((1u << VF) - 1)), f_lt(f_set(GLINT_NO_SPECULAR), angle));
         if (!facets) {
-            share = w * (f_exp2(f_set(material->shininess) * angle) * cosine);
+            const vf s = exponent ? f_load(exponent + i) : f_set(material->shininess);
+            share = w * (f_exp2(s * angle) * cosine);
             put_share(highlight + i, add, f_select(mask, share, zero));
             continue;
         }
-        const vf v = f_load(args->facing + at + i);
+        const vf v = f_load(args->facing + at + i), alpha = width ? f_load(width + i) : f_set(material->alpha);
         if (material->lobe == GLINT_LOBE_GGX)
-            share = ggx_lobe(material, angle, cosine, v);
+            share = ggx_lobe(alpha, angle, cosine, v);
         else
-            share = beckmann_lobe(material, angle, cosine, v);
+            share = beckmann_lobe(alpha, angle, cosine, v);
         share = f_min(w * f_min(share, most), most);
         put_share(highlight + i, add, f_select(mask, share, zero));
         put_share(grazing + i, add, f_select(mask, share * f_load(light->schlick + at + i), zero));
@@ -127,9 +131,9 @@ static inline void put_sums(const glint_shade_light *light, bool specular, size_
     }
 }
 
-/// Those of the lights that reach a group, after what is there.
-INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, bool specular, uint32_t g,
-                       light_factors *factors)
+/// Those of the lights that reach a group, after what is there. `exponent`: see put_factors.
+INNER void add_factors(const glint_shade_args *args, const glint_shade_material *material, const float *exponent,
+                       bool specular, uint32_t g, light_factors *factors)
 {
     const size_t at = (size_t)g * GLINT_GROUP;
     const bool power = specular && material->lobe == GLINT_LOBE_POWER;
@@ -144,9 +148,11 @@ INNER void add_factors(const glint_shade_args *args, const glint_shade_material 
         if (light->summed)
             put_sums(light, specular, at, factors->diffuse[slot], factors->specular[slot]);
         else if (begun)
-            shiny = put_factors(light, material, power, at, true, factors->diffuse[slot], factors->specular[slot]);
+            shiny = put_factors(light, material, exponent, power, at, true, factors->diffuse[slot],
+                                factors->specular[slot]);
         else
-            shiny = put_factors(light, material, power, at, false, factors->diffuse[slot], factors->specular[slot]);
+            shiny = put_factors(light, material, exponent, power, at, false, factors->diffuse[slot],
+                                factors->specular[slot]);
         if (specular && !power && !light->summed) {
             put_lobe(args, light, material, at, begun, factors->specular[slot], factors->grazing[slot]);
             shiny = true;
@@ -162,7 +168,7 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
 {
     factors->count = 0;
     factors->shiny = false;
-    add_factors(args, material, specular, g, factors);
+    add_factors(args, material, NULL, specular, g, factors);
 }
 
 /// What a material makes of a light's colour; finite, so that nothing of it is nothing.
@@ -298,6 +304,8 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
     return &args->materials[index];
 }
 
+#include "engine/stages/shade_planes.h"
+
 /// A group of one sample, added to sums.
 static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)
 {
@@ -310,6 +318,10 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
         lanes = left;
         const glint_shade_material *material = material_of(args, (size_t)g * GLINT_GROUP, &lanes);
         const bool specular = args->highlights && material->highlight;
+        if (material->planes) {
+            add_planes(args, material, specular, g, to, lanes);
+            continue;
+        }
         find_factors(args, material, specular, g, &factors);
         if (lanes == 0xffff)
             add_material(args, material, specular, &factors, to, true, lanes);
@@ -401,6 +413,13 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         lanes = left;
         const glint_shade_material *material = material_of(args, at, &lanes);
         const bool specular = args->highlights && material->highlight;
+        if (material->planes) {
+            if (!begun)
+                start_direct(args, g, &terms);
+            begun = true;
+            shade_planes(args, material, specular, g, lanes, &terms);
+            continue;
+        }
         find_factors(args, material, specular, g, &factors);
         if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
             shade_whole(args, material, specular, &factors, at);
