@@ -63,7 +63,7 @@ typedef struct cli_options {
     double fail, warn; ///< of compare
     cli_sweep *sweeps;
     size_t sweep_count;
-    glintL_asked asked; ///< moved into the run
+    glintL_request request; ///< moved into the run
     bool quick; ///< of cost
     double budget_s; ///< of cost; 0: none
     const char *report, *knobs; ///< of cost; NULL: none, all
@@ -91,7 +91,7 @@ struct cli_option {
 #define CLI_OPTION_COUNT 55
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 /// Adds a --set. False: out of memory.
-bool cli_add_set(glintL_asked *asked, const char *name, const char *text);
+bool cli_add_set(glintL_request *request, const char *name, const char *text);
 
 /// Reads the command line; what it keeps points into argv. False: `message` says what is wrong.
 bool cli_read_options(int argc, char **argv, cli_options *options, char message[GLINTL_MESSAGE_SIZE]);

@@ -9,13 +9,13 @@
 
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
-bool cli_add_set(glintL_asked *asked, const char *name, const char *text)
+bool cli_add_set(glintL_request *request, const char *name, const char *text)
 {
-    glintL_set *grown = realloc(asked->sets, (asked->set_count + 1) * sizeof *grown);
+    glintL_set *grown = realloc(request->sets, (request->set_count + 1) * sizeof *grown);
     if (!grown)
         return false;
-    asked->sets = grown;
-    grown[asked->set_count++] = (glintL_set) { .name = name, .text = text };
+    request->sets = grown;
+    grown[request->set_count++] = (glintL_set) { .name = name, .text = text };
     return true;
 }
 
@@ -168,12 +168,12 @@ static bool check_output(cli_options *options, char *message)
     int field = glintL_render_find("output");
     if (!options->output || !(options->command & (CLI_RENDER | CLI_EXPLAIN)))
         return true;
-    if (options->asked.fps > 0 && glintL_film_kind_of(options->output, options->asked.apng) == GLINTL_FILM_NONE) {
+    if (options->request.fps > 0 && glintL_film_kind_of(options->output, options->request.apng) == GLINTL_FILM_NONE) {
         snprintf(message, MESSAGE, "--fps: it means something to films alone; -o '%.200s' is a picture",
                  options->output);
         return false;
     }
-    options->asked.render_text[field] = options->output;
+    options->request.render_text[field] = options->output;
     if (glintL_render_set_text(&scratch, field, options->output, wrong))
         return true;
     snprintf(message, MESSAGE, "--output: %.1000s", wrong);
@@ -187,7 +187,7 @@ static bool check_untrusted(const cli_options *options, char *message)
     if (!options->untrusted_s || !output || strcmp(output, "none") == 0)
         return true;
     const char *slash = strrchr(output, '/');
-    if (glintL_film_kind_of(output, options->asked.apng) != GLINTL_FILM_NONE)
+    if (glintL_film_kind_of(output, options->request.apng) != GLINTL_FILM_NONE)
         snprintf(message, MESSAGE, "--untrusted: pictures expected, got '%.200s'; glint assemble makes a film of them",
                  output);
     else if (slash && memchr(output, '%', (size_t)(slash - output)))
@@ -219,8 +219,8 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
     }
     for (size_t i = 0; i < options->sweep_count; i++) {
         bool twice = false;
-        for (size_t j = 0; j < options->asked.set_count; j++)
-            twice = twice || strcmp(options->asked.sets[j].name, options->sweeps[i].name) == 0;
+        for (size_t j = 0; j < options->request.set_count; j++)
+            twice = twice || strcmp(options->request.sets[j].name, options->sweeps[i].name) == 0;
         for (size_t j = 0; j < i; j++)
             twice = twice || strcmp(options->sweeps[j].name, options->sweeps[i].name) == 0;
         if (twice) {
@@ -239,13 +239,13 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
 static bool complete(cli_options *options, char *message)
 {
     bool good = true;
-    options->asked.swept_count = options->sweep_count;
+    options->request.swept_count = options->sweep_count;
     for (size_t i = 0; i < options->sweep_count; i++)
-        good = good && cli_add_set(&options->asked, options->sweeps[i].name, "");
+        good = good && cli_add_set(&options->request, options->sweeps[i].name, "");
     if (options->start || options->end || options->jump) {
         glintL_range range = { options->start ? options->start : 1, options->end ? options->end : INT64_MAX,
                                options->jump ? options->jump : 1 };
-        good = good && glintL_selection_add(&options->asked.selection, range);
+        good = good && glintL_selection_add(&options->request.selection, range);
     }
     if (!good)
         snprintf(message, MESSAGE, "out of memory");
@@ -257,7 +257,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     bool used[CLI_OPTION_COUNT] = { false };
     memset(options, 0, sizeof *options);
     options->command = CLI_RENDER;
-    options->asked.repeat = 1;
+    options->request.repeat = 1;
     options->frame = 1;
     options->http_port = -1;
     options->fail = options->warn = -1;
@@ -281,8 +281,8 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
 
 void cli_free_options(cli_options *options)
 {
-    glintL_selection_clear(&options->asked.selection);
-    free(options->asked.sets);
-    free(options->asked.folder);
+    glintL_selection_clear(&options->request.selection);
+    free(options->request.sets);
+    free(options->request.folder);
     free(options->sweeps);
 }

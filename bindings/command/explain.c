@@ -82,7 +82,7 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
     cli_script script;
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
-    glintL_selection_clear(&run->asked.selection); // --frame is not a selection here
+    glintL_selection_clear(&run->request.selection); // --frame is not a selection here
     cli_run_script(&script, options, run);
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->explain_plan)

@@ -20,14 +20,14 @@ int cli_sheet(const cli_options *options, cli_output *output)
     int code = GLINTL_EXIT_USAGE;
     if (!options->output)
         return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
-    if (cli_list_files(options, &options->asked.selection, &list, message)) {
+    if (cli_list_files(options, &options->request.selection, &list, message)) {
         glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
         sheet.label = options->label;
         sheet.title = options->title;
         sheet.columns = options->columns;
         sheet.difference = options->difference;
         sheet.gain = options->gain;
-        sheet.mixes = options->asked.force;
+        sheet.mixes = options->request.force;
         code = glintL_sheet_make(&sheet, message);
     }
     if (code)
@@ -43,7 +43,7 @@ static const char *check_film(const cli_options *options, const glintL_film *fil
 {
     if (!options->output || film->kind == GLINTL_FILM_NONE)
         return "-o with a film's name in .mp4, .webm, .gif, .png or .apng expected";
-    if (options->asked.apng && film->kind != GLINTL_FILM_APNG)
+    if (options->request.apng && film->kind != GLINTL_FILM_APNG)
         return "--apng: -o with a name in .png expected";
     if (film->kind == GLINTL_FILM_GIF && film->fps > 50)
         return "a GIF has at most 50 frames a second; --fps 50 or less expected";
@@ -55,7 +55,7 @@ int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
     char message[GLINTL_MESSAGE_SIZE];
     cli_file_list list = { 0 };
     char *path = (char *)(uintptr_t)options->output; // read only
-    glintL_film film = { .path = path, .fps = run->asked.fps > 0 ? run->asked.fps : 24 };
+    glintL_film film = { .path = path, .fps = run->request.fps > 0 ? run->request.fps : 24 };
     int code = GLINTL_EXIT_USAGE;
     film.kind = path ? glintL_film_kind_of(path, true) : GLINTL_FILM_NONE;
     const char *wrong = check_film(options, &film);
@@ -63,10 +63,10 @@ int cli_assemble(cli_options *options, cli_output *output, glintL_run *run)
         return refuse(output, code, "assemble", wrong);
     if (!output->quiet)
         output->progress = cli_progress_create(output->color);
-    if (cli_list_files(options, &run->asked.selection, &list, message)) {
+    if (cli_list_files(options, &run->request.selection, &list, message)) {
         film.files = list.files;
         film.count = list.count;
-        if (glintL_film_check_files(&film, !run->asked.force, message))
+        if (glintL_film_check_files(&film, !run->request.force, message))
             code = glintL_film_make(run, &film, message);
     }
     if (run->interrupted)

@@ -89,7 +89,7 @@ static bool check_gaps(const char *pattern, const int64_t *numbers, size_t count
 }
 
 // The last number that a selection asks for itself; 0: it is open, or there is none.
-static int64_t last_asked(const glintL_selection *selection)
+static int64_t last_request(const glintL_selection *selection)
 {
     int64_t last = 0;
     for (size_t i = 0; i < selection->range_count; i++) {
@@ -174,11 +174,11 @@ static bool add_pattern(const char *pattern, const glintL_selection *selection, 
     if (good && count > 0)
         qsort(numbers, count, sizeof *numbers, by_size);
     if (good && count > 0) {
-        int64_t asked = last_asked(selection), last = numbers[count - 1];
+        int64_t request = last_request(selection), last = numbers[count - 1];
         int64_t first = selection->range_count ? selection->ranges[0].first : numbers[0];
         for (size_t i = 1; i < selection->range_count; i++)
             first = selection->ranges[i].first < first ? selection->ranges[i].first : first;
-        good = check_gaps(pattern, numbers, count, selection, first, asked ? asked : last, message);
+        good = check_gaps(pattern, numbers, count, selection, first, request ? request : last, message);
     }
     good = good && add_numbers(pattern, numbers, count, selection, out, message);
     free(numbers);

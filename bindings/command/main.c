@@ -69,10 +69,10 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
     run->is_command = true;
     run->times_stages = options->json && options->command == CLI_RENDER;
     snprintf(run->script, sizeof run->script, "%s", options->script ? cli_base_name(options->script) : "");
-    run->asked = options->asked; // which now owns what it points to
-    options->asked.sets = NULL;
-    options->asked.folder = NULL;
-    options->asked.selection.ranges = NULL;
+    run->request = options->request; // which now owns what it points to
+    options->request.sets = NULL;
+    options->request.folder = NULL;
+    options->request.selection.ranges = NULL;
     run->reporter = cli_reporter(output);
     output->run = run;
     open_output = output;

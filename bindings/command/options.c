@@ -32,8 +32,9 @@ static bool read_flag(cli_options *options, const cli_option *option, char *text
 {
     (void)text, (void)message;
     static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse", "apng", "quick" };
-    bool *const flags[] = { &options->json,        &options->quiet,          &options->help,       &options->version,
-                            &options->asked.force, &options->asked.no_reuse, &options->asked.apng, &options->quick };
+    bool *const flags[] = { &options->json,         &options->quiet,         &options->help,
+                            &options->version,      &options->request.force, &options->request.no_reuse,
+                            &options->request.apng, &options->quick };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(option->name, names[i]) == 0)
             *flags[i] = true;
@@ -44,7 +45,7 @@ static bool read_frames(cli_options *options, const cli_option *option, char *te
 {
     (void)option;
     options->has_frames = true;
-    return glintL_selection_parse(&options->asked.selection, text, message);
+    return glintL_selection_parse(&options->request.selection, text, message);
 }
 
 static bool read_frame(cli_options *options, const cli_option *option, char *text, char *message)
@@ -63,7 +64,7 @@ static bool read_step(cli_options *options, const cli_option *option, char *text
 static bool read_shard(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
-    return glintL_selection_parse_shard(&options->asked.selection, text, message);
+    return glintL_selection_parse_shard(&options->request.selection, text, message);
 }
 
 // An option of the same name as a field of scene:render{}.
@@ -71,7 +72,7 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
 {
     glintL_render scratch = glintL_render_default();
     int field = glintL_render_find(option->name);
-    options->asked.render_text[field] = text;
+    options->request.render_text[field] = text;
     return glintL_render_set_text(&scratch, field, text, message);
 }
 
@@ -79,7 +80,7 @@ static bool read_render(cli_options *options, const cli_option *option, char *te
 static bool read_switch(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    options->asked.render_text[glintL_render_find(option->name)] = "true";
+    options->request.render_text[glintL_render_find(option->name)] = "true";
     return true;
 }
 
@@ -100,7 +101,7 @@ static bool read_fps(cli_options *options, const cli_option *option, char *text,
         snprintf(message, MESSAGE, "frames a second > 0 expected, got '%.200s'", text);
         return false;
     }
-    options->asked.fps = fps;
+    options->request.fps = fps;
     return true;
 }
 
@@ -136,8 +137,8 @@ static bool read_size(cli_options *options, const cli_option *option, char *text
     }
     snprintf(options->width, sizeof options->width, "%ld", width);
     snprintf(options->height, sizeof options->height, "%ld", height);
-    options->asked.render_text[glintL_render_find("width")] = options->width;
-    options->asked.render_text[glintL_render_find("height")] = options->height;
+    options->request.render_text[glintL_render_find("width")] = options->width;
+    options->request.render_text[glintL_render_find("height")] = options->height;
     return true;
 }
 
@@ -145,7 +146,7 @@ static bool read_set(cli_options *options, const cli_option *option, char *text,
 {
     (void)option;
     char *equals = strchr(text, '=');
-    if (equals && equals > text && cli_add_set(&options->asked, text, equals + 1)) {
+    if (equals && equals > text && cli_add_set(&options->request, text, equals + 1)) {
         *equals = '\0'; // the name ends there
         return true;
     }
@@ -174,7 +175,7 @@ static bool read_count(cli_options *options, const cli_option *option, char *tex
     int64_t count = 0;
     bool good = read_whole(text, 1, threads ? 1024 : 1000000, &count, message);
     if (good)
-        *(threads ? &options->asked.threads : &options->asked.repeat) = (int)count;
+        *(threads ? &options->request.threads : &options->request.repeat) = (int)count;
     return good;
 }
 
@@ -194,8 +195,8 @@ static bool read_memory(cli_options *options, const cli_option *option, char *te
         snprintf(message, MESSAGE, "size such as 512M or 4G expected, got '%.200s'", text);
         return false;
     }
-    options->asked.no_reuse = options->asked.no_reuse || size < 1;
-    options->asked.reuse_memory = (size_t)size;
+    options->request.no_reuse = options->request.no_reuse || size < 1;
+    options->request.reuse_memory = (size_t)size;
     return true;
 }
 
@@ -231,7 +232,7 @@ static bool read_untrusted(cli_options *options, const cli_option *option, char 
     if (text && !read_whole(text, 1, 1000000, &seconds, message))
         return false;
     options->untrusted_s = (double)seconds;
-    options->asked.is_untrusted = true;
+    options->request.is_untrusted = true;
     return true;
 }
 
@@ -241,7 +242,7 @@ static bool read_warnings(cli_options *options, const cli_option *option, char *
     static const char *const known[] = { "show", "error", "none" };
     for (int i = 0; i < 3; i++)
         if (strcmp(text, known[i]) == 0) {
-            options->asked.warnings = (glintL_warnings)i;
+            options->request.warnings = (glintL_warnings)i;
             return true;
         }
     snprintf(message, MESSAGE, "show, error or none expected, got '%.200s'", text);

@@ -17,9 +17,9 @@ static bool finish_point(cli_script *script, const cli_options *options, glintL_
 static bool is_empty_point(glintL_run *run, int64_t frames)
 {
     int64_t from, to, first = run->count + 1, last = run->count + frames;
-    glintL_selection_part(&run->asked.selection, 1, frames * run->point_count, &from, &to);
-    int64_t before = glintL_selection_count(&run->asked.selection, 1, run->count);
-    int64_t here = glintL_selection_count(&run->asked.selection, first, last);
+    glintL_selection_part(&run->request.selection, 1, frames * run->point_count, &from, &to);
+    int64_t before = glintL_selection_count(&run->request.selection, 1, run->count);
+    int64_t here = glintL_selection_count(&run->request.selection, first, last);
     return here == 0 || before + 1 > to || before + here < from;
 }
 
@@ -49,7 +49,7 @@ static void warn_calls(glintL_run *run)
 {
     char message[GLINTL_MESSAGE_SIZE];
     if (run->call_count > 0 && run->call_count == run->count &&
-        glintL_selection_outside(&run->asked.selection, run->count, message))
+        glintL_selection_outside(&run->request.selection, run->count, message))
         glintL_run_warn(run, "%s", message);
 }
 

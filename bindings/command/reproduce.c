@@ -64,32 +64,33 @@ static bool take_param(void *user, char *name, char *value)
 // A parameter that --sweep set is one of the run's sweep again: files say so. They come last, in their order.
 static bool take_swept(void *user, char *name, char *value)
 {
-    glintL_asked *asked = user;
-    size_t last = asked->set_count - 1, at = 0;
-    while (at < asked->set_count && strcmp(asked->sets[at].name, name) != 0)
+    glintL_request *request = user;
+    size_t last = request->set_count - 1, at = 0;
+    while (at < request->set_count && strcmp(request->sets[at].name, name) != 0)
         at++;
-    if (at == asked->set_count) // an axis of the script's own
+    if (at == request->set_count) // an axis of the script's own
         return true;
-    memmove(asked->sets + at, asked->sets + at + 1, (last - at) * sizeof *asked->sets);
-    asked->sets[last] = (glintL_set) { .name = name, .text = value };
-    asked->swept_count++;
+    memmove(request->sets + at, request->sets + at + 1, (last - at) * sizeof *request->sets);
+    request->sets[last] = (glintL_set) { .name = name, .text = value };
+    request->swept_count++;
     return true;
 }
 
 static bool take_option(void *user, char *name, char *value)
 {
-    glintL_asked *asked = user;
+    glintL_request *request = user;
     int field = glintL_render_find(name);
     if (field >= 0)
-        asked->render_text[field] = value;
+        request->render_text[field] = value;
     return true;
 }
 
-static bool check_options(const glintL_asked *asked, char *message)
+static bool check_options(const glintL_request *request, char *message)
 {
     glintL_render scratch = glintL_render_default();
     for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
-        if (asked->render_text[field] && !glintL_render_set_text(&scratch, field, asked->render_text[field], message))
+        if (request->render_text[field] &&
+            !glintL_render_set_text(&scratch, field, request->render_text[field], message))
             return false;
     return true;
 }
@@ -98,7 +99,7 @@ static bool check_options(const glintL_asked *asked, char *message)
 static int ask(reproduction *r, glintL_run *run, char *message)
 {
     const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
-    glintL_asked *asked = &run->asked;
+    glintL_request *request = &run->request;
     if (!*text_of(r, "glint:key") || !*frame) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: it has no key and frame number of glint", r->file);
         return UNREADABLE;
@@ -107,13 +108,13 @@ static int ask(reproduction *r, glintL_run *run, char *message)
     r->options = strdup(text_of(r, "glint:options"));
     r->pass = strdup(text_of(r, "glint:pass"));
     r->sweep = strdup(text_of(r, "glint:sweep"));
-    if (!r->params || !r->options || !r->pass || !r->sweep || !cut_lines(r->params, take_param, asked)) {
+    if (!r->params || !r->options || !r->pass || !r->sweep || !cut_lines(r->params, take_param, request)) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
         return GLINTL_EXIT_FAILED;
     }
-    cut_lines(r->sweep, take_swept, asked);
-    cut_lines(r->options, take_option, asked);
-    if (!glintL_selection_parse(&asked->selection, frame, message) || !check_options(asked, message))
+    cut_lines(r->sweep, take_swept, request);
+    cut_lines(r->options, take_option, request);
+    if (!glintL_selection_parse(&request->selection, frame, message) || !check_options(request, message))
         return UNREADABLE;
     snprintf(r->folder, sizeof r->folder, "%.200s/glint-XXXXXX", temporary && *temporary ? temporary : "/tmp");
     if (!mkdtemp(r->folder)) {
@@ -122,9 +123,9 @@ static int ask(reproduction *r, glintL_run *run, char *message)
         return GLINTL_EXIT_FAILED;
     }
     snprintf(r->output, sizeof r->output, "%s/%%04d.png", r->folder);
-    asked->render_text[glintL_render_find("output")] = r->output;
-    asked->render_text[glintL_render_find("passes")] = *r->pass ? r->pass : "none";
-    asked->force = true;
+    request->render_text[glintL_render_find("output")] = r->output;
+    request->render_text[glintL_render_find("passes")] = *r->pass ? r->pass : "none";
+    request->force = true;
     return 0;
 }
 
@@ -150,10 +151,10 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     bool good = cli_run_script(&script, options, run) && glintL_call_settle(run);
     cli_close_script(&script);
     good = glintL_run_collect(run, true) && good;
-    for (size_t i = 0; i < run->asked.set_count; i++)
-        if (!good && !run->asked.sets[i].is_known && strstr(run->message, "--set ")) {
+    for (size_t i = 0; i < run->request.set_count; i++)
+        if (!good && !run->request.sets[i].is_known && strstr(run->message, "--set ")) {
             snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no parameter '%.100s', which %.200s was made with",
-                     run->script, run->asked.sets[i].name, r->file);
+                     run->script, run->request.sets[i].name, r->file);
             return GLINTL_EXIT_USAGE;
         }
     if (run->exit_code || run->interrupted) {

@@ -141,7 +141,7 @@ static void run_results(lua_State *L, const task *work)
     } else if (work->run->mode == GLINTL_MODE_RENDER) {
         int64_t total = work->run->point_count ? work->script->frames * work->run->point_count
                                                : work->run->count + work->script->frames;
-        if (work->run->point <= 1 && glintL_selection_outside(&work->run->asked.selection, total, message))
+        if (work->run->point <= 1 && glintL_selection_outside(&work->run->request.selection, total, message))
             glintL_run_warn(work->run, "%s", message);
         glintL_call_settle(work->run);
         glintL_jobs_run(L, 1, work->run);
@@ -204,7 +204,7 @@ bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *
     lua_pushcfunction(L, run_protected);
     lua_pushlightuserdata(L, &work);
     int status = lua_pcall(L, 1, 0, 1);
-    const bool is_short = status == LUA_ERRMEM && !run->asked.is_untrusted; // such a script has a limit of its own
+    const bool is_short = status == LUA_ERRMEM && !run->request.is_untrusted; // such a script has a limit of its own
     if (status != LUA_OK && !run->is_stopped && !run->interrupted) {
         char hint[GLINTL_PATH_SIZE + 32];
         const char *message = lua_tostring(L, -1);

@@ -45,7 +45,7 @@ int64_t cli_sweep_points(const cli_options *options)
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
 {
     int64_t rest = point - 1;
-    size_t first_set = run->asked.set_count - options->sweep_count; // the sweeps' sets are the last
+    size_t first_set = run->request.set_count - options->sweep_count; // the sweeps' sets are the last
     for (size_t i = 0; i < options->sweep_count; i++) {
         cli_sweep *sweep = &options->sweeps[i];
         int64_t step = rest % sweep->count;
@@ -55,7 +55,7 @@ void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
         else if (step > 0)
             value = sweep->from + (sweep->to - sweep->from) * ((double)step / (double)(sweep->count - 1));
         glintL_format_number(sweep->text, value);
-        run->asked.sets[first_set + i] = (glintL_set) { .name = sweep->name, .text = sweep->text };
+        run->request.sets[first_set + i] = (glintL_set) { .name = sweep->name, .text = sweep->text };
         rest /= sweep->count;
     }
 }

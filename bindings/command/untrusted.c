@@ -217,10 +217,10 @@ static char *make_folder(const cli_options *options, char *message)
 static bool build_walls(cli_options *options, char *message)
 {
     message[0] = '\0';
-    options->asked.folder = make_folder(options, message);
+    options->request.folder = make_folder(options, message);
     return !*message && set_limits(options->untrusted_s, message) &&
            (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 || fail(message, "no_new_privs", "")) &&
-           close_files(options->script, options->asked.folder, message) && close_calls(message);
+           close_files(options->script, options->request.folder, message) && close_calls(message);
 }
 
 // ---- The parent: the clock, and what became of the child ----

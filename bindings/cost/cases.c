@@ -69,7 +69,7 @@ static bool add_knob(cost_study *study, int knob)
 }
 
 // Whether --knobs names the knob, or is not given.
-static bool is_asked(const char *list, const char *name)
+static bool is_request(const char *list, const char *name)
 {
     for (const char *at = list; at; at = *at ? at + 1 : NULL) {
         size_t length = strcspn(at, ",");
@@ -98,15 +98,15 @@ static bool refuse_knobs(cost_study *study, const cost_subject *subject)
 
 static bool list_values(cost_study *study, const cost_subject *subject)
 {
-    const char *asked = study->options->knobs;
+    const char *request = study->options->knobs;
     int found = 0;
     for (int i = 0; i < cost_knob_count; i++) {
         const cost_knob *knob = &cost_knobs[i];
-        if (!is_asked(asked, knob->name))
+        if (!is_request(request, knob->name))
             continue;
         knob->list(subject, &study->values[i]);
         found += study->values[i].count > 0;
-        if (asked && study->values[i].count == 0 &&
+        if (request && study->values[i].count == 0 &&
             !cost_leave_out(study, "%s: the scene does not respond to it: it would need %s", knob->name, knob->needs))
             return false;
     }

@@ -24,7 +24,7 @@ static bool read_scene(cli_options *options, glintL_run *run)
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
     run->keeps_scene = true;
-    glintL_selection_clear(&run->asked.selection); // --frame is not a selection here
+    glintL_selection_clear(&run->request.selection); // --frame is not a selection here
     cli_run_script(&script, options, run);
     cli_close_script(&script);
     if (!run->exit_code && !run->interrupted && !run->kept_scene)

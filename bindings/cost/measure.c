@@ -34,7 +34,7 @@ bool cost_open_renderers(cost_study *study)
     for (int keeps = run->kept_neighbour ? 1 : 0; keeps >= 0; keeps--)
         for (int counts = 1; counts >= 0; counts--) {
             run->renderer = NULL;
-            run->asked.no_reuse = !keeps;
+            run->request.no_reuse = !keeps;
             run->counts_work = counts;
             if (!glintL_run_open(run, &error))
                 return cost_fail(study, &error);

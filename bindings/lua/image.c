@@ -136,12 +136,13 @@ static const char *check_path(lua_State *L)
     const char *path = lua_tolstring(L, 2, &length);
     if (length == 0 || strlen(path) != length)
         glintL_refuse(L, 2, "save.path", "file name without zero bytes");
-    const glintL_asked *asked = &glintL_get_run(L)->asked;
-    if (!asked->is_untrusted)
+    const glintL_request *request = &glintL_get_run(L)->request;
+    if (!request->is_untrusted)
         return path;
-    if (!asked->folder || !glintL_name_is_plain(path, length))
-        glintL_refuse(L, 2, "save.path", asked->folder ? GLINTL_PLAIN_NAME : "no file, for nothing is to be written,");
-    lua_pushfstring(L, "%s/%s", asked->folder, path);
+    if (!request->folder || !glintL_name_is_plain(path, length))
+        glintL_refuse(L, 2, "save.path",
+                      request->folder ? GLINTL_PLAIN_NAME : "no file, for nothing is to be written,");
+    lua_pushfstring(L, "%s/%s", request->folder, path);
     lua_replace(L, 2);
     path = lua_tostring(L, 2);
     if (glintL_name_is_special(path))

@@ -349,7 +349,7 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
         glintL_error(L, "mesh.file: string without a zero byte expected");
     read_material(L, "mesh.material", a);
     const glintL_run *run = glintL_get_run(L);
-    if (run->asked.is_untrusted) // which would learn from the answers what files there are
+    if (run->request.is_untrusted) // which would learn from the answers what files there are
         glintL_error(L, "mesh.file: an untrusted script reads no files");
     const glintL_reporter *reporter = &run->reporter;
     if (reporter->reads)

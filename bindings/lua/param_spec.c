@@ -96,9 +96,9 @@ static bool push_literal(lua_State *L, const char *text, int index)
 static glintL_set *find_set(glintL_run *run, const char *name)
 {
     glintL_set *found = NULL;
-    for (size_t i = 0; i < run->asked.set_count; i++)
-        if (strcmp(run->asked.sets[i].name, name) == 0)
-            (found = &run->asked.sets[i])->is_known = true; // the last one given wins
+    for (size_t i = 0; i < run->request.set_count; i++)
+        if (strcmp(run->request.sets[i].name, name) == 0)
+            (found = &run->request.sets[i])->is_known = true; // the last one given wins
     return found;
 }
 

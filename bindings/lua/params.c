@@ -66,8 +66,8 @@ static void write_text(lua_State *L, glintL_run *run)
 bool glintL_push_unknown_set(lua_State *L)
 {
     const glintL_run *run = glintL_get_run(L);
-    for (size_t i = 0; i < run->asked.set_count; i++) {
-        const glintL_set *set = &run->asked.sets[i];
+    for (size_t i = 0; i < run->request.set_count; i++) {
+        const glintL_set *set = &run->request.sets[i];
         const char *near = NULL;
         if (set->is_known)
             continue;

@@ -44,7 +44,7 @@ static void read_fields(lua_State *L, int index, glintL_render *render)
 // Whether the numbered call is one of those to render. Every Nth, since nobody knows how many there will be.
 static bool is_selected(glintL_run *run)
 {
-    const glintL_selection *selection = &run->asked.selection;
+    const glintL_selection *selection = &run->request.selection;
     if (!glintL_selection_has(selection, run->count))
         return false;
     int64_t place = run->selected_calls++;
@@ -58,9 +58,9 @@ static bool is_selected(glintL_run *run)
 
 static bool is_open(const glintL_run *run, const glintL_render *render)
 {
-    return run->asked.render_text[glintL_render_find("output")] && strcmp(render->output, "none") != 0 &&
+    return run->request.render_text[glintL_render_find("output")] && strcmp(render->output, "none") != 0 &&
            run->count == 1 && run->point_count <= 1 && !glintL_name_has_number(render->output) &&
-           glintL_film_kind_of(render->output, run->asked.apng) == GLINTL_FILM_NONE;
+           glintL_film_kind_of(render->output, run->request.apng) == GLINTL_FILM_NONE;
 }
 
 bool glintL_call_settle(glintL_run *run)
@@ -74,7 +74,7 @@ bool glintL_call_settle(glintL_run *run)
     bool good = glintL_work_name(work, &naming, &error) == GLINT_OK;
     if (!good)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, work->index, "%s", error.message);
-    else if (!run->asked.force && run->asked.repeat == 1 && glintL_work_is_kept(run, work))
+    else if (!run->request.force && run->request.repeat == 1 && glintL_work_is_kept(run, work))
         good = glintL_work_finish(run, work, true);
     else if (work->image)
         good = glintL_work_finish(run, work, false);
@@ -89,9 +89,9 @@ bool glintL_call_settle(glintL_run *run)
 static glintL_naming naming_of(const glintL_run *run, const glintL_render *render, bool is_numbered)
 {
     bool writes = *render->output && strcmp(render->output, "none") != 0;
-    bool asked = run->asked.render_text[glintL_render_find("output")] != NULL;
+    bool request = run->request.render_text[glintL_render_find("output")] != NULL;
     // A name the script gives for one call is that call's name; one from the command line serves all of them.
-    glintL_naming naming = { .pattern = writes ? render->output : NULL, .is_numbered = asked && is_numbered };
+    glintL_naming naming = { .pattern = writes ? render->output : NULL, .is_numbered = request && is_numbered };
     glintL_film_take(run, &naming);
     return naming;
 }
@@ -100,7 +100,7 @@ static glintL_naming naming_of(const glintL_run *run, const glintL_render *rende
 static bool is_kept(glintL_run *run, glintL_work *work, bool open)
 {
     glint_error error;
-    if (run->asked.force || run->asked.repeat > 1)
+    if (run->request.force || run->request.repeat > 1)
         return false;
     for (int numbered = 0; numbered <= (open ? 1 : 0); numbered++) {
         glintL_naming naming = naming_of(run, &work->render, open ? numbered : true);

@@ -90,19 +90,19 @@ static void warn_no_ffmpeg(glintL_run *run, const glintL_film *film)
 bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *render, double fps,
                       char message[GLINTL_MESSAGE_SIZE])
 {
-    glintL_film_kind kind = glintL_film_kind_of(path, run->asked.apng);
+    glintL_film_kind kind = glintL_film_kind_of(path, run->request.apng);
     if (strcmp(path, "none") == 0)
         return true;
-    if (run->asked.apng && kind != GLINTL_FILM_APNG) {
+    if (run->request.apng && kind != GLINTL_FILM_APNG) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "--apng: an output in .png expected, got '%.200s'", path);
         return false;
     }
     if (kind == GLINTL_FILM_NONE)
         return true;
-    if (run->asked.is_untrusted)
+    if (run->request.is_untrusted)
         return refuse(message, path, "an untrusted script writes pictures alone; make the film with glint assemble");
-    fps = run->asked.fps > 0 ? run->asked.fps : fps;
-    if (run->asked.selection.shard_count > 1)
+    fps = run->request.fps > 0 ? run->request.fps : fps;
+    if (run->request.selection.shard_count > 1)
         return refuse(message, path,
                       "it takes all frames of one run; give the shards a pattern such as %04d.png, and then "
                       "make it with glint assemble");

@@ -266,7 +266,7 @@ static int encode(encoder *e, const char *target, char *message)
 
 static int fail_without(const glintL_run *run, const glintL_film *film, char *message)
 {
-    bool gaps = run->asked.selection.range_count > 0; // then the shell's list of files is right, else the pattern
+    bool gaps = run->request.selection.range_count > 0; // then the shell's list of files is right, else the pattern
     if (film->pattern)
         snprintf(
             message, GLINTL_MESSAGE_SIZE,

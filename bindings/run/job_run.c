@@ -18,7 +18,7 @@ static int read_count(lua_State *L, int index, const char *path, const char *exp
 }
 
 // Reads one option; `frames` and `shard` only as strings, left to parse_selection.
-static void read_option(lua_State *L, int index, const char *name, glintL_asked *asked, glintL_render *render)
+static void read_option(lua_State *L, int index, const char *name, glintL_request *request, glintL_render *render)
 {
     char path[48];
     int field = glintL_render_find(name);
@@ -26,13 +26,13 @@ static void read_option(lua_State *L, int index, const char *name, glintL_asked 
     if (field >= 0) {
         glintL_render_read(L, index, "run.", field, render);
     } else if (strcmp(name, "threads") == 0) {
-        asked->threads = read_count(L, index, path, "whole number 1 .. 1024", 1024);
+        request->threads = read_count(L, index, path, "whole number 1 .. 1024", 1024);
     } else if (strcmp(name, "repeat") == 0) {
-        asked->repeat = read_count(L, index, path, "whole number 1 .. 1000000", 1000000);
+        request->repeat = read_count(L, index, path, "whole number 1 .. 1000000", 1000000);
     } else if (strcmp(name, "force") == 0) {
         if (!lua_isboolean(L, index))
             glintL_refuse(L, index, path, "boolean");
-        asked->force = lua_toboolean(L, index);
+        request->force = lua_toboolean(L, index);
     } else if (strcmp(name, "frames") == 0 || strcmp(name, "shard") == 0) {
         if (lua_type(L, index) != LUA_TSTRING && !(lua_isinteger(L, index) && name[0] == 'f'))
             glintL_refuse(L, index, path, name[0] == 'f' ? "frames such as \"1-3,5\"" : "shard such as \"1/4\"");
@@ -44,7 +44,7 @@ static void read_option(lua_State *L, int index, const char *name, glintL_asked 
     }
 }
 
-static void read_options(lua_State *L, int index, glintL_asked *asked, glintL_render *render)
+static void read_options(lua_State *L, int index, glintL_request *request, glintL_render *render)
 {
     if (lua_isnoneornil(L, index))
         return;
@@ -54,7 +54,7 @@ static void read_options(lua_State *L, int index, glintL_asked *asked, glintL_re
     while (lua_next(L, index)) {
         if (lua_type(L, -2) != LUA_TSTRING)
             glintL_bad_key(L, "run", -2);
-        read_option(L, lua_gettop(L), lua_tostring(L, -2), asked, render);
+        read_option(L, lua_gettop(L), lua_tostring(L, -2), request, render);
         lua_pop(L, 1);
     }
 }
@@ -89,14 +89,14 @@ static int run_protected(lua_State *L)
 
 // Runs the list at `list`, which holds the job at 1 alone, as `asked`; the run and the job are as before afterwards.
 // Does not raise.
-static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_asked *asked, const glintL_render *render)
+static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request *request, const glintL_render *render)
 {
     glintL_job *job = lua_touserdata(L, 1);
     char message[GLINTL_MESSAGE_SIZE];
-    glintL_asked before = run->asked;
+    glintL_request before = run->request;
     glintL_render render_before = job->render;
     bool good = false;
-    run->asked = *asked;
+    run->request = *request;
     job->render = *render;
     lua_pushcfunction(L, run_protected);
     lua_pushvalue(L, list);
@@ -106,11 +106,11 @@ static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_asked *
     if (!run->is_command) {
         good = glintL_run_collect(run, true) && good;
         good = good && glintL_films_finish(run);
-        if (good && glintL_selection_outside(&run->asked.selection, run->total, message))
+        if (good && glintL_selection_outside(&run->request.selection, run->total, message))
             glintL_run_warn(run, "%s", message);
     }
     job->render = render_before;
-    run->asked = before;
+    run->request = before;
     return good;
 }
 
@@ -137,22 +137,22 @@ static void begin_plain(glintL_run *run)
 }
 
 // The command line's selection, when there is one, else the script's. False: the message is written.
-static bool merge(lua_State *L, const glintL_run *run, glintL_asked *asked, char message[GLINTL_MESSAGE_SIZE])
+static bool merge(lua_State *L, const glintL_run *run, glintL_request *request, char message[GLINTL_MESSAGE_SIZE])
 {
-    const glintL_selection *given = &run->asked.selection;
-    asked->selection = (glintL_selection) { 0 };
-    if (!parse_selection(L, &asked->selection, message)) {
-        glintL_selection_clear(&asked->selection);
+    const glintL_selection *given = &run->request.selection;
+    request->selection = (glintL_selection) { 0 };
+    if (!parse_selection(L, &request->selection, message)) {
+        glintL_selection_clear(&request->selection);
         return false;
     }
     if (given->range_count || given->shard_count) {
-        glintL_selection_clear(&asked->selection);
-        asked->selection = *given;
+        glintL_selection_clear(&request->selection);
+        request->selection = *given;
     }
     if (run->is_command) {
-        asked->threads = run->asked.threads ? run->asked.threads : asked->threads;
-        asked->repeat = run->asked.repeat > 1 ? run->asked.repeat : asked->repeat;
-        asked->force = run->asked.force || asked->force;
+        request->threads = run->request.threads ? run->request.threads : request->threads;
+        request->repeat = run->request.repeat > 1 ? run->request.repeat : request->repeat;
+        request->force = run->request.force || request->force;
     }
     return true;
 }
@@ -161,7 +161,7 @@ int glintL_job_run(lua_State *L)
 {
     glintL_run *run = glintL_get_run(L);
     const glintL_job *job = luaL_checkudata(L, 1, GLINTL_ANIMATION);
-    glintL_asked asked = run->asked;
+    glintL_request request = run->request;
     glintL_render render = job->render;
     char message[GLINTL_MESSAGE_SIZE];
     double start = glintL_now_ms();
@@ -173,7 +173,7 @@ int glintL_job_run(lua_State *L)
         return glintL_error(L, "run: not inside the frame function of an animation");
     if (glintL_push_unknown_set(L))
         return lua_error(L);
-    read_options(L, 2, &asked, &render);
+    read_options(L, 2, &request, &render);
     lua_newtable(L); // 3
     lua_pushvalue(L, 1);
     lua_rawseti(L, 3, 1);
@@ -184,11 +184,11 @@ int glintL_job_run(lua_State *L)
     }
     if (!run->is_command)
         begin_plain(run);
-    if (!merge(L, run, &asked, message))
+    if (!merge(L, run, &request, message))
         return glintL_error(L, "run: %s", message);
-    bool good = !run->exit_code && glintL_call_settle(run) && run_as(L, run, 3, &asked, &render);
-    if (asked.selection.ranges != run->asked.selection.ranges)
-        glintL_selection_clear(&asked.selection);
+    bool good = !run->exit_code && glintL_call_settle(run) && run_as(L, run, 3, &request, &render);
+    if (request.selection.ranges != run->request.selection.ranges)
+        glintL_selection_clear(&request.selection);
     if (!good) {
         lua_pushstring(L, run->interrupted ? "interrupted" : run->message); // it says where, as far as that is known
         return lua_error(L);

@@ -102,8 +102,8 @@ void glintL_run_apply(glintL_run *run, glintL_render *render)
 {
     char message[GLINTL_MESSAGE_SIZE];
     for (int field = 0; field < GLINTL_RENDER_FIELDS; field++)
-        if (run->asked.render_text[field]) // it was checked when it was read
-            glintL_render_set_text(render, field, run->asked.render_text[field], message);
+        if (run->request.render_text[field]) // it was checked when it was read
+            glintL_render_set_text(render, field, run->request.render_text[field], message);
     if (run->preview_side > 0)
         shrink(run, &render->desc);
 }
@@ -291,7 +291,7 @@ static bool run_frame(job_walk *walk, int64_t n, int64_t number)
     bool good = glintL_work_name(work, &walk->naming, &error) == GLINT_OK;
     if (!good)
         glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
-    good = good && glintL_work_run(walk->run, work, walk->run->asked.force);
+    good = good && glintL_work_run(walk->run, work, walk->run->request.force);
     glintL_work_destroy(work);
     return good;
 }
@@ -308,8 +308,8 @@ static part open_part(glintL_run *run, int64_t frames)
     part p;
     int64_t first = run->point_count ? 1 : run->count + 1;
     int64_t last = run->point_count ? frames * run->point_count : run->count + frames;
-    glintL_selection_part(&run->asked.selection, first, last, &p.from, &p.to);
-    p.place = glintL_selection_count(&run->asked.selection, first, run->count);
+    glintL_selection_part(&run->request.selection, first, last, &p.from, &p.to);
+    p.place = glintL_selection_count(&run->request.selection, first, run->count);
     run->total = last;
     run->todo = (run->point_count ? 0 : run->todo) + p.to - p.from + 1; // the part may be empty: to = from - 1
     return p;
@@ -318,8 +318,8 @@ static part open_part(glintL_run *run, int64_t frames)
 // Draws the sheet of a sweep whose first frame has that number, when it has one. False: the run has failed.
 static bool make_sheet(job_walk *walk, int64_t first)
 {
-    const glintL_selection *asked = &walk->run->asked.selection;
-    bool partial = asked->range_count > 0 || asked->shard_count > 1;
+    const glintL_selection *request = &walk->run->request.selection;
+    bool partial = request->range_count > 0 || request->shard_count > 1;
     if (!walk->naming.pattern || walk->run->no_sheets)
         return true;
     return glintL_sweep_make_sheet(walk->L, walk->job_index, &walk->naming, first, partial);
@@ -333,7 +333,7 @@ static bool run_job(job_walk *walk, lua_Integer i, part *p)
     bool good = open_film(walk);
     for (int64_t n = 1; n <= walk->job->frames && good; n++) {
         int64_t number = ++run->count;
-        if (!glintL_selection_has(&run->asked.selection, number))
+        if (!glintL_selection_has(&run->request.selection, number))
             continue;
         p->place++;
         if (p->place < p->from || p->place > p->to)

@@ -31,19 +31,19 @@ static void list_options(const glintL_render *render, char *out, size_t room)
 // The axes of the script's sweep and those of --sweep. False: out of memory.
 static bool join_sweeps(glintL_provenance *out, const glintL_run *run, const glintL_work *work)
 {
-    const glintL_asked *asked = &run->asked;
+    const glintL_request *request = &run->request;
     size_t room = 1 + (work->sweep ? strlen(work->sweep) : 0), used = 0;
-    for (size_t i = asked->set_count - asked->swept_count; i < asked->set_count; i++)
-        room += strlen(asked->sets[i].name) + strlen(asked->sets[i].text) + 2;
+    for (size_t i = request->set_count - request->swept_count; i < request->set_count; i++)
+        room += strlen(request->sets[i].name) + strlen(request->sets[i].text) + 2;
     if (room == 1)
         return true;
     out->sweep = malloc(room);
     if (!out->sweep)
         return false;
     used = (size_t)snprintf(out->sweep, room, "%s", work->sweep ? work->sweep : "");
-    for (size_t i = asked->set_count - asked->swept_count; i < asked->set_count; i++)
-        used += (size_t)snprintf(out->sweep + used, room - used, "%s%s=%s", used ? "\n" : "", asked->sets[i].name,
-                                 asked->sets[i].text);
+    for (size_t i = request->set_count - request->swept_count; i < request->set_count; i++)
+        used += (size_t)snprintf(out->sweep + used, room - used, "%s%s=%s", used ? "\n" : "", request->sets[i].name,
+                                 request->sets[i].text);
     return true;
 }
 

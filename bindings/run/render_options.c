@@ -309,7 +309,7 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
     const char *text = lua_tolstring(L, index, &length);
     if (strlen(text) != length)
         refuse(L, index, path, field);
-    if (what->sort == OUTPUT && glintL_get_run(L)->asked.is_untrusted && !glintL_name_is_plain(text, length))
+    if (what->sort == OUTPUT && glintL_get_run(L)->request.is_untrusted && !glintL_name_is_plain(text, length))
         glintL_error(L, "%s%s: " GLINTL_PLAIN_NAME " expected, got '%s'", path, glintL_render_fields[field].name, text);
     if (!set_word(render, what, text, message))
         glintL_error(L, "%s%s: %s", path, glintL_render_fields[field].name, message);

@@ -31,7 +31,7 @@ glintL_run *glintL_run_create(void)
 {
     glintL_run *run = calloc(1, sizeof *run);
     if (run) {
-        run->asked.repeat = 1;
+        run->request.repeat = 1;
         run->since_ms = glintL_now_ms();
     }
     return run;
@@ -59,9 +59,9 @@ void glintL_run_destroy(glintL_run *run)
         destroy_record(run->head);
         run->head = next;
     }
-    glintL_selection_clear(&run->asked.selection);
-    free(run->asked.sets);
-    free(run->asked.folder);
+    glintL_selection_clear(&run->request.selection);
+    free(run->request.sets);
+    free(run->request.folder);
     glintL_films_destroy(run->films);
     free(run->params_text);
     glintL_forget_warnings(run);
@@ -89,8 +89,8 @@ void glintL_run_reset(glintL_run *run)
     run->since_ms = glintL_now_ms();
     run->exit_code = GLINTL_EXIT_DONE;
     run->message[0] = '\0';
-    for (size_t i = 0; i < run->asked.set_count; i++)
-        run->asked.sets[i].is_known = false;
+    for (size_t i = 0; i < run->request.set_count; i++)
+        run->request.sets[i].is_known = false;
 }
 
 void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_render *render)
@@ -164,7 +164,7 @@ int glintL_message_handler(lua_State *L)
     if (lua_type(L, 1) == LUA_TSTRING)
         return 1;
     // Hooks, which end a script that goes on for ever, may be off here.
-    if (!glintL_get_run(L)->asked.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
+    if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
         return 1;
     if (lua_type(L, 1) == LUA_TNUMBER)
         luaL_tolstring(L, 1, NULL);
@@ -207,17 +207,17 @@ static glint_status open_renderer(glintL_run *run, glint_error *error)
 {
     glint_renderer_desc desc = glint_renderer_desc_default();
     glint_renderer *renderer = NULL;
-    desc.threads = run->asked.threads;
+    desc.threads = run->request.threads;
     desc.time_stages = run->times_stages;
     desc.count_work = run->counts_work;
-    desc.no_reuse = run->asked.no_reuse || run->asked.repeat > 1; // repeats measure the whole frame
-    desc.reuse_memory = run->asked.reuse_memory;
-    if (run->asked.is_untrusted && !desc.reuse_memory)
+    desc.no_reuse = run->request.no_reuse || run->request.repeat > 1; // repeats measure the whole frame
+    desc.reuse_memory = run->request.reuse_memory;
+    if (run->request.is_untrusted && !desc.reuse_memory)
         desc.reuse_memory = UNTRUSTED_REUSE_MEMORY;
     glint_status status = glint_renderer_create(&desc, &renderer, error);
     if (status)
         return status;
-    run->renderer_threads = run->asked.threads;
+    run->renderer_threads = run->request.threads;
     run->renderer = renderer; // from here on a signal can cancel it
     if (run->interrupted)
         glint_renderer_cancel(renderer);
@@ -228,7 +228,7 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
 {
     glint_status status = GLINT_OK;
     sigset_t stops, before;
-    if (run->renderer && run->renderer_threads != run->asked.threads) {
+    if (run->renderer && run->renderer_threads != run->request.threads) {
         glint_renderer_destroy(run->renderer);
         run->renderer = NULL;
         glintL_run_collect(run, true); // the writer may only go when nothing is left at it
@@ -244,7 +244,7 @@ bool glintL_run_open(glintL_run *run, glint_error *error)
     if (!run->renderer)
         status = open_renderer(run, error);
     if (status == GLINT_OK && !run->writer)
-        status = glint_writer_create(QUEUE_DEPTH, run->asked.threads, &run->writer, error);
+        status = glint_writer_create(QUEUE_DEPTH, run->request.threads, &run->writer, error);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return status == GLINT_OK;
 }

@@ -104,7 +104,7 @@ typedef struct glintL_set { ///< --set name=text
 
 typedef enum glintL_warnings { GLINTL_WARNINGS_SHOW, GLINTL_WARNINGS_ERROR, GLINTL_WARNINGS_NONE } glintL_warnings;
 
-typedef struct glintL_asked {
+typedef struct glintL_request {
     glintL_selection selection;
     const char *render_text[GLINTL_RENDER_FIELDS]; ///< what beats the script; NULL: nothing
     glintL_set *sets;
@@ -119,7 +119,7 @@ typedef struct glintL_asked {
     char *folder; ///< owned; where an untrusted script's pictures go; NULL: nowhere
     glintL_warnings warnings;
     size_t reuse_memory; ///< bytes; 0: the engine's default
-} glintL_asked;
+} glintL_request;
 
 typedef enum glintL_mode {
     GLINTL_MODE_RENDER,
@@ -198,7 +198,7 @@ struct glintL_run {
     glint_plan *kept_neighbour; ///< owned; the frame before it, or after the first; NULL: none
     char script[256]; ///< base name
     char source[33]; ///< of glintL_find_source; "": not looked for yet
-    glintL_asked asked;
+    glintL_request request;
     glintL_reporter reporter;
 
     glint_renderer *renderer;

@@ -347,7 +347,7 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
     view v;
     members all = { .light_count = 0 };
     bool observes = run->mode == GLINTL_MODE_RENDER || run->mode == GLINTL_MODE_WATCH;
-    if (!camera || !observes || run->asked.warnings == GLINTL_WARNINGS_NONE ||
+    if (!camera || !observes || run->request.warnings == GLINTL_WARNINGS_NONE ||
         glint_scene_shape_count(scene) + glint_scene_light_count(scene) > MEMBERS_MAX)
         return;
     luaL_checkstack(L, 16 + GLINT_GROUP_DEPTH, "scene");
@@ -355,7 +355,7 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
     glintL_push_table(L, &OUTSIDE);
     look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) };
     l.view = make_view(glint_camera_get(camera), desc, &v) ? &v : NULL;
-    l.whole = glintL_selection_is_whole(&run->asked.selection);
+    l.whole = glintL_selection_is_whole(&run->request.selection);
     all.shows_more = has(L, GLINTL_SCENE, scene, glint_scene_get(scene), scene_index, "indirect");
     each_member(L, scene_index, gather, &all);
     each_member(L, scene_index, look_at, &l);

@@ -56,9 +56,9 @@ void glintL_run_warn(glintL_run *run, const char *format, ...)
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    if (run->asked.warnings == GLINTL_WARNINGS_NONE || !is_new(run, message))
+    if (run->request.warnings == GLINTL_WARNINGS_NONE || !is_new(run, message))
         return;
-    if (run->asked.warnings == GLINTL_WARNINGS_ERROR)
+    if (run->request.warnings == GLINTL_WARNINGS_ERROR)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%.1000s (--warnings=error)", message);
     else
         say(run, message);
@@ -78,7 +78,7 @@ void glintL_run_note(const glintL_run *run, const char *format, ...)
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    if (run->asked.warnings != GLINTL_WARNINGS_NONE)
+    if (run->request.warnings != GLINTL_WARNINGS_NONE)
         say(run, message);
 }
 
@@ -150,8 +150,8 @@ static int count_word(const char *path, const char *word)
 
 static bool is_set(const glintL_run *run, const char *name)
 {
-    for (size_t i = 0; i < run->asked.set_count; i++)
-        if (strcmp(run->asked.sets[i].name, name) == 0)
+    for (size_t i = 0; i < run->request.set_count; i++)
+        if (strcmp(run->request.sets[i].name, name) == 0)
             return true;
     return false;
 }
@@ -168,7 +168,7 @@ static void report_params(lua_State *L, glintL_run *run, const char *script)
         bool is_read = lua_getfield(L, -2, "is_read") != LUA_TNIL;
         if (!is_read && count_word(script, name) == 1)
             glintL_run_warn(run, "params.%s: the script never reads it; use it, or take it away", name);
-        else if (!is_read && is_set(run, name) && glintL_selection_is_whole(&run->asked.selection))
+        else if (!is_read && is_set(run, name) && glintL_selection_is_whole(&run->request.selection))
             glintL_run_warn(run, "--set %s: the script did not read it with these settings; it changes nothing", name);
         lua_pop(L, 3);
     }
@@ -179,7 +179,7 @@ static void report_params(lua_State *L, glintL_run *run, const char *script)
 
 void glintL_report_observed(lua_State *L, glintL_run *run, const char *script)
 {
-    if (run->asked.warnings == GLINTL_WARNINGS_NONE)
+    if (run->request.warnings == GLINTL_WARNINGS_NONE)
         return;
     luaL_checkstack(L, 12, "warnings");
     report_dull(L, run);

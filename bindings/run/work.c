@@ -161,7 +161,7 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
         return false;
     record->kept = kept;
     record->is_last = true;
-    record->repeat = run->asked.repeat > 1 ? run->asked.repeat : 0;
+    record->repeat = run->request.repeat > 1 ? run->request.repeat : 0;
     record->files_left = kept ? 0 : work->file_count;
     for (int i = 0; i < work->file_count && !kept; i++) {
         glint_status status = submit(run, work, &work->files[i], record, &error);
@@ -180,13 +180,13 @@ bool glintL_work_finish(glintL_run *run, glintL_work *work, bool kept)
 static bool render_repeats(glintL_run *run, glintL_work *work)
 {
     glint_error error;
-    for (int repeat = 1; repeat <= run->asked.repeat; repeat++) {
+    for (int repeat = 1; repeat <= run->request.repeat; repeat++) {
         glint_status status = glintL_work_render(run, work, &error);
         if (status == GLINT_ERR_CANCELLED)
             return glintL_run_fail(run, GLINTL_EXIT_FAILED, work->index, "interrupted");
         if (status)
             return glintL_run_fail(run, glintL_run_exit_code(status), work->index, "%s", error.message);
-        if (repeat < run->asked.repeat) {
+        if (repeat < run->request.repeat) {
             glintL_record *record = glintL_run_add(run, work);
             if (!record)
                 return false;
@@ -199,7 +199,7 @@ static bool render_repeats(glintL_run *run, glintL_work *work)
 
 bool glintL_work_run(glintL_run *run, glintL_work *work, bool force)
 {
-    if (!force && run->asked.repeat == 1 && glintL_work_is_kept(run, work))
+    if (!force && run->request.repeat == 1 && glintL_work_is_kept(run, work))
         return glintL_work_finish(run, work, true);
     return render_repeats(run, work) && glintL_work_finish(run, work, false);
 }

@@ -222,8 +222,8 @@ static void prepare(void *context, lua_State *L)
 // Shows `frame`, if the script has it; w->shown tells.
 static void select_frame(watcher *w, int64_t frame)
 {
-    glintL_selection_clear(&w->run->asked.selection);
-    if (!glintL_selection_add(&w->run->asked.selection, (glintL_range) { frame, frame, 1 }))
+    glintL_selection_clear(&w->run->request.selection);
+    if (!glintL_selection_add(&w->run->request.selection, (glintL_range) { frame, frame, 1 }))
         glintL_run_fail(w->run, GLINTL_EXIT_FAILED, 0, "out of memory");
 }
 
@@ -235,7 +235,7 @@ static void take_renderer(watcher *w, quality now)
         return;
     w->renderers[w->now] = run->renderer;
     run->renderer = w->renderers[now];
-    run->renderer_threads = run->asked.threads;
+    run->renderer_threads = run->request.threads;
     w->renderers[now] = NULL;
     w->now = now;
 }
@@ -267,9 +267,9 @@ static void keep_params(watcher *w)
 
 static void free_run_sets(watcher *w)
 {
-    watch_free_sets(w->run->asked.sets, w->run->asked.set_count);
-    w->run->asked.sets = NULL;
-    w->run->asked.set_count = 0;
+    watch_free_sets(w->run->request.sets, w->run->request.set_count);
+    w->run->request.sets = NULL;
+    w->run->request.set_count = 0;
 }
 
 static void begin_run(watcher *w, quality now)
@@ -292,7 +292,7 @@ static bool run_script(watcher *w, quality now)
     free_run_sets(w);
     begin_run(w, now);
     select_frame(w, watch_asks_frame(&w->asks, 0));
-    if (!watch_asks_sets(&w->asks, w->given, w->given_count, &run->asked.sets, &run->asked.set_count))
+    if (!watch_asks_sets(&w->asks, w->given, w->given_count, &run->request.sets, &run->request.set_count))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
     watch_files_begin(w->files);
     watch_files_add(w->files, w->options->script, false);
@@ -374,12 +374,12 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
             return false;
     }
     watch_terminal_open(&w->terminal, w->options->terminal, w->output->color && !w->output->quiet);
-    w->given = run->asked.sets; // the run's are made anew for each run
-    w->given_count = run->asked.set_count;
-    run->asked.sets = NULL;
-    run->asked.set_count = 0;
-    run->asked.force = true;
-    run->asked.render_text[glintL_render_find("output")] = "none";
+    w->given = run->request.sets; // the run's are made anew for each run
+    w->given_count = run->request.set_count;
+    run->request.sets = NULL;
+    run->request.set_count = 0;
+    run->request.force = true;
+    run->request.render_text[glintL_render_find("output")] = "none";
     run->keeps_images = true;
     run->reporter = (glintL_reporter) {
         .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh

@@ -124,7 +124,7 @@ static char *target_of(const char *path)
     return strdup(path);
 }
 
-static int open_beside(glint_draft *draft)
+static int open_shared_edge(glint_draft *draft)
 {
     size_t room = strlen(draft->target) + TEMPORARY_ROOM;
     draft->temporary = malloc(room);
@@ -163,7 +163,7 @@ static int open_draft(glint_draft *draft)
     if (exists && access(path, W_OK) != 0) // a rename would not ask
         return errno;
     draft->target = target_of(path);
-    return draft->target ? open_beside(draft) : ENOMEM;
+    return draft->target ? open_shared_edge(draft) : ENOMEM;
 }
 
 glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error)

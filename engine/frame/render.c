@@ -28,8 +28,8 @@ struct glint_renderer {
     atomic_size_t tile_count;
     glint_tile **tiles; ///< a tile's working memory for each worker
     glint_reuse reuse;
-    glint_sites_kept sites;
-    glint_scan scan;
+    glint_shading_points_cached shading_points;
+    glint_raster raster;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     /// Pictures given before, whose memory is used again once nobody else holds them.
     glint_image *spare[GLINT_SPARE_IMAGES];
@@ -98,8 +98,8 @@ void glint_renderer_destroy(glint_renderer *renderer)
     if (!renderer->shares)
         free(renderer->tiles);
     drop_spares(renderer);
-    glint_sites_clear(&renderer->sites, &renderer->reuse);
-    glint_scan_clear(&renderer->scan);
+    glint_shading_points_clear(&renderer->shading_points, &renderer->reuse);
+    glint_raster_clear(&renderer->raster);
     glint_reuse_destroy(&renderer->reuse);
     glint_image_release(renderer->last);
     if (!renderer->shares)
@@ -176,8 +176,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
     }
-    sum.reuses[GLINT_STAGE_VERTEX] += renderer->sites.ready;
-    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->scan.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
+    sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
+    sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
     stats->rays = (glint_ray_counts) { .primary = sum.primary,
@@ -226,8 +226,9 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
                             size_t tile_count, glint_error *error)
 {
     glint_geometry *geometry = plan->geometry;
-    glint_status status = plan->asks_index ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
-                                           : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
+    glint_status status = plan->needs_index
+                              ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
+                              : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
     if (status)
         return status;
     if (shared->base) { // other pixels in every frame
@@ -236,16 +237,16 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
         glint_reuse_carry(&renderer->reuse, plan, renderer->spare, GLINT_SPARE_IMAGES);
         glint_reuse_begin(&renderer->reuse, plan, tile_count);
     }
-    renderer->scan.ms = 0;
-    if (!plan->scan || !casts(&renderer->reuse, plan))
+    renderer->raster.ms = 0;
+    if (!plan->raster || !casts(&renderer->reuse, plan))
         return GLINT_OK;
     const double begin = now_ms();
-    status = glint_scan_begin(&renderer->scan, plan, &shared->geometry, renderer->pool, error);
-    renderer->scan.ms = now_ms() - begin;
+    status = glint_raster_begin(&renderer->raster, plan, &shared->geometry, renderer->pool, error);
+    renderer->raster.ms = now_ms() - begin;
     if (!shared->geometry.nodes)
         atomic_fetch_add(&geometry->index->frames_without, 1);
-    shared->scan = !status && renderer->scan.on ? &renderer->scan : NULL;
-    if (!status && !shared->scan)
+    shared->raster = !status && renderer->raster.on ? &renderer->raster : NULL;
+    if (!status && !shared->raster)
         status = glint_geometry_index(geometry, renderer->pool, &shared->geometry, error);
     return status;
 }
@@ -272,7 +273,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .tone_table = table,
                             .gain = glint_tone_gain(&plan->desc.tone),
                             .reuse = &renderer->reuse,
-                            .sites = &renderer->sites,
+                            .shading_points = &renderer->shading_points,
                             .base = base,
                             .refined = renderer->refine.chosen,
                             .cancelled = renderer->stop,
@@ -285,7 +286,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     if (image->film && (base || !renderer->reuse.tile_count)) // nobody signs what is put there
         memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
     if (!status)
-        status = glint_sites_begin(&renderer->sites, plan, &renderer->reuse, error);
+        status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)
         return status;
     if (renderer->reuse.tile_count && !image->film &&
@@ -301,8 +302,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     const double start = now_ms();
     glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
     finish(renderer, plan, image);
-    collect_stats(renderer, plan, now_ms() - start + renderer->scan.ms, stats);
-    stats->build_ms = start - begin - renderer->scan.ms;
+    collect_stats(renderer, plan, now_ms() - start + renderer->raster.ms, stats);
+    stats->build_ms = start - begin - renderer->raster.ms;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)

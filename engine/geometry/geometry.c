@@ -56,7 +56,7 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 static void make_keys(glint_geometry *geometry)
 {
     enum { CHUNK = 32 };
-    size_t smooth = 0, sited = 0;
+    size_t smooth = 0, shared = 0;
     for (uint32_t i = 0; i < geometry->table.prim_count; i += CHUNK) {
         double place[CHUNK * GLINT_PLACE_MAX];
         uint32_t look[CHUNK][2], n = 0;
@@ -65,21 +65,22 @@ static void make_keys(glint_geometry *geometry)
             const glint_prim *prim = &geometry->prims[i + n];
             numbers += (size_t)glint_prim_place(geometry, prim, place + numbers);
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
-            const bool sites = triangle && prim->sites != GLINT_MISS;
+            const bool shading_points = triangle && prim->shading_points != GLINT_MISS;
             const uint32_t *part =
                 geometry->prim_part + i + n; // where a mesh follows another, the places do not say it
             const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
-            look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (sites ? 4u : 0) | (other ? 8u : 0);
+            look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (shading_points ? 4u : 0) | (other ? 8u : 0);
             look[n][1] = prim->material;
             smooth += !flat;
-            sited += sites;
+            shared += shading_points;
         }
         geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
         geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
     }
     geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
-    if (sited)
-        geometry->look = glint_key_add(geometry->look, geometry->sites, sited * sizeof *geometry->sites);
+    if (shared)
+        geometry->look =
+            glint_key_add(geometry->look, geometry->shading_points, shared * sizeof *geometry->shading_points);
 }
 
 // ---- The index's frame ----
@@ -277,7 +278,7 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     else
         for (size_t i = 0; i < chunks; i++)
             arrange_chunk(&a, i, 0);
-    if (geometry->sites && !find_places(geometry, a.to, bounded)) {
+    if (geometry->shading_points && !find_places(geometry, a.to, bounded)) {
         free(a.to);
         return glint_fail_nomem(error);
     }
@@ -389,8 +390,8 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->normals);
     free(geometry->solids);
     free(geometry->unbounded);
-    free(geometry->sites);
-    free(geometry->site_prims);
+    free(geometry->shading_points);
+    free(geometry->shading_point_prims);
     free(geometry->places);
     free(geometry);
 }

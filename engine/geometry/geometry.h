@@ -40,8 +40,8 @@ struct glint_geometry {
     glint_part *parts; ///< in order of definition
     uint32_t part_count;
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
-    glint_sites *sites; ///< of triangles whose light is worked out at sites
-    uint32_t *site_prims; ///< id of the first triangle of each site
+    glint_shading_points *shading_points; ///< of triangles whose light is worked out at sites
+    uint32_t *shading_point_prims; ///< id of the first triangle of each site
     uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
     glint_solid *solids;
     uint32_t *unbounded;

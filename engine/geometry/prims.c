@@ -179,9 +179,10 @@ typedef struct filler {
     glint_geometry *geometry;
     uint32_t *numbers; ///< of the materials of the shape at hand
     uint32_t object_count;
-    size_t prims, parts, smooth, sited, sites, solids, materials; ///< how many there are; materials: most of any shape
+    size_t prims, parts, smooth, shared, shading_points, solids,
+        materials; ///< how many there are; materials: most of any shape
     size_t visits;
-    uint32_t normal_count, sited_count, solid_count;
+    uint32_t normal_count, shared_count, solid_count;
     glint_error *error;
 } filler;
 
@@ -227,33 +228,33 @@ static bool is_smooth(const glint_shape *shape)
     return shape->mesh && (shape->desc.shading == GLINT_SHADING_PHONG || shape->desc.shading == GLINT_SHADING_GOURAUD);
 }
 
-static bool is_sited(const glint_shape *shape)
+static bool is_shared(const glint_shape *shape)
 {
     return shape->mesh && (shape->desc.shading == GLINT_SHADING_FLAT || shape->desc.shading == GLINT_SHADING_GOURAUD);
 }
 
 /// How many sites a shape has each time it shows.
-static size_t count_sites(const glint_shape *shape)
+static size_t count_shading_points(const glint_shape *shape)
 {
-    if (!is_sited(shape))
+    if (!is_shared(shape))
         return 0;
-    return shape->desc.shading == GLINT_SHADING_FLAT ? shape->mesh->face_count : shape->mesh->site_count;
+    return shape->desc.shading == GLINT_SHADING_FLAT ? shape->mesh->face_count : shape->mesh->shading_point_count;
 }
 
 /// The site of corner j of triangle i, from the shape's first.
-static uint32_t site_of(const glint_shape *shape, size_t i, int j)
+static uint32_t shading_point_of(const glint_shape *shape, size_t i, int j)
 {
     const glint_mesh *mesh = shape->mesh;
     if (shape->desc.shading == GLINT_SHADING_FLAT)
         return mesh->faces ? mesh->faces[i] : (uint32_t)i;
-    return (mesh->sites ? mesh->sites : mesh->triangles)[i][j];
+    return (mesh->shading_points ? mesh->shading_points : mesh->triangles)[i][j];
 }
 
-static void name_site(glint_geometry *geometry, const glint_prim *prim, int j, uint32_t site)
+static void name_shading_point(glint_geometry *geometry, const glint_prim *prim, int j, uint32_t shading_point)
 {
-    geometry->sites[prim->sites].at[j] = site;
-    if (prim->id < geometry->site_prims[site])
-        geometry->site_prims[site] = prim->id;
+    geometry->shading_points[prim->shading_points].at[j] = shading_point;
+    if (prim->id < geometry->shading_point_prims[shading_point])
+        geometry->shading_point_prims[shading_point] = prim->id;
 }
 
 /// A mirrored triangle's corners are taken the other way round: its front stays its front.
@@ -264,14 +265,15 @@ static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, 
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
     prim->kind = GLINT_PRIM_TRIANGLE;
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
-    prim->sites = is_sited(shape) ? f->sited_count++ : GLINT_MISS;
+    prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
         const int from = mirrored ? (3 - j) % 3 : j;
         place_point(place, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
             place_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
-        if (prim->sites != GLINT_MISS)
-            name_site(f->geometry, prim, j, f->geometry->table.site_count + site_of(shape, i, from));
+        if (prim->shading_points != GLINT_MISS)
+            name_shading_point(f->geometry, prim, j,
+                               f->geometry->table.shading_point_count + shading_point_of(shape, i, from));
     }
 }
 
@@ -349,7 +351,7 @@ static glint_status add_prims(filler *f, glint_shape *shape, const placing *plac
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
     geometry->table.triangles = geometry->table.triangles || shape->mesh;
     geometry->triangle_count += shape->mesh ? (uint32_t)shape->count : 0;
-    geometry->table.site_count += (uint32_t)count_sites(shape);
+    geometry->table.shading_point_count += (uint32_t)count_shading_points(shape);
     return GLINT_OK;
 }
 
@@ -392,23 +394,23 @@ static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped
     f->parts += !group;
     f->prims += shape->count;
     f->smooth += is_smooth(shape) ? shape->count : 0;
-    f->sited += is_sited(shape) ? shape->count : 0;
-    f->sites += count_sites(shape);
+    f->shared += is_shared(shape) ? shape->count : 0;
+    f->shading_points += count_shading_points(shape);
     f->solids += mapped || shape->desc.kind >= GLINT_SHAPE_BOX ? shape->count : 0; // at most
     f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
     return status;
 }
 
-static bool allocate_sites(filler *f)
+static bool allocate_shading_points(filler *f)
 {
     glint_geometry *geometry = f->geometry;
-    if (!f->sites)
+    if (!f->shading_points)
         return true;
-    geometry->sites = glint_alloc(f->sited, sizeof *geometry->sites);
-    geometry->site_prims = glint_alloc(f->sites, sizeof *geometry->site_prims);
-    if (!geometry->sites || !geometry->site_prims)
+    geometry->shading_points = glint_alloc(f->shared, sizeof *geometry->shading_points);
+    geometry->shading_point_prims = glint_alloc(f->shading_points, sizeof *geometry->shading_point_prims);
+    if (!geometry->shading_points || !geometry->shading_point_prims)
         return false;
-    memset(geometry->site_prims, 0xff, f->sites * sizeof *geometry->site_prims);
+    memset(geometry->shading_point_prims, 0xff, f->shading_points * sizeof *geometry->shading_point_prims);
     return true;
 }
 
@@ -422,7 +424,7 @@ static bool allocate(filler *f)
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts &&
-           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && allocate_sites(f);
+           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && allocate_shading_points(f);
 }
 
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
@@ -434,10 +436,10 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     if (!status && f.prims >= INT32_MAX)
         status =
             glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims);
-    if (!status && f.sites >= INT32_MAX)
+    if (!status && f.shading_points >= INT32_MAX)
         status = glint_fail(error, GLINT_ERR_INVALID,
                             "scene: fewer than 2147483647 faces and vertices with light of their own expected, got %zu",
-                            f.sites);
+                            f.shading_points);
     if (!status && !allocate(&f))
         status = glint_fail_nomem(error);
     for (size_t i = 0; i < scene->shapes.count && !status; i++)
@@ -446,6 +448,6 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     geometry->table.prims = geometry->prims;
     geometry->table.corner_normals = geometry->normals;
     geometry->table.solids = geometry->solids;
-    geometry->table.sites = geometry->sites;
+    geometry->table.shading_points = geometry->shading_points;
     return status;
 }

@@ -55,7 +55,7 @@ static double surface_light(const glint_plan *plan, uint32_t i)
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *light = &plan->lights[k];
         const double c0 = light->coefficients[0];
-        const bool radiant = light->lamps && light->lamps->emission >= GLINT_EMIT_RADIANT_FRONT;
+        const bool radiant = light->light_samples && light->light_samples->emission >= GLINT_EMIT_RADIANT_FRONT;
         const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
         const double far = brightest_of(m->diffuse) * brightest_of(light->diffuse) +
                            brightest_of(m->specular) * brightest_of(light->specular);
@@ -69,8 +69,8 @@ static double surface_light(const glint_plan *plan, uint32_t i)
 static double brightest_surface(const glint_plan *plan)
 {
     double most = brightest_of(plan->background);
-    for (uint32_t i = 0; i < plan->glow_count; i++)
-        most = fmax(most, brightest_of(plan->glows[i].shown));
+    for (uint32_t i = 0; i < plan->visible_light_count; i++)
+        most = fmax(most, brightest_of(plan->visible_lights[i].shown));
     for (uint32_t i = 0; i < plan->material_count; i++)
         most = fmax(most, surface_light(plan, i));
     return most;

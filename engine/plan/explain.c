@@ -66,7 +66,7 @@ static bool gives(const glint_light_desc *d)
     bool any = false;
     for (int c = 0; c < 3; c++)
         any = any || diffuse[c] > 0 || specular[c] > 0;
-    return any && (d->has_radiance ? d->radiance > 0 && glint_lamp_area(d) > 0 : d->intensity > 0);
+    return any && (d->has_radiance ? d->radiance > 0 && glint_light_sample_area(d) > 0 : d->intensity > 0);
 }
 static bool gives_ambient(const glint_light_desc *d)
 {
@@ -247,7 +247,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, plan->caps ? "soft shadow by caps" : "rays in place of caps", casts_caps);
         one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
         shapes(e, "triangles", is_mesh);
-        one(e, plan->scan, "scan conversion", "%s: %u triangles",
+        one(e, plan->raster, "scan conversion", "%s: %u triangles",
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "cheaper here than casting",
             plan->geometry->triangle_count);
         shapes(e, "smooth normals", is_smooth);
@@ -274,7 +274,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->tints)
         materials(e, "tinted shadow", is_transparent);
-    one(e, plan->cue.on, "depth cue", "scene.depth_cue");
+    one(e, plan->depth_cue.on, "depth cue", "scene.depth_cue");
     veil(e);
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);

@@ -12,7 +12,7 @@
 typedef enum input {
     INPUT_VIEW, ///< camera, picture size, samples
     INPUT_PLACES, ///< where the surfaces are
-    INPUT_GLOW_PLACES, ///< where lights are seen
+    INPUT_VISIBLE_LIGHT_PLACES, ///< where lights are seen
     INPUT_LOOKS, ///< which material each has, and its sides
     INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
     INPUT_LIGHT_PLACES, ///< kind, position, fall-off
@@ -24,7 +24,7 @@ typedef enum input {
     INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
-    INPUT_CUE, ///< how light fades with the way from the eye
+    INPUT_DEPTH_CUE, ///< how light fades with the way from the eye
     INPUT_PASSES,
     INPUT_TONE
 } input;
@@ -34,7 +34,7 @@ typedef enum input {
 static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAMERA] = READS(VIEW),
     [GLINT_STAGE_CAST] = READS(PLACES),
-    [GLINT_STAGE_GLOW] = READS(GLOW_PLACES),
+    [GLINT_STAGE_VISIBLE_LIGHT] = READS(VISIBLE_LIGHT_PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
     [GLINT_STAGE_VIEW] = 0,
     [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
@@ -44,7 +44,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
     [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
-    [GLINT_STAGE_CUE] = READS(CUE),
+    [GLINT_STAGE_DEPTH_CUE] = READS(DEPTH_CUE),
     [GLINT_STAGE_REFINE] = READS(ADAPTIVE),
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
@@ -81,7 +81,7 @@ static glint_key light_place_key(const glint_plan_light *l, glint_key key)
         const double shadow[] = { l->cap ? l->cap->radius : 0, l->radiant_cap, l->hard };
         ADD(key, shadow);
     }
-    return l->lamps ? glint_key_add(key, l->lamps, l->turn_count * sizeof *l->lamps) : key;
+    return l->light_samples ? glint_key_add(key, l->light_samples, l->turn_count * sizeof *l->light_samples) : key;
 }
 
 static glint_key light_color_key(const glint_plan_light *l, glint_key key)
@@ -91,13 +91,14 @@ static glint_key light_color_key(const glint_plan_light *l, glint_key key)
     return key;
 }
 
-static glint_key glow_place_key(const glint_plan_glow *glow, glint_key key)
+static glint_key visible_light_place_key(const glint_plan_visible_light *visible_light, glint_key key)
 {
-    const double kind[] = { glow->ball, glow->one_sided, glow->radius, (double)glow->edge_count };
+    const double kind[] = { visible_light->ball, visible_light->one_sided, visible_light->radius,
+                            (double)visible_light->edge_count };
     ADD(key, kind);
-    ADD(key, glow->center);
-    ADD(key, glow->normal);
-    return glint_key_add(key, glow->edges, glow->edge_count * sizeof *glow->edges);
+    ADD(key, visible_light->center);
+    ADD(key, visible_light->normal);
+    return glint_key_add(key, visible_light->edges, visible_light->edge_count * sizeof *visible_light->edges);
 }
 
 static glint_key highlights_key(const glint_plan *plan, glint_key key)
@@ -128,7 +129,7 @@ static glint_key matte_key(const glint_shade_material *m, glint_key key)
     return key;
 }
 
-static glint_key tint_key(const glint_bounce_material *m, glint_key key)
+static glint_key transparent_shadow_key(const glint_bounce_material *m, glint_key key)
 {
     ADD(key, m->transmission);
     ADD(key, m->absorption);
@@ -141,7 +142,7 @@ static glint_key bounces_key(const glint_plan *plan, glint_key key)
     for (uint32_t i = 0; i < plan->material_count; i++) {
         const glint_bounce_material *m = &plan->bouncing[i];
         const double numbers[] = { m->ior, m->fresnel };
-        key = tint_key(m, key);
+        key = transparent_shadow_key(m, key);
         ADD(key, m->mirror);
         ADD(key, numbers);
     }
@@ -182,8 +183,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, geometry->look);
     if (which & READS(HIGHLIGHTS))
         key = highlights_key(plan, key);
-    for (uint32_t i = 0; i < plan->glow_count && which & READS(GLOW_PLACES); i++)
-        key = glow_place_key(&plan->glows[i], key);
+    for (uint32_t i = 0; i < plan->visible_light_count && which & READS(VISIBLE_LIGHT_PLACES); i++)
+        key = visible_light_place_key(&plan->visible_lights[i], key);
     for (uint32_t i = 0; i < plan->light_count; i++) {
         if (which & READS(LIGHT_PLACES))
             key = light_place_key(&plan->lights[i], key);
@@ -195,7 +196,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     for (uint32_t i = 0; i < plan->material_count && which & READS(MATERIALS); i++)
         key = material_key(&plan->materials[i], key);
     for (uint32_t i = 0; i < plan->material_count && which & READS(TINTS) && plan->tints; i++)
-        key = tint_key(&plan->bouncing[i], key);
+        key = transparent_shadow_key(&plan->bouncing[i], key);
     if (which & READS(INDIRECT) && plan->runs[GLINT_STAGE_INDIRECT])
         key = indirect_key(plan, key);
     if (which & READS(BOUNCES) && plan->runs[GLINT_STAGE_BOUNCE])
@@ -204,19 +205,19 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         const double seen[] = { plan->desc.adaptive, plan->desc.tone.curve, plan->desc.tone.exposure };
         ADD(key, seen);
     }
-    if (which & READS(CUE) && plan->cue.on) {
-        ADD(key, plan->cue.color);
-        ADD(key, plan->cue.near);
-        ADD(key, plan->cue.far);
+    if (which & READS(DEPTH_CUE) && plan->depth_cue.on) {
+        ADD(key, plan->depth_cue.color);
+        ADD(key, plan->depth_cue.near);
+        ADD(key, plan->depth_cue.far);
     }
-    if (which & READS(CUE) && plan->veil.on)
+    if (which & READS(DEPTH_CUE) && plan->veil.on)
         ADD(key, plan->veil.absorption);
     if (which & READS(BACKGROUND))
         ADD(key, plan->background);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
         ADD(key, plan->desc.alpha);
-    for (uint32_t i = 0; i < plan->glow_count && which & READS(BACKGROUND); i++)
-        ADD(key, plan->glows[i].shown);
+    for (uint32_t i = 0; i < plan->visible_light_count && which & READS(BACKGROUND); i++)
+        ADD(key, plan->visible_lights[i].shown);
     return output_key(plan, which, key);
 }
 
@@ -261,7 +262,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
-    plan->output_key = add_inputs(plan, READS(CUE) | READS(PASSES) | READS(TONE), none);
+    plan->output_key = add_inputs(plan, READS(DEPTH_CUE) | READS(PASSES) | READS(TONE), none);
     return GLINT_OK;
 }
 

@@ -5,21 +5,21 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",   "cast",   "glow",    "surface", "view",
-                                                           "light",    "facet",  "occlude", "vertex",  "shade",
-                                                           "indirect", "bounce", "cue",     "refine",  "resolve",
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",   "cast",   "visible_lights", "surface", "view",
+                                                           "light",    "facet",  "occlude",        "vertex",  "shade",
+                                                           "indirect", "bounce", "depth_cue",      "refine",  "resolve",
                                                            "tone",     "outline" };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
-    const char *asked, *who = isa && *isa ? "isa" : "GLINT_ISA";
+    const char *requested, *who = isa && *isa ? "isa" : "GLINT_ISA";
     bool unknown;
-    *out = glint_stages_select(isa, &asked, &unknown);
+    *out = glint_stages_select(isa, &requested, &unknown);
     if (*out)
         return GLINT_OK;
     if (unknown)
-        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, sse2, avx2 or avx512 expected, got '%s'", who, asked);
-    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, asked);
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: ref, sse2, avx2 or avx512 expected, got '%s'", who, requested);
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: this machine lacks '%s'", who, requested);
 }
 
 glint_render_desc glint_render_desc_default(void)
@@ -63,29 +63,29 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 }
 
 /// Stages that never walk the index, but for the cast.
-static const uint32_t without_index = 1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_GLOW |
-                                      1u << GLINT_STAGE_SURFACE | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT |
-                                      1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE |
-                                      1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
+static const uint32_t without_index =
+    1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
+    1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX |
+    1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
 
 /// Whether triangles are to be scanned.
 static void choose_visibility(glint_plan *plan)
 {
-    const glint_visibility asked = plan->desc.visibility;
+    const glint_visibility requested = plan->desc.visibility;
     bool needs_index = false;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
-    plan->scan = plan->geometry->triangle_count > 0 && asked != GLINT_VISIBILITY_CAST &&
-                 (asked == GLINT_VISIBILITY_SCAN || glint_scan_pays(plan, needs_index));
-    plan->asks_index = !plan->scan || needs_index;
+    plan->raster = plan->geometry->triangle_count > 0 && requested != GLINT_VISIBILITY_CAST &&
+                   (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
+    plan->needs_index = !plan->raster || needs_index;
 }
 
 /// Whether the samples of a tile can be shaded in one: what was found for each fits the tile, and light comes from
 /// nowhere else.
 static bool shades_together(const glint_plan *plan)
 {
-    static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE, GLINT_STAGE_INDIRECT, GLINT_STAGE_GLOW,
-                                            GLINT_STAGE_CUE,    GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET };
+    static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
+                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET };
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
@@ -101,19 +101,19 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_INDIRECT] = plan->indirect.samples > 0;
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
-    plan->runs[GLINT_STAGE_GLOW] = plan->glow_count > 0;
-    plan->cue.on = plan->cue.on && (surfaces || plan->glow_count > 0);
-    plan->runs[GLINT_STAGE_CUE] = plan->cue.on || plan->veil.on;
-    plan->accumulate = plan->runs[GLINT_STAGE_CUE] || plan->desc.samples > 1 || plan->glow_count > 0 ||
+    plan->runs[GLINT_STAGE_VISIBLE_LIGHT] = plan->visible_light_count > 0;
+    plan->depth_cue.on = plan->depth_cue.on && (surfaces || plan->visible_light_count > 0);
+    plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
+    plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
                        plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
-                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.site_count > 0);
-    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->glow_count > 0;
+                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.shading_point_count > 0);
+    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
-    plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.site_count > 0;
+    plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.shading_point_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
     plan->together = shades_together(plan);
     plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
@@ -129,7 +129,7 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     if (!status)
         status = glint_plan_shading(plan, scene, error);
     if (!status)
-        status = glint_plan_glows(plan, scene, error);
+        status = glint_plan_visible_lights(plan, scene, error);
     if (!status)
         status = glint_plan_find_indirect(plan, &scene->desc, error);
     if (!status)
@@ -181,9 +181,9 @@ void glint_plan_destroy(glint_plan *plan)
     glint_plan_destroy(plan->base);
     glint_geometry_release(plan->geometry);
     free(plan->lights);
-    free(plan->lamps);
-    free(plan->glows);
-    free(plan->glow_edges);
+    free(plan->light_samples);
+    free(plan->visible_lights);
+    free(plan->visible_light_edges);
     free(plan->materials);
     free(plan->bouncing);
     free(plan->indirect.rest);
@@ -213,7 +213,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
     const uint64_t each = (uint64_t)plan->desc.samples + (plan->base ? 1 : 0);
     const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * each;
-    const uint64_t sides = 2 * (uint64_t)plan->geometry->table.site_count;
+    const uint64_t sides = 2 * (uint64_t)plan->geometry->table.shading_point_count;
     glint_ray_counts rays = { 0 };
     if (plan->runs[GLINT_STAGE_CAMERA])
         rays.primary = samples;

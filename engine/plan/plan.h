@@ -20,7 +20,7 @@
 typedef enum glint_stage_id {
     GLINT_STAGE_CAMERA,
     GLINT_STAGE_CAST,
-    GLINT_STAGE_GLOW,
+    GLINT_STAGE_VISIBLE_LIGHT,
     GLINT_STAGE_SURFACE,
     GLINT_STAGE_VIEW,
     GLINT_STAGE_LIGHT,
@@ -30,7 +30,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_SHADE,
     GLINT_STAGE_INDIRECT,
     GLINT_STAGE_BOUNCE,
-    GLINT_STAGE_CUE,
+    GLINT_STAGE_DEPTH_CUE,
     GLINT_STAGE_REFINE, ///< before all others: which pixels they run for
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
@@ -53,8 +53,8 @@ typedef struct glint_plan_light {
     bool joined; ///< a further sample of the area light before it
     bool is_spot;
     glint_spot spot;
-    const glint_lamp *lamps; ///< of an area light: the pattern of each turn, turn after turn; else NULL
-    const glint_lamp *cap; ///< shadows by caps: the whole light; else NULL
+    const glint_light_sample *light_samples; ///< of an area light: the pattern of each turn, turn after turn; else NULL
+    const glint_light_sample *cap; ///< shadows by caps: the whole light; else NULL
     bool hard; ///< area: one ray to `position`, its middle, decides for all samples
     bool radiant_cap; ///< within its radius the light is no stronger than at it
     uint32_t turn_count; ///< samples of a pixel take the turns one after the other
@@ -72,7 +72,7 @@ typedef struct glint_plan_edge {
 } glint_plan_edge;
 
 /// The surface of a light that rays see.
-typedef struct glint_plan_glow {
+typedef struct glint_plan_visible_light {
     bool ball; ///< else flat
     bool one_sided; ///< flat: to the side of the normal
     double center[3], radius; ///< of a ball around all of it; disk, ball: its own
@@ -80,7 +80,7 @@ typedef struct glint_plan_glow {
     const glint_plan_edge *edges; ///< polygon
     size_t edge_count; ///< 0: a disk
     double shown[3]; ///< pi times its radiance: as everything in the film
-} glint_plan_glow;
+} glint_plan_visible_light;
 
 /// What a material sends on.
 typedef struct glint_bounce_material {
@@ -117,7 +117,7 @@ struct glint_plan {
     bool highlights; ///< some material and some light make one: of the next two kinds
     bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
     glint_plan_light *lights;
-    glint_lamp *lamps; ///< of all area lights
+    glint_light_sample *light_samples; ///< of all area lights
     bool caps; ///< shapes and materials allow shadows by caps
     uint32_t light_count, shadow_count; ///< of these, rows that cast shadows, and
     uint32_t spared_count; ///< among those, rows that need no rays of their own
@@ -125,15 +125,15 @@ struct glint_plan {
     struct {
         bool on;
         double color[3], near, far; ///< see glint_scene_desc
-    } cue;
+    } depth_cue;
     struct {
         bool on;
         double absorption[3]; ///< of the innermost medium
     } veil; ///< the eye is inside what absorbs
-    glint_plan_glow *glows; ///< NULL: no light is seen
-    glint_plan_edge *glow_edges; ///< of all of them
-    uint32_t glow_count;
-    size_t glow_edge_count;
+    glint_plan_visible_light *visible_lights; ///< NULL: no light is seen
+    glint_plan_edge *visible_light_edges; ///< of all of them
+    uint32_t visible_light_count;
+    size_t visible_light_edge_count;
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits
@@ -150,8 +150,8 @@ struct glint_plan {
     glint_key all_materials_key, all_lights_key, background_key;
     glint_key vertex_key; ///< of what the light of faces and vertices is worked out from
     glint_key output_key; ///< of what pictures are made of pixels
-    bool scan; ///< triangles are found by projecting them, not by casting
-    bool asks_index; ///< some stage walks it
+    bool raster; ///< triangles are found by projecting them, not by casting
+    bool needs_index; ///< some stage walks it
     bool accumulate; ///< sums over samples or over chunks of lights
     bool together; ///< all samples of a tile are shaded in one, by what was found for each: they need no sums
 
@@ -195,7 +195,7 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
 
 /// Fills the lights that are seen.
-glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error);
+glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Whether rays see a light, and what they see: pi times its radiance.
 ///
 /// By `radiance` L: pi L color. By `intensity` I: color I A(D), A its fall-off and D the radius of a disk of its area (of a

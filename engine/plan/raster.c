@@ -25,7 +25,7 @@ typedef struct picture {
 /// The pixels that a triangle may show in, both ends included.
 typedef struct extent {
     uint16_t x0, y0, x1, y1;
-    float depth; ///< see glint_scan_entry; +inf: none
+    float depth; ///< see glint_raster_entry; +inf: none
 } extent;
 
 typedef struct scanning {
@@ -35,7 +35,7 @@ typedef struct scanning {
     size_t tile_count, chunk_count;
     extent *extents; ///< of each primitive
     uint32_t *counts; ///< chunk after chunk, of each tile; then where the chunk's first entry of that tile goes
-    glint_scan *scan;
+    glint_raster *raster;
 } scanning;
 
 // ---- Projection ----
@@ -214,7 +214,7 @@ static void enter_chunk(void *context, size_t chunk, int worker)
             continue;
         for (uint32_t y = e->y0 / GLINT_TILE_HEIGHT; y <= e->y1 / GLINT_TILE_HEIGHT; y++)
             for (uint32_t x = e->x0 / GLINT_TILE_WIDTH; x <= e->x1 / GLINT_TILE_WIDTH; x++) {
-                glint_scan_entry *entry = &s->scan->entries[next[y * s->across + x]++];
+                glint_raster_entry *entry = &s->raster->entries[next[y * s->across + x]++];
                 entry->prim = i;
                 entry->depth = e->depth;
                 clip(e->x0, e->x1, x * GLINT_TILE_WIDTH, GLINT_TILE_WIDTH, &entry->x0, &entry->x1);
@@ -233,12 +233,12 @@ static int bucket_of(float depth, float low, float per_depth)
 static void order_tile(void *context, size_t tile, int worker)
 {
     const scanning *s = context;
-    const size_t count = s->scan->first[tile + 1] - s->scan->first[tile];
-    glint_scan_entry *entries = s->scan->entries + s->scan->first[tile];
+    const size_t count = s->raster->first[tile + 1] - s->raster->first[tile];
+    glint_raster_entry *entries = s->raster->entries + s->raster->first[tile];
     float low = HUGE_VALF, high = -HUGE_VALF;
     size_t at[BUCKETS + 1] = { 0 };
     (void)worker;
-    glint_scan_entry *copy = count > 2 ? malloc(count * sizeof *copy) : NULL;
+    glint_raster_entry *copy = count > 2 ? malloc(count * sizeof *copy) : NULL;
     if (!copy)
         return; // any order will do
     memcpy(copy, entries, count * sizeof *copy);
@@ -261,7 +261,7 @@ static size_t place_entries(scanning *s)
 {
     size_t total = 0;
     for (size_t tile = 0; tile < s->tile_count; tile++) {
-        s->scan->first[tile] = total;
+        s->raster->first[tile] = total;
         for (size_t chunk = 0; chunk < s->chunk_count; chunk++) {
             uint32_t *count = &s->counts[chunk * s->tile_count + tile];
             const uint32_t here = *count;
@@ -269,7 +269,7 @@ static size_t place_entries(scanning *s)
             total += here;
         }
     }
-    s->scan->first[s->tile_count] = total;
+    s->raster->first[s->tile_count] = total;
     return total;
 }
 
@@ -297,45 +297,45 @@ static picture make_screen(const glint_plan *plan, double scale)
 
 static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
 {
-    glint_scan *scan = s->scan;
+    glint_raster *raster = s->raster;
     const size_t total = place_entries(s);
     if (total > ENTRIES_MAX)
         return GLINT_OK;
-    if (total > scan->entry_room) {
-        free(scan->entries);
-        scan->entry_room = 0;
-        scan->entries = glint_alloc_large(total, sizeof *scan->entries);
-        if (!scan->entries)
+    if (total > raster->entry_room) {
+        free(raster->entries);
+        raster->entry_room = 0;
+        raster->entries = glint_alloc_large(total, sizeof *raster->entries);
+        if (!raster->entries)
             return glint_fail_nomem(error);
-        scan->entry_room = total;
+        raster->entry_room = total;
     }
     glint_pool_run(pool, s->chunk_count, enter_chunk, s);
     glint_pool_run(pool, s->tile_count, order_tile, s);
-    scan->on = true;
+    raster->on = true;
     return GLINT_OK;
 }
 
-glint_status glint_scan_begin(glint_scan *scan, const glint_plan *plan, const glint_geometry_table *geometry,
-                              glint_pool *pool, glint_error *error)
+glint_status glint_raster_begin(glint_raster *raster, const glint_plan *plan, const glint_geometry_table *geometry,
+                                glint_pool *pool, glint_error *error)
 {
     const uint32_t width = (uint32_t)plan->desc.width, height = (uint32_t)plan->desc.height;
-    scanning s = { .screen = make_screen(plan, geometry->scale), .geometry = geometry, .scan = scan };
+    scanning s = { .screen = make_screen(plan, geometry->scale), .geometry = geometry, .raster = raster };
     s.across = (width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     s.tile_count = (size_t)s.across * ((height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT);
     s.chunk_count = (geometry->prim_count + CHUNK - 1) / CHUNK;
-    glint_status status = glint_geometry_others(plan->geometry, pool, &scan->others, &scan->rest, error);
+    glint_status status = glint_geometry_others(plan->geometry, pool, &raster->others, &raster->rest, error);
     if (status || s.tile_count > COUNTS_MAX / (s.chunk_count + 1))
         return status;
-    if (s.tile_count > scan->tile_room) {
-        free(scan->first);
-        scan->tile_room = 0;
-        scan->first = glint_alloc(s.tile_count + 1, sizeof *scan->first);
-        scan->tile_room = scan->first ? s.tile_count : 0;
+    if (s.tile_count > raster->tile_room) {
+        free(raster->first);
+        raster->tile_room = 0;
+        raster->first = glint_alloc(s.tile_count + 1, sizeof *raster->first);
+        raster->tile_room = raster->first ? s.tile_count : 0;
     }
     s.extents = glint_alloc_large(geometry->prim_count, sizeof *s.extents);
     s.counts = glint_alloc(s.chunk_count * s.tile_count, sizeof *s.counts);
     status = glint_fail_nomem(error);
-    if (scan->first && s.extents && s.counts) {
+    if (raster->first && s.extents && s.counts) {
         glint_pool_run(pool, s.chunk_count, count_chunk, &s);
         status = enter_all(&s, pool, error);
     }
@@ -344,11 +344,11 @@ glint_status glint_scan_begin(glint_scan *scan, const glint_plan *plan, const gl
     return status;
 }
 
-void glint_scan_clear(glint_scan *scan)
+void glint_raster_clear(glint_raster *raster)
 {
-    free(scan->first);
-    free(scan->entries);
-    *scan = (glint_scan) { 0 };
+    free(raster->first);
+    free(raster->entries);
+    *raster = (glint_raster) { 0 };
 }
 
 // ---- Whether it pays ----
@@ -395,16 +395,16 @@ static outlook look_at(const glint_plan *plan)
     return out;
 }
 
-bool glint_scan_pays(const glint_plan *plan, bool needs_index)
+bool glint_raster_pays(const glint_plan *plan, bool needs_index)
 {
     const glint_geometry *geometry = plan->geometry;
     const outlook known = look_at(plan);
     const double triangles = geometry->triangle_count, samples = plan->desc.samples;
     const double pixels = plan->desc.width * plan->desc.height * samples;
-    const double scan = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);
+    const double raster = triangles * PROJECT_NS + (known.alone ? 0 : pixels * MERGE_NS);
     double cast = pixels * (plan->camera.orthographic ? PARALLEL_NS : PIXEL_NS);
     cast += samples * VISIT_NS * triangles * known.in_view;
     if (!needs_index && !known.indexed && atomic_load(&geometry->index->frames_without) < FRAMES_WITHOUT)
         cast += BUILD_NS * triangles;
-    return cast > scan;
+    return cast > raster;
 }

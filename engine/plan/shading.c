@@ -159,10 +159,10 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->coefficients[2] = 1;
         strength = desc->radiance * (PI * (desc->radius * desc->radius));
     } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
-        const double size = glint_lamp_size(desc);
+        const double size = glint_light_sample_size(desc);
         out->attenuated = true;
         out->scale = size > 0 ? power_of_two_scale(size) : 1;
-        strength = desc->radiance * (glint_lamp_area(desc) / desc->samples) * (out->scale * out->scale);
+        strength = desc->radiance * (glint_light_sample_area(desc) / desc->samples) * (out->scale * out->scale);
     }
     bounded(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color, strength);
     bounded(out->specular, desc->has_specular ? desc->specular : desc->color, strength);
@@ -179,10 +179,11 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
     }
     bounded(plan->ambient, plan->ambient, 1);
     bounded(plan->background, scene->desc.background, 1);
-    plan->cue.on = scene->desc.has_depth_cue;
-    plan->cue.near = scene->desc.depth_cue_near;
-    plan->cue.far = scene->desc.depth_cue_far;
-    bounded(plan->cue.color, scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
+    plan->depth_cue.on = scene->desc.has_depth_cue;
+    plan->depth_cue.near = scene->desc.depth_cue_near;
+    plan->depth_cue.far = scene->desc.depth_cue_far;
+    bounded(plan->depth_cue.color,
+            scene->desc.has_depth_cue_color ? scene->desc.depth_cue_color : scene->desc.background, 1);
 }
 
 /// Which kinds of highlight there are among the materials.
@@ -205,43 +206,43 @@ static glint_status make_materials(glint_plan *plan, bool *powers, bool *facets,
 /// Rows for all lights, and lamps for those of area.
 static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
-    double rows = 0, lamps = 0;
+    double rows = 0, light_samples = 0;
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         rows += sample_count(plan, desc);
         if (is_area(plan, desc))
-            lamps += (double)sample_count(plan, desc) * glint_lamp_turns(desc, plan->desc.samples);
+            light_samples += (double)sample_count(plan, desc) * glint_light_sample_turns(desc, plan->desc.samples);
         else if (is_cap(plan, desc))
-            lamps++;
+            light_samples++;
     }
-    if (fmax(rows, lamps) > SAMPLES_MAX)
+    if (fmax(rows, light_samples) > SAMPLES_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "lights: at most %.0f samples of all together expected, got %.0f",
-                          SAMPLES_MAX, fmax(rows, lamps));
+                          SAMPLES_MAX, fmax(rows, light_samples));
     plan->lights = glint_alloc((size_t)rows, sizeof *plan->lights);
-    plan->lamps = glint_alloc((size_t)lamps, sizeof *plan->lamps);
-    return plan->lights && plan->lamps ? GLINT_OK : glint_fail_nomem(error);
+    plan->light_samples = glint_alloc((size_t)light_samples, sizeof *plan->light_samples);
+    return plan->lights && plan->light_samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
 /// Adds the rows of one light: one, or one a sample. Returns how many lamps they took of `lamps`.
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
-                        glint_lamp *lamps)
+                        glint_light_sample *light_samples)
 {
-    const uint32_t samples = sample_count(plan, desc), turns = glint_lamp_turns(desc, plan->desc.samples);
+    const uint32_t samples = sample_count(plan, desc), turns = glint_light_sample_turns(desc, plan->desc.samples);
     const bool area = is_area(plan, desc);
     if (area) {
         glint_light_desc taken = *desc;
         taken.samples = samples;
-        glint_lamp_fill(&taken, turns, plan->desc.seed, lamps);
+        glint_light_sample_fill(&taken, turns, plan->desc.seed, light_samples);
     }
     if (is_cap(plan, desc))
-        glint_lamp_whole(desc, lamps);
+        glint_light_sample_whole(desc, light_samples);
     for (uint32_t i = 0; i < samples; i++) {
         glint_plan_light *light = &plan->lights[plan->light_count++];
         *light = *common;
         light->joined = i > 0;
-        light->lamps = area ? lamps + (size_t)i * turns : NULL;
+        light->light_samples = area ? light_samples + (size_t)i * turns : NULL;
         light->turn_count = area ? turns : 0;
-        light->cap = is_cap(plan, desc) ? lamps : NULL;
+        light->cap = is_cap(plan, desc) ? light_samples : NULL;
         plan->shadow_count += light->shadows;
         plan->spared_count += light->cap || (light->shadows && light->hard && i % GLINT_LIGHT_CHUNK > 0);
     }
@@ -262,7 +263,7 @@ static bool allows_caps(const glint_plan *plan)
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     bool powers = false, facets = false, glossy_light = false;
-    size_t lamps = 0;
+    size_t light_samples = 0;
     plan->caps = allows_caps(plan);
     total_ambient(plan, scene);
     glint_status status = make_materials(plan, &powers, &facets, error);
@@ -277,7 +278,7 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
         if (is_black(light.diffuse) && is_black(light.specular))
             continue;
         glossy_light = glossy_light || !is_black(light.specular);
-        lamps += add_light(plan, &light, desc, plan->lamps + lamps);
+        light_samples += add_light(plan, &light, desc, plan->light_samples + light_samples);
     }
     plan->powers = powers && glossy_light;
     plan->facets = facets && glossy_light;

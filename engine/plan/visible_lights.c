@@ -10,7 +10,7 @@
 
 bool glint_light_shows(const glint_light_desc *desc, double shown[3])
 {
-    const double area = glint_lamp_area(desc), *a = desc->attenuation;
+    const double area = glint_light_sample_area(desc), *a = desc->attenuation;
     bool any = false;
     if (!desc->visible || !(area > 0))
         return false;
@@ -25,46 +25,46 @@ bool glint_light_shows(const glint_light_desc *desc, double shown[3])
 }
 
 /// The edges of a polygon, into the plan's room for all of them.
-static void add_edges(glint_plan *plan, glint_plan_glow *glow, const glint_light_desc *desc)
+static void add_edges(glint_plan *plan, glint_plan_visible_light *visible_light, const glint_light_desc *desc)
 {
-    glow->edges = plan->glow_edges + plan->glow_edge_count;
-    glow->edge_count = desc->vertex_count;
-    plan->glow_edge_count += desc->vertex_count;
+    visible_light->edges = plan->visible_light_edges + plan->visible_light_edge_count;
+    visible_light->edge_count = desc->vertex_count;
+    plan->visible_light_edge_count += desc->vertex_count;
     for (size_t i = 0; i < desc->vertex_count; i++) {
-        glint_plan_edge *edge = &plan->glow_edges[plan->glow_edge_count - desc->vertex_count + i];
+        glint_plan_edge *edge = &plan->visible_light_edges[plan->visible_light_edge_count - desc->vertex_count + i];
         double along[3];
         vec_copy(edge->corner, desc->vertices[i]);
         vec_sub(along, desc->vertices[(i + 1) % desc->vertex_count], desc->vertices[i]);
-        vec_cross(edge->inwards, glow->normal, along);
+        vec_cross(edge->inwards, visible_light->normal, along);
         vec_normalize(edge->inwards, edge->inwards);
     }
 }
 
-static void add_glow(glint_plan *plan, const glint_light_desc *desc, const double shown[3])
+static void add_visible_light(glint_plan *plan, const glint_light_desc *desc, const double shown[3])
 {
-    glint_plan_glow *glow = &plan->glows[plan->glow_count++];
-    *glow = (glint_plan_glow) { .ball = desc->kind == GLINT_LIGHT_SPHERE, .radius = desc->radius };
-    vec_copy(glow->shown, shown);
-    vec_copy(glow->center, desc->position);
-    if (glow->ball)
+    glint_plan_visible_light *visible_light = &plan->visible_lights[plan->visible_light_count++];
+    *visible_light = (glint_plan_visible_light) { .ball = desc->kind == GLINT_LIGHT_SPHERE, .radius = desc->radius };
+    vec_copy(visible_light->shown, shown);
+    vec_copy(visible_light->center, desc->position);
+    if (visible_light->ball)
         return;
-    glow->one_sided = !desc->two_sided;
+    visible_light->one_sided = !desc->two_sided;
     if (desc->kind == GLINT_LIGHT_POLYGON) {
-        glint_lamp_polygon_normal(desc, glow->normal);
-        vec_copy(glow->center, desc->vertices[0]);
-        glow->radius = 0;
+        glint_light_sample_polygon_normal(desc, visible_light->normal);
+        vec_copy(visible_light->center, desc->vertices[0]);
+        visible_light->radius = 0;
         for (size_t i = 1; i < desc->vertex_count; i++) { // all of it is that near to its first corner
             double away[3];
             vec_sub(away, desc->vertices[i], desc->vertices[0]);
-            glow->radius = fmax(glow->radius, sqrt(vec_dot(away, away)) * (1 + 1e-12));
+            visible_light->radius = fmax(visible_light->radius, sqrt(vec_dot(away, away)) * (1 + 1e-12));
         }
-        add_edges(plan, glow, desc);
+        add_edges(plan, visible_light, desc);
     } else {
-        vec_normalize(glow->normal, desc->normal);
+        vec_normalize(visible_light->normal, desc->normal);
     }
 }
 
-glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_error *error)
+glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error)
 {
     size_t lights = 0, edges = 0;
     double shown[3];
@@ -76,14 +76,14 @@ glint_status glint_plan_glows(glint_plan *plan, const glint_scene *scene, glint_
     }
     if (lights == 0)
         return GLINT_OK;
-    plan->glows = glint_alloc(lights, sizeof *plan->glows);
-    plan->glow_edges = glint_alloc(edges + 1, sizeof *plan->glow_edges);
-    if (!plan->glows || !plan->glow_edges)
+    plan->visible_lights = glint_alloc(lights, sizeof *plan->visible_lights);
+    plan->visible_light_edges = glint_alloc(edges + 1, sizeof *plan->visible_light_edges);
+    if (!plan->visible_lights || !plan->visible_light_edges)
         return glint_fail_nomem(error);
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         if (glint_light_shows(desc, shown))
-            add_glow(plan, desc, shown);
+            add_visible_light(plan, desc, shown);
     }
     return GLINT_OK;
 }

@@ -32,14 +32,14 @@ typedef struct carry {
 // ---- What has changed ----
 
 /// Every primitive's, by id. NULL: no memory.
-static glint_kept_place *find_places(const glint_geometry *geometry, uint32_t count)
+static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t count)
 {
-    glint_kept_place *places = malloc((count + 1) * sizeof *places);
+    glint_cached_place *places = malloc((count + 1) * sizeof *places);
     for (uint32_t id = 0; places && id < count; id++)
         places[id].at = GLINT_MISS;
     for (uint32_t i = 0; places && i < geometry->table.prim_count; i++) {
         const glint_prim *prim = &geometry->prims[i];
-        glint_kept_place *place = &places[prim->id];
+        glint_cached_place *place = &places[prim->id];
         double numbers[GLINT_PLACE_MAX], lower[3], upper[3], half[3];
         const size_t bytes = (size_t)glint_prim_place(geometry, prim, numbers) * sizeof *numbers;
         place->key = glint_key_add((glint_key) { 0 }, numbers, bytes);
@@ -57,7 +57,7 @@ static glint_kept_place *find_places(const glint_geometry *geometry, uint32_t co
     return places;
 }
 
-static bool add_ball(carry *c, const glint_kept_place *place)
+static bool add_ball(carry *c, const glint_cached_place *place)
 {
     if (place->at == GLINT_MISS)
         return true;
@@ -70,7 +70,7 @@ static bool add_ball(carry *c, const glint_kept_place *place)
 }
 
 /// Returns whether what has changed is little.
-static bool find_changes(carry *c, const glint_kept_place *was, const glint_kept_place *is, uint32_t count)
+static bool find_changes(carry *c, const glint_cached_place *was, const glint_cached_place *is, uint32_t count)
 {
     for (uint32_t id = 0; id < count; id++) {
         const bool both = was[id].at != GLINT_MISS && is[id].at != GLINT_MISS;
@@ -122,9 +122,9 @@ static bool shows(const carry *c, uint32_t column, uint32_t row)
 /// A ball around all that the light shines from; directional: *to is the way there.
 static double light_ball(const glint_plan_light *light, double to[3])
 {
-    const glint_lamp *lamp = light->cap ? light->cap : light->lamps;
-    vec_copy(to, lamp ? lamp->center : light->position);
-    return lamp ? lamp->radius : 0;
+    const glint_light_sample *light_sample = light->cap ? light->cap : light->light_samples;
+    vec_copy(to, light_sample ? light_sample->center : light->position);
+    return light_sample ? light_sample->radius : 0;
 }
 
 /// Whether a change may lie between a light and what a tile shows: nearer to the line between their middles than all three
@@ -142,14 +142,14 @@ static bool shades(const carry *c, const glint_plan_light *light, const glint_po
         vec_sub(line, to, from);
     const double length2 = vec_dot(line, line);
     for (uint32_t i = 0; i < c->ball_count; i++) {
-        double way[3], beside[3];
+        double way[3], shared_edge[3];
         vec_sub(way, c->balls[i].center, from);
         double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
         along = light->directional ? along : fmin(along, 1);
         for (int k = 0; k < 3; k++)
-            beside[k] = way[k] - along * line[k];
+            shared_edge[k] = way[k] - along * line[k];
         const double far = sqrt(vec_dot(way, way)) + sqrt(length2) + sqrt(vec_dot(from, from));
-        if (!(sqrt(vec_dot(beside, beside)) > loosened(c->balls[i].radius + wide, far)))
+        if (!(sqrt(vec_dot(shared_edge, shared_edge)) > loosened(c->balls[i].radius + wide, far)))
             return true;
     }
     return false;
@@ -169,7 +169,7 @@ static uint32_t moved(const carry *c, uint32_t place)
     return c->moved_to && place < c->reuse->place_count ? c->moved_to[place] : place;
 }
 
-static void carry_hits(const carry *c, glint_kept_tile *tile)
+static void carry_hits(const carry *c, glint_cached_tile *tile)
 {
     const glint_key *was = c->before->keys, *is = c->plan->keys;
     const bool hits = tile->t && glint_key_equal(tile->cast, was[GLINT_STAGE_CAST]);
@@ -186,12 +186,12 @@ static void carry_hits(const carry *c, glint_kept_tile *tile)
 }
 
 /// Returns whether all lights reach what they reached.
-static bool carry_lights(const carry *c, glint_kept_tile *tile, bool boxed)
+static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed)
 {
     bool all = true;
     for (uint32_t i = 0; i < c->reuse->light_count; i++) {
         const glint_plan_light *was = &c->before->lights[i], *is = &c->plan->lights[i];
-        glint_kept_light *light = &tile->lights[i];
+        glint_cached_light *light = &tile->lights[i];
         const bool ordered =
             is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
         const bool open = !is->shadows || (boxed && !ordered && !shades(c, is, &tile->box));
@@ -207,7 +207,7 @@ static bool carry_lights(const carry *c, glint_kept_tile *tile, bool boxed)
 
 static void carry_tile(const carry *c, size_t index, uint32_t column, uint32_t row)
 {
-    glint_kept_tile *tile = &c->reuse->tiles[index];
+    glint_cached_tile *tile = &c->reuse->tiles[index];
     const glint_key surface = c->before->keys[GLINT_STAGE_SURFACE];
     const bool seen = glint_key_equal(tile->seen, surface), boxed = glint_key_equal(tile->boxed, surface);
     if ((!seen && !glint_key_equal(tile->cast, c->before->keys[GLINT_STAGE_CAST])) || shows(c, column, row))
@@ -237,7 +237,7 @@ static void carry_all(const carry *c)
 }
 
 /// Where each primitive of the last frame is now. False: no memory. *moved_to is NULL where none has moved.
-static bool find_moves(const glint_kept_place *was, const glint_kept_place *is, uint32_t count, uint32_t **moved_to)
+static bool find_moves(const glint_cached_place *was, const glint_cached_place *is, uint32_t count, uint32_t **moved_to)
 {
     bool same = true;
     for (uint32_t id = 0; id < count; id++)
@@ -249,9 +249,9 @@ static bool find_moves(const glint_kept_place *was, const glint_kept_place *is, 
     return same || *moved_to;
 }
 
-static void carry_changes(carry *c, const glint_kept_place *is, uint32_t count)
+static void carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
 {
-    const glint_kept_place *was = c->reuse->places;
+    const glint_cached_place *was = c->reuse->places;
     glint_plan_twin twin;
     uint32_t *moved_to = NULL;
     if (!find_changes(c, was, is, count) || !find_moves(was, is, count, &moved_to))
@@ -274,11 +274,11 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
-    const bool few = count <= CARRY_PRIMS && count * sizeof(glint_kept_place) < reuse->budget / 64;
-    glint_kept_place *places = few ? find_places(geometry, count) : NULL;
+    const bool few = count <= CARRY_PRIMS && count * sizeof(glint_cached_place) < reuse->budget / 64;
+    glint_cached_place *places = few ? find_places(geometry, count) : NULL;
     const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
                        reuse->scale == geometry->table.scale && // another underflows elsewhere
-                       reuse->light_count == (lights < GLINT_KEPT_LIGHTS ? lights : GLINT_KEPT_LIGHTS);
+                       reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
     if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic)
         carry_changes(&c, places, count);
     free(reuse->places);

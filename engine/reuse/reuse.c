@@ -55,7 +55,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
         return;
     reuse->light_count = light_count;
     for (reuse->tile_count = 0; reuse->tile_count < tile_count; reuse->tile_count++) {
-        glint_kept_tile *tile = &reuse->tiles[reuse->tile_count];
+        glint_cached_tile *tile = &reuse->tiles[reuse->tile_count];
         tile->lights = calloc(light_count ? light_count : 1, sizeof *tile->lights);
         if (!tile->lights) {
             glint_reuse_clear(reuse);
@@ -69,7 +69,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
 {
     if (!reuse->on)
         return;
-    const uint32_t lights = plan->light_count < GLINT_KEPT_LIGHTS ? plan->light_count : GLINT_KEPT_LIGHTS;
+    const uint32_t lights = plan->light_count < GLINT_CACHED_LIGHTS ? plan->light_count : GLINT_CACHED_LIGHTS;
     const size_t real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     if (reuse->tile_count != tile_count || reuse->width != plan->desc.width || reuse->height != plan->desc.height ||
         reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights ||
@@ -88,9 +88,9 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     }
 }
 
-bool glint_reuse_shows_more(const glint_kept_tile *tile, const glint_plan *plan)
+bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan)
 {
-    if (plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->sites))
+    if (plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->shading_points))
         return true;
     if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
         return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;
@@ -103,7 +103,7 @@ bool glint_reuse_shows_more(const glint_kept_tile *tile, const glint_plan *plan)
 }
 
 /// Whether a material's highlight may be above 0 in the tile.
-static bool shines(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan, uint32_t index)
+static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, uint32_t index)
 {
     const glint_shade_material *material = &plan->materials[index];
     if ((material->highlight != GLINT_HIGHLIGHT_PHONG && material->highlight != GLINT_HIGHLIGHT_BLINN) ||
@@ -115,9 +115,9 @@ static bool shines(const glint_reuse *reuse, const glint_kept_tile *tile, const 
     return false;
 }
 
-glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan)
+glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan)
 {
-    glint_key parts[GLINT_SHOWN_MAX + GLINT_KEPT_LIGHTS + 4];
+    glint_key parts[GLINT_SHOWN_MAX + GLINT_CACHED_LIGHTS + 4];
     size_t count = 0;
     if (!glint_key_equal(tile->seen, plan->keys[GLINT_STAGE_SURFACE]))
         return (glint_key) { 0 };
@@ -137,7 +137,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *
         parts[count++] =
             (shines(reuse, tile, plan, tile->shown[i]) ? plan->material_keys : plan->matte_keys)[tile->shown[i]];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        const glint_kept_light *light = &tile->lights[i];
+        const glint_cached_light *light = &tile->lights[i];
         if (!glint_key_equal(light->place, plan->lights[i].place_key))
             return (glint_key) { 0 };
         if (light->reaches)
@@ -194,7 +194,7 @@ static void *hold(glint_reuse *reuse, size_t bytes)
     return block;
 }
 
-bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile)
+bool glint_reuse_hold_cast(glint_reuse *reuse, glint_cached_tile *tile)
 {
     const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
     if (!tile->t) {
@@ -208,7 +208,7 @@ bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile)
     return true;
 }
 
-bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light)
+bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light)
 {
     const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
     if (!light->cosine) {
@@ -223,7 +223,7 @@ bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light)
     return true;
 }
 
-bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light, bool caps)
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps)
 {
     const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
     if (!light->open)
@@ -233,14 +233,14 @@ bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light, bool 
     return light->open != NULL && (light->visible || !caps);
 }
 
-bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile)
+bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile)
 {
     if (!tile->facing)
         tile->facing = hold(reuse, (size_t)reuse->samples * GLINT_TILE_SAMPLES * sizeof *tile->facing);
     return tile->facing != NULL;
 }
 
-bool glint_reuse_hold_facet(glint_reuse *reuse, glint_kept_light *light)
+bool glint_reuse_hold_facet(glint_reuse *reuse, glint_cached_light *light)
 {
     const size_t samples = (size_t)reuse->samples * GLINT_TILE_SAMPLES;
     if (!light->sine2) {

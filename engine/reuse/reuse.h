@@ -18,14 +18,14 @@
 
 #include <pthread.h>
 
-#define GLINT_KEPT_LIGHTS 64 ///< lights of a frame whose results may be kept
+#define GLINT_CACHED_LIGHTS 64 ///< lights of a frame whose results may be kept
 
 /// What one light left in a tile, all its samples one after the other. NULL: not kept.
-typedef struct glint_kept_light {
+typedef struct glint_cached_light {
     glint_key light, occlude; ///< of what is in the arrays; all zero: nothing yet
     float *cosine, *attenuation, *log2_specular; ///< in one block, cosine first
     uint16_t *lit;
-    float kept_brightest; ///< the largest log2_specular there
+    float cached_brightest; ///< the largest log2_specular there
     uint16_t *open; ///< its own block: lit lanes that the light reaches
     float *visible; ///< its own block: by caps, how far, with the attenuation
     glint_key facet; ///< of what is in the next
@@ -33,18 +33,18 @@ typedef struct glint_kept_light {
     glint_key place; ///< the light's place and shadows when the following was found; all zero: never
     bool reaches; ///< some lane
     float brightest; ///< the largest log2_specular of those lit, in shadow or not
-} glint_kept_light;
+} glint_cached_light;
 
 #define GLINT_SHOWN_MAX 8 ///< materials of a tile that are told apart
 
-typedef struct glint_kept_tile {
+typedef struct glint_cached_tile {
     glint_key cast;
     void *t; ///< doubles or floats; in one block with prim and hits
     uint32_t *prim;
     uint16_t *hits;
     glint_key view;
     float *facing; ///< its own block
-    glint_kept_light *lights;
+    glint_cached_light *lights;
     // what the tile's pixels show, as far as known
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
     uint32_t shown[GLINT_SHOWN_MAX], shown_count; ///< materials; more than GLINT_SHOWN_MAX: all of them
@@ -52,16 +52,16 @@ typedef struct glint_kept_tile {
     glint_key boxed; ///< the surfaces' key when `box` was found; all zero: never
     glint_point_box box; ///< of the points of all samples
     bool background; ///< some sample hits nothing
-    bool sites; ///< some sample has the light of a face or of vertices, which are not all in the tile
+    bool shading_points; ///< some sample has the light of a face or of vertices, which are not all in the tile
     uint64_t clipped, nonfinite; ///< pixels, when the tile was last run
-} glint_kept_tile;
+} glint_cached_tile;
 
 /// Where a primitive of the last frame was.
-typedef struct glint_kept_place {
+typedef struct glint_cached_place {
     glint_key key; ///< of its place
     double center[3], radius; ///< a ball around it; infinite: it has no end
     uint32_t at; ///< in the geometry's table; GLINT_MISS: it was like another
-} glint_kept_place;
+} glint_cached_place;
 
 typedef struct glint_reuse {
     bool on;
@@ -75,16 +75,16 @@ typedef struct glint_reuse {
     uint32_t width, height, samples; ///< the layout of what is kept
     size_t real_size;
     bool plain; ///< order of the primitives, whose places are kept
-    glint_kept_tile *tiles;
+    glint_cached_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
-    glint_key cast, view, light[GLINT_KEPT_LIGHTS]; ///< of the last frame
+    glint_key cast, view, light[GLINT_CACHED_LIGHTS]; ///< of the last frame
     glint_key where; ///< of the places of the last frame's surfaces, and
-    glint_kept_place *places; ///< these, by id; owned; NULL: there were too many
+    glint_cached_place *places; ///< these, by id; owned; NULL: there were too many
     uint32_t place_count;
     double scale; ///< of the geometry's table
     // which results this frame has in common with the last, and therefore keeps
-    bool keep_cast, keep_view, keep_light[GLINT_KEPT_LIGHTS];
+    bool keep_cast, keep_view, keep_light[GLINT_CACHED_LIGHTS];
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -105,16 +105,16 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
 
 /// Whether the tile's pixels may show what it does not hit itself: by mirrors, through what is transparent, by its
 /// light, or as light that was worked out at points beside it.
-bool glint_reuse_shows_more(const glint_kept_tile *tile, const glint_plan *plan);
+bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan);
 
 /// The key of a tile's pixels, from what is known of it; all zero where that is not of this plan's surfaces.
-glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_kept_tile *tile, const glint_plan *plan);
+glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan);
 
 /// Blocks for a tile, made at first use within the budget. False: do without. Any worker, one at a time for a tile.
-bool glint_reuse_hold_cast(glint_reuse *reuse, glint_kept_tile *tile);
-bool glint_reuse_hold_light(glint_reuse *reuse, glint_kept_light *light);
-bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_kept_light *light, bool caps);
-bool glint_reuse_hold_view(glint_reuse *reuse, glint_kept_tile *tile);
-bool glint_reuse_hold_facet(glint_reuse *reuse, glint_kept_light *light);
+bool glint_reuse_hold_cast(glint_reuse *reuse, glint_cached_tile *tile);
+bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light);
+bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps);
+bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile);
+bool glint_reuse_hold_facet(glint_reuse *reuse, glint_cached_light *light);
 
 #endif

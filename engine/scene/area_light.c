@@ -29,7 +29,7 @@ static void area_vector(const glint_light_desc *desc, double out[3])
     }
 }
 
-void glint_lamp_polygon_normal(const glint_light_desc *desc, double normal[3])
+void glint_light_sample_polygon_normal(const glint_light_desc *desc, double normal[3])
 {
     area_vector(desc, normal);
     vec_normalize(normal, normal);
@@ -78,7 +78,7 @@ static glint_status check_edge(const glint_light_desc *desc, size_t i, const dou
     return GLINT_OK;
 }
 
-glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error *error)
+glint_status glint_light_sample_check_polygon(const glint_light_desc *desc, glint_error *error)
 {
     if (desc->vertex_count < 3 || desc->vertex_count > GLINT_CORNERS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "vertices: 3 to %d corners expected, got %zu", GLINT_CORNERS_MAX,
@@ -107,7 +107,7 @@ glint_status glint_lamp_check_polygon(const glint_light_desc *desc, glint_error 
 
 // ---- Areas ----
 
-double glint_lamp_area(const glint_light_desc *desc)
+double glint_light_sample_area(const glint_light_desc *desc)
 {
     double normal[3];
     switch (desc->kind) {
@@ -123,7 +123,7 @@ double glint_lamp_area(const glint_light_desc *desc)
     }
 }
 
-double glint_lamp_size(const glint_light_desc *desc)
+double glint_light_sample_size(const glint_light_desc *desc)
 {
     return desc->kind == GLINT_LIGHT_POLYGON ? polygon_size(desc) : desc->radius;
 }
@@ -233,7 +233,7 @@ static void surface_point(const surface *s, const double square[2], double posit
 
 // ---- The samples ----
 
-uint32_t glint_lamp_turns(const glint_light_desc *desc, double pixel_samples)
+uint32_t glint_light_sample_turns(const glint_light_desc *desc, double pixel_samples)
 {
     uint32_t turns = 1;
     while (turns < pixel_samples && 2 * turns * desc->samples <= TURNS_SAMPLES)
@@ -259,15 +259,15 @@ static uint32_t emission_of(const glint_light_desc *desc)
 }
 
 /// Box and ball around all samples.
-static void enclose(const glint_light_desc *desc, glint_lamp *lamps, size_t count)
+static void enclose(const glint_light_desc *desc, glint_light_sample *light_samples, size_t count)
 {
     double lower[3] = { DBL_MAX, DBL_MAX, DBL_MAX }, upper[3] = { -DBL_MAX, -DBL_MAX, -DBL_MAX };
     double center[3], radius = 0;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
             for (int lane = 0; lane < GLINT_GROUP; lane++) {
-                lower[k] = fmin(lower[k], lamps[i].position[k][lane]);
-                upper[k] = fmax(upper[k], lamps[i].position[k][lane]);
+                lower[k] = fmin(lower[k], light_samples[i].position[k][lane]);
+                upper[k] = fmax(upper[k], light_samples[i].position[k][lane]);
             }
     for (int k = 0; k < 3; k++)
         center[k] = desc->kind == GLINT_LIGHT_POLYGON ? 0.5 * lower[k] + 0.5 * upper[k] : desc->position[k];
@@ -277,17 +277,17 @@ static void enclose(const glint_light_desc *desc, glint_lamp *lamps, size_t coun
             0.5 * sqrt((upper[0] - lower[0]) * (upper[0] - lower[0]) + (upper[1] - lower[1]) * (upper[1] - lower[1]) +
                        (upper[2] - lower[2]) * (upper[2] - lower[2]));
     for (size_t i = 0; i < count; i++) {
-        vec_copy(lamps[i].lower, lower);
-        vec_copy(lamps[i].upper, upper);
-        vec_copy(lamps[i].center, center);
-        lamps[i].radius = radius;
-        lamps[i].emission = emission_of(desc);
+        vec_copy(light_samples[i].lower, lower);
+        vec_copy(light_samples[i].upper, upper);
+        vec_copy(light_samples[i].center, center);
+        light_samples[i].radius = radius;
+        light_samples[i].emission = emission_of(desc);
     }
 }
 
-void glint_lamp_whole(const glint_light_desc *desc, glint_lamp *out)
+void glint_light_sample_whole(const glint_light_desc *desc, glint_light_sample *out)
 {
-    *out = (glint_lamp) { .radius = desc->radius };
+    *out = (glint_light_sample) { .radius = desc->radius };
     vec_copy(out->center, desc->position);
     for (int k = 0; k < 3; k++) {
         out->lower[k] = desc->position[k] - desc->radius;
@@ -295,7 +295,7 @@ void glint_lamp_whole(const glint_light_desc *desc, glint_lamp *out)
     }
 }
 
-void glint_lamp_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_lamp *out)
+void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_light_sample *out)
 {
     const uint32_t samples = (uint32_t)desc->samples;
     const int bits = glint_sequence_bits(GLINT_GROUP * turns);
@@ -309,10 +309,10 @@ void glint_lamp_fill(const glint_light_desc *desc, uint32_t turns, double seed, 
                 double position[3], normal[3], square[2] = { (i + shift[0]) / samples, i * GOLDEN + shift[1] };
                 square[1] -= floor(square[1]);
                 surface_point(&s, square, position, normal);
-                glint_lamp *lamp = &out[(size_t)i * turns + turn];
+                glint_light_sample *light_sample = &out[(size_t)i * turns + turn];
                 for (int k = 0; k < 3; k++) {
-                    lamp->position[k][lane] = position[k];
-                    lamp->normal[k][lane] = normal[k];
+                    light_sample->position[k][lane] = position[k];
+                    light_sample->normal[k][lane] = normal[k];
                 }
             }
         }

@@ -82,7 +82,7 @@ static glint_status check_area(const glint_light_desc *desc, glint_error *error)
     if (!status && desc->kind == GLINT_LIGHT_DISK)
         status = glint_check_direction("normal", desc->normal, error);
     if (!status && desc->kind == GLINT_LIGHT_POLYGON)
-        status = glint_lamp_check_polygon(desc, error);
+        status = glint_light_sample_check_polygon(desc, error);
     return status;
 }
 

@@ -20,7 +20,7 @@ void glint_mesh_free(glint_mesh *mesh)
     free(mesh->normals);
     free(mesh->triangle_normals);
     free(mesh->faces);
-    free(mesh->sites);
+    free(mesh->shading_points);
     free(mesh);
 }
 

@@ -47,7 +47,7 @@ typedef struct chains {
 
 /// The number of the site of a vertex with a normal, a new one where it has none yet. A corner without a normal, which takes
 /// its face's, is a site of its own.
-static uint32_t site_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, size_t *count)
+static uint32_t shading_point_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, size_t *count)
 {
     const bool alone = is_zero(mesh->normals[normal]);
     uint32_t at = alone ? GLINT_NO_NORMAL : c->first[vertex];
@@ -64,11 +64,11 @@ static uint32_t site_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint
     return at;
 }
 
-static glint_status number_sites(glint_mesh *mesh, glint_error *error)
+static glint_status number_shading_points(glint_mesh *mesh, glint_error *error)
 {
     const size_t corners = 3 * mesh->triangle_count;
     if (!mesh->triangle_normals) {
-        mesh->site_count = mesh->vertex_count;
+        mesh->shading_point_count = mesh->vertex_count;
         return GLINT_OK;
     }
     if (corners >= GLINT_NO_NORMAL)
@@ -76,21 +76,22 @@ static glint_status number_sites(glint_mesh *mesh, glint_error *error)
                           GLINT_NO_NORMAL / 3, mesh->triangle_count);
     chains c = { malloc(mesh->vertex_count * sizeof *c.first), malloc(corners * sizeof *c.next),
                  malloc(corners * sizeof *c.normal) };
-    mesh->sites = malloc(mesh->triangle_count * sizeof *mesh->sites);
-    const bool room = c.first && c.next && c.normal && mesh->sites;
+    mesh->shading_points = malloc(mesh->triangle_count * sizeof *mesh->shading_points);
+    const bool room = c.first && c.next && c.normal && mesh->shading_points;
     if (room) {
         memset(c.first, 0xff, mesh->vertex_count * sizeof *c.first);
         for (size_t i = 0; i < corners; i++)
-            mesh->sites[i / 3][i % 3] = site_of(mesh, &c, mesh->triangles[i / 3][i % 3],
-                                                mesh->triangle_normals[i / 3][i % 3], &mesh->site_count);
+            mesh->shading_points[i / 3][i % 3] =
+                shading_point_of(mesh, &c, mesh->triangles[i / 3][i % 3], mesh->triangle_normals[i / 3][i % 3],
+                                 &mesh->shading_point_count);
     }
     free(c.first);
     free(c.next);
     free(c.normal);
     if (room)
         return GLINT_OK;
-    free(mesh->sites);
-    mesh->sites = NULL;
+    free(mesh->shading_points);
+    mesh->shading_points = NULL;
     return glint_fail_nomem(error);
 }
 
@@ -99,7 +100,7 @@ glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_e
     glint_status status = GLINT_OK;
     if ((shading == GLINT_SHADING_PHONG || shading == GLINT_SHADING_GOURAUD) && !mesh->normals)
         status = make_normals(mesh, error);
-    if (!status && shading == GLINT_SHADING_GOURAUD && !mesh->site_count)
-        status = number_sites(mesh, error);
+    if (!status && shading == GLINT_SHADING_GOURAUD && !mesh->shading_point_count)
+        status = number_shading_points(mesh, error);
     return status;
 }

@@ -30,9 +30,9 @@ typedef struct glint_mesh {
     uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
     uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
     size_t face_count;
-    uint32_t (
-        *sites)[3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
-    size_t site_count; ///< pairs; 0: not counted yet
+    uint32_t (*shading_points)
+        [3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
+    size_t shading_point_count; ///< pairs; 0: not counted yet
     double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
 } glint_mesh;
 

@@ -39,7 +39,7 @@ typedef struct glint_stages {
         void (*bounce)(const glint_bounce_args *args);
         void (*vertex)(const glint_vertex_args *args);
         void (*scatter)(const glint_scatter_args *args);
-        void (*scan)(const glint_scan_args *args);
+        void (*raster)(const glint_raster_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
@@ -57,6 +57,6 @@ extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
 /// By name; NULL asks for the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
 /// the name is unknown (true) or the machine lacks it (false); *asked is the name that was asked for.
-const glint_stages *glint_stages_select(const char *name, const char **asked, bool *unknown);
+const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
 
 #endif

@@ -10,11 +10,11 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
 {
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
-    tile->tint = to->tint;
+    tile->transparent_shadow = to->transparent_shadow;
     tile->rays = batch->ray;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
-    tile->glow = to->glow;
+    tile->visible_light = to->visible_light;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
@@ -74,7 +74,7 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
-    if (frame->plan->runs[GLINT_STAGE_GLOW] && glint_tile_glow_in_sight(tile, frame))
+    if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
         glint_tile_see_lights(tile, frame, tile->active);
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
@@ -134,11 +134,11 @@ static uint32_t shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any)
 {
-    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    if (sites)
+    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    if (shading_points)
         any = glint_tile_choose_sampled(&batch->tile, frame);
     glint_batch_shine(batch, frame, any);
-    if (sites && glint_tile_has_sites(&batch->tile))
+    if (shading_points && glint_tile_has_shading_points(&batch->tile))
         glint_tile_vertex(&batch->tile, frame);
 }
 
@@ -160,7 +160,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
         glint_tile_shade(tile, frame, from, count);
         for (uint32_t i = 0; i < count && plan->tints; i++)
             if (plan->lights[from + i].shadows && glint_tile_is_shadowed(tile, plan, i))
-                glint_tile_tint(tile, frame, from + i, i);
+                glint_tile_transparent_shadow(tile, frame, from + i, i);
         from += count;
     } while (from < lights);
 }

@@ -4,19 +4,19 @@
 
 #include <math.h>
 
-void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
-    const glint_kept_tile *kept = tile->kept;
+    const glint_cached_tile *cached = tile->cached;
     bool points = false;
     if (tile->index + 1 < reuse->tile_count)
-        glint_prefetch(kept + 1, sizeof *kept); // asked for, not read: it may be another worker's
-    if (!glint_key_equal(kept->cast, plan->keys[GLINT_STAGE_CAST]))
+        glint_prefetch(cached + 1, sizeof *cached); // asked for, not read: it may be another worker's
+    if (!glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
-    glint_prefetch(kept->hits, GLINT_TILE_GROUPS * sizeof *kept->hits);
+    glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        const glint_kept_light *light = &kept->lights[i];
+        const glint_cached_light *light = &cached->lights[i];
         if (!glint_key_equal(light->light, plan->lights[i].key)) {
             points = true;
             continue;
@@ -26,9 +26,9 @@ void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
             glint_prefetch(light->log2_specular, GLINT_TILE_SAMPLES * sizeof *light->log2_specular);
     }
     if (points)
-        glint_prefetch(kept->t, GLINT_TILE_SAMPLES * reuse->real_size);
-    if (points && kept->only == GLINT_MISS)
-        glint_prefetch(kept->prim, GLINT_TILE_SAMPLES * sizeof *kept->prim);
+        glint_prefetch(cached->t, GLINT_TILE_SAMPLES * reuse->real_size);
+    if (points && cached->only == GLINT_MISS)
+        glint_prefetch(cached->prim, GLINT_TILE_SAMPLES * sizeof *cached->prim);
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
@@ -36,26 +36,26 @@ void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame)
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_reuse *reuse = frame->reuse;
-    glint_kept_tile *kept = tile->kept;
+    glint_cached_tile *cached = tile->cached;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    const bool known = kept && glint_key_equal(kept->cast, frame->plan->keys[GLINT_STAGE_CAST]);
+    const bool known = cached && glint_key_equal(cached->cast, frame->plan->keys[GLINT_STAGE_CAST]);
     tile->at.box = NULL;
     tile->at.t = tile->t;
     tile->at.prim = tile->prim;
     tile->at.hits = tile->hits;
     tile->at.sampled = tile->hits;
-    if (known || (kept && reuse->keep_cast && (k ? kept->t != NULL : glint_reuse_hold_cast(reuse, kept)))) {
-        tile->at.t = (char *)kept->t + first * reuse->real_size;
-        tile->at.prim = kept->prim + first;
-        tile->at.hits = kept->hits + first / GLINT_GROUP;
+    if (known || (cached && reuse->keep_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
+        tile->at.t = (char *)cached->t + first * reuse->real_size;
+        tile->at.prim = cached->prim + first;
+        tile->at.hits = cached->hits + first / GLINT_GROUP;
         tile->at.sampled = tile->at.hits;
     }
     return known;
 }
 
-static bool has_occlude(const glint_kept_light *kept, const glint_plan_light *light)
+static bool has_occlude(const glint_cached_light *cached, const glint_plan_light *light)
 {
-    return kept->open && (kept->visible || !light->cap);
+    return cached->open && (cached->visible || !light->cap);
 }
 
 void glint_tile_use_own_light(glint_tile *tile, uint32_t slot)
@@ -76,44 +76,44 @@ void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, ui
 {
     const glint_plan_light *l = &frame->plan->lights[light];
     glint_reuse *reuse = frame->reuse;
-    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
+    glint_cached_light *cached = tile->cached && light < reuse->light_count ? &tile->cached->lights[light] : NULL;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    *light_known = kept && glint_key_equal(kept->light, l->key);
-    *occlude_known = kept && l->shadows && glint_key_equal(kept->occlude, l->key);
+    *light_known = cached && glint_key_equal(cached->light, l->key);
+    *occlude_known = cached && l->shadows && glint_key_equal(cached->occlude, l->key);
     glint_tile_use_own_light(tile, slot);
     if (*light_known ||
-        (kept && reuse->keep_light[light] && (k ? kept->cosine != NULL : glint_reuse_hold_light(reuse, kept)))) {
-        tile->at.light[slot].cosine = kept->cosine + first;
-        tile->at.light[slot].attenuation = kept->attenuation + first;
-        tile->at.light[slot].log2_specular = kept->log2_specular + first;
-        tile->at.light[slot].lit = kept->lit + first / GLINT_GROUP;
-        tile->at.light[slot].brightest = kept->kept_brightest;
+        (cached && reuse->keep_light[light] && (k ? cached->cosine != NULL : glint_reuse_hold_light(reuse, cached)))) {
+        tile->at.light[slot].cosine = cached->cosine + first;
+        tile->at.light[slot].attenuation = cached->attenuation + first;
+        tile->at.light[slot].log2_specular = cached->log2_specular + first;
+        tile->at.light[slot].lit = cached->lit + first / GLINT_GROUP;
+        tile->at.light[slot].brightest = cached->cached_brightest;
     }
-    if (*occlude_known || (kept && l->shadows && reuse->keep_light[light] &&
-                           (k ? has_occlude(kept, l) : glint_reuse_hold_occlude(reuse, kept, l->cap)))) {
-        tile->at.light[slot].open = kept->open + first / GLINT_GROUP;
+    if (*occlude_known || (cached && l->shadows && reuse->keep_light[light] &&
+                           (k ? has_occlude(cached, l) : glint_reuse_hold_occlude(reuse, cached, l->cap)))) {
+        tile->at.light[slot].open = cached->open + first / GLINT_GROUP;
         if (l->cap)
-            tile->at.light[slot].visible = kept->visible + first;
+            tile->at.light[slot].visible = cached->visible + first;
     }
 }
 
 /// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
-void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
-    glint_kept_tile *kept = tile->kept;
-    if (!kept)
+    glint_cached_tile *cached = tile->cached;
+    if (!cached)
         return;
-    if (reuse->keep_cast && kept->t)
-        kept->cast = plan->keys[GLINT_STAGE_CAST];
+    if (reuse->keep_cast && cached->t)
+        cached->cast = plan->keys[GLINT_STAGE_CAST];
     for (uint32_t i = 0; i < reuse->light_count; i++) {
-        if (reuse->keep_light[i] && kept->lights[i].cosine) {
-            kept->lights[i].light = plan->lights[i].key;
-            kept->lights[i].kept_brightest = kept->lights[i].brightest;
+        if (reuse->keep_light[i] && cached->lights[i].cosine) {
+            cached->lights[i].light = plan->lights[i].key;
+            cached->lights[i].cached_brightest = cached->lights[i].brightest;
         }
-        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&kept->lights[i], &plan->lights[i]))
-            kept->lights[i].occlude = plan->lights[i].key;
+        if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
+            cached->lights[i].occlude = plan->lights[i].key;
     }
     if (plan->runs[GLINT_STAGE_FACET])
         glint_tile_sign_facets(tile, frame);
@@ -122,82 +122,85 @@ void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame)
 // ---- What the tile shows ----
 
 /// Whether light is worked out for the faces or vertices of what is there.
-static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
-
-static void note_material(glint_kept_tile *kept, uint32_t material)
+static bool has_shading_points(const glint_prim *prim)
 {
-    for (uint32_t i = 0; i < kept->shown_count && i < GLINT_SHOWN_MAX; i++)
-        if (kept->shown[i] == material)
+    return prim->kind == GLINT_PRIM_TRIANGLE && prim->shading_points != GLINT_MISS;
+}
+
+static void note_material(glint_cached_tile *cached, uint32_t material)
+{
+    for (uint32_t i = 0; i < cached->shown_count && i < GLINT_SHOWN_MAX; i++)
+        if (cached->shown[i] == material)
             return;
-    if (kept->shown_count < GLINT_SHOWN_MAX)
-        kept->shown[kept->shown_count] = material;
-    if (kept->shown_count <= GLINT_SHOWN_MAX)
-        kept->shown_count++;
+    if (cached->shown_count < GLINT_SHOWN_MAX)
+        cached->shown[cached->shown_count] = material;
+    if (cached->shown_count <= GLINT_SHOWN_MAX)
+        cached->shown_count++;
 }
 
 /// Notes a sample's materials, and whether there is background among it.
 void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
-    glint_kept_tile *kept = tile->kept;
+    glint_cached_tile *cached = tile->cached;
     if (k == 0) {
-        kept->shown_count = 0;
-        kept->background = kept->sites = false;
+        cached->shown_count = 0;
+        cached->background = cached->shading_points = false;
     }
-    uint32_t last = k ? kept->only : GLINT_MISS;
-    bool several = k && kept->only == GLINT_MISS;
+    uint32_t last = k ? cached->only : GLINT_MISS;
+    bool several = k && cached->only == GLINT_MISS;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const uint32_t prim = tile->at.prim[i];
         if (prim == last || prim == GLINT_MISS)
             continue;
-        note_material(kept, frame->geometry.prims[prim].material);
-        kept->sites = kept->sites || has_sites(&frame->geometry.prims[prim]);
+        note_material(cached, frame->geometry.prims[prim].material);
+        cached->shading_points = cached->shading_points || has_shading_points(&frame->geometry.prims[prim]);
         several = several || last != GLINT_MISS;
         last = prim;
     }
-    kept->only = several ? GLINT_MISS : last;
+    cached->only = several ? GLINT_MISS : last;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        kept->background = kept->background || tile->at.hits[g] != tile->active[g];
+        cached->background = cached->background || tile->at.hits[g] != tile->active[g];
 }
 
 /// Notes whether a light reaches any point of a sample, and the most that its highlights may be there.
 void glint_tile_note_light(const glint_tile *tile, uint32_t index, uint32_t slot, bool shadows, uint32_t k)
 {
-    glint_kept_light *kept = &tile->kept->lights[index];
+    glint_cached_light *cached = &tile->cached->lights[index];
     const uint16_t *lanes = shadows ? tile->at.light[slot].open : tile->at.light[slot].lit;
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= lanes[g];
-    kept->reaches = (k && kept->reaches) || any;
-    kept->brightest = fmaxf(k ? kept->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
+    cached->reaches = (k && cached->reaches) || any;
+    cached->brightest = fmaxf(k ? cached->brightest : GLINT_NO_SPECULAR, tile->at.light[slot].brightest);
 }
 
 /// The same where nothing is hit.
 void glint_tile_note_nothing(const glint_tile *tile, uint32_t k)
 {
     if (k == 0) {
-        tile->kept->shown_count = 0;
-        tile->kept->only = GLINT_MISS;
+        tile->cached->shown_count = 0;
+        tile->cached->only = GLINT_MISS;
     }
-    tile->kept->background = true;
+    tile->cached->background = true;
 }
 
 void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const glint_point_box *box)
 {
-    glint_kept_tile *kept = tile->kept;
+    glint_cached_tile *cached = tile->cached;
     const glint_key surface = frame->plan->keys[GLINT_STAGE_SURFACE];
-    if (!kept || tile->boxed != tile->sample || glint_key_equal(kept->boxed, surface))
+    if (!cached || tile->boxed != tile->sample || glint_key_equal(cached->boxed, surface))
         return;
     if (tile->sample == 0) {
-        kept->boxed = (glint_key) { 0 }; // until all samples are in it: others may not be asked for their points
-        kept->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
+        cached->boxed = (glint_key) { 0 }; // until all samples are in it: others may not be asked for their points
+        cached->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
     }
     for (int c = 0; c < 3 && box; c++) {
-        kept->box.lower[c] = fmin(kept->box.lower[c], box->lower[c]);
-        kept->box.upper[c] = fmax(kept->box.upper[c], box->upper[c]);
+        cached->box.lower[c] = fmin(cached->box.lower[c], box->lower[c]);
+        cached->box.upper[c] = fmax(cached->box.upper[c], box->upper[c]);
     }
-    kept->box.only = box && frame->plan->desc.samples == 1 ? box->only : GLINT_MISS;
+    cached->box.only = box && frame->plan->desc.samples == 1 ? box->only : GLINT_MISS;
     if (++tile->boxed == (uint32_t)frame->plan->desc.samples)
-        kept->boxed = surface;
+        cached->boxed = surface;
 }
 
 // ---- The tile's pixels ----
@@ -215,16 +218,16 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const glint_image *last = frame->last;
-    if (!tile->kept || !last || !last->film)
+    if (!tile->cached || !last || !last->film)
         return false;
-    const glint_key key = glint_reuse_film_key(frame->reuse, tile->kept, plan);
+    const glint_key key = glint_reuse_film_key(frame->reuse, tile->cached, plan);
     if (!is_known(key) || !glint_key_equal(key, last->film[tile->index].key))
         return false;
     if (!glint_key_equal(key, frame->image->film[tile->index].key))
         glint_tile_copy(tile, frame);
     frame->image->film[tile->index] = last->film[tile->index];
-    tile->counts.clipped += tile->kept->clipped;
-    tile->counts.nonfinite += tile->kept->nonfinite;
+    tile->counts.clipped += tile->cached->clipped;
+    tile->counts.nonfinite += tile->cached->nonfinite;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         if (plan->runs[id])
             tile->counts.reuses[id] += is_per_light((glint_stage_id)id) ? plan->light_count : 1;
@@ -234,17 +237,17 @@ bool glint_tile_is_unchanged(glint_tile *tile, const glint_tile_frame *frame)
 /// Writes down what the tile shows now.
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before)
 {
-    glint_kept_tile *kept = tile->kept;
-    if (!kept)
+    glint_cached_tile *cached = tile->cached;
+    if (!cached)
         return;
-    kept->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
-    for (uint32_t i = 0; i < frame->reuse->light_count && kept->shown_count > 0; i++)
-        kept->lights[i].place = frame->plan->lights[i].place_key;
-    const glint_key key = glint_reuse_film_key(frame->reuse, kept, frame->plan);
+    cached->seen = frame->plan->keys[GLINT_STAGE_SURFACE];
+    for (uint32_t i = 0; i < frame->reuse->light_count && cached->shown_count > 0; i++)
+        cached->lights[i].place = frame->plan->lights[i].place_key;
+    const glint_key key = glint_reuse_film_key(frame->reuse, cached, frame->plan);
     const glint_film_stamp *last = frame->last && frame->last->film ? &frame->last->film[tile->index] : NULL;
     const bool moved = tile->counts.runs[GLINT_STAGE_LIGHT] != before.lights; // then codes seldom stay as they are
     const bool same = last && last->codes && !moved && glint_tile_has_codes_of(tile, frame->image, frame->last);
     frame->image->film[tile->index] = (glint_film_stamp) { .key = key, .codes = same ? last->codes : key.low };
-    kept->clipped = tile->counts.clipped - before.clipped;
-    kept->nonfinite = tile->counts.nonfinite - before.nonfinite;
+    cached->clipped = tile->counts.clipped - before.clipped;
+    cached->nonfinite = tile->counts.nonfinite - before.nonfinite;
 }

@@ -10,21 +10,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct glint_cue {
+struct glint_depth_cue {
     double total[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES]; ///< over the samples that are done
     double left[3][GLINT_TILE_SAMPLES]; ///< of the light in each pixel of the current sample
     double share[GLINT_TILE_SAMPLES]; ///< of the colour there
 };
 
-struct glint_cue *glint_cue_create(void) { return glint_alloc(1, sizeof(struct glint_cue)); }
-void glint_cue_destroy(struct glint_cue *cue) { free(cue); }
+struct glint_depth_cue *glint_depth_cue_create(void) { return glint_alloc(1, sizeof(struct glint_depth_cue)); }
+void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue) { free(depth_cue); }
 
 /// The way to what pixel i sees; infinite: to nothing.
 static double way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     double d[3];
     if (!(tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1) &&
-        !(plan->runs[GLINT_STAGE_GLOW] && glint_tile_sees_light(tile, i)))
+        !(plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_sees_light(tile, i)))
         return HUGE_VAL;
     for (int c = 0; c < 3; c++)
         d[c] = glint_tile_direction(tile, plan->desc.precision, c, i);
@@ -34,44 +34,44 @@ static double way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 /// The background does not fade towards the colour.
 static double share_of(const glint_plan *plan, double way)
 {
-    const double x = (way - plan->cue.near) / (plan->cue.far - plan->cue.near);
-    return plan->cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
+    const double x = (way - plan->depth_cue.near) / (plan->depth_cue.far - plan->depth_cue.near);
+    return plan->depth_cue.on && way < HUGE_VAL && x > 0 ? fmin(x, 1) : 0;
 }
 
-void glint_tile_find_cue(glint_tile *tile, const glint_plan *plan, bool any)
+void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool any)
 {
-    struct glint_cue *cue = tile->cue;
+    struct glint_depth_cue *depth_cue = tile->depth_cue;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double way = any ? way_of(tile, plan, i) : HUGE_VAL;
-        cue->share[i] = share_of(plan, way);
+        depth_cue->share[i] = share_of(plan, way);
         for (int c = 0; c < 3; c++) {
             const double a = plan->veil.absorption[c];
-            cue->left[c][i] = (1 - cue->share[i]) * (a > 0 ? glint_exp(-a * way) : 1);
+            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * (a > 0 ? glint_exp(-a * way) : 1);
         }
     }
 }
 
-void glint_tile_cue(glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const double *share = tile->cue->share;
+    const double *share = tile->depth_cue->share;
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
-            double *sum = tile->sum[k][c], *total = tile->cue->total[k][c];
-            const double *left = tile->cue->left[c];
-            const double color = k == GLINT_TERM_BACKGROUND ? plan->cue.color[c] : 0;
+            double *sum = tile->sum[k][c], *total = tile->depth_cue->total[k][c];
+            const double *left = tile->depth_cue->left[c];
+            const double color = k == GLINT_TERM_BACKGROUND ? plan->depth_cue.color[c] : 0;
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
                 const double before = tile->sample == 0 ? 0 : total[i];
                 total[i] = before + ((left[i] > 0 ? sum[i] * left[i] : 0) + share[i] * color);
                 sum[i] = 0;
             }
         }
-    glint_tile_book(tile, frame, GLINT_STAGE_CUE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_DEPTH_CUE, false);
 }
 
-void glint_tile_take_cued(glint_tile *tile, const glint_plan *plan)
+void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan)
 {
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
-            memcpy(tile->sum[k], tile->cue->total[k], sizeof tile->sum[k]);
+            memcpy(tile->sum[k], tile->depth_cue->total[k], sizeof tile->sum[k]);
 }

@@ -326,10 +326,10 @@ static void count_rays(const glint_batch *batch, glint_tile *to)
 static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
 {
     glint_batch *batch = &indirect->batch;
-    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    const bool lit = sites ? glint_tile_choose_sampled(&batch->tile, frame) : any;
+    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = shading_points ? glint_tile_choose_sampled(&batch->tile, frame) : any;
     glint_batch_shine(batch, &indirect->frame, lit);
-    if (sites && glint_tile_has_sites(&batch->tile))
+    if (shading_points && glint_tile_has_shading_points(&batch->tile))
         glint_tile_vertex(&batch->tile, frame);
 }
 
@@ -357,8 +357,8 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->plan = *frame->plan;
     indirect->plan.lights = indirect->lights;
     indirect->plan.light_count = frame->plan->indirect.light_count;
-    indirect->plan.runs[GLINT_STAGE_GLOW] = false;
-    indirect->plan.glow_count = 0;
+    indirect->plan.runs[GLINT_STAGE_VISIBLE_LIGHT] = false;
+    indirect->plan.visible_light_count = 0;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
     const uint32_t ways = find_points(indirect, tile, frame, seen, from);

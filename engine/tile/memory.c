@@ -16,19 +16,19 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->bounce = glint_bounce_create()) && good;
     if (plan->runs[GLINT_STAGE_VERTEX] && !tile->vertex)
         good = (tile->vertex = glint_vertex_create()) && good;
-    if (plan->runs[GLINT_STAGE_CUE] && !tile->cue)
-        good = (tile->cue = glint_cue_create()) && good;
-    if (plan->scan && !tile->beside)
-        good = (tile->beside = glint_beside_create()) && good;
-    if (plan->tints && !tile->tint)
-        good = (tile->tint = glint_tint_create()) && good;
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && !tile->depth_cue)
+        good = (tile->depth_cue = glint_depth_cue_create()) && good;
+    if (plan->raster && !tile->shared_edge)
+        good = (tile->shared_edge = glint_shared_edge_create()) && good;
+    if (plan->tints && !tile->transparent_shadow)
+        good = (tile->transparent_shadow = glint_transparent_shadow_create()) && good;
     if (plan->together && !tile->samples)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
-    if (plan->glow_count && !tile->glow)
-        tile->glow = glint_glow_create();
-    return good && (!plan->glow_count || glint_glow_fits(tile->glow, plan));
+    if (plan->visible_light_count && !tile->visible_light)
+        tile->visible_light = glint_visible_light_create();
+    return good && (!plan->visible_light_count || glint_visible_light_fits(tile->visible_light, plan));
 }
 
 void glint_tile_destroy(glint_tile *tile)
@@ -36,11 +36,11 @@ void glint_tile_destroy(glint_tile *tile)
     if (!tile)
         return;
     glint_bounce_destroy(tile->bounce);
-    glint_tint_destroy(tile->tint);
+    glint_transparent_shadow_destroy(tile->transparent_shadow);
     glint_vertex_destroy(tile->vertex);
-    glint_beside_destroy(tile->beside);
-    glint_glow_destroy(tile->glow);
-    glint_cue_destroy(tile->cue);
+    glint_shared_edge_destroy(tile->shared_edge);
+    glint_visible_light_destroy(tile->visible_light);
+    glint_depth_cue_destroy(tile->depth_cue);
     glint_indirect_destroy(tile->indirect);
     glint_samples_destroy(tile->samples);
     free(tile->facets);

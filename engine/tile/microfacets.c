@@ -4,27 +4,27 @@
 
 bool glint_tile_view_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
-    glint_kept_tile *kept = tile->kept;
-    const bool known = kept && glint_key_equal(kept->view, frame->plan->keys[GLINT_STAGE_VIEW]);
+    glint_cached_tile *cached = tile->cached;
+    const bool known = cached && glint_key_equal(cached->view, frame->plan->keys[GLINT_STAGE_VIEW]);
     tile->at.facing = tile->facets->facing;
-    if (known ||
-        (kept && frame->reuse->keep_view && (k ? kept->facing != NULL : glint_reuse_hold_view(frame->reuse, kept))))
-        tile->at.facing = kept->facing + (size_t)k * GLINT_TILE_SAMPLES;
+    if (known || (cached && frame->reuse->keep_view &&
+                  (k ? cached->facing != NULL : glint_reuse_hold_view(frame->reuse, cached))))
+        tile->at.facing = cached->facing + (size_t)k * GLINT_TILE_SAMPLES;
     return known;
 }
 
 bool glint_tile_facet_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot)
 {
     glint_reuse *reuse = frame->reuse;
-    glint_kept_light *kept = tile->kept && light < reuse->light_count ? &tile->kept->lights[light] : NULL;
+    glint_cached_light *cached = tile->cached && light < reuse->light_count ? &tile->cached->lights[light] : NULL;
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
-    const bool known = kept && glint_key_equal(kept->facet, frame->plan->lights[light].key);
+    const bool known = cached && glint_key_equal(cached->facet, frame->plan->lights[light].key);
     tile->at.light[slot].sine2 = tile->facets->sine2[slot];
     tile->at.light[slot].schlick = tile->facets->schlick[slot];
     if (known ||
-        (kept && reuse->keep_light[light] && (k ? kept->sine2 != NULL : glint_reuse_hold_facet(reuse, kept)))) {
-        tile->at.light[slot].sine2 = kept->sine2 + first;
-        tile->at.light[slot].schlick = kept->schlick + first;
+        (cached && reuse->keep_light[light] && (k ? cached->sine2 != NULL : glint_reuse_hold_facet(reuse, cached)))) {
+        tile->at.light[slot].sine2 = cached->sine2 + first;
+        tile->at.light[slot].schlick = cached->schlick + first;
     }
     return known;
 }
@@ -42,12 +42,12 @@ void glint_tile_sign_facets(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
     const glint_reuse *reuse = frame->reuse;
-    glint_kept_tile *kept = tile->kept;
-    if (reuse->keep_view && kept->facing)
-        kept->view = plan->keys[GLINT_STAGE_VIEW];
+    glint_cached_tile *cached = tile->cached;
+    if (reuse->keep_view && cached->facing)
+        cached->view = plan->keys[GLINT_STAGE_VIEW];
     for (uint32_t i = 0; i < reuse->light_count; i++)
-        if (reuse->keep_light[i] && kept->lights[i].sine2)
-            kept->lights[i].facet = plan->lights[i].key;
+        if (reuse->keep_light[i] && cached->lights[i].sine2)
+            cached->lights[i].facet = plan->lights[i].key;
 }
 
 void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
@@ -61,7 +61,7 @@ void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].view(&args);
-    glint_tile_book(tile, frame, GLINT_STAGE_VIEW, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, false);
 }
 
 void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const uint32_t *slot,
@@ -78,7 +78,7 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
                               .sample_count = count };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
-        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.sine2[i] = tile->at.light[slot[i]].sine2;
         args.schlick[i] = tile->at.light[slot[i]].schlick;
@@ -89,6 +89,6 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.direction[c] = tile->direction[c];
     }
     frame->stages->geometry[plan->desc.precision].facet(&args);
-    glint_tile_book(tile, frame, GLINT_STAGE_FACET, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, false);
     tile->counts.runs[GLINT_STAGE_FACET] += count - 1;
 }

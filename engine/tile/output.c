@@ -49,7 +49,7 @@ bool glint_tile_wants_geometry(const glint_plan *plan)
 
 static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    return plan->glow_count && glint_tile_sees_light(tile, i);
+    return plan->visible_light_count && glint_tile_sees_light(tile, i);
 }
 
 static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
@@ -75,7 +75,7 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
         const bool hit = glint_has_lane(tile->at.hits, i);
         double n[3] = { 0 };
         if (!hit && sees_light(tile, frame->plan, i))
-            glint_tile_glow_normal(tile, frame, i, n);
+            glint_tile_visible_light_normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
             normal[c][i] = (float)(hit ? glint_real_at(tile->normal[c], frame->plan->desc.precision, i) : n[c]);
     }
@@ -118,7 +118,7 @@ bool glint_tile_wants_coverage(const glint_plan *plan)
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
 {
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool light = plan->glow_count && glint_tile_sees_light(tile, i);
+        const bool light = plan->visible_light_count && glint_tile_sees_light(tile, i);
         tile->covered[i] =
             (k ? tile->covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
     }
@@ -203,7 +203,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-void glint_tile_foresee_codes(const glint_tile *tile, const glint_image *image)
+void glint_tile_prefetch_codes(const glint_tile *tile, const glint_image *image)
 {
     const size_t pixel = glint_image_pixel_bytes(image), stride = (size_t)image->width * pixel;
     for (size_t y = 0; y < tile->height; y++)

@@ -5,57 +5,59 @@
 #include <stdlib.h>
 
 /// What is cast beside triangles.
-struct glint_beside {
+struct glint_shared_edge {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     uint16_t hits[GLINT_TILE_GROUPS];
 };
 
-struct glint_beside *glint_beside_create(void) { return glint_alloc(1, sizeof(struct glint_beside)); }
+struct glint_shared_edge *glint_shared_edge_create(void) { return glint_alloc(1, sizeof(struct glint_shared_edge)); }
 
-void glint_beside_destroy(struct glint_beside *beside) { free(beside); }
+void glint_shared_edge_destroy(struct glint_shared_edge *shared_edge) { free(shared_edge); }
 
-bool glint_tile_scan_in_sight(const glint_tile *tile, const glint_tile_frame *frame)
+bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    const glint_scan *scan = frame->scan;
-    return scan->rest || scan->first[tile->index + 1] > scan->first[tile->index];
+    const glint_raster *raster = frame->raster;
+    return raster->rest || raster->first[tile->index + 1] > raster->first[tile->index];
 }
 
 /// As between any two surfaces: the nearer one, of equal ones the one defined first.
 static void merge(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const struct glint_beside *beside = tile->beside;
+    const struct glint_shared_edge *shared_edge = tile->shared_edge;
     const glint_precision precision = frame->plan->desc.precision;
     const glint_prim *prims = frame->geometry.prims;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = beside->hits[g]; left; left &= left - 1) {
+        for (unsigned left = shared_edge->hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), prim = tile->at.prim[i];
-            const double mine = glint_real_at(tile->at.t, precision, i), other = glint_real_at(beside->t, precision, i);
-            if (prim != GLINT_MISS && !(other < mine || (other == mine && prims[beside->prim[i]].id < prims[prim].id)))
+            const double mine = glint_real_at(tile->at.t, precision, i),
+                         other = glint_real_at(shared_edge->t, precision, i);
+            if (prim != GLINT_MISS &&
+                !(other < mine || (other == mine && prims[shared_edge->prim[i]].id < prims[prim].id)))
                 continue;
             glint_real_put(tile->at.t, precision, i, other);
-            tile->at.prim[i] = beside->prim[i];
+            tile->at.prim[i] = shared_edge->prim[i];
             tile->at.hits[g] |= (uint16_t)(left & -left);
         }
 }
 
-void glint_tile_scan(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args)
+void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args)
 {
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
-    const glint_scan *scan = frame->scan;
-    const size_t first = scan->first[tile->index];
-    const glint_scan_args triangles = { .cast = *args,
-                                        .entries = scan->entries + first,
-                                        .entry_count = (uint32_t)(scan->first[tile->index + 1] - first) };
-    stages->scan(&triangles);
-    if (!scan->rest)
+    const glint_raster *raster = frame->raster;
+    const size_t first = raster->first[tile->index];
+    const glint_raster_args triangles = { .cast = *args,
+                                          .entries = raster->entries + first,
+                                          .entry_count = (uint32_t)(raster->first[tile->index + 1] - first) };
+    stages->raster(&triangles);
+    if (!raster->rest)
         return;
     glint_cast_args others = *args;
-    others.geometry = &scan->others;
+    others.geometry = &raster->others;
     others.view = NULL;
-    others.t = tile->beside->t;
-    others.prim = tile->beside->prim;
-    others.hits = tile->beside->hits;
+    others.t = tile->shared_edge->t;
+    others.prim = tile->shared_edge->prim;
+    others.hits = tile->shared_edge->hits;
     if (frame->plan->camera.orthographic)
         stages->cast_rays(&others);
     else

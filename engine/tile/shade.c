@@ -76,17 +76,17 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
             whole[i][g] = lights[i].lit[g] & (uint16_t)~glint_tile_dim_lanes(tile, g);
         lights[i].lit = whole[i];
     }
-    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
+    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
         args.active = glint_tile_unlit_lanes(tile, unlit);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->shade(&args);
-    if (plan->runs[GLINT_STAGE_GLOW] && args.first)
-        glint_tile_add_glow(tile, frame);
+    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
+        glint_tile_add_visible_light(tile, frame);
     glint_tile_count_powers(tile, frame, from, count);
-    glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
 }
 
 void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
@@ -98,7 +98,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
             args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->resolve(&args);
-    glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }
 
 // ---- Samples that are shaded together ----
@@ -133,7 +133,7 @@ void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame)
     glint_shade_args *shade = tile->samples->shade;
     glint_tile_point_film(tile, frame->plan, shade->film, shade->beauty);
     frame->stages->resolve_samples(shade, count);
-    glint_tile_book(tile, frame, GLINT_STAGE_SHADE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
     tile->counts.runs[GLINT_STAGE_SHADE] += count - 1;
-    glint_tile_book(tile, frame, GLINT_STAGE_RESOLVE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
 }

@@ -4,50 +4,54 @@
 
 #include <stdlib.h>
 
-void glint_sites_clear(glint_sites_kept *sites, glint_reuse *reuse)
+void glint_shading_points_clear(glint_shading_points_cached *shading_points, glint_reuse *reuse)
 {
-    if (sites->reserved)
-        glint_reuse_unreserve(reuse, sites->reserved);
-    free(sites->light);
-    free(sites->state);
-    *sites = (glint_sites_kept) { 0 };
+    if (shading_points->reserved)
+        glint_reuse_unreserve(reuse, shading_points->reserved);
+    free(shading_points->light);
+    free(shading_points->state);
+    *shading_points = (glint_shading_points_cached) { 0 };
 }
 
-static glint_status make_room(glint_sites_kept *sites, uint32_t blocks, glint_reuse *reuse, glint_error *error)
+static glint_status make_room(glint_shading_points_cached *shading_points, uint32_t blocks, glint_reuse *reuse,
+                              glint_error *error)
 {
-    const size_t count = 2 * (size_t)blocks, bytes = count * (GLINT_SITE_BLOCK * sizeof *sites->light + 1);
-    glint_sites_clear(sites, reuse);
-    sites->light = glint_alloc(count * GLINT_SITE_BLOCK, sizeof *sites->light);
-    sites->state = glint_alloc(count, sizeof *sites->state);
-    if (!sites->light || !sites->state) {
-        glint_sites_clear(sites, reuse);
+    const size_t count = 2 * (size_t)blocks,
+                 bytes = count * (GLINT_SHADING_POINT_BLOCK * sizeof *shading_points->light + 1);
+    glint_shading_points_clear(shading_points, reuse);
+    shading_points->light = glint_alloc(count * GLINT_SHADING_POINT_BLOCK, sizeof *shading_points->light);
+    shading_points->state = glint_alloc(count, sizeof *shading_points->state);
+    if (!shading_points->light || !shading_points->state) {
+        glint_shading_points_clear(shading_points, reuse);
         return glint_fail_nomem(error);
     }
-    sites->blocks = blocks;
-    sites->reserved = glint_reuse_reserve(reuse, bytes) ? bytes : 0;
+    shading_points->blocks = blocks;
+    shading_points->reserved = glint_reuse_reserve(reuse, bytes) ? bytes : 0;
     return GLINT_OK;
 }
 
-glint_status glint_sites_begin(glint_sites_kept *sites, const glint_plan *plan, glint_reuse *reuse, glint_error *error)
+glint_status glint_shading_points_begin(glint_shading_points_cached *shading_points, const glint_plan *plan,
+                                        glint_reuse *reuse, glint_error *error)
 {
-    const uint32_t count = plan->geometry->table.site_count;
-    const uint32_t blocks = (count + GLINT_SITE_BLOCK - 1) / GLINT_SITE_BLOCK;
+    const uint32_t count = plan->geometry->table.shading_point_count;
+    const uint32_t blocks = (count + GLINT_SHADING_POINT_BLOCK - 1) / GLINT_SHADING_POINT_BLOCK;
     if (!plan->runs[GLINT_STAGE_VERTEX]) {
-        glint_sites_clear(sites, reuse);
+        glint_shading_points_clear(shading_points, reuse);
         return GLINT_OK;
     }
-    if (sites->blocks != blocks) {
-        glint_status status = make_room(sites, blocks, reuse, error);
+    if (shading_points->blocks != blocks) {
+        glint_status status = make_room(shading_points, blocks, reuse, error);
         if (status)
             return status;
     }
-    const bool known = sites->reserved && glint_key_equal(sites->key, plan->vertex_key);
-    sites->ready = 0;
+    const bool known = shading_points->reserved && glint_key_equal(shading_points->key, plan->vertex_key);
+    shading_points->ready = 0;
     for (uint32_t i = 0; i < 2 * blocks; i++) {
         if (!known)
-            atomic_store_explicit(&sites->state[i], GLINT_BLOCK_NONE, memory_order_relaxed);
-        sites->ready += atomic_load_explicit(&sites->state[i], memory_order_relaxed) == GLINT_BLOCK_DONE;
+            atomic_store_explicit(&shading_points->state[i], GLINT_BLOCK_NONE, memory_order_relaxed);
+        shading_points->ready +=
+            atomic_load_explicit(&shading_points->state[i], memory_order_relaxed) == GLINT_BLOCK_DONE;
     }
-    sites->key = plan->vertex_key;
+    shading_points->key = plan->vertex_key;
     return GLINT_OK;
 }

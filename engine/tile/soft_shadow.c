@@ -10,7 +10,7 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
 {
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot];
-    if (!light->lamps || light->hard || plan->facets || plan->tints || plan->dims || frame->count_work ||
+    if (!light->light_samples || light->hard || plan->facets || plan->tints || plan->dims || frame->count_work ||
         frame->time_stages)
         return false;
     for (uint32_t i = slot; i < slot + count; i++)
@@ -41,10 +41,10 @@ static bool sum(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
         memcpy(tile->at.light[i].open, reached, tile->group_count * sizeof *reached);
         tile->at.light[i].brightest = 0; // not known: the largest logarithm there is
     }
-    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
     if (shadows) {
-        glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);
         tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
     }
     return true;

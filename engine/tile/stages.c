@@ -26,7 +26,7 @@ static void lap(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id 
 }
 
 /// Counts a stage's call; `reused`: its result was at hand.
-void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused)
+void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused)
 {
     if (reused)
         tile->counts.reuses[stage]++;
@@ -64,7 +64,7 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 void glint_tile_make_rays(glint_tile *tile, const glint_tile_frame *frame)
 {
     frame->stages->geometry[frame->plan->desc.precision].camera(&tile->camera);
-    glint_tile_book(tile, frame, GLINT_STAGE_CAMERA, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_CAMERA, false);
 }
 
 static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint_cast_args *args)
@@ -89,8 +89,8 @@ static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint
 bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_cast_args args;
-    if (frame->scan)
-        return glint_tile_scan_in_sight(tile, frame);
+    if (frame->raster)
+        return glint_tile_raster_in_sight(tile, frame);
     if (frame->plan->camera.orthographic)
         return true;
     set_cast_args(tile, frame, &args);
@@ -116,22 +116,22 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
     glint_cast_args args;
     set_cast_args(tile, frame, &args);
-    if (frame->scan)
-        glint_tile_scan(tile, frame, &args);
+    if (frame->raster)
+        glint_tile_raster(tile, frame, &args);
     else if (frame->plan->camera.orthographic)
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);
     tile->counts.primary += count_active(tile);
-    glint_tile_book(tile, frame, GLINT_STAGE_CAST, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
 
 /// Whether the box of the tile's points is known from an earlier frame: of the only sample of each pixel, since others have
 /// boxes of their own, less wide than that of all.
 static bool has_box(const glint_tile *tile, const glint_tile_frame *frame)
 {
-    return tile->kept && frame->plan->desc.samples == 1 &&
-           glint_key_equal(tile->kept->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
+    return tile->cached && frame->plan->desc.samples == 1 &&
+           glint_key_equal(tile->cached->boxed, frame->plan->keys[GLINT_STAGE_SURFACE]);
 }
 
 /// The box that a call of the stage filled in, or the known one.
@@ -139,7 +139,7 @@ static void take_box(glint_tile *tile, const glint_tile_frame *frame, const glin
 {
     if (filled)
         glint_tile_keep_box(tile, frame, filled);
-    tile->at.box = filled ? filled : &tile->kept->box;
+    tile->at.box = filled ? filled : &tile->cached->box;
 }
 
 static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame *frame)
@@ -174,7 +174,7 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
     const glint_surface_args args = surface_args(tile, frame);
     frame->stages->geometry[frame->plan->desc.precision].surface(&args);
     take_box(tile, frame, args.box);
-    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
 }
 
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
@@ -208,10 +208,10 @@ static void bound_brightest(glint_tile *tile, const glint_tile_frame *frame, con
                             const uint32_t *slot)
 {
     float bound = GLINT_NO_SPECULAR;
-    if (!tile->kept || !args->sparing || !args->highlights)
+    if (!tile->cached || !args->sparing || !args->highlights)
         return;
-    for (uint32_t i = 0; i < tile->kept->shown_count && i < GLINT_SHOWN_MAX; i++) {
-        const glint_shade_material *material = &frame->plan->materials[tile->kept->shown[i]];
+    for (uint32_t i = 0; i < tile->cached->shown_count && i < GLINT_SHOWN_MAX; i++) {
+        const glint_shade_material *material = &frame->plan->materials[tile->cached->shown[i]];
         if (material->least > 0) // half the logarithm of `least`, rounded up
             bound = fmaxf(bound, GLINT_EXP2_LOWEST / material->shininess - 5e-5f);
     }
@@ -240,7 +240,7 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     vec_copy(args.position, light->position);
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
-        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.cosine[i] = tile->at.light[slot[i]].cosine;
         args.attenuation[i] = tile->at.light[slot[i]].attenuation;
@@ -262,7 +262,7 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     frame->stages->geometry[frame->plan->desc.precision].light(&args);
     bound_brightest(tile, frame, &args, slot);
     glint_tile_count_light(tile, frame, count);
-    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
     tile->counts.runs[GLINT_STAGE_LIGHT] += count - 1;
 }
 
@@ -275,8 +275,8 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     bound_brightest(tile, frame, &args, &slot);
     take_box(tile, frame, surface.box);
     glint_tile_count_light(tile, frame, 1);
-    glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, false);
-    glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
 }
 
 /// What is seen of a light, times its attenuation; within its radius a radiant one is as strong as at it.
@@ -320,7 +320,7 @@ static void occlude_middle(const glint_tile *tile, const glint_tile_frame *frame
     uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
     glint_occlude_args args = *samples;
     args.sample_count = 1;
-    args.lamp[0] = NULL;
+    args.light_sample[0] = NULL;
     args.lit[0] = lit;
     args.open[0] = open;
     for (uint32_t s = 0; s < samples->sample_count; s++)
@@ -354,7 +354,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
                                 .tests = glint_tile_tests_of(tile, frame) };
     vec_copy(args.position, light->position);
     for (uint32_t i = 0; i < count; i++) {
-        args.lamp[i] = glint_tile_lamp_of(tile, &plan->lights[first + slot[i]]);
+        args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.open[i] = tile->at.light[slot[i]].open;
     }
@@ -372,7 +372,7 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
     const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_occlude_args args = glint_tile_occlude_args(tile, frame, first, slot, count);
     if (light->cap) {
-        args.lamp[0] = light->cap;
+        args.light_sample[0] = light->cap;
         args.visible = tile->at.light[slot[0]].visible;
         args.overlaps = &tile->counts.work.overlaps;
     }
@@ -382,6 +382,6 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         frame->stages->geometry[plan->desc.precision].occlude(&args);
     if (light->cap)
         weaken(tile, frame, light, slot[0]);
-    glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);
     tile->counts.runs[GLINT_STAGE_OCCLUDE] += count - 1;
 }

@@ -73,29 +73,29 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     if (!plan->runs[GLINT_STAGE_CAST]) {
         memset(tile->at.hits, 0, tile->group_count * sizeof *tile->at.hits);
     } else if (known) {
-        glint_tile_book(tile, frame, GLINT_STAGE_CAST, true);
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, true);
     } else {
         if (glint_tile_in_sight(tile, frame))
             need_rays(tile, frame, w);
         glint_tile_cast(tile, frame);
     }
-    if (plan->runs[GLINT_STAGE_GLOW]) {
-        if (glint_tile_glow_in_sight(tile, frame)) {
+    if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT]) {
+        if (glint_tile_visible_light_in_sight(tile, frame)) {
             need_rays(tile, frame, w);
             glint_tile_see_lights(tile, frame, tile->active);
         }
-        glint_tile_book(tile, frame, GLINT_STAGE_GLOW, false);
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_VISIBLE_LIGHT, false);
     }
     const bool any = any_hit(tile);
     if (!any)
         glint_tile_keep_box(tile, frame, NULL);
-    if (tile->kept && !glint_key_equal(tile->kept->seen, plan->keys[GLINT_STAGE_SURFACE])) {
+    if (tile->cached && !glint_key_equal(tile->cached->seen, plan->keys[GLINT_STAGE_SURFACE])) {
         if (any)
             glint_tile_note_surfaces(tile, frame, w->sample);
         else
             glint_tile_note_nothing(tile, w->sample);
     }
-    tile->at.only = tile->kept && tile->kept->only != GLINT_MISS ? &tile->kept->only : NULL;
+    tile->at.only = tile->cached && tile->cached->only != GLINT_MISS ? &tile->cached->only : NULL;
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
     if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
@@ -113,7 +113,7 @@ static void find_facets(glint_tile *tile, const glint_tile_frame *frame, walk *w
     uint32_t unknown[GLINT_LIGHT_CHUNK], left = 0;
     for (uint32_t i = slot; i < slot + count; i++) {
         if (glint_tile_facet_memory(tile, frame, w->sample, first + i, i))
-            glint_tile_book(tile, frame, GLINT_STAGE_FACET, true);
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, true);
         else
             unknown[left++] = i;
     }
@@ -127,7 +127,7 @@ static void find_facets(glint_tile *tile, const glint_tile_frame *frame, walk *w
 static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
     if (glint_tile_view_memory(tile, frame, w->sample)) {
-        glint_tile_book(tile, frame, GLINT_STAGE_VIEW, true);
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, true);
         return;
     }
     need_points(tile, frame, w);
@@ -139,7 +139,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && plan->light_count == 1 && !plan->lights[0].lamps &&
+    return !w->points && !frame->time_stages && plan->light_count == 1 && !plan->lights[0].light_samples &&
            !plan->lights[0].is_spot && !frame->geometry.triangles && !frame->geometry.solids;
 }
 
@@ -153,11 +153,11 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
         bool light_known, occlude_known;
         glint_tile_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
         if (light_known)
-            glint_tile_book(tile, frame, GLINT_STAGE_LIGHT, true);
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, true);
         else
             shine[shining++] = i;
         if (light->shadows && occlude_known)
-            glint_tile_book(tile, frame, GLINT_STAGE_OCCLUDE, true);
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, true);
         else if (light->shadows)
             occlude[occluding++] = i;
     }
@@ -178,7 +178,7 @@ static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w,
     if (frame->plan->runs[GLINT_STAGE_FACET])
         find_facets(tile, frame, w, first, slot, count);
     for (uint32_t i = slot; i < slot + count; i++)
-        if (tile->kept && first + i < frame->reuse->light_count)
+        if (tile->cached && first + i < frame->reuse->light_count)
             glint_tile_note_light(tile, first + i, i, light->shadows, w->sample);
 }
 
@@ -193,12 +193,13 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w
 }
 
 /// What a light gives through transparent objects.
-static void find_tint(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index, uint32_t slot)
+static void find_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index,
+                                    uint32_t slot)
 {
     if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, frame->plan, slot))
         return;
     need_points(tile, frame, w);
-    glint_tile_tint(tile, frame, index, slot);
+    glint_tile_transparent_shadow(tile, frame, index, slot);
 }
 
 /// What other surfaces and the background light.
@@ -206,7 +207,7 @@ static void find_indirect(glint_tile *tile, const glint_tile_frame *frame, walk 
 {
     need_points(tile, frame, w);
     glint_tile_indirect(tile, frame, tile, NULL);
-    glint_tile_book(tile, frame, GLINT_STAGE_INDIRECT, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_INDIRECT, false);
 }
 
 /// What materials send on.
@@ -216,24 +217,24 @@ static void find_bounces(glint_tile *tile, const glint_tile_frame *frame, walk *
         return;
     need_points(tile, frame, w);
     glint_tile_bounce(tile, frame);
-    glint_tile_book(tile, frame, GLINT_STAGE_BOUNCE, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_BOUNCE, false);
 }
 
 /// The light of faces and vertices.
-static void find_sites(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+static void find_shading_points(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
-    if (!glint_tile_has_sites(tile))
+    if (!glint_tile_has_shading_points(tile))
         return;
     need_points(tile, frame, w);
     glint_tile_vertex(tile, frame);
 }
 
-static void find_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
+static void find_depth_cue(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any)
 {
-    const bool seen = any || frame->plan->runs[GLINT_STAGE_GLOW];
+    const bool seen = any || frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
     if (seen)
         need_rays(tile, frame, w);
-    glint_tile_find_cue(tile, frame->plan, seen);
+    glint_tile_find_depth_cue(tile, frame->plan, seen);
 }
 
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
@@ -244,10 +245,10 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
     const bool any = find_hits(tile, frame, &w);
-    if (frame->plan->runs[GLINT_STAGE_CUE])
-        find_cue(tile, frame, &w, any);
-    const bool sites = any && frame->plan->runs[GLINT_STAGE_VERTEX];
-    const bool lit = sites ? glint_tile_choose_sampled(tile, frame) : any;
+    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
+        find_depth_cue(tile, frame, &w, any);
+    const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
+    const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
     const uint32_t lights = lit ? frame->plan->light_count : 0;
     uint32_t from = 0;
     if (lit && frame->plan->runs[GLINT_STAGE_VIEW])
@@ -256,7 +257,7 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         find_lights(tile, frame, &w, from, count);
         if (from == 0 && any && !w.points && !w.lit) {
-            glint_tile_book(tile, frame, GLINT_STAGE_SURFACE, true);
+            glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);
         }
         if (lit && frame->plan->dims) // which points are inside what absorbs
@@ -266,17 +267,17 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         else
             glint_tile_shade(tile, frame, from, count);
         for (uint32_t i = 0; i < count && frame->plan->tints; i++)
-            find_tint(tile, frame, &w, from + i, i);
+            find_transparent_shadow(tile, frame, &w, from + i, i);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
-    if (sites)
-        find_sites(tile, frame, &w);
+    if (shading_points)
+        find_shading_points(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
         find_indirect(tile, frame, &w);
     if (any && frame->plan->runs[GLINT_STAGE_BOUNCE])
         find_bounces(tile, frame, &w);
-    if (frame->plan->runs[GLINT_STAGE_CUE])
-        glint_tile_cue(tile, frame);
+    if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
+        glint_tile_depth_cue(tile, frame);
 }
 
 /// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
@@ -292,12 +293,12 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_film_counts before = { .clipped = tile->counts.clipped,
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
-    if (tile->kept) {
+    if (tile->cached) {
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
-        glint_tile_foresee(tile, frame);
+        glint_tile_prefetch(tile, frame);
     }
     if (plan->runs[GLINT_STAGE_TONE])
-        glint_tile_foresee_codes(tile, frame->image);
+        glint_tile_prefetch_codes(tile, frame->image);
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->sum[k], 0, sizeof tile->sum[k]);
@@ -307,9 +308,9 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         if (glint_tile_cancelled(frame))
             return;
     }
-    glint_tile_sign_kept(tile, frame);
-    if (plan->runs[GLINT_STAGE_CUE] && refined)
-        glint_tile_take_cued(tile, plan);
+    glint_tile_sign_cached(tile, frame);
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE] && refined)
+        glint_tile_take_faded(tile, plan);
     if (plan->together && refined)
         glint_tile_resolve_samples(tile, frame);
     else if (plan->accumulate && refined)
@@ -333,7 +334,7 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
     tile->index = (size_t)row * across + column;
     const uint64_t start = clock_of(tile, frame);
     tile->clock = start;
-    tile->kept = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
+    tile->cached = frame->reuse->tile_count ? &frame->reuse->tiles[tile->index] : NULL;
     place(tile, plan, column, row);
     if (!glint_tile_is_unchanged(tile, frame))
         run_stages(tile, frame);

@@ -31,8 +31,8 @@ typedef struct glint_tile_frame {
     glint_reuse *reuse;
     const atomic_bool *cancelled; ///< the picture is given up: what is begun may be left unfinished
     bool time_stages, count_work;
-    glint_sites_kept *sites; ///< for the stage vertex
-    const glint_scan *scan; ///< NULL: everything is cast
+    glint_shading_points_cached *shading_points; ///< for the stage vertex
+    const glint_raster *raster; ///< NULL: everything is cast
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -95,7 +95,7 @@ typedef struct glint_tile {
     uint32_t boxed; ///< samples so far whose points are in the kept box
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
-    glint_kept_tile *kept; ///< NULL: nothing is kept for this tile
+    glint_cached_tile *cached; ///< NULL: nothing is kept for this tile
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -103,14 +103,14 @@ typedef struct glint_tile {
     const uint32_t *owner; ///< for occlude: the primitives that points are on; NULL: those that were hit
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
     struct glint_bounce *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
-    struct glint_tint *tint;
+    struct glint_transparent_shadow *transparent_shadow;
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
     const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
-    struct glint_cue *cue; ///< of tile/depth_cue.c; NULL until a frame fades
-    struct glint_beside *beside; ///< likewise, of tile/raster.c
-    struct glint_glow *glow; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
+    struct glint_depth_cue *depth_cue; ///< of tile/depth_cue.c; NULL until a frame fades
+    struct glint_shared_edge *shared_edge; ///< likewise, of tile/raster.c
+    struct glint_visible_light *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
     struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
@@ -153,7 +153,7 @@ bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint
 void glint_tile_light_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k, uint32_t light, uint32_t slot,
                              bool *light_known, bool *occlude_known);
 /// Writes down what the kept arrays hold now. After the last sample, since the keys cover all of them.
-void glint_tile_sign_kept(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame);
 /// Notes a sample's materials, and whether there is background among it; the latter where nothing is hit; whether a light
 /// reaches any point of a sample, and the most that its highlights may be there.
 void glint_tile_note_surfaces(const glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
@@ -173,7 +173,7 @@ typedef struct glint_film_counts {
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
 /// tile/cached.c: asks memory for what the tile has kept and will read, of its first sample.
-void glint_tile_foresee(const glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// Each calls one stage for the current sample, and books it.
 void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t sample);
@@ -214,7 +214,7 @@ void glint_samples_destroy(struct glint_samples *samples);
 void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t light_count);
 void glint_tile_resolve_samples(glint_tile *tile, const glint_tile_frame *frame);
 /// Counts a stage's call and, when stages are timed, its time; `reused`: its result was at hand.
-void glint_tile_book(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
+void glint_tile_count_stage(glint_tile *tile, const glint_tile_frame *frame, glint_stage_id stage, bool reused);
 uint64_t glint_tile_now_ns(void);
 
 /// Names the material of each hit, where no surfaces were found.
@@ -238,31 +238,31 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/depth_cue.c: light that fades with the way from the eye.
-struct glint_cue *glint_cue_create(void);
-void glint_cue_destroy(struct glint_cue *cue);
+struct glint_depth_cue *glint_depth_cue_create(void);
+void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue);
 /// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
-void glint_tile_find_cue(glint_tile *tile, const glint_plan *plan, bool any);
+void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool any);
 /// Adds the sums of the current sample, faded, to the totals of the tile, and begins them anew.
-void glint_tile_cue(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame);
 /// Puts the totals where resolve reads.
-void glint_tile_take_cued(glint_tile *tile, const glint_plan *plan);
+void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan);
 
 /// tile/visible_lights.c: lights that are seen.
-struct glint_glow *glint_glow_create(void);
-void glint_glow_destroy(struct glint_glow *glow);
+struct glint_visible_light *glint_visible_light_create(void);
+void glint_visible_light_destroy(struct glint_visible_light *visible_light);
 /// Makes room for the plan's lights; false: no memory.
-bool glint_glow_fits(struct glint_glow *glow, const glint_plan *plan);
+bool glint_visible_light_fits(struct glint_visible_light *visible_light, const glint_plan *plan);
 /// Forgets what was seen. False: no ray of the tile can see a light.
-bool glint_tile_glow_in_sight(glint_tile *tile, const glint_tile_frame *frame);
+bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame);
 /// Of the rays in `lanes`, which are made and whose hits are known, those that see a light become misses at its distance.
 void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
 /// Whether ray i sees one; the normal of its surface there, turned to the eye.
 bool glint_tile_sees_light(const glint_tile *tile, uint32_t i);
-void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3]);
+void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3]);
 /// Fills in the active lanes that see no light.
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
-void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
@@ -278,8 +278,8 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
                          const struct glint_batch *from);
 
 /// tile/transparent_shadow.c: light through transparent objects.
-struct glint_tint *glint_tint_create(void);
-void glint_tint_destroy(struct glint_tint *tint);
+struct glint_transparent_shadow *glint_transparent_shadow_create(void);
+void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow);
 /// Finds the points whose light goes through what absorbs from its first step on. The points are found.
 void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
@@ -288,7 +288,7 @@ uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
 bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot);
 /// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely, or not
 /// whole. The points are found.
-void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
+void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
 
 /// The camera, where the rays are not in arrays.
 static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile)
@@ -297,9 +297,9 @@ static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile
 }
 
 /// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
-static inline const glint_lamp *glint_tile_lamp_of(const glint_tile *tile, const glint_plan_light *light)
+static inline const glint_light_sample *glint_tile_light_sample_of(const glint_tile *tile, const glint_plan_light *light)
 {
-    return light->lamps ? &light->lamps[tile->sample % light->turn_count] : NULL;
+    return light->light_samples ? &light->light_samples[tile->sample % light->turn_count] : NULL;
 }
 
 /// Arrays of real.
@@ -334,16 +334,16 @@ void glint_vertex_destroy(struct glint_vertex *vertex);
 /// Points at.sampled to the hits whose light is worked out for themselves. Returns whether there are any.
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether there are others, of triangles with sites.
-bool glint_tile_has_sites(const glint_tile *tile);
+bool glint_tile_has_shading_points(const glint_tile *tile);
 /// Adds the light of sites to the sums of these others, whose points are found; after `shade`.
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/raster.c: scan conversion.
-struct glint_beside *glint_beside_create(void);
-void glint_beside_destroy(struct glint_beside *beside);
-bool glint_tile_scan_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
+struct glint_shared_edge *glint_shared_edge_create(void);
+void glint_shared_edge_destroy(struct glint_shared_edge *shared_edge);
+bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
 /// `args`: as for a cast of everything.
-void glint_tile_scan(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
+void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
 /// tile/output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
 bool glint_tile_wants_geometry(const glint_plan *plan);
@@ -355,7 +355,7 @@ bool glint_tile_wants_coverage(const glint_plan *plan);
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
 /// Asks for the memory of the tile's codes, as tone will.
-void glint_tile_foresee_codes(const glint_tile *tile, const glint_image *image);
+void glint_tile_prefetch_codes(const glint_tile *tile, const glint_image *image);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether two pictures of one format have the same codes, if any, in the tile's pixels.
 bool glint_tile_has_codes_of(const glint_tile *tile, const glint_image *a, const glint_image *b);

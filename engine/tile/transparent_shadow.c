@@ -12,7 +12,7 @@
 
 #define CROSSINGS_MAX 4096 ///< surfaces on the way of one ray; a point behind more is dark
 
-struct glint_tint {
+struct glint_transparent_shadow {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
@@ -32,9 +32,12 @@ struct glint_tint {
     bool crossed[GLINT_TILE_SAMPLES];
 };
 
-struct glint_tint *glint_tint_create(void) { return glint_alloc(1, sizeof(struct glint_tint)); }
+struct glint_transparent_shadow *glint_transparent_shadow_create(void)
+{
+    return glint_alloc(1, sizeof(struct glint_transparent_shadow));
+}
 
-void glint_tint_destroy(struct glint_tint *tint) { free(tint); }
+void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow) { free(transparent_shadow); }
 
 /// What is around a sample's point, on the side of the viewer, to which the light comes as well.
 static glint_media media_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
@@ -56,20 +59,20 @@ static bool absorbs(const glint_plan *plan, const glint_media *media)
 void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->tint->dim[g] = 0;
+        tile->transparent_shadow->dim[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const glint_media media = media_at(tile, frame->plan, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
-            tile->tint->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
+            tile->transparent_shadow->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
         }
     }
 }
 
-uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return tile->tint->dim[g]; }
+uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g) { return tile->transparent_shadow->dim[g]; }
 
 bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? tile->tint->dim[g] : 0u);
+        const unsigned whole = tile->at.light[slot].open[g] & ~(plan->dims ? tile->transparent_shadow->dim[g] : 0u);
         if (tile->at.light[slot].lit[g] & ~whole)
             return true;
     }
@@ -77,44 +80,44 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
 }
 
 /// Starts sample i's ray at a point of primitive `prim`.
-static void aim(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame,
-                const glint_plan_light *light, const double (*point)[GLINT_TILE_SAMPLES], uint32_t i, uint32_t prim,
-                bool inward)
+static void aim(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                const glint_tile_frame *frame, const glint_plan_light *light, const double (*point)[GLINT_TILE_SAMPLES],
+                uint32_t i, uint32_t prim, bool inward)
 {
     const glint_precision precision = frame->plan->desc.precision;
     const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
-    const glint_lamp *lamp = glint_tile_lamp_of(tile, light);
-    uint16_t *inwards = &tint->inward[i / GLINT_GROUP];
+    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
+    uint16_t *inwards = &transparent_shadow->inward[i / GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
-        const double position = lamp ? lamp->position[c][i % GLINT_GROUP] : light->position[c];
+        const double position = light_sample ? light_sample->position[c][i % GLINT_GROUP] : light->position[c];
         const double from = glint_real_at(point[c], precision, i);
-        glint_real_put(tint->origin[c], precision, i, from);
-        glint_real_put(tint->direction[c], precision, i, light->directional ? position : position - from);
+        glint_real_put(transparent_shadow->origin[c], precision, i, from);
+        glint_real_put(transparent_shadow->direction[c], precision, i, light->directional ? position : position - from);
     }
-    tint->leaving[i] = prim;
+    transparent_shadow->leaving[i] = prim;
     *inwards = (uint16_t)(inward ? *inwards | bit : *inwards & ~bit);
 }
 
-static void begin(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame,
-                  const glint_plan_light *light, uint32_t slot)
+static void begin(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                  const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tint->active[g] = (uint16_t)(tile->at.light[slot].lit[g] & ~tile->at.light[slot].open[g]);
-        tint->arrived[g] = tint->inward[g] = 0;
+        transparent_shadow->active[g] = (uint16_t)(tile->at.light[slot].lit[g] & ~tile->at.light[slot].open[g]);
+        transparent_shadow->arrived[g] = transparent_shadow->inward[g] = 0;
         for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++) {
-            tint->leaving[i] = GLINT_MISS;
+            transparent_shadow->leaving[i] = GLINT_MISS;
             for (int c = 0; c < 3; c++) {
-                glint_real_put(tint->origin[c], frame->plan->desc.precision, i, 0);
-                glint_real_put(tint->direction[c], frame->plan->desc.precision, i, 1);
-                tint->color[c][i] = 1;
-                tint->attenuation[c][i] = 0;
+                glint_real_put(transparent_shadow->origin[c], frame->plan->desc.precision, i, 0);
+                glint_real_put(transparent_shadow->direction[c], frame->plan->desc.precision, i, 1);
+                transparent_shadow->color[c][i] = 1;
+                transparent_shadow->attenuation[c][i] = 0;
             }
-            tint->crossed[i] = false;
+            transparent_shadow->crossed[i] = false;
         }
-        for (unsigned left = tint->active[g]; left; left &= left - 1) {
+        for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            tint->media[i] = media_at(tile, frame->plan, i);
-            aim(tint, tile, frame, light, tile->point, i, tile->at.prim[i], tile->back[g] & left & -left);
+            transparent_shadow->media[i] = media_at(tile, frame->plan, i);
+            aim(transparent_shadow, tile, frame, light, tile->point, i, tile->at.prim[i], tile->back[g] & left & -left);
         }
     }
 }
@@ -127,121 +130,126 @@ static double left_of(const glint_plan *plan, uint32_t medium, int c, double way
 }
 
 /// The rest of the way to the light, on which there is nothing more; directional light has none that ends.
-static void arrive(struct glint_tint *tint, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i)
+static void arrive(struct glint_transparent_shadow *transparent_shadow, const glint_tile_frame *frame,
+                   const glint_plan_light *light, uint32_t i)
 {
-    const uint32_t medium = glint_media_top(&tint->media[i]);
+    const uint32_t medium = glint_media_top(&transparent_shadow->media[i]);
     double d[3];
     for (int c = 0; c < 3; c++)
-        d[c] = glint_real_at(tint->direction[c], frame->plan->desc.precision, i);
+        d[c] = glint_real_at(transparent_shadow->direction[c], frame->plan->desc.precision, i);
     const double way = light->directional ? HUGE_VAL : sqrt(vec_dot(d, d));
     for (int c = 0; c < 3; c++)
-        tint->color[c][i] *= left_of(frame->plan, medium, c, way);
-    tint->arrived[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        transparent_shadow->color[c][i] *= left_of(frame->plan, medium, c, way);
+    transparent_shadow->arrived[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
 }
 
 /// Points that the light reaches freely, inside what absorbs.
-static void dim(struct glint_tint *tint, const glint_tile *tile, const glint_tile_frame *frame,
-                const glint_plan_light *light, uint32_t slot)
+static void dim(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->at.light[slot].open[g] & tint->dim[g]; left; left &= left - 1) {
+        for (unsigned left = tile->at.light[slot].open[g] & transparent_shadow->dim[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            tint->media[i] = media_at(tile, frame->plan, i);
-            aim(tint, tile, frame, light, tile->point, i, tile->at.prim[i], false);
-            arrive(tint, frame, light, i);
+            transparent_shadow->media[i] = media_at(tile, frame->plan, i);
+            aim(transparent_shadow, tile, frame, light, tile->point, i, tile->at.prim[i], false);
+            arrive(transparent_shadow, frame, light, i);
         }
 }
 
-static void cast(struct glint_tint *tint, glint_tile *tile, const glint_tile_frame *frame)
+static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame)
 {
     const struct glint_geometry_stages *stages = &frame->stages->geometry[frame->plan->desc.precision];
     glint_cast_args rays = { .group_count = tile->group_count,
-                             .active = tint->active,
+                             .active = transparent_shadow->active,
                              .geometry = &frame->geometry,
                              .stop = frame->cancelled,
-                             .leaving = tint->leaving,
-                             .inward = tint->inward,
-                             .t = tint->t,
-                             .prim = tint->prim,
-                             .hits = tint->hits,
+                             .leaving = transparent_shadow->leaving,
+                             .inward = transparent_shadow->inward,
+                             .t = transparent_shadow->t,
+                             .prim = transparent_shadow->prim,
+                             .hits = transparent_shadow->hits,
                              .tests = glint_tile_tests_of(tile, frame) };
     glint_surface_args surfaces = { .group_count = tile->group_count,
-                                    .hits = tint->hits,
-                                    .prim = tint->prim,
+                                    .hits = transparent_shadow->hits,
+                                    .prim = transparent_shadow->prim,
                                     .prims = frame->geometry.prims,
                                     .mixed = frame->geometry.triangles || frame->geometry.solids,
                                     .scale = frame->geometry.scale,
                                     .solids = frame->geometry.solids,
                                     .corner_normals = frame->geometry.corner_normals,
-                                    .t = tint->t,
-                                    .material = tint->material,
-                                    .back = tint->back,
-                                    .dark = tint->dark };
+                                    .t = transparent_shadow->t,
+                                    .material = transparent_shadow->material,
+                                    .back = transparent_shadow->back,
+                                    .dark = transparent_shadow->dark };
     for (int c = 0; c < 3; c++) {
-        rays.origin[c] = surfaces.origin[c] = tint->origin[c];
-        rays.direction[c] = surfaces.direction[c] = tint->direction[c];
-        surfaces.point[c] = tint->point[c];
-        surfaces.normal[c] = tint->normal[c];
+        rays.origin[c] = surfaces.origin[c] = transparent_shadow->origin[c];
+        rays.direction[c] = surfaces.direction[c] = transparent_shadow->direction[c];
+        surfaces.point[c] = transparent_shadow->point[c];
+        surfaces.normal[c] = transparent_shadow->normal[c];
     }
     stages->cast_rays(&rays);
     stages->surface(&surfaces);
 }
 
 /// Takes the colour of one surface, and of the way up to it. Returns whether any light is left.
-static bool cross(struct glint_tint *tint, const glint_plan *plan, uint32_t i, double length)
+static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t i,
+                  double length)
 {
-    const uint32_t material = tint->material[i];
-    const bool back = tint->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-    const uint32_t medium = glint_media_before(&tint->media[i], material, back);
+    const uint32_t material = transparent_shadow->material[i];
+    const bool back = transparent_shadow->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    const uint32_t medium = glint_media_before(&transparent_shadow->media[i], material, back);
     bool any = false;
     for (int c = 0; c < 3; c++) {
-        tint->color[c][i] *= plan->bouncing[material].transmission[c] * left_of(plan, medium, c, length);
-        any = any || tint->color[c][i] > 0;
+        transparent_shadow->color[c][i] *= plan->bouncing[material].transmission[c] * left_of(plan, medium, c, length);
+        any = any || transparent_shadow->color[c][i] > 0;
     }
-    glint_media_cross(&tint->media[i], material, back);
-    tint->crossed[i] = true;
+    glint_media_cross(&transparent_shadow->media[i], material, back);
+    transparent_shadow->crossed[i] = true;
     return any;
 }
 
-static double length_of(const struct glint_tint *tint, glint_precision precision, uint32_t i)
+static double length_of(const struct glint_transparent_shadow *transparent_shadow, glint_precision precision,
+                        uint32_t i)
 {
     double d[3];
     for (int c = 0; c < 3; c++)
-        d[c] = glint_real_at(tint->direction[c], precision, i);
-    return glint_real_at(tint->t, precision, i) * sqrt(vec_dot(d, d));
+        d[c] = glint_real_at(transparent_shadow->direction[c], precision, i);
+    return glint_real_at(transparent_shadow->t, precision, i) * sqrt(vec_dot(d, d));
 }
 
 /// One surface further with every ray. Returns whether any is still on its way.
-static bool step(struct glint_tint *tint, glint_tile *tile, const glint_tile_frame *frame,
+static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
                  const glint_plan_light *light)
 {
     const glint_precision precision = frame->plan->desc.precision;
     unsigned any = 0;
-    cast(tint, tile, frame);
+    cast(transparent_shadow, tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         unsigned on = 0;
-        for (unsigned left = tint->active[g]; left; left &= left - 1) {
+        for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
             const unsigned bit = left & -left;
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             tile->counts.shadow++;
-            if (!(tint->hits[g] & bit) || (!light->directional && !(glint_real_at(tint->t, precision, i) < 1))) {
-                if (tint->crossed[i])
-                    arrive(tint, frame, light, i);
-            } else if (frame->plan->bouncing[tint->material[i]].transmits &&
-                       cross(tint, frame->plan, i, length_of(tint, precision, i))) {
-                aim(tint, tile, frame, light, (const double(*)[GLINT_TILE_SAMPLES])tint->point, i, tint->prim[i],
-                    !(tint->back[g] & bit));
+            if (!(transparent_shadow->hits[g] & bit) ||
+                (!light->directional && !(glint_real_at(transparent_shadow->t, precision, i) < 1))) {
+                if (transparent_shadow->crossed[i])
+                    arrive(transparent_shadow, frame, light, i);
+            } else if (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
+                       cross(transparent_shadow, frame->plan, i, length_of(transparent_shadow, precision, i))) {
+                aim(transparent_shadow, tile, frame, light,
+                    (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],
+                    !(transparent_shadow->back[g] & bit));
                 on |= bit;
             }
         }
-        tint->active[g] = (uint16_t)on;
+        transparent_shadow->active[g] = (uint16_t)on;
         any |= on;
     }
     return any;
 }
 
 /// Shades with the coloured light: as three lights, one for each channel.
-static void shade(struct glint_tint *tint, glint_tile *tile, const glint_tile_frame *frame,
+static void shade(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
                   const glint_plan_light *light, uint32_t slot)
 {
     glint_shade_light lights[3];
@@ -255,9 +263,9 @@ static void shade(struct glint_tint *tint, glint_tile *tile, const glint_tile_fr
                               .lights = lights,
                               .light_count = 3 };
     for (int c = 0; c < 3; c++) {
-        lights[c] = (glint_shade_light) { .lit = tint->arrived,
+        lights[c] = (glint_shade_light) { .lit = transparent_shadow->arrived,
                                           .cosine = tile->at.light[slot].cosine,
-                                          .attenuation = tint->attenuation[c],
+                                          .attenuation = transparent_shadow->attenuation[c],
                                           .log2_specular = tile->at.light[slot].log2_specular,
                                           .sine2 = tile->at.light[slot].sine2,
                                           .schlick = tile->at.light[slot].schlick };
@@ -269,28 +277,29 @@ static void shade(struct glint_tint *tint, glint_tile *tile, const glint_tile_fr
     frame->stages->shade(&args);
 }
 
-void glint_tile_tint(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot)
+void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot)
 {
-    struct glint_tint *tint = tile->tint;
+    struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
     const glint_plan_light *light = &frame->plan->lights[index];
-    begin(tint, tile, frame, light, slot);
-    for (int k = 0; k < CROSSINGS_MAX && step(tint, tile, frame, light); k++)
+    begin(transparent_shadow, tile, frame, light, slot);
+    for (int k = 0; k < CROSSINGS_MAX && step(transparent_shadow, tile, frame, light); k++)
         if (glint_tile_cancelled(frame))
             return;
     if (frame->plan->dims)
-        dim(tint, tile, frame, light, slot);
+        dim(transparent_shadow, tile, frame, light, slot);
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        any |= tint->arrived[g];
-        for (unsigned left = tint->arrived[g]; left; left &= left - 1) {
+        any |= transparent_shadow->arrived[g];
+        for (unsigned left = transparent_shadow->arrived[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const double a = light->cap          ? tile->at.light[slot].visible[i]
                              : light->attenuated ? tile->at.light[slot].attenuation[i]
                                                  : 1;
             for (int c = 0; c < 3; c++)
-                tint->attenuation[c][i] = (float)fmin(a * tint->color[c][i], GLINT_ATTENUATION_MAX);
+                transparent_shadow->attenuation[c][i] =
+                    (float)fmin(a * transparent_shadow->color[c][i], GLINT_ATTENUATION_MAX);
         }
     }
     if (any)
-        shade(tint, tile, frame, light, slot);
+        shade(transparent_shadow, tile, frame, light, slot);
 }

@@ -15,15 +15,15 @@
 
 struct glint_vertex {
     glint_batch batch; ///< of one block
-    _Alignas(64) uint32_t nobody[GLINT_SITE_BLOCK]; ///< GLINT_MISS
-    _Alignas(64) double nowhere[GLINT_SITE_BLOCK]; ///< 0
+    _Alignas(64) uint32_t nobody[GLINT_SHADING_POINT_BLOCK]; ///< GLINT_MISS
+    _Alignas(64) double nowhere[GLINT_SHADING_POINT_BLOCK]; ///< 0
     uint16_t wanted[GLINT_TILE_GROUPS];
 };
 
 struct glint_vertex *glint_vertex_create(void)
 {
     struct glint_vertex *vertex = glint_alloc(1, sizeof *vertex);
-    for (int i = 0; vertex && i < GLINT_SITE_BLOCK; i++)
+    for (int i = 0; vertex && i < GLINT_SHADING_POINT_BLOCK; i++)
         vertex->nobody[i] = GLINT_MISS;
     return vertex;
 }
@@ -32,11 +32,11 @@ void glint_vertex_destroy(struct glint_vertex *vertex) { free(vertex); }
 
 // ---- Where a site is ----
 
-typedef struct site {
+typedef struct shading_point {
     double point[3], normal[3]; ///< the normal is that of the front
     double slack; ///< as surface gives it, in units of a rounding
     uint32_t prim; ///< its place among the arranged primitives
-} site;
+} shading_point;
 
 /// Twice the area of a triangle, along its normal, in units of the table.
 static void area_of(const glint_prim *prim, double scale, double out[3])
@@ -50,7 +50,7 @@ static void area_of(const glint_prim *prim, double scale, double out[3])
 }
 
 /// A place on the triangle; w: weights of its second and third corner.
-static void put_on(site *s, const glint_prim *prim, const double w[2])
+static void put_on(shading_point *s, const glint_prim *prim, const double w[2])
 {
     double f[3], g[3];
     vec_sub(f, prim->corner[1], prim->corner[0]);
@@ -67,7 +67,7 @@ static uint32_t face_size(const glint_geometry *geometry, uint32_t first, uint32
     const glint_part *part = &geometry->parts[geometry->prim_part[first]];
     const uint32_t end = part->first_prim + (uint32_t)part->shape->count;
     while (first + count < end &&
-           geometry->sites[geometry->prims[geometry->places[first + count]].sites].at[0] == number)
+           geometry->shading_points[geometry->prims[geometry->places[first + count]].shading_points].at[0] == number)
         count++;
     return count;
 }
@@ -93,7 +93,7 @@ static double weights_of(const glint_prim *prim, double scale, const double poin
 }
 
 /// The middle of a polygon, on the triangle of it that has it; of one whose middle is outside, that of its largest.
-static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, uint32_t count, site *s)
+static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, uint32_t count, shading_point *s)
 {
     const double scale = geometry->table.scale;
     double total = 0, largest = 0, middle[3] = { 0 }, w[2] = { 1 / 3.0, 1 / 3.0 };
@@ -131,10 +131,10 @@ static void find_polygon_middle(const glint_geometry *geometry, uint32_t first, 
 }
 
 /// The corner of its triangle that a site is.
-static void find_corner(const glint_geometry *geometry, const glint_prim *prim, uint32_t number, site *s)
+static void find_corner(const glint_geometry *geometry, const glint_prim *prim, uint32_t number, shading_point *s)
 {
     static const double corners[3][2] = { { 0, 0 }, { 1, 0 }, { 0, 1 } };
-    const uint32_t *at = geometry->sites[prim->sites].at;
+    const uint32_t *at = geometry->shading_points[prim->shading_points].at;
     const int j = at[0] == number ? 0 : at[1] == number ? 1 : 2;
     const double *normal = geometry->normals[prim->item].normal[j];
     put_on(s, prim, corners[j]);
@@ -143,10 +143,10 @@ static void find_corner(const glint_geometry *geometry, const glint_prim *prim, 
         vec_scale(s->normal, normal, vec_dot(normal, s->normal) < 0 ? -1 : 1);
 }
 
-static void find_site(const glint_geometry *geometry, uint32_t number, site *s)
+static void find_shading_point(const glint_geometry *geometry, uint32_t number, shading_point *s)
 {
     static const double middle[2] = { 1 / 3.0, 1 / 3.0 };
-    const uint32_t first = geometry->site_prims[number];
+    const uint32_t first = geometry->shading_point_prims[number];
     s->prim = geometry->places[first];
     const glint_prim *prim = &geometry->prims[s->prim];
     area_of(prim, geometry->table.scale, s->normal);
@@ -175,7 +175,8 @@ static void view_of(const glint_plan_camera *camera, const double point[3], doub
         vec_normalize(out, out);
 }
 
-static void put_site(glint_tile *tile, const glint_tile_frame *frame, uint32_t i, const site *s, bool back)
+static void put_shading_point(glint_tile *tile, const glint_tile_frame *frame, uint32_t i, const shading_point *s,
+                              bool back)
 {
     const glint_precision precision = frame->plan->desc.precision;
     const double rounding = precision == GLINT_FLOAT ? GLINT_POINT_SLACK_FLOAT : GLINT_POINT_SLACK_DOUBLE;
@@ -195,21 +196,21 @@ static void put_site(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
 static void load_block(struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     glint_tile *tile = &vertex->batch.tile;
-    const uint32_t blocks = frame->sites->blocks;
+    const uint32_t blocks = frame->shading_points->blocks;
     const bool back = block >= blocks;
-    const uint32_t first = (back ? block - blocks : block) * GLINT_SITE_BLOCK;
-    const uint32_t left = frame->geometry.site_count - first;
-    tile->group_count = GLINT_SITE_BLOCK / GLINT_GROUP;
+    const uint32_t first = (back ? block - blocks : block) * GLINT_SHADING_POINT_BLOCK;
+    const uint32_t left = frame->geometry.shading_point_count - first;
+    tile->group_count = GLINT_SHADING_POINT_BLOCK / GLINT_GROUP;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         tile->hits[g] = tile->dark[g] = 0;
         tile->back[g] = back ? 0xffff : 0;
     }
-    for (uint32_t i = 0; i < GLINT_SITE_BLOCK; i++) {
-        const bool there = i < left && frame->plan->geometry->site_prims[first + i] != GLINT_MISS;
-        site s = { .point = { 0 }, .normal = { 0, 0, 1 }, .prim = 0 };
+    for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
+        const bool there = i < left && frame->plan->geometry->shading_point_prims[first + i] != GLINT_MISS;
+        shading_point s = { .point = { 0 }, .normal = { 0, 0, 1 }, .prim = 0 };
         if (there)
-            find_site(frame->plan->geometry, first + i, &s);
-        put_site(tile, frame, i, &s, back);
+            find_shading_point(frame->plan->geometry, first + i, &s);
+        put_shading_point(tile, frame, i, &s, back);
         if (there && (!back || frame->geometry.prims[s.prim].two_sided))
             tile->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     }
@@ -220,8 +221,8 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
 static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
 {
     const glint_tile *tile = &vertex->batch.tile;
-    glint_site_light *light = frame->sites->light + (size_t)block * GLINT_SITE_BLOCK;
-    for (uint32_t i = 0; i < GLINT_SITE_BLOCK; i++)
+    glint_shading_point_light *light = frame->shading_points->light + (size_t)block * GLINT_SHADING_POINT_BLOCK;
+    for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)
                 light[i].term[term][c] = (float)fmin(tile->sum[GLINT_TERM_DIFFUSE + term][c][i], FLT_MAX);
@@ -251,7 +252,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 static void ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     unsigned char none = GLINT_BLOCK_NONE;
-    atomic_uchar *state = &frame->sites->state[block];
+    atomic_uchar *state = &frame->shading_points->state[block];
     if (atomic_load_explicit(state, memory_order_acquire) != GLINT_BLOCK_NONE ||
         !atomic_compare_exchange_strong(state, &none, GLINT_BLOCK_CLAIMED))
         return;
@@ -262,7 +263,7 @@ static void ask_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t bl
 static void wait_for(glint_tile *tile, const glint_tile_frame *frame, uint32_t block)
 {
     (void)tile;
-    while (atomic_load_explicit(&frame->sites->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
+    while (atomic_load_explicit(&frame->shading_points->state[block], memory_order_acquire) != GLINT_BLOCK_DONE)
         sched_yield();
 }
 
@@ -277,29 +278,32 @@ static void each_block(glint_tile *tile, const glint_tile_frame *frame,
             const uint32_t side = tile->back[g] >> lane & 1;
             if (prim == last && side == last_side)
                 continue;
-            const uint32_t *at = frame->geometry.sites[frame->geometry.prims[prim].sites].at;
+            const uint32_t *at = frame->geometry.shading_points[frame->geometry.prims[prim].shading_points].at;
             for (int j = 0; j < 3; j++)
-                act(tile, frame, side * frame->sites->blocks + at[j] / GLINT_SITE_BLOCK);
+                act(tile, frame, side * frame->shading_points->blocks + at[j] / GLINT_SHADING_POINT_BLOCK);
             last = prim;
             last_side = side;
         }
 }
 
-static bool has_sites(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->sites != GLINT_MISS; }
+static bool has_shading_points(const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_TRIANGLE && prim->shading_points != GLINT_MISS;
+}
 
 bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
 {
     uint32_t last = GLINT_MISS;
     unsigned any = 0;
-    bool sites = false;
+    bool shading_points = false;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         tile->own_light[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t prim = tile->at.prim[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)];
             if (prim != last)
-                sites = has_sites(&frame->geometry.prims[prim]);
+                shading_points = has_shading_points(&frame->geometry.prims[prim]);
             last = prim;
-            tile->own_light[g] |= sites ? 0 : (uint16_t)(left & -left);
+            tile->own_light[g] |= shading_points ? 0 : (uint16_t)(left & -left);
         }
         any |= tile->own_light[g];
     }
@@ -307,7 +311,7 @@ bool glint_tile_choose_sampled(glint_tile *tile, const glint_tile_frame *frame)
     return any;
 }
 
-bool glint_tile_has_sites(const glint_tile *tile)
+bool glint_tile_has_shading_points(const glint_tile *tile)
 {
     unsigned any = 0;
     for (uint32_t g = 0; g < tile->group_count; g++)
@@ -319,15 +323,17 @@ bool glint_tile_has_sites(const glint_tile *tile)
 static void spread(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_plan *plan = frame->plan;
-    const glint_sites_kept *sites = frame->sites;
+    const glint_shading_points_cached *shading_points = frame->shading_points;
     glint_vertex_args args = { .group_count = tile->group_count,
                                .wanted = tile->vertex->wanted,
                                .back = tile->back,
                                .prim = tile->at.prim,
                                .prims = frame->geometry.prims,
                                .scale = frame->geometry.scale,
-                               .sites = frame->geometry.sites,
-                               .light = { sites->light, sites->light + (size_t)sites->blocks * GLINT_SITE_BLOCK },
+                               .shading_points = frame->geometry.shading_points,
+                               .light = { shading_points->light,
+                                          shading_points->light +
+                                              (size_t)shading_points->blocks * GLINT_SHADING_POINT_BLOCK },
                                .camera = glint_tile_rays_of(tile) };
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->origin[c];
@@ -345,6 +351,6 @@ void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
     each_block(tile, frame, ask_for);
     each_block(tile, frame, wait_for);
     spread(tile, frame);
-    glint_tile_book(tile, frame, GLINT_STAGE_VERTEX, false);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_VERTEX, false);
     tile->counts.runs[GLINT_STAGE_VERTEX]--; // blocks are counted, not calls
 }

@@ -12,43 +12,46 @@
 /// Of the lengths it came from, what rounding may have moved a point off a plane by: by the precision of the hits.
 static const double plane_slack[] = { [GLINT_DOUBLE] = 0x1p-46, [GLINT_FLOAT] = 0x1p-18 };
 
-struct glint_glow {
+struct glint_visible_light {
     uint32_t *near; ///< the lights that the rays at hand may see
     uint32_t near_count;
     uint16_t seen[GLINT_TILE_GROUPS]; ///< lanes whose ray sees a light
     uint32_t which[GLINT_TILE_SAMPLES]; ///< that light
 };
 
-struct glint_glow *glint_glow_create(void) { return glint_alloc(1, sizeof(struct glint_glow)); }
-
-void glint_glow_destroy(struct glint_glow *glow)
+struct glint_visible_light *glint_visible_light_create(void)
 {
-    if (glow)
-        free(glow->near);
-    free(glow);
+    return glint_alloc(1, sizeof(struct glint_visible_light));
 }
 
-bool glint_glow_fits(struct glint_glow *glow, const glint_plan *plan)
+void glint_visible_light_destroy(struct glint_visible_light *visible_light)
 {
-    uint32_t *near = glow ? realloc(glow->near, plan->glow_count * sizeof *near) : NULL;
+    if (visible_light)
+        free(visible_light->near);
+    free(visible_light);
+}
+
+bool glint_visible_light_fits(struct glint_visible_light *visible_light, const glint_plan *plan)
+{
+    uint32_t *near = visible_light ? realloc(visible_light->near, plan->visible_light_count * sizeof *near) : NULL;
     if (near)
-        glow->near = near;
+        visible_light->near = near;
     return near;
 }
 
 // ---- One ray and one light ----
 
-typedef struct glow_ray {
+typedef struct visible_light_ray {
     double origin[3], direction[3];
     double slack; ///< of the frame's precision
-} glow_ray;
+} visible_light_ray;
 
 /// Where a ray meets the ball first, or leaves it where it begins inside; 0: nowhere. The formula is that of cast.
-static double meet_ball(const glint_plan_glow *glow, const glow_ray *ray)
+static double meet_ball(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double f[3], x[3];
-    const double scale = power_of_two_scale(glow->radius), r = glow->radius * scale, r2 = r * r;
-    vec_sub(f, ray->origin, glow->center);
+    const double scale = power_of_two_scale(visible_light->radius), r = visible_light->radius * scale, r2 = r * r;
+    vec_sub(f, ray->origin, visible_light->center);
     vec_scale(f, f, scale);
     const double length = sqrt(vec_dot(f, f)), c = (length - r) * (length + r);
     const double a = vec_dot(ray->direction, ray->direction), b = -vec_dot(f, ray->direction);
@@ -61,65 +64,67 @@ static double meet_ball(const glint_plan_glow *glow, const glow_ray *ray)
 }
 
 /// The height of a point over the light's plane; 0 where rounding does not let us know its side.
-static double height_over(const glint_plan_glow *glow, const double point[3], double lengths, double slack)
+static double height_over(const glint_plan_visible_light *visible_light, const double point[3], double lengths,
+                          double slack)
 {
     double away[3];
-    vec_sub(away, point, glow->center);
-    const double height = vec_dot(glow->normal, away);
-    return fabs(height) <= slack * (lengths + vec_max_abs(point) + vec_max_abs(glow->center)) ? 0 : height;
+    vec_sub(away, point, visible_light->center);
+    const double height = vec_dot(visible_light->normal, away);
+    return fabs(height) <= slack * (lengths + vec_max_abs(point) + vec_max_abs(visible_light->center)) ? 0 : height;
 }
 
-static bool within(const glint_plan_glow *glow, const double p[3])
+static bool within(const glint_plan_visible_light *visible_light, const double p[3])
 {
     double away[3];
-    for (size_t i = 0; i < glow->edge_count; i++) {
-        vec_sub(away, p, glow->edges[i].corner);
-        if (!(vec_dot(glow->edges[i].inwards, away) >= 0))
+    for (size_t i = 0; i < visible_light->edge_count; i++) {
+        vec_sub(away, p, visible_light->edges[i].corner);
+        if (!(vec_dot(visible_light->edges[i].inwards, away) >= 0))
             return false;
     }
-    vec_sub(away, p, glow->center);
-    return glow->edge_count > 0 || vec_dot(away, away) <= glow->radius * glow->radius;
+    vec_sub(away, p, visible_light->center);
+    return visible_light->edge_count > 0 || vec_dot(away, away) <= visible_light->radius * visible_light->radius;
 }
 
 /// Where a ray meets a disk or polygon from a side that shines; 0: nowhere. In its plane a ray meets it nowhere.
-static double meet_flat(const glint_plan_glow *glow, const glow_ray *ray)
+static double meet_flat(const glint_plan_visible_light *visible_light, const visible_light_ray *ray)
 {
     double p[3];
-    const double along = vec_dot(glow->normal, ray->direction);
-    const double height = height_over(glow, ray->origin, 0, ray->slack);
+    const double along = vec_dot(visible_light->normal, ray->direction);
+    const double height = height_over(visible_light, ray->origin, 0, ray->slack);
     const double t = -height / along;
-    if (!(t > 0 && t < HUGE_VAL) || (glow->one_sided && along > 0))
+    if (!(t > 0 && t < HUGE_VAL) || (visible_light->one_sided && along > 0))
         return 0;
     for (int c = 0; c < 3; c++)
         p[c] = ray->origin[c] + t * ray->direction[c];
-    return within(glow, p) ? t : 0;
+    return within(visible_light, p) ? t : 0;
 }
 
 /// Whether a surface at `t` lies in the light's plane, as far as rounding lets us know.
-static bool lies_in(const glint_plan_glow *glow, const glow_ray *ray, double t)
+static bool lies_in(const glint_plan_visible_light *visible_light, const visible_light_ray *ray, double t)
 {
     double p[3], way[3];
-    if (glow->ball || !(t < HUGE_VAL))
+    if (visible_light->ball || !(t < HUGE_VAL))
         return false;
     vec_scale(way, ray->direction, t);
     for (int c = 0; c < 3; c++)
         p[c] = ray->origin[c] + way[c];
-    return height_over(glow, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
+    return height_over(visible_light, p, vec_max_abs(way) + vec_max_abs(ray->origin), ray->slack) == 0;
 }
 
 /// The light that a ray sees before `*t`, where its surface is; GLINT_MISS: none. Equally far, the one defined first.
-static uint32_t see(const struct glint_glow *glow, const glint_plan *plan, const glow_ray *ray, double *t)
+static uint32_t see(const struct glint_visible_light *visible_light, const glint_plan *plan,
+                    const visible_light_ray *ray, double *t)
 {
     const double surface = *t;
     uint32_t best = GLINT_MISS;
-    for (uint32_t i = 0; i < glow->near_count; i++) {
-        const glint_plan_glow *light = &plan->glows[glow->near[i]];
+    for (uint32_t i = 0; i < visible_light->near_count; i++) {
+        const glint_plan_visible_light *light = &plan->visible_lights[visible_light->near[i]];
         const double at = light->ball ? meet_ball(light, ray) : meet_flat(light, ray);
         const double bound = best == GLINT_MISS && at >= surface && lies_in(light, ray, surface) ? HUGE_VAL : *t;
         if (!(at > 0 && at < bound))
             continue;
         *t = at;
-        best = glow->near[i];
+        best = visible_light->near[i];
     }
     return best;
 }
@@ -138,7 +143,7 @@ static bool beyond_side(const double a[3], const double b[3], const double middl
 }
 
 /// Notes the lights that a tile of a perspective camera may show.
-static void find_near(struct glint_glow *glow, const glint_tile *tile, const glint_plan *plan)
+static void find_near(struct glint_visible_light *visible_light, const glint_tile *tile, const glint_plan *plan)
 {
     const glint_camera_args *camera = &tile->camera;
     double corner[4][3], middle[3] = { 0 };
@@ -150,31 +155,31 @@ static void find_near(struct glint_glow *glow, const glint_tile *tile, const gli
                            (camera->height - 2 * py) * camera->up[c];
             middle[c] += corner[k][c];
         }
-    glow->near_count = 0;
-    for (uint32_t i = 0; i < plan->glow_count; i++) {
-        const glint_plan_glow *light = &plan->glows[i];
+    visible_light->near_count = 0;
+    for (uint32_t i = 0; i < plan->visible_light_count; i++) {
+        const glint_plan_visible_light *light = &plan->visible_lights[i];
         double away[3];
         bool outside = false;
         vec_sub(away, light->center, camera->eye);
         for (int k = 0; k < 4 && !outside; k++)
             outside = beyond_side(corner[k], corner[(k + 1) & 3], middle, away, light->radius);
         if (!outside)
-            glow->near[glow->near_count++] = i;
+            visible_light->near[visible_light->near_count++] = i;
     }
 }
 
-bool glint_tile_glow_in_sight(glint_tile *tile, const glint_tile_frame *frame)
+bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame *frame)
 {
-    struct glint_glow *glow = tile->glow;
-    memset(glow->seen, 0, sizeof glow->seen);
+    struct glint_visible_light *visible_light = tile->visible_light;
+    memset(visible_light->seen, 0, sizeof visible_light->seen);
     if (!glint_tile_rays_of(tile)) {
-        glow->near_count = frame->plan->glow_count;
-        for (uint32_t i = 0; i < glow->near_count; i++)
-            glow->near[i] = i;
+        visible_light->near_count = frame->plan->visible_light_count;
+        for (uint32_t i = 0; i < visible_light->near_count; i++)
+            visible_light->near[i] = i;
     } else {
-        find_near(glow, tile, frame->plan);
+        find_near(visible_light, tile, frame->plan);
     }
-    return glow->near_count > 0;
+    return visible_light->near_count > 0;
 }
 
 /// The sample's hits become the tile's own, where they are kept between frames.
@@ -197,17 +202,17 @@ static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
     const glint_precision precision = frame->plan->desc.precision;
     const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
     uint16_t *hits = &tile->at.hits[i / GLINT_GROUP];
-    glow_ray ray = { .slack = plane_slack[precision] };
+    visible_light_ray ray = { .slack = plane_slack[precision] };
     for (int c = 0; c < 3; c++) {
         ray.origin[c] = glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->origin[c], precision, i);
         ray.direction[c] = glint_tile_direction(tile, precision, c, i);
     }
     double t = *hits & bit ? glint_real_at(tile->at.t, precision, i) : HUGE_VAL;
-    const uint32_t which = see(tile->glow, frame->plan, &ray, &t);
+    const uint32_t which = see(tile->visible_light, frame->plan, &ray, &t);
     if (which == GLINT_MISS)
         return;
-    tile->glow->seen[i / GLINT_GROUP] |= bit;
-    tile->glow->which[i] = which;
+    tile->visible_light->seen[i / GLINT_GROUP] |= bit;
+    tile->visible_light->which[i] = which;
     tile->counts.work.lights_seen += frame->count_work;
     *hits = (uint16_t)(*hits & ~bit);
     tile->at.prim[i] = GLINT_MISS;
@@ -226,13 +231,14 @@ void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, cons
 
 bool glint_tile_sees_light(const glint_tile *tile, uint32_t i)
 {
-    return tile->glow && tile->glow->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+    return tile->visible_light && tile->visible_light->seen[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
 }
 
-void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3])
+void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                                     double normal[3])
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const glint_plan_glow *light = &frame->plan->glows[tile->glow->which[i]];
+    const glint_plan_visible_light *light = &frame->plan->visible_lights[tile->visible_light->which[i]];
     double d[3];
     for (int c = 0; c < 3; c++) {
         const double from =
@@ -249,16 +255,17 @@ void glint_tile_glow_normal(const glint_tile *tile, const glint_tile_frame *fram
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS])
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        lanes[g] = (uint16_t)(tile->active[g] & ~tile->glow->seen[g]);
+        lanes[g] = (uint16_t)(tile->active[g] & ~tile->visible_light->seen[g]);
     return lanes;
 }
 
-void glint_tile_add_glow(glint_tile *tile, const glint_tile_frame *frame)
+void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = tile->glow->seen[g]; left; left &= left - 1) {
+        for (unsigned left = tile->visible_light->seen[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             for (int c = 0; c < 3; c++)
-                tile->sum[GLINT_TERM_BACKGROUND][c][i] += frame->plan->glows[tile->glow->which[i]].shown[c];
+                tile->sum[GLINT_TERM_BACKGROUND][c][i] +=
+                    frame->plan->visible_lights[tile->visible_light->which[i]].shown[c];
         }
 }

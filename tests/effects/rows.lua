@@ -22,7 +22,7 @@ return {
       scene:add(glint.spot_light { position = { 0, 20, 0 }, direction = { 0, -1, 0 }, inner = 20, outer = 40,
         shadows = false })
     end },
-  { name = "area_light", part = "LAMP", functions = { "light_lamp", "^soft_light" },
+  { name = "area_light", part = "AREA", functions = { "light_area", "^soft_light" },
     call = function(glint, parts, scene)
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 20, 0 }, radius = 1, samples = 4, shadows = false })
@@ -36,7 +36,7 @@ return {
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },
-  { name = "scan", part = "SCAN", functions = { "scan" }, options = "--visibility scan",
+  { name = "scan", part = "RASTER", functions = { "raster" }, options = "--visibility scan",
     call = function(glint, parts, scene)
       scene:add(glint.sphere_mesh { center = { 0, 5, 0 }, radius = 1, segments = 12, material = parts.ball })
     end },
@@ -51,14 +51,14 @@ return {
     end },
   { name = "indirect", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter" },
     call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
-  { name = "visible_light", stage = "glow", functions = { "glow" },
+  { name = "visible_light", stage = "visible_lights", functions = { "visible_light" },
     call = function(glint, parts, scene)
       scene:remove(parts.lamp)
       scene:add(glint.sphere_light { position = { 0, 6, 0 }, radius = 1, samples = 4, visible = true })
     end },
-  { name = "depth_cue", stage = "cue", functions = { "_cue" },
+  { name = "depth_cue", stage = "depth_cue", functions = { "_cue" },
     call = function(_, _, scene) scene.depth_cue = { color = 0, near = 10, far = 30 } end },
-  { name = "eye_in_glass", stage = "cue", functions = { "_cue" },
+  { name = "eye_in_glass", stage = "depth_cue", functions = { "_cue" },
     call = function(glint, _, scene)
       scene:add(glint.plane { point = { 0, 1000, 0 }, normal = { 0, 1, 0 },
         material = glint.material { transmission = 1, ior = 1, absorption = 0.01 } })

@@ -109,7 +109,7 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
 {
     const bool joined = last && last->kind == GLINT_PRIM_TRIANGLE && one_in(3), near = one_in(2);
     double away[3], place[3];
-    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .sites = GLINT_MISS };
+    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .shading_points = GLINT_MISS };
     along3(line->origin, line->length * between(-0.2, 1.2), line->direction, place);
     for (int j = 0; j < 3; j++) {
         random_unit(away);

@@ -236,7 +236,7 @@ static void test_view_passes(void **state)
     glint_image_release(image);
 }
 
-static void test_pass_not_kept(void **state)
+static void test_pass_not_cached(void **state)
 {
     (void)state;
     glint_tone_desc tone = glint_tone_desc_default();
@@ -300,7 +300,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_image_sizes), cmocka_unit_test(test_tone_known), cmocka_unit_test(test_tone_every_step),
-        cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_kept),
+        cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_cached),
         WITH_FOLDER(test_compare),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

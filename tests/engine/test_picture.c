@@ -168,28 +168,28 @@ static void test_alpha_codes(void **state)
         desc.tone.bits = i & 2 ? 16 : 8;
         desc.tone.exposure = i & 4 ? 0.7 : 0;
         desc.tone.transfer = i & 4 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB;
-        glint_image *kept = render(&w, &desc);
+        glint_image *cached = render(&w, &desc);
         desc.passes = 0;
         desc.codes = true;
         glint_image *coded = render(&w, &desc);
         assert_int_equal(coded->channels, 4);
         assert_null(coded->plane[GLINT_PASS_ALPHA][0]);
-        glint_png a = decode(kept, &desc), b = decode(coded, &desc);
+        glint_png a = decode(cached, &desc), b = decode(coded, &desc);
         const unsigned most = desc.tone.bits == 16 ? 65535 : 255;
         assert_int_equal(a.channels, 4);
         assert_memory_equal(a.codes, b.codes, PIXELS * 4 * (size_t)a.bits / 8);
         for (size_t p = 0; p < PIXELS; p++) {
-            const float alpha = kept->plane[GLINT_PASS_ALPHA][0][p];
+            const float alpha = cached->plane[GLINT_PASS_ALPHA][0][p];
             assert_int_equal(png_code(&a, 4 * p + 3), (unsigned)floor((double)alpha * most + 0.5));
             for (size_t c = 0; c < 3; c++) {
-                const float beauty = kept->plane[GLINT_PASS_BEAUTY][c][p];
+                const float beauty = cached->plane[GLINT_PASS_BEAUTY][c][p];
                 const double want = alpha > 0 ? glint_tone_value(&desc.tone, beauty / alpha) : 0;
                 assert_int_equal(png_code(&a, 4 * p + c), (unsigned)want);
             }
         }
         free(a.codes);
         free(b.codes);
-        glint_image_release(kept);
+        glint_image_release(cached);
         glint_image_release(coded);
     }
     free_world(&w);

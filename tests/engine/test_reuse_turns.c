@@ -134,7 +134,7 @@ static void an_index_that_comes_later(void **state)
     free_stand(&s);
 }
 
-static void a_light_beyond_those_kept(void **state)
+static void a_light_beyond_those_cached(void **state)
 {
     (void)state;
     stand s;
@@ -175,7 +175,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_samples),
         cmocka_unit_test(an_index_that_comes_later),
-        cmocka_unit_test(a_light_beyond_those_kept),
+        cmocka_unit_test(a_light_beyond_those_cached),
         cmocka_unit_test(a_background_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,14 +227,14 @@ static int scanned_and_cast(uint64_t first, uint64_t last, bool moved)
     int hits = 0;
     for (uint64_t seed = first; seed <= last; seed++) {
         glint_scene *scene = random_scene(seed);
-        glint_render_desc cast = desc_of(GLINT_VISIBILITY_CAST), scan = desc_of(GLINT_VISIBILITY_SCAN);
-        cast.samples = scan.samples = below(3) ? 1 : 3;
-        cast.seed = scan.seed = moved && seed % 2 ? (double)seed : 0;
-        cast.precision = scan.precision = below(3) ? GLINT_DOUBLE : GLINT_FLOAT;
-        glint_image *want = render(scene, &cast, NULL), *got = render(scene, &scan, NULL);
+        glint_render_desc cast = desc_of(GLINT_VISIBILITY_CAST), raster = desc_of(GLINT_VISIBILITY_SCAN);
+        cast.samples = raster.samples = below(3) ? 1 : 3;
+        cast.seed = raster.seed = moved && seed % 2 ? (double)seed : 0;
+        cast.precision = raster.precision = below(3) ? GLINT_DOUBLE : GLINT_FLOAT;
+        glint_image *want = render(scene, &cast, NULL), *got = render(scene, &raster, NULL);
         const int wrong = differing(want, got, &hits);
         if (wrong)
-            fail_msg("seed %d, precision %d: %d pixels", (int)seed, scan.precision, wrong);
+            fail_msg("seed %d, precision %d: %d pixels", (int)seed, raster.precision, wrong);
         glint_image_release(want);
         glint_image_release(got);
         glint_scene_release(scene);
@@ -264,11 +264,11 @@ static void same_on_every_instruction_set(void **unused)
     (void)unused;
     for (uint64_t seed = 2001; seed <= 2030; seed++) {
         glint_scene *scene = random_scene(seed);
-        glint_render_desc scan = desc_of(GLINT_VISIBILITY_SCAN);
-        scan.precision = seed % 2 ? GLINT_DOUBLE : GLINT_FLOAT;
-        glint_image *want = render(scene, &scan, "ref");
+        glint_render_desc raster = desc_of(GLINT_VISIBILITY_SCAN);
+        raster.precision = seed % 2 ? GLINT_DOUBLE : GLINT_FLOAT;
+        glint_image *want = render(scene, &raster, "ref");
         for (int i = 0; i < 3; i++) {
-            glint_image *got = render(scene, &scan, sets[i]);
+            glint_image *got = render(scene, &raster, sets[i]);
             const int wrong = got ? differing(want, got, &hits) : 0;
             if (wrong)
                 fail_msg("seed %d, %s: %d pixels", (int)seed, sets[i], wrong);

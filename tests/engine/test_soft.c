@@ -199,12 +199,12 @@ static void effects_are_those_called_for(void **state)
     }
 }
 
-static void stages_run(const glint_scene *scene, glint_frame_stats *stats, bool *glows)
+static void stages_run(const glint_scene *scene, glint_frame_stats *stats, bool *visible_lights)
 {
-    *glows = false;
+    *visible_lights = false;
     glint_image_release(render(scene, (setting) { .no_reuse = true }, stats, NULL));
     for (int i = 0; i < stats->stage_count; i++)
-        *glows = *glows || strcmp(stats->stage_name[i], "glow") == 0;
+        *visible_lights = *visible_lights || strcmp(stats->stage_name[i], "visible_lights") == 0;
 }
 
 /// A light without a surface, without light, or not called visible, calls for nothing.
@@ -223,12 +223,12 @@ static void lights_are_seen_where_called_for(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         glint_scene *scene = make_slanted_floor();
         glint_frame_stats stats;
-        bool glows;
+        bool visible_lights;
         visible = cases[i].visible;
         add_light(scene, cases[i].kind, 6, cases[i].radius, 4);
         visible = false;
-        stages_run(scene, &stats, &glows);
-        assert_int_equal(glows, cases[i].seen);
+        stages_run(scene, &stats, &visible_lights);
+        assert_int_equal(visible_lights, cases[i].seen);
         assert_int_equal(has_effect(scene, "visible light"), cases[i].seen);
         glint_scene_release(scene);
     }

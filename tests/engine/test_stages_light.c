@@ -92,14 +92,14 @@ static void make_spot(glint_light_args *args, glint_spot *spot)
 }
 
 /// Samples of an area light about the place of the light, which may be anywhere and of any size.
-static void make_lamps(glint_light_args *args, glint_lamp *lamps, double radius)
+static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double radius)
 {
     args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
     args->directional = false;
     const uint32_t emission = below(GLINT_EMIT_RADIANT_BALL + 1);
     args->attenuated = args->attenuated || emission >= GLINT_EMIT_RADIANT_FRONT;
     for (uint32_t s = 0; s < args->sample_count; s++) {
-        lamps[s] = (glint_lamp) { .emission = emission, .radius = radius };
+        lamps[s] = (glint_light_sample) { .emission = emission, .radius = radius };
         memcpy(lamps[s].center, args->position, sizeof lamps[s].center);
         for (int lane = 0; lane < GLINT_GROUP; lane++) {
             double out[3];
@@ -109,7 +109,7 @@ static void make_lamps(glint_light_args *args, glint_lamp *lamps, double radius)
                 lamps[s].normal[c][lane] = out[c];
             }
         }
-        args->lamp[s] = &lamps[s];
+        args->light_sample[s] = &lamps[s];
     }
 }
 
@@ -117,7 +117,7 @@ static void make_lamps(glint_light_args *args, glint_lamp *lamps, double radius)
 static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camera, glint_spot *spot, int precision,
                                 bool odd)
 {
-    static glint_lamp lamps[GLINT_LIGHT_CHUNK];
+    static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
     *args =
         (glint_light_args) { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
     const double size = power_of_ten(-4, 6);
@@ -184,7 +184,7 @@ static void facet_case(int precision, bool odd)
         uint16_t *lit = masks(light->group_count);
         for (uint32_t g = 0; g < light->group_count; g++)
             lit[g] &= light->hits[g];
-        facet.lamp[s] = light->lamp[s];
+        facet.light_sample[s] = light->light_sample[s];
         facet.lit[s] = lit;
     }
     FOR_EACH_TESTED

@@ -39,7 +39,7 @@ static double place_light(shadow_case *c)
     return distance;
 }
 
-static glint_lamp lamps[GLINT_LIGHT_CHUNK];
+static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
 
 /// Makes an area light of the light: a ball, or a patch of a plane, of any size.
 static void place_lamps(shadow_case *c, double distance)
@@ -71,7 +71,7 @@ static void place_lamps(shadow_case *c, double distance)
         memcpy(lamps[s].upper, upper, sizeof upper);
         memcpy(lamps[s].center, c->args.position, sizeof lamps[s].center);
         lamps[s].radius = radius;
-        c->args.lamp[s] = &lamps[s];
+        c->args.light_sample[s] = &lamps[s];
     }
 }
 
@@ -346,7 +346,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
     make_gloss(materials);
     for (uint32_t s = 0; s < light.sample_count; s++) {
         lamps[s].emission = emission;
-        light.lamp[s] = &lamps[s];
+        light.light_sample[s] = &lamps[s];
         for (int lane = 0; lane < GLINT_GROUP; lane++) {
             double out[3];
             random_unit(out);

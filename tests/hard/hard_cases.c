@@ -27,7 +27,7 @@ static answer ask(const hard_ray *ray, const hard_sphere *sphere)
 }
 
 /// The same sphere as the only one of a glint.spheres has to give the same bits.
-static bool asked_as_spheres(const hard_ray *ray, const hard_sphere *sphere, const answer *one)
+static bool requested_as_spheres(const hard_ray *ray, const hard_sphere *sphere, const answer *one)
 {
     glint_error error;
     glint_shape *shape;
@@ -112,7 +112,7 @@ static void check_case(const ray_case *k)
     }
     hard_check(right, "truth %s t %.17g, engine %s t %.17g", want.hit ? "hit" : "miss", want.t,
                got.hit ? "hit" : "miss", got.hit ? got.at.t : 0);
-    hard_check(asked_as_spheres(&k->ray, &k->sphere, &got), "another answer from a shape of many spheres");
+    hard_check(requested_as_spheres(&k->ray, &k->sphere, &got), "another answer from a shape of many spheres");
     if (hard_table)
         print_case(k, &got, &want, right);
     // a frame's ray is rounded once more; its depth is float32, and infinite beyond

@@ -106,7 +106,7 @@ static bool lands_beyond(double ior, const double d[3], double below, double x, 
     const hard_ray ray = { { -d[0], -d[1], -d[2] }, { d[0], d[1], d[2] } };
     glint_mesh_desc mesh = glint_mesh_desc_default();
     glint_scene *scene = scene_new();
-    glint_material *glass = point_glass(0, 0, 1, ior, false), *glow = point_glass(1, 0, 0, 1, false);
+    glint_material *glass = point_glass(0, 0, 1, ior, false), *visible_light = point_glass(1, 0, 0, 1, false);
     glint_shape *sheet;
     glint_error error;
     mesh.vertices = vertices[0];
@@ -114,14 +114,14 @@ static bool lands_beyond(double ior, const double d[3], double below, double x, 
     mesh.corners = corners;
     mesh.face_sizes = &size;
     mesh.face_count = 1;
-    mesh.material = glow;
+    mesh.material = visible_light;
     must(glint_mesh_create(&mesh, &sheet, &error), &error);
     must(glint_scene_add_shape(scene, sheet, &error), &error);
     glint_shape_release(sheet);
     scene_plane(scene, &plane, glass);
     scene_light_up(scene, 1, (double[3]) { 0 });
     glint_material_release(glass);
-    glint_material_release(glow);
+    glint_material_release(visible_light);
     const double seen = point_seen(scene, &ray, precision, 2, GLINT_PASS_TRANSMISSION);
     glint_scene_release(scene);
     return seen > 0;
@@ -184,12 +184,12 @@ static long resident_kb(void)
 }
 
 /// Two mirrors that face each other and glow.
-static double facing(double mirror, double depth, double glow, glint_precision precision)
+static double facing(double mirror, double depth, double visible_light, glint_precision precision)
 {
     const hard_plane low = { { 0 }, { 0, 1, 0 } }, high = { { 0, 1, 0 }, { 0, -1, 0 } };
     const hard_ray ray = { { 0, 0.5, 0 }, { 0.3, -1, 0 } };
     glint_scene *scene = scene_new();
-    glint_material *wall = point_glass(glow, mirror, 0, 1.5, false);
+    glint_material *wall = point_glass(visible_light, mirror, 0, 1.5, false);
     scene_plane(scene, &low, wall);
     scene_plane(scene, &high, wall);
     glint_material_release(wall);

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-static glint_light_desc lamp_at(glint_light_kind kind, double x, double y, double z)
+static glint_light_desc light_sample_at(glint_light_kind kind, double x, double y, double z)
 {
     glint_light_desc light = glint_light_desc_default(kind);
     light.position[0] = x;
@@ -55,7 +55,7 @@ static void at_the_point(void)
             for (int p = 0; p < 2; p++) { // a ray straight down at the origin meets it exactly
                 const hard_plane floor = { { 0 }, { 0, 1, 0 } };
                 const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
-                glint_light_desc light = lamp_at(kinds[k], 0, 0, 0);
+                glint_light_desc light = light_sample_at(kinds[k], 0, 0, 0);
                 light.radius = 0;
                 if (c2)
                     memcpy(light.attenuation, (double[3]) { 0, 0, 1 }, sizeof light.attenuation);
@@ -77,7 +77,7 @@ static void far_and_near(void)
     for (int i = 0; i < 4; i++) {
         const double far = distances[i];
         char what[64];
-        const glint_light_desc light = lamp_at(GLINT_LIGHT_POINT, far, 2 * far, 0);
+        const glint_light_desc light = light_sample_at(GLINT_LIGHT_POINT, far, 2 * far, 0);
         hard_values shown = { .truth = 2 / sqrt(5),
                               .naive_double = naive_double(far, 2 * far, 1, 0),
                               .naive_float = naive_float(far, 2 * far, 1, 0) };
@@ -91,7 +91,7 @@ static void far_and_near(void)
         const double near = heights[i];
         const hard_plane floor = { { 0 }, { 0, 1, 0 } };
         const hard_ray down = { { 0, 4, 0 }, { 0, -1, 0 } };
-        glint_light_desc light = lamp_at(GLINT_LIGHT_POINT, 0, near, 0);
+        glint_light_desc light = light_sample_at(GLINT_LIGHT_POINT, 0, near, 0);
         hard_values shown = { HARD_BLANK, 0, 0, naive_double(0, near, 0, 1), naive_float(0, near, 0, 1) };
         double *const got[2] = { &shown.in_double, &shown.in_float };
         char what[64];
@@ -143,7 +143,7 @@ static void within(void)
                     const hard_sphere ball = { { 0 }, ldexp(1, e) };
                     const double ahead = list[i].eye > 1 ? -1 : 1, white[3] = { 1, 1, 1 };
                     glint_light_desc light =
-                        lamp_at(list[i].directional ? GLINT_LIGHT_DIRECTIONAL : GLINT_LIGHT_POINT, 0, 0, 0);
+                        light_sample_at(list[i].directional ? GLINT_LIGHT_DIRECTIONAL : GLINT_LIGHT_POINT, 0, 0, 0);
                     ray.o[way] = ldexp(list[i].eye, e);
                     ray.d[way] = ahead;
                     memset(light.direction, 0, sizeof light.direction);
@@ -177,7 +177,7 @@ static double naive_spot(double inner, double outer, double angle)
 /// A spot 4 over the floor's point, whose axis is `angle` off.
 static glint_light_desc spot_off(double inner, double outer, double exponent, double angle)
 {
-    glint_light_desc light = lamp_at(GLINT_LIGHT_SPOT, 0, 4, 0);
+    glint_light_desc light = light_sample_at(GLINT_LIGHT_SPOT, 0, 4, 0);
     light.direction[0] = sin(angle);
     light.direction[1] = -cos(angle);
     light.direction[2] = 0;
@@ -211,9 +211,11 @@ static void whole_spots(int scenes)
     for (int i = 0; i < scenes; i++)
         for (int p = 0; p < 2; p++) {
             const hard_sphere ball = { { uniform(-1, 1), 1, uniform(-1, 1) }, 1 };
-            glint_light_desc light = lamp_at(GLINT_LIGHT_POINT, uniform(-5, 5), uniform(1.5, 9), uniform(-5, 5));
+            glint_light_desc light =
+                light_sample_at(GLINT_LIGHT_POINT, uniform(-5, 5), uniform(1.5, 9), uniform(-5, 5));
             const double point = point_lit(&light, &ball, 0, 6, 0, (glint_precision)p, NULL, NULL);
-            glint_light_desc spot = lamp_at(GLINT_LIGHT_SPOT, light.position[0], light.position[1], light.position[2]);
+            glint_light_desc spot =
+                light_sample_at(GLINT_LIGHT_SPOT, light.position[0], light.position[1], light.position[2]);
             random_direction(spot.direction);
             spot.inner_rad = spot.outer_rad = M_PI;
             const double got = point_lit(&spot, &ball, 0, 6, 0, (glint_precision)p, NULL, NULL);

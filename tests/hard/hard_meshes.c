@@ -54,7 +54,7 @@ static void seams(uint64_t rays)
     static shell s;
     static const char *const names[] = { "box", "box, far away", "ball", "ball, far away" };
     for (int kind = 0; kind < 4; kind++) {
-        uint64_t count = 0, asked = 0;
+        uint64_t count = 0, requested = 0;
         hard_values shown = { 0 };
         char what[96];
         hard_test("G2", names[kind]);
@@ -76,15 +76,15 @@ static void seams(uint64_t rays)
                 pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
                 glint_image_release(image);
                 shown.in_float += id[0] != 1;
-                asked++;
+                requested++;
             }
             glint_scene_release(scene);
         }
         // float loses the eye's place in a mesh far away; near by it keeps it
         hard_check(kind % 2 || shown.in_float == 0, "%g of %llu rays get out in float", shown.in_float,
-                   (unsigned long long)asked);
+                   (unsigned long long)requested);
         snprintf(what, sizeof what, "%s: of %llu rays at seams, out (float: of %llu)", names[kind],
-                 (unsigned long long)count, (unsigned long long)asked);
+                 (unsigned long long)count, (unsigned long long)requested);
         hard_row("G2", what, &shown, shown.in_double == 0);
     }
 }
@@ -138,7 +138,7 @@ static void no_area(int count)
 static double whole(double low, double high) { return rint(uniform(low, high)); }
 
 /// A triangle of whole numbers, of some size, and a ray that runs in its plane and passes its corners on one side.
-static hard_ray aim_beside(double corner[3][3])
+static hard_ray aim_shared_edge(double corner[3][3])
 {
     const double size = uniform(0.1, 10);
     double from[2], along[2], side[3], f[3], g[3], area;
@@ -183,7 +183,7 @@ static void in_plane(uint64_t rays)
         glint_shape *shape;
         glint_error error;
         glint_hit hit;
-        const hard_ray ray = aim_beside(corner);
+        const hard_ray ray = aim_shared_edge(corner);
         desc.vertices = corner[0];
         desc.vertex_count = 3;
         desc.corners = corners;

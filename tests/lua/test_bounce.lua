@@ -447,10 +447,10 @@ local function said(options)
   return pipe:read "a"
 end
 local explained = said "explain POOL"
-check(explained:find("absorption before the eye", 1, true) and explained:find "water" and explained:find "\n%s*cue", "explained: %s", explained)
+check(explained:find("absorption before the eye", 1, true) and explained:find "water" and explained:find "\n%s*depth_cue", "explained: %s", explained)
 for _, outside in ipairs { "-D absorption=0", "-D out=9" } do
   local got = said("explain POOL " .. outside)
-  check(got:find "refraction" and not got:find("before the eye", 1, true) and not got:find "\n%s*cue", "%s: %s", outside, got)
+  check(got:find "refraction" and not got:find("before the eye", 1, true) and not got:find "\n%s*depth_cue", "%s: %s", outside, got)
 end
 local function frames(options)
   local got = said(("POOL --quiet --force --max-depth 0 -o %s%%d.pfm %s"):format(path, options))

@@ -2,11 +2,11 @@
 // the picture, reject; the decision is that of cast. Contract: stages.h.
 
 #if GLINT_REAL == 64
-static const _Alignas(64) float scan_s[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
-static const _Alignas(64) float scan_t[GLINT_GROUP] = { 0, 0, 0, 0, -2, -2, -2, -2, -4, -4, -4, -4, -6, -6, -6, -6 };
+static const _Alignas(64) float raster_s[GLINT_GROUP] = { 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6, 0, 2, 4, 6 };
+static const _Alignas(64) float raster_t[GLINT_GROUP] = { 0, 0, 0, 0, -2, -2, -2, -2, -4, -4, -4, -4, -6, -6, -6, -6 };
 
 /// The pixels of group (x, y) within the entry's box.
-static inline unsigned scan_box(const glint_scan_entry *entry, int x, int y)
+static inline unsigned raster_box(const glint_raster_entry *entry, int x, int y)
 {
     const int left = entry->x0 - 4 * x, right = entry->x1 - 4 * x, top = entry->y0 - 4 * y, bottom = entry->y1 - 4 * y;
     const unsigned columns = 15u << (left > 0 ? left : 0) & 15u >> (right < 3 ? 3 - right : 0);
@@ -16,28 +16,28 @@ static inline unsigned scan_box(const glint_scan_entry *entry, int x, int y)
 #endif
 
 /// What the triangles of a tile have in common.
-typedef struct R(scan_tile) {
-    const glint_scan_args *args;
+typedef struct R(raster_tile) {
+    const glint_raster_args *args;
     int across;
     double first[2]; ///< the tile's first pixel, in the camera's units of half a pixel
     _Alignas(64) float far[GLINT_TILE_GROUPS]; ///< as in tile_cast
     uint64_t stale;
-} R(scan_tile);
+} R(raster_tile);
 
 /// One triangle in one tile.
-typedef struct R(scan_triangle) {
+typedef struct R(raster_triangle) {
     const glint_prim *prim;
     uint32_t id;
     bool filtered;
     real corner[3][3]; ///< from the eye, in units of the table
     float base[3], along_s[3], along_t[3],
         limit; ///< edges, from the tile's first pixel; inside where none is below -limit
-} R(scan_triangle);
+} R(raster_triangle);
 
 /// The edges of a triangle as linear functions of the pixel: p from the eye. Returns on which side its corners run, 0 where
 /// that is not certain.
-static int R(scan_edges)(const glint_camera_args *camera, double p[3][3], double base[3], double along_s[3],
-                         double along_t[3], double rounding, double limit[3])
+static int R(raster_edges)(const glint_camera_args *camera, double p[3][3], double base[3], double along_s[3],
+                           double along_t[3], double rounding, double limit[3])
 {
     double sum = 0, size = 0, way = 1;
     const double reach = (fabs(camera->width) + fabs(camera->height)) + 2;
@@ -74,7 +74,7 @@ static int R(scan_edges)(const glint_camera_args *camera, double p[3][3], double
     return sum > unsure ? 1 : sum < -unsure ? -1 : 0;
 }
 
-static void R(make_scan_filter)(const R(scan_tile) * tile, R(scan_triangle) * triangle)
+static void R(make_raster_filter)(const R(raster_tile) * tile, R(raster_triangle) * triangle)
 {
     const glint_camera_args *camera = tile->args->cast.camera;
     const double rounding = GLINT_REAL == 64 ? 0x1p-46 : 0x1p-17;
@@ -84,7 +84,7 @@ static void R(make_scan_filter)(const R(scan_tile) * tile, R(scan_triangle) * tr
     if (camera->orthographic) // its rays are in world units
         for (int j = 0; j < 9; j++)
             p[j / 3][j % 3] /= tile->args->cast.geometry->scale;
-    const int side = R(scan_edges)(camera, p, base, along_s, along_t, rounding, limit);
+    const int side = R(raster_edges)(camera, p, base, along_s, along_t, rounding, limit);
     for (int j = 0; j < 3; j++) {
         const double here = (base[j] + tile->first[0] * along_s[j]) + tile->first[1] * along_t[j];
         triangle->base[j] = (float)(side * here);
@@ -98,12 +98,12 @@ static void R(make_scan_filter)(const R(scan_tile) * tile, R(scan_triangle) * tr
 }
 
 /// The pixels of group (x, y) that the edges do not rule out.
-static inline unsigned R(scan_inside)(const R(scan_triangle) * triangle, int x, int y)
+static inline unsigned R(raster_inside)(const R(raster_triangle) * triangle, int x, int y)
 {
     const vf limit = f_set(-triangle->limit);
     unsigned inside = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const vf s = f_set((float)(8 * x)) + f_load(scan_s + i), t = f_set((float)(-8 * y)) + f_load(scan_t + i);
+        const vf s = f_set((float)(8 * x)) + f_load(raster_s + i), t = f_set((float)(-8 * y)) + f_load(raster_t + i);
         fm out = fm_from_bits(0);
         for (int j = 0; j < 3; j++) {
             const vf e = (f_set(triangle->base[j]) + s * f_set(triangle->along_s[j])) + t * f_set(triangle->along_t[j]);
@@ -115,8 +115,8 @@ static inline unsigned R(scan_inside)(const R(scan_triangle) * triangle, int x, 
 }
 
 /// Decides a triangle for the lanes of a group.
-static inline bool R(decide_scan)(const R(scan_tile) * tile, const R(scan_triangle) * triangle, int x, int y,
-                                  unsigned lanes)
+static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_triangle) * triangle, int x, int y,
+                                    unsigned lanes)
 {
     const glint_cast_args *args = &tile->args->cast;
     const bool bundle = !args->camera->orthographic;
@@ -145,10 +145,10 @@ static inline bool R(decide_scan)(const R(scan_tile) * tile, const R(scan_triang
     return any;
 }
 
-static void R(scan_entry)(R(scan_tile) * tile, const glint_scan_entry *entry)
+static void R(raster_entry)(R(raster_tile) * tile, const glint_raster_entry *entry)
 {
     const glint_cast_args *args = &tile->args->cast;
-    R(scan_triangle) triangle = { .prim = &args->geometry->prims[entry->prim], .id = entry->prim };
+    R(raster_triangle) triangle = { .prim = &args->geometry->prims[entry->prim], .id = entry->prim };
     const int x0 = entry->x0 / 4, x1 = entry->x1 / 4, y0 = entry->y0 / 4, y1 = entry->y1 / 4;
     bool made = false;
     for (int y = y0; y <= y1; y++)
@@ -166,22 +166,22 @@ static void R(scan_entry)(R(scan_tile) * tile, const glint_scan_entry *entry)
                         ((real)triangle.prim->corner[j / 3][j % 3] - (real)args->camera->eye[j % 3]) *
                         (real)args->geometry->scale;
                 if ((x1 - x0 + 1) * (y1 - y0 + 1) > 2)
-                    R(make_scan_filter)(tile, &triangle);
+                    R(make_raster_filter)(tile, &triangle);
                 made = true;
             }
-            unsigned lanes = scan_box(entry, x, y) & args->active[g];
+            unsigned lanes = raster_box(entry, x, y) & args->active[g];
             if (lanes && triangle.filtered)
-                lanes &= R(scan_inside)(&triangle, x, y);
-            if (lanes && R(decide_scan)(tile, &triangle, x, y, lanes))
+                lanes &= R(raster_inside)(&triangle, x, y);
+            if (lanes && R(decide_raster)(tile, &triangle, x, y, lanes))
                 tile->stale |= (uint64_t)1 << g;
         }
 }
 
-static void R(scan)(const glint_scan_args *args)
+static void R(raster)(const glint_raster_args *args)
 {
     const glint_cast_args *cast = &args->cast;
     const glint_camera_args *camera = cast->camera;
-    R(scan_tile) tile = { .args = args, .across = (int)camera->groups_across };
+    R(raster_tile) tile = { .args = args, .across = (int)camera->groups_across };
     tile.first[0] = 2 * (camera->x0 + camera->offset[0]) - camera->width;
     tile.first[1] = camera->height - 2 * (camera->y0 + camera->offset[1]);
     for (uint32_t g = 0; g < cast->group_count; g++) {
@@ -189,7 +189,7 @@ static void R(scan)(const glint_scan_args *args)
         tile.far[g] = HUGE_VALF;
     }
     for (uint32_t i = 0; i < args->entry_count && !(i % 64 == 0 && is_stopped(cast->stop)); i++)
-        R(scan_entry)(&tile, &args->entries[i]);
+        R(raster_entry)(&tile, &args->entries[i]);
     for (uint32_t g = 0; g < cast->group_count; g++)
         R(finish_group)(cast, g);
 }

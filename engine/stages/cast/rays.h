@@ -64,12 +64,12 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
     const size_t at = (size_t)g * GLINT_GROUP;
     const unsigned near = R(near_rays)(rays, prim);
     const unsigned leave = args->leaving ? lanes_equal(args->leaving + at, id) : 0;
-    const bool beside = args->leaving && prim->kind == GLINT_PRIM_TRIANGLE;
+    const bool shared_edge = args->leaving && prim->kind == GLINT_PRIM_TRIANGLE;
     R(flat) flat;
     if (!near)
         return;
     count_tests(args->tests, near);
-    if (beside)
+    if (shared_edge)
         flat = R(flat_of)(prim, args->geometry->scale);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned own = leave >> i & ((1u << VR) - 1);
@@ -81,10 +81,10 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         rm hit;
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
-            const R(seen_edges) edges = R(see_edges)(p, d, beside);
+            const R(seen_edges) edges = R(see_edges)(p, d, shared_edge);
             hit = R(meet_seen)(&edges, p, d, r_set(args->geometry->scale), &t);
-            if (beside)
-                hit = R(meet_beside)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
+            if (shared_edge)
+                hit = R(meet_shared_edge)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
         } else if (prim->kind == GLINT_PRIM_SOLID) {
             const glint_solid *solid = &args->geometry->solids[prim->item];
             R(unit_offset)(solid, prim, o, f);

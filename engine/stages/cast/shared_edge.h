@@ -129,8 +129,8 @@ static inline unsigned R(may_be_near)(const glint_geometry_table *table, const R
 
 /// Decides anew for the lanes that are in the plane of the triangle which they leave and of this one at once, and for those that
 /// get by this one's edge. `at`: the first lane of the vector; `own`: those that leave this one; `edges`: with reach.
-static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
-                                const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
+static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, unsigned own, const vr o[3],
+                                     const R(flat) * flat, const R(seen_edges) * edges, rm hit, vr *t)
 {
     const glint_geometry_table *table = args->geometry;
     const real *const m = flat->m;
@@ -142,7 +142,7 @@ static inline rm R(meet_beside)(const glint_cast_args *args, size_t at, unsigned
     for (int k = 0; k < 3; k++)
         q[k] = o[k] - r_set(flat->corner[0][k]);
     const vr h = (r_set(m[0]) * q[0] + r_set(m[1]) * q[1]) + r_set(m[2]) * q[2];
-    const real near = (real)(GLINT_NEAR_BESIDE * table->extent);
+    const real near = (real)(GLINT_NEAR_SHARED_EDGE * table->extent);
     const rm soon = rm_and(r_lt(r_set(0), *t), r_le(*t, r_set(near)));
     _Alignas(64) real way[VR];
     unsigned begins = 0, anew = 0, through = 0;

@@ -7,9 +7,9 @@
 // ---- vertex: light that was worked out once for a face or a vertex ----
 
 /// What all lights together add to the two terms at a site.
-typedef struct glint_site_light {
+typedef struct glint_shading_point_light {
     float term[2][3]; ///< diffuse, specular; finite
-} glint_site_light;
+} glint_shading_point_light;
 
 typedef struct glint_vertex_args {
     uint32_t group_count;
@@ -18,8 +18,8 @@ typedef struct glint_vertex_args {
     const uint32_t *prim;
     const glint_prim *prims;
     double scale; ///< of the table
-    const glint_sites *sites;
-    const glint_site_light *light[2]; ///< of each site: seen from the front, from behind
+    const glint_shading_points *shading_points;
+    const glint_shading_point_light *light[2]; ///< of each site: seen from the front, from behind
     const glint_camera_args *camera; ///< the rays, as in glint_surface_args
     const void *origin[3], *direction[3];
     double *sum[2][3]; ///< in and out: added to where wanted; NULL: there is no such term

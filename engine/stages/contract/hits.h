@@ -50,7 +50,7 @@ typedef struct glint_cast_args {
         ///< are is up to index and filter. NULL: nobody counts
 } glint_cast_args;
 #define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
-#define GLINT_NEAR_BESIDE 0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
+#define GLINT_NEAR_SHARED_EDGE 0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
 // in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then
 // cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
@@ -127,17 +127,17 @@ typedef struct glint_cast_args {
 
 // ---- scan: the nearest triangle of each ray, from a list of those that a tile may show ----
 
-typedef struct glint_scan_entry {
+typedef struct glint_raster_entry {
     uint32_t prim; ///< a triangle
     uint8_t x0, y0, x1, y1; ///< the pixels of the tile that it may show in, both ends included
     float depth; ///< not above any t * scale of a hit
-} glint_scan_entry;
+} glint_raster_entry;
 
-typedef struct glint_scan_args {
+typedef struct glint_raster_args {
     glint_cast_args cast; ///< as of cast_bundle, or with an orthographic camera as of cast_rays; `camera` in both
-    const glint_scan_entry *entries; ///< in any order; the nearer first, the faster
+    const glint_raster_entry *entries; ///< in any order; the nearer first, the faster
     uint32_t entry_count;
-} glint_scan_args;
+} glint_raster_args;
 // As cast, with the triangles of the entries in place of all primitives.
 
 // ---- surface: point, normal and material of each hit ----

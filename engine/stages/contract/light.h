@@ -35,13 +35,13 @@ typedef enum glint_emission {
 } glint_emission;
 
 /// One sample of an area light: a place on its surface for each lane, so that the pixels of a 4 x 4 block see sixteen.
-typedef struct glint_lamp {
+typedef struct glint_light_sample {
     _Alignas(64) double position[3][GLINT_GROUP];
     double normal[3][GLINT_GROUP]; ///< unit, of the surface there
     double center[3], radius; ///< a ball around the whole light, of GLINT_EMIT_RADIANT_BALL the light itself
     double lower[3], upper[3]; ///< a box around the whole light
     uint32_t emission;
-} glint_lamp;
+} glint_light_sample;
 
 typedef struct glint_light_args {
     uint32_t group_count;
@@ -57,7 +57,7 @@ typedef struct glint_light_args {
         ///< near enough already
     const glint_spot *spot; ///< NULL: light in all directions
     uint32_t sample_count; ///< of an area light; else 1
-    const glint_lamp *lamp[GLINT_LIGHT_CHUNK]; ///< the samples; lamp[0] is NULL when it is no area light
+    const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is no area light
     bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written
@@ -109,7 +109,7 @@ typedef struct glint_facet_args {
     double position[3];
     double scale;
     uint32_t sample_count;
-    const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
+    const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< what the light stage wrote
     // out, for each sample:
     float *sine2[GLINT_LIGHT_CHUNK]; ///< squared sine between n and h; GLINT_NO_SPECULAR where unlit or without h
@@ -127,7 +127,7 @@ typedef struct glint_facet_args {
 typedef struct glint_occlude_args {
     uint32_t group_count;
     uint32_t sample_count; ///< as in glint_light_args
-    const glint_lamp *lamp[GLINT_LIGHT_CHUNK];
+    const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK];
     const void *point[3];
     const uint32_t *prim; ///< on which the points are; GLINT_MISS: on none

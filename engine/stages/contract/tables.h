@@ -46,7 +46,7 @@ typedef struct glint_prim {
         struct {
             double corner[3][3]; ///< triangle
             uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids
-            uint32_t sites; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
+            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
         };
     };
 } glint_prim;
@@ -67,9 +67,9 @@ typedef struct glint_corner_normals {
 } glint_corner_normals;
 
 /// Where the light on a triangle is worked out once for all its samples: its corners, or its face three times.
-typedef struct glint_sites {
+typedef struct glint_shading_points {
     uint32_t at[3];
-} glint_sites;
+} glint_shading_points;
 
 /// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
 /// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0.
@@ -124,8 +124,8 @@ typedef struct glint_geometry_table {
     bool triangles; ///< there are some
     const glint_corner_normals *corner_normals;
     const glint_solid *solids;
-    const glint_sites *sites;
-    uint32_t site_count; ///< 0: all light is worked out for each sample
+    const glint_shading_points *shading_points;
+    uint32_t shading_point_count; ///< 0: all light is worked out for each sample
 } glint_geometry_table;
 
 /// What the stages before shade find out for a material's specular term.

@@ -10,8 +10,8 @@
 #ifndef GLINT_WITH_SOLID
 #define GLINT_WITH_SOLID 1
 #endif
-#ifndef GLINT_WITH_SCAN
-#define GLINT_WITH_SCAN 1
+#ifndef GLINT_WITH_RASTER
+#define GLINT_WITH_RASTER 1
 #endif
 #ifndef GLINT_WITH_VERTEX
 #define GLINT_WITH_VERTEX 1
@@ -31,8 +31,8 @@
 #ifndef GLINT_WITH_SPOT
 #define GLINT_WITH_SPOT 1
 #endif
-#ifndef GLINT_WITH_LAMP
-#define GLINT_WITH_LAMP 1
+#ifndef GLINT_WITH_AREA
+#define GLINT_WITH_AREA 1
 #endif
 #ifndef GLINT_WITH_CAPS
 #define GLINT_WITH_CAPS 1

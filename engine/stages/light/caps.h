@@ -32,7 +32,7 @@ static inline vr R(half_cosine)(vr k) { return r_sqrt(r_set(0.5) + r_set(0.5) * 
 
 static void R(make_light_cap)(const glint_occlude_args *args, size_t at, R(light_cap) * cap)
 {
-    const vr zero = r_set(0), one = r_set(1), radius = r_set(args->lamp[0]->radius * args->scale);
+    const vr zero = r_set(0), one = r_set(1), radius = r_set(args->light_sample[0]->radius * args->scale);
     cap->around = 0;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr p[3], l[3];
@@ -98,7 +98,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
 {
     const bool plane = prim->kind == GLINT_PRIM_PLANE;
     const unsigned all = (1u << VR) - 1, back = args->back[at / GLINT_GROUP];
-    const double radius = args->lamp[0]->radius, depth = R(depth_of_light)(args, prim);
+    const double radius = args->light_sample[0]->radius, depth = R(depth_of_light)(args, prim);
     const vr zero = r_set(0), one = r_set(1), within = r_set(R(share_of_diameter)(radius, depth));
     const vr behind = r_set(R(share_of_diameter)(radius, -depth)), unit = r_set(args->scale / prim->scale);
     const unsigned wanted = lit & ~(cap->around | (plane ? own : own & ~back));

@@ -64,24 +64,24 @@ INNER vr R(fall_off)(const glint_light_args *args, vr l2)
 }
 
 /// The real part of one vector of lanes, for sample s. `kind` is a constant.
-INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(lamp_lanes) * lanes,
+INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(light_sample_lanes) * lanes,
                           size_t at, int i, unsigned open, R(lit_point) * surface, R(lit_group) * group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr l[3], m = zero;
     for (int k = 0; k < 3; k++) {
-        l[k] = kind == LIGHT_LAMP ? r_load(lanes->position[k] + i) : r_set(args->position[k]);
+        l[k] = kind == LIGHT_LIGHT_SAMPLE ? r_load(lanes->position[k] + i) : r_set(args->position[k]);
         if (!args->directional)
             l[k] = (l[k] - surface->point[k]) * scale;
     }
     vr l2 = DOT(l, l), nl = DOT(surface->normal, l);
     rm ahead = r_lt(zero, nl);
-    const bool aimed = kind == LIGHT_LAMP && args->lamp[s]->emission != GLINT_EMIT_ALL;
+    const bool aimed = kind == LIGHT_LIGHT_SAMPLE && args->light_sample[s]->emission != GLINT_EMIT_ALL;
     if (kind == LIGHT_SPOT)
         ahead = rm_and(
             ahead, R(in_cone)(args->spot, l, l2, group->cone_cosine + i, group->cone_less_1 + i, group->cone_step + i));
     if (aimed)
-        ahead = rm_and(ahead, R(in_front)(args->lamp[s], lanes, i, l, surface->point, &m));
+        ahead = rm_and(ahead, R(in_front)(args->light_sample[s], lanes, i, l, surface->point, &m));
     const unsigned lit = rm_bits(ahead) & open >> i & ((1u << VR) - 1);
     group->lit |= lit << i;
     if (!lit)
@@ -90,7 +90,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     r_store(group->distance2 + i, l2);
     if (args->attenuated) {
         vr attenuation = R(fall_off)(args, l2);
-        if (aimed && args->lamp[s]->emission != GLINT_EMIT_FRONT)
+        if (aimed && args->light_sample[s]->emission != GLINT_EMIT_FRONT)
             attenuation = attenuation * (m / (l2 * r_sqrt(l2)));
         r_store_f(args->attenuation[s] + at + i, attenuation);
     }
@@ -176,7 +176,7 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
 
 /// The real part of a group for each sample, after its surfaces.
 INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
-                          const R(lamp_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
+                          const R(light_sample_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
                           R(lit_group) * groups)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
@@ -198,7 +198,7 @@ INNER void R(light_group)(const glint_light_args *args, const int kind, const ui
 
 /// All groups. `kind` and `samples` of a light without samples are constants.
 static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
-                                   const R(lamp_lanes) * lanes, R(lit_group) * groups)
+                                   const R(light_sample_lanes) * lanes, R(lit_group) * groups)
 {
     R(lit_point) surface = { 0 };
     for (uint32_t s = 0; s < samples; s++)
@@ -215,12 +215,12 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
         R(say_brightest)(args, s, &groups[s]);
 }
 
-static void R(light_lamp)(const glint_light_args *args)
+static void R(light_area)(const glint_light_args *args)
 {
-    R(lamp_set) lamps;
+    R(light_sample_set) light_samples;
     R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
-    R(load_lamps)(args->lamp, args->sample_count, &lamps);
-    R(light_groups)(args, LIGHT_LAMP, args->sample_count, lamps.lamp, groups);
+    R(load_light_samples)(args->light_sample, args->sample_count, &light_samples);
+    R(light_groups)(args, LIGHT_LIGHT_SAMPLE, args->sample_count, light_samples.light_sample, groups);
 }
 
 static void R(light_spot)(const glint_light_args *args)
@@ -232,8 +232,8 @@ static void R(light_spot)(const glint_light_args *args)
 static void R(light)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
-    if (GLINT_WITH_LAMP && args->lamp[0])
-        R(light_lamp)(args);
+    if (GLINT_WITH_AREA && args->light_sample[0])
+        R(light_area)(args);
     else if (GLINT_WITH_SPOT && args->spot)
         R(light_spot)(args);
     else

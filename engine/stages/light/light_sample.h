@@ -2,35 +2,36 @@
 
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
-#define LIGHT_LAMP 2
+#define LIGHT_LIGHT_SAMPLE 2
 
 /// A lamp's lanes as the stage computes with them.
-typedef struct R(lamp_lanes) {
+typedef struct R(light_sample_lanes) {
     const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
-} R(lamp_lanes);
+} R(light_sample_lanes);
 
 /// The samples of one call.
-typedef struct R(lamp_set) {
-    R(lamp_lanes) lamp[GLINT_LIGHT_CHUNK];
+typedef struct R(light_sample_set) {
+    R(light_sample_lanes) light_sample[GLINT_LIGHT_CHUNK];
 #if GLINT_REAL == 32
     _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< what these point to
 #endif
-} R(lamp_set);
+} R(light_sample_set);
 
-static inline void R(load_lamps)(const glint_lamp *const lamp[], uint32_t count, R(lamp_set) * out)
+static inline void R(load_light_samples)(const glint_light_sample *const light_sample[], uint32_t count,
+                                         R(light_sample_set) * out)
 {
     for (uint32_t s = 0; s < count; s++) {
 #if GLINT_REAL == 32
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i++) {
-                out->rounded[s][0][k][i] = (float)lamp[s]->position[k][i];
-                out->rounded[s][1][k][i] = (float)lamp[s]->normal[k][i];
+                out->rounded[s][0][k][i] = (float)light_sample[s]->position[k][i];
+                out->rounded[s][1][k][i] = (float)light_sample[s]->normal[k][i];
             }
-        out->lamp[s].position = (const float(*)[GLINT_GROUP])out->rounded[s][0];
-        out->lamp[s].normal = (const float(*)[GLINT_GROUP])out->rounded[s][1];
+        out->light_sample[s].position = (const float(*)[GLINT_GROUP])out->rounded[s][0];
+        out->light_sample[s].normal = (const float(*)[GLINT_GROUP])out->rounded[s][1];
 #else
-        out->lamp[s].position = lamp[s]->position;
-        out->lamp[s].normal = lamp[s]->normal;
+        out->light_sample[s].position = light_sample[s]->position;
+        out->light_sample[s].normal = light_sample[s]->normal;
 #endif
     }
 }
@@ -61,18 +62,18 @@ static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf le
 }
 
 /// The lanes that a sample shines at; *m: the cosine at the lamp, times the distance in the light's units.
-static inline rm R(in_front)(const glint_lamp *lamp, const R(lamp_lanes) * lanes, int i, const vr l[3],
-                             const vr point[3], vr *m)
+static inline rm R(in_front)(const glint_light_sample *light_sample, const R(light_sample_lanes) * lanes, int i,
+                             const vr l[3], const vr point[3], vr *m)
 {
     const vr n[3] = { r_load(lanes->normal[0] + i), r_load(lanes->normal[1] + i), r_load(lanes->normal[2] + i) };
     *m = -DOT(n, l);
-    if (lamp->emission == GLINT_EMIT_RADIANT_BOTH) {
+    if (light_sample->emission == GLINT_EMIT_RADIANT_BOTH) {
         *m = r_max(*m, -*m);
-    } else if (lamp->emission == GLINT_EMIT_RADIANT_BALL) {
+    } else if (light_sample->emission == GLINT_EMIT_RADIANT_BALL) {
         vr away[3];
         for (int k = 0; k < 3; k++)
-            away[k] = point[k] - r_set(lamp->center[k]);
-        const vr radius = r_set(lamp->radius);
+            away[k] = point[k] - r_set(light_sample->center[k]);
+        const vr radius = r_set(light_sample->radius);
         *m = r_select(r_lt(DOT(away, away), radius * radius), r_max(*m, -*m), *m);
     }
     return r_lt(r_set(0), *m);

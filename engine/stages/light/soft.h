@@ -24,7 +24,7 @@ typedef struct R(whole_light) {
     double scale; ///< of the index's frame
     R(soft_occluder) occluders[GLINT_OCCLUDERS];
     bool ready; ///< the rest is made: what samples need
-    R(lamp_set) lamps;
+    R(light_sample_set) light_samples;
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
     unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
 } R(whole_light);
@@ -49,14 +49,14 @@ static int R(side_of_box)(const R(shadow_tile) * tile, const glint_prim *plane)
 static void R(place_soft_light)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
-    const glint_lamp *lamp = tile->args->lamp[0];
+    const glint_light_sample *light_sample = tile->args->light_sample[0];
     const float loose = 2 * R(walk_slack)(geometry);
     float size = 0;
     for (int k = 0; k < 3; k++) {
-        light->middle[k] = (float)((lamp->center[k] - geometry->reference[k]) * geometry->scale);
+        light->middle[k] = (float)((light_sample->center[k] - geometry->reference[k]) * geometry->scale);
         size += largest_of(tile->lower[k], tile->upper[k]) + fabsf(light->middle[k]);
     }
-    light->radius = (float)(lamp->radius * geometry->scale) * 1.00001f + (WALK_SLACK * size + loose);
+    light->radius = (float)(light_sample->radius * geometry->scale) * 1.00001f + (WALK_SLACK * size + loose);
     light->scale = geometry->scale;
     light->ready = false;
     for (int n = 0; n < tile->count; n++) {
@@ -187,12 +187,13 @@ static R(soft_group)
 static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;
-    R(load_lamps)(args->lamp, args->sample_count, &light->lamps);
+    R(load_light_samples)(args->light_sample, args->sample_count, &light->light_samples);
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (int k = 0; k < tile->count; k++) {
             light->sides[k][s] = (R(light_sides)) { 0xffff, 0 };
             if (!light->occluders[k].outside)
-                light->sides[k][s] = R(sides_of)(args, args->lamp[s], &args->geometry->prims[tile->occluders[k].id]);
+                light->sides[k][s] =
+                    R(sides_of)(args, args->light_sample[s], &args->geometry->prims[tile->occluders[k].id]);
         }
     light->ready = true;
 }
@@ -209,14 +210,15 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     const unsigned back = sphere ? args->back[at / GLINT_GROUP] & own : 0, others = near & ~own;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->lamps.lamp[s].position, at,
+            light->open[s] &= ~R(blocked_by_triangle)(args, prim, light->light_samples.light_sample[s].position, at,
                                                       own & light->open[s], near & light->open[s]);
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
         for (uint32_t s = 0; s < args->sample_count; s++)
-            light->open[s] &= ~R(blocked_by_solid)(args, prim, light->lamps.lamp[s].position, at, own & light->open[s],
-                                                   near & light->open[s], light->sides[k][s].outside);
+            light->open[s] &=
+                ~R(blocked_by_solid)(args, prim, light->light_samples.light_sample[s].position, at,
+                                     own & light->open[s], near & light->open[s], light->sides[k][s].outside);
         return;
     }
     for (uint32_t s = 0; back && s < args->sample_count; s++)
@@ -235,7 +237,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             if (!(lanes >> i & all))
                 continue;
             count_tests(args->tests, lanes >> i & all);
-            R(directions_to)(args, light->lamps.lamp[s].position, at, i, d);
+            R(directions_to)(args, light->light_samples.light_sample[s].position, at, i, d);
             const rm hit =
                 sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
             light->open[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
@@ -283,21 +285,21 @@ static void R(occlude_walking)(R(shadow_tile) * tile)
     const glint_occlude_args *args = tile->args;
     for (uint32_t s = 0; s < args->sample_count; s++) {
         R(shadow_group) group = { .last_blocker = GLINT_MISS };
-        R(aim_at)(tile, args->lamp[s]);
+        R(aim_at)(tile, args->light_sample[s]);
         for (uint32_t g = 0; g < args->group_count; g++) {
             unsigned open = args->lit[s][g];
             *args->rays += (unsigned)__builtin_popcount(open);
             if (open) {
                 R(begin_group)(g, &group);
-                open = R(test_unbounded)(tile, args->lamp[s], &group, open);
-                open = R(walk_group)(tile, args->lamp[s], &group, open);
+                open = R(test_unbounded)(tile, args->light_sample[s], &group, open);
+                open = R(walk_group)(tile, args->light_sample[s], &group, open);
             }
             args->open[s][g] = (uint16_t)open;
         }
     }
 }
 
-static void R(occlude_lamp)(const glint_occlude_args *args)
+static void R(occlude_light_sample)(const glint_occlude_args *args)
 {
     R(shadow_tile) tile;
     uint16_t lit[GLINT_TILE_GROUPS];
@@ -317,8 +319,8 @@ static void R(occlude)(const glint_occlude_args *args)
 {
     if (GLINT_WITH_CAPS && args->visible)
         R(occlude_caps)(args);
-    else if (GLINT_WITH_LAMP && args->lamp[0])
-        R(occlude_lamp)(args);
+    else if (GLINT_WITH_AREA && args->light_sample[0])
+        R(occlude_light_sample)(args);
     else
         R(occlude_point)(args);
 }

@@ -21,7 +21,7 @@ typedef struct R(soft_point) {
 /// What all groups of a call share.
 typedef struct R(soft_call) {
     const glint_soft_args *args;
-    R(lamp_set) lamps;
+    R(light_sample_set) light_samples;
     R(shadow_tile) tile;
     R(whole_light) light;
     R(soft_gloss) gloss; ///< of the group at hand
@@ -90,21 +90,22 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const 
                              unsigned open, R(soft_point) * p)
 {
     const glint_light_args *args = call->args->light;
-    const R(lamp_lanes) *lamp = &call->lamps.lamp[s];
+    const R(light_sample_lanes) *light_sample = &call->light_samples.light_sample[s];
     const vr zero = r_set(0), scale = r_set(args->scale);
-    const bool aimed = !plain && args->lamp[s]->emission != GLINT_EMIT_ALL;
+    const bool aimed = !plain && args->light_sample[s]->emission != GLINT_EMIT_ALL;
     vr l[SOFT_PARTS][3], l2[SOFT_PARTS], nl[SOFT_PARTS], m[SOFT_PARTS];
     rm ahead[SOFT_PARTS];
     for (int j = 0; j < SOFT_PARTS; j++) {
         for (int k = 0; k < 3; k++)
             l[j][k] = plain ? r_load(call->scaled[s][k] + i + j * VR) - p->point[j][k]
-                            : (r_load(lamp->position[k] + i + j * VR) - p->point[j][k]) * scale;
+                            : (r_load(light_sample->position[k] + i + j * VR) - p->point[j][k]) * scale;
         l2[j] = DOT(l[j], l[j]);
         nl[j] = DOT(p->normal[j], l[j]);
         ahead[j] = r_lt(zero, nl[j]);
         m[j] = zero;
         if (aimed)
-            ahead[j] = rm_and(ahead[j], R(in_front)(args->lamp[s], lamp, i + j * VR, l[j], p->point[j], &m[j]));
+            ahead[j] = rm_and(ahead[j],
+                              R(in_front)(args->light_sample[s], light_sample, i + j * VR, l[j], p->point[j], &m[j]));
     }
     const unsigned before = R(join_bits)(ahead), lit = before & open;
     if (!lit)
@@ -116,7 +117,7 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const 
         vr attenuation[SOFT_PARTS];
         for (int j = 0; j < SOFT_PARTS; j++) {
             attenuation[j] = R(fall_off)(args, l2[j]);
-            if (aimed && args->lamp[s]->emission != GLINT_EMIT_FRONT)
+            if (aimed && args->light_sample[s]->emission != GLINT_EMIT_FRONT)
                 attenuation[j] = attenuation[j] * (m[j] / (l2[j] * r_sqrt(l2[j])));
         }
         w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
@@ -251,7 +252,7 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
 
 /// Scales the samples' places, so that a way to them needs no more than a difference. The light's scale being a power of
 /// two, that gives the same bits, unless something overflows or loses digits: false.
-static bool R(scale_lamps)(R(soft_call) * call)
+static bool R(scale_light_samples)(R(soft_call) * call)
 {
     const glint_light_args *args = call->args->light;
     const bool wide = GLINT_REAL == 64;
@@ -263,7 +264,7 @@ static bool R(scale_lamps)(R(soft_call) * call)
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i += VR) {
-                const vr x = r_load(call->lamps.lamp[s].position[k] + i), size = r_max(x, -x);
+                const vr x = r_load(call->light_samples.light_sample[s].position[k] + i), size = r_max(x, -x);
                 fit = rm_and(fit, rm_or(r_eq(x, r_set(0)), rm_and(r_lt(least, size), r_lt(size, most))));
                 r_store(call->scaled[s][k] + i, x * r_set(args->scale));
             }
@@ -286,8 +287,9 @@ static bool R(soft_light)(const glint_soft_args *args)
         return false;
     if (call.tile.count)
         R(place_soft_light)(&call.tile, &call.light);
-    R(load_lamps)(light->lamp, light->sample_count, &call.lamps);
-    call.plain = !light->attenuated && light->lamp[0]->emission == GLINT_EMIT_ALL && R(scale_lamps)(&call);
+    R(load_light_samples)(light->light_sample, light->sample_count, &call.light_samples);
+    call.plain =
+        !light->attenuated && light->light_sample[0]->emission == GLINT_EMIT_ALL && R(scale_light_samples)(&call);
     R(sum_groups)(&call, lit);
     return true;
 }

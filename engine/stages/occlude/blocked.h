@@ -68,15 +68,16 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
 }
 
 /// `lamp`: the sample, NULL when the light is none of area.
-static inline R(light_sides) R(sides_of)(const glint_occlude_args *args, const glint_lamp *lamp, const glint_prim *prim)
+static inline R(light_sides)
+    R(sides_of)(const glint_occlude_args *args, const glint_light_sample *light_sample, const glint_prim *prim)
 {
     R(light_sides) sides = { 0, 0 };
-    for (int lane = 0; lane < (lamp ? GLINT_GROUP : 1); lane++) {
+    for (int lane = 0; lane < (light_sample ? GLINT_GROUP : 1); lane++) {
         double position[3];
         for (int k = 0; k < 3; k++)
-            position[k] = lamp ? lamp->position[k][lane] : args->position[k];
+            position[k] = light_sample ? light_sample->position[k][lane] : args->position[k];
         const int side = R(light_side)(args, prim, position);
-        const uint16_t lanes = (uint16_t)(lamp ? 1u << lane : 0xffffu);
+        const uint16_t lanes = (uint16_t)(light_sample ? 1u << lane : 0xffffu);
         sides.outside |= side > 0 ? lanes : 0;
         sides.inside |= side < 0 ? lanes : 0;
     }
@@ -84,15 +85,15 @@ static inline R(light_sides) R(sides_of)(const glint_occlude_args *args, const g
 }
 
 /// Points the tile at its light, or at one sample of it.
-static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
+static inline void R(aim_at)(R(shadow_tile) * tile, const glint_light_sample *light_sample)
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i += VR) {
-            if (lamp)
+            if (light_sample)
                 for (int j = i; j < i + VR; j++)
-                    tile->position[k][j] = (real)lamp->position[k][j];
+                    tile->position[k][j] = (real)light_sample->position[k][j];
             else
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
@@ -100,7 +101,7 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const glint_lamp *lamp)
         return; // only lone segments ask where the light is in the index's frame
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
-            const double x = lamp ? lamp->position[k][i] : args->position[k];
+            const double x = light_sample ? light_sample->position[k][i] : args->position[k];
             tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
         }
 }

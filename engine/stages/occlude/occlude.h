@@ -43,7 +43,7 @@ static inline bool R(note_occluder)(R(shadow_tile) * tile, uint32_t id)
     if (tile->count++ >= GLINT_OCCLUDERS)
         return false;
     tile->occluders[tile->count - 1].id = id;
-    if (!args->lamp[0]) // the sides of samples are found for each
+    if (!args->light_sample[0]) // the sides of samples are found for each
         tile->occluders[tile->count - 1].sides = R(sides_of)(args, NULL, &args->geometry->prims[id]);
     return true;
 }
@@ -93,19 +93,20 @@ static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_pri
 }
 
 /// As sides_of, and quicker where the light is far from the primitive.
-static inline R(light_sides) R(seen_sides)(const R(shadow_tile) * tile, const glint_lamp *lamp, const glint_prim *prim)
+static inline R(light_sides)
+    R(seen_sides)(const R(shadow_tile) * tile, const glint_light_sample *light_sample, const glint_prim *prim)
 {
     if (R(light_outside)(tile, prim))
         return (R(light_sides)) { 0xffff, 0 };
-    return R(sides_of)(tile->args, lamp, prim);
+    return R(sides_of)(tile->args, light_sample, prim);
 }
 
 /// Tests a primitive that a walk came upon. Returns the lanes that are still open.
-static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
-                                        uint32_t id, unsigned open)
+static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+                                        R(shadow_group) * group, uint32_t id, unsigned open)
 {
     const glint_prim *prim = &tile->args->geometry->prims[id];
-    const R(occluder) occluder = { id, R(seen_sides)(tile, lamp, prim) };
+    const R(occluder) occluder = { id, R(seen_sides)(tile, light_sample, prim) };
     const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
     if (blocked)
         group->last_blocker = id;
@@ -127,8 +128,8 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
 }
 
 /// Walks with the shaft of a group, and gives up where it has many nodes to see: *done tells.
-static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
-                              unsigned open, bool *done)
+static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+                              R(shadow_group) * group, unsigned open, bool *done)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     float lower[3], upper[3];
@@ -147,7 +148,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_lamp *lam
         for (unsigned mask = boxes_in_shaft(node, &shaft); mask && open; mask &= mask - 1) {
             const uint32_t child = node->child[__builtin_ctz(mask)];
             if (child & GLINT_NODE_PRIM)
-                open = R(test_occluder)(tile, lamp, group, child & ~GLINT_NODE_PRIM, open);
+                open = R(test_occluder)(tile, light_sample, group, child & ~GLINT_NODE_PRIM, open);
             else
                 stack[height++] = child;
         }
@@ -157,8 +158,8 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_lamp *lam
 }
 
 /// Walks with the segment of one lane. What it comes upon is tested against all lanes that are open.
-static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group, int lane,
-                             unsigned open)
+static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+                             R(shadow_group) * group, int lane, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const float far = tile->args->directional ? HUGE_VALF : 1;
@@ -182,7 +183,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp
                 stack[height++] = child;
                 continue;
             }
-            open = R(test_occluder)(tile, lamp, group, child & ~GLINT_NODE_PRIM, open);
+            open = R(test_occluder)(tile, light_sample, group, child & ~GLINT_NODE_PRIM, open);
             if (!(open >> lane & 1))
                 return open;
         }
@@ -191,29 +192,29 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_lamp *lamp
 }
 
 /// The lanes of `open` that no surface without an end blocks.
-static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
-                                         unsigned open)
+static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+                                         R(shadow_group) * group, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, lamp, group, geometry->unbounded[i], open);
+        open = R(test_occluder)(tile, light_sample, group, geometry->unbounded[i], open);
     return open;
 }
 
 /// The lanes of `open` that nothing in the index blocks, for a group that walks by itself.
-static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_lamp *lamp, R(shadow_group) * group,
-                              unsigned open)
+static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+                              R(shadow_group) * group, unsigned open)
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
-        open = R(test_occluder)(tile, lamp, group, group->last_blocker, open);
+        open = R(test_occluder)(tile, light_sample, group, group->last_blocker, open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        open = R(walk_shaft)(tile, lamp, group, open, &done);
+        open = R(walk_shaft)(tile, light_sample, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
     for (unsigned left = open; left && !done && !is_stopped(tile->args->stop); left &= (left - 1) & open)
-        open = R(walk_lane)(tile, lamp, group, __builtin_ctz(left), open);
+        open = R(walk_lane)(tile, light_sample, group, __builtin_ctz(left), open);
     return open;
 }
 
@@ -221,8 +222,8 @@ static void R(place_light)(R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
-    const double *lower = args->lamp[0] ? args->lamp[0]->lower : args->position;
-    const double *upper = args->lamp[0] ? args->lamp[0]->upper : args->position;
+    const double *lower = args->light_sample[0] ? args->light_sample[0]->lower : args->position;
+    const double *upper = args->light_sample[0] ? args->light_sample[0]->upper : args->position;
     tile->light.directional = args->directional;
     for (int k = 0; k < 3; k++)
         if (args->directional) {
@@ -231,7 +232,7 @@ static void R(place_light)(R(shadow_tile) * tile)
             tile->light.lower[k] = (float)((lower[k] - geometry->reference[k]) * geometry->scale);
             tile->light.upper[k] = (float)((upper[k] - geometry->reference[k]) * geometry->scale);
         }
-    if (args->lamp[0])
+    if (args->light_sample[0])
         loosen(tile->light.lower, tile->light.upper, R(walk_slack)(geometry));
 }
 

@@ -56,7 +56,7 @@ static REAL NAME(covered_part)(NAME(cap) s, NAME(cap) a)
 static REAL NAME(share_left)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) point, NAME(vec3) l,
                              bool own)
 {
-    const double radius = args->lamp[0]->radius;
+    const double radius = args->light_sample[0]->radius;
     double away[3], depth;
     for (int c = 0; c < 3; c++)
         away[c] = args->position[c] - prim->center[c];
@@ -84,7 +84,7 @@ static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)
     NAME(vec3) l = NAME(times)(NAME(sub)(NAME(rounded)(args->position), point), (REAL)args->scale);
     REAL left = 1;
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-    if (!((REAL)(args->lamp[0]->radius * args->scale) < NAME(square_root)(NAME(length2)(l))))
+    if (!((REAL)(args->light_sample[0]->radius * args->scale) < NAME(square_root)(NAME(length2)(l))))
         return 1; // within the light
     for (uint32_t k = 0; k < args->geometry->prim_count; k++) {
         const glint_prim *prim = &args->geometry->prims[k];

@@ -54,7 +54,8 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     if (!args->leaving || args->leaving[i] == GLINT_MISS)
         return false;
     if (args->leaving[i] != index)
-        return NAME(is_beside)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction, t);
+        return NAME(is_shared_edge)(args->geometry, &args->geometry->prims[args->leaving[i]], prim, origin, direction,
+                                    t);
     *t = 0;
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     if (prim->kind == GLINT_PRIM_SOLID && inward) {
@@ -108,7 +109,7 @@ static void NAME(cast)(const glint_cast_args *args, const double *eye)
         NAME(cast_sample)(args, eye, i);
 }
 
-static void NAME(scan)(const glint_scan_args *args)
+static void NAME(raster)(const glint_raster_args *args)
 {
     const glint_cast_args *cast = &args->cast;
     const glint_prim *prims = cast->geometry->prims;

@@ -27,9 +27,9 @@ static NAME(vec3) NAME(lane_of)(const double array[3][GLINT_GROUP], uint32_t i)
     return NAME(vec)((REAL)array[0][lane], (REAL)array[1][lane], (REAL)array[2][lane]);
 }
 
-static NAME(vec3) NAME(to_light)(const glint_light_args *args, const glint_lamp *lamp, uint32_t i)
+static NAME(vec3) NAME(to_light)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
 {
-    NAME(vec3) position = lamp ? NAME(lane_of)(lamp->position, i) : NAME(rounded)(args->position);
+    NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(args->position);
     return args->directional ? position
                              : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
 }
@@ -60,50 +60,53 @@ static float NAME(cone)(const glint_spot *spot, NAME(vec3) l)
 }
 
 /// The cosine at the lamp times the distance: positive where the sample shines at the point.
-static REAL NAME(lamp_cosine)(const glint_lamp *lamp, NAME(vec3) l, NAME(vec3) point, uint32_t i)
+static REAL NAME(light_sample_cosine)(const glint_light_sample *light_sample, NAME(vec3) l, NAME(vec3) point,
+                                      uint32_t i)
 {
-    REAL m = -NAME(dot)(NAME(lane_of)(lamp->normal, i), l);
-    bool both = lamp->emission == GLINT_EMIT_RADIANT_BOTH;
-    if (lamp->emission == GLINT_EMIT_RADIANT_BALL) {
-        NAME(vec3) away = NAME(sub)(point, NAME(rounded)(lamp->center));
-        REAL radius = (REAL)lamp->radius;
+    REAL m = -NAME(dot)(NAME(lane_of)(light_sample->normal, i), l);
+    bool both = light_sample->emission == GLINT_EMIT_RADIANT_BOTH;
+    if (light_sample->emission == GLINT_EMIT_RADIANT_BALL) {
+        NAME(vec3) away = NAME(sub)(point, NAME(rounded)(light_sample->center));
+        REAL radius = (REAL)light_sample->radius;
         both = NAME(length2)(away) < radius * radius;
     }
     return both ? NAME(max)(m, -m) : m;
 }
 
-static bool NAME(is_lit)(const glint_light_args *args, const glint_lamp *lamp, uint32_t i)
+static bool NAME(is_lit)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
 {
     uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
     if (!(args->hits[group] >> lane & 1) || args->dark[group] >> lane & 1)
         return false;
-    NAME(vec3) l = NAME(to_light)(args, lamp, i);
-    if (args->spot && !lamp && !NAME(in_cone)(args->spot, l))
+    NAME(vec3) l = NAME(to_light)(args, light_sample, i);
+    if (args->spot && !light_sample && !NAME(in_cone)(args->spot, l))
         return false;
-    if (lamp && lamp->emission != GLINT_EMIT_ALL && !(NAME(lamp_cosine)(lamp, l, NAME(load)(args->point, i), i) > 0))
+    if (light_sample && light_sample->emission != GLINT_EMIT_ALL &&
+        !(NAME(light_sample_cosine)(light_sample, l, NAME(load)(args->point, i), i) > 0))
         return false;
     return NAME(dot)(NAME(load)(args->normal, i), l) > 0;
 }
 
-static float NAME(attenuation)(const glint_light_args *args, const glint_lamp *lamp, NAME(vec3) l, uint32_t i)
+static float NAME(attenuation)(const glint_light_args *args, const glint_light_sample *light_sample, NAME(vec3) l,
+                               uint32_t i)
 {
     NAME(vec3) k = NAME(rounded)(args->coefficients);
     REAL l2 = NAME(length2)(l);
     REAL d = NAME(square_root)(l2) / (REAL)args->scale;
     REAL a = 1 / (k.x + (k.y * d + k.z * (d * d)));
-    if (lamp && lamp->emission >= GLINT_EMIT_RADIANT_FRONT) {
-        REAL m = NAME(lamp_cosine)(lamp, l, NAME(load)(args->point, i), i);
+    if (light_sample && light_sample->emission >= GLINT_EMIT_RADIANT_FRONT) {
+        REAL m = NAME(light_sample_cosine)(light_sample, l, NAME(load)(args->point, i), i);
         a = a * (m / (l2 * NAME(square_root)(l2)));
     }
     float w = min_float((float)a, GLINT_ATTENUATION_MAX);
-    return args->spot && !lamp ? w * NAME(cone)(args->spot, l) : w;
+    return args->spot && !light_sample ? w * NAME(cone)(args->spot, l) : w;
 }
 
 static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_t i)
 {
-    const glint_lamp *lamp = args->lamp[s];
+    const glint_light_sample *light_sample = args->light_sample[s];
     NAME(vec3) normal = NAME(load)(args->normal, i);
-    NAME(vec3) l = NAME(to_light)(args, lamp, i);
+    NAME(vec3) l = NAME(to_light)(args, light_sample, i);
     REAL l2 = NAME(length2)(l), nl = NAME(dot)(normal, l);
     if (args->directional) {
         args->cosine[s][i] = min_float((float)nl, 1);
@@ -112,7 +115,7 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_
         args->cosine[s][i] = min_float(m / sqrtf(q), 1);
     }
     if (args->attenuated)
-        args->attenuation[s][i] = NAME(attenuation)(args, lamp, l, i);
+        args->attenuation[s][i] = NAME(attenuation)(args, light_sample, l, i);
     if (args->highlights) {
         const glint_shade_material *material = &args->materials[args->material[i]];
         uint32_t kind = material->highlight;
@@ -128,7 +131,7 @@ static void NAME(light_group)(const glint_light_args *args, uint32_t s, uint32_t
 {
     uint32_t first = group * GLINT_GROUP, lit = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-        lit |= (uint32_t)NAME(is_lit)(args, args->lamp[s], first + lane) << lane;
+        lit |= (uint32_t)NAME(is_lit)(args, args->light_sample[s], first + lane) << lane;
     args->lit[s][group] = (uint16_t)lit;
     for (uint32_t lane = 0; lit && lane < GLINT_GROUP; lane++) {
         uint32_t i = first + lane;

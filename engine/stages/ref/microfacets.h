@@ -24,8 +24,8 @@ static bool NAME(facet_group)(const glint_facet_args *args, uint32_t s, uint32_t
 
 static void NAME(facet_sample)(const glint_facet_args *args, uint32_t s, uint32_t i)
 {
-    const glint_lamp *lamp = args->lamp[s];
-    NAME(vec3) l = lamp ? NAME(lane_of)(lamp->position, i) : NAME(rounded)(args->position);
+    const glint_light_sample *light_sample = args->light_sample[s];
+    NAME(vec3) l = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(args->position);
     if (!args->directional)
         l = NAME(times)(NAME(sub)(l, NAME(load)(args->point, i)), (REAL)args->scale);
     NAME(vec3) n = NAME(load)(args->normal, i), d = NAME(direction_of)(args->camera, args->direction, i);

@@ -51,10 +51,10 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
 
 static void NAME(occlude_sample)(const glint_occlude_args *args, uint32_t s, uint32_t i)
 {
-    const glint_lamp *lamp = args->lamp[s];
+    const glint_light_sample *light_sample = args->light_sample[s];
     double position[3];
     for (int k = 0; k < 3; k++)
-        position[k] = lamp ? lamp->position[k][i % GLINT_GROUP] : args->position[k];
+        position[k] = light_sample ? light_sample->position[k][i % GLINT_GROUP] : args->position[k];
     bool blocked = !(args->lit[s][i / GLINT_GROUP] >> i % GLINT_GROUP & 1);
     if (!blocked)
         ++*args->rays;

@@ -482,7 +482,7 @@ static void tone(const glint_tone_args *args)
         .camera = camera_##real, .in_sight = in_sight_##real, .cast_bundle = cast_bundle_##real, \
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = view_##real, .light = light_##real, .facet = facet_##real, .occlude = occlude_##real, \
-        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .scan = scan_##real, \
+        .bounce = bounce_##real, .vertex = vertex_##real, .scatter = scatter_##real, .raster = raster_##real, \
         .soft_light = soft_light_##real, \
     }
 

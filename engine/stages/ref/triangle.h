@@ -224,8 +224,8 @@ static bool NAME(has_corner)(NAME(parted) plane, const glint_prim *prim, REAL wa
 
 /// Whether the ray, which starts on triangle `from`, is in the planes of both triangles at once, as far as rounding lets us
 /// know; then *t is where it goes through `prim`, else 0.
-static bool NAME(is_beside)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
-                            NAME(vec3) origin, NAME(vec3) direction, REAL *t)
+static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_prim *from, const glint_prim *prim,
+                                 NAME(vec3) origin, NAME(vec3) direction, REAL *t)
 {
     if (from->kind != GLINT_PRIM_TRIANGLE || prim->kind != GLINT_PRIM_TRIANGLE)
         return false;
@@ -240,7 +240,7 @@ static bool NAME(is_beside)(const glint_geometry_table *table, const glint_prim 
     NAME(corners_seen)(prim, origin, table->scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
     REAL way = NAME(way_to_plane)(seen, table->scale);
-    bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_BESIDE * table->extent);
+    bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
     bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
     bool by_edge = way > 0 && !NAME(passes)(seen);
     if (!begins && !(soon && still_on) && !by_edge)
@@ -266,8 +266,8 @@ static void NAME(vertex)(const glint_vertex_args *args)
         if (!(args->wanted[i / GLINT_GROUP] >> i % GLINT_GROUP & 1))
             continue;
         const glint_prim *prim = &args->prims[args->prim[i]];
-        const uint32_t *at = args->sites[prim->sites].at;
-        const glint_site_light *light = args->light[args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1];
+        const uint32_t *at = args->shading_points[prim->shading_points].at;
+        const glint_shading_point_light *light = args->light[args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1];
         NAME(vec3) corner[3], origin = args->camera ? NAME(rounded)(args->camera->eye) : NAME(load)(args->origin, i);
         NAME(corners_seen)(prim, origin, args->scale, corner);
         NAME(seen_edges) seen = NAME(see_edges)(corner, NAME(direction_of)(args->camera, args->direction, i));

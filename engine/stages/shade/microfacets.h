@@ -49,8 +49,8 @@ static inline unsigned R(facet_lanes)(const vr n[3], const vr l[3], const vr d[3
 }
 
 /// One group of sample s.
-static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, const R(lamp_lanes) * lanes, size_t at,
-                                  R(group_directions) directions)
+static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, const R(light_sample_lanes) * lanes,
+                                  size_t at, R(group_directions) directions)
 {
     _Alignas(64) float sine2[GLINT_GROUP], square[GLINT_GROUP];
     unsigned some = 0;
@@ -77,15 +77,15 @@ static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, cons
 
 static void R(facet)(const glint_facet_args *args)
 {
-    R(lamp_set) lamps;
-    const bool area = args->lamp[0] != NULL;
+    R(light_sample_set) light_samples;
+    const bool area = args->light_sample[0] != NULL;
     if (area)
-        R(load_lamps)(args->lamp, args->sample_count, &lamps);
+        R(load_light_samples)(args->light_sample, args->sample_count, &light_samples);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         const size_t at = (size_t)place.g * GLINT_GROUP;
         const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
         for (uint32_t s = 0; s < args->sample_count; s++)
             if (R(has_facets)(args, at, args->lit[s][place.g]))
-                R(facet_group)(args, s, area ? &lamps.lamp[s] : NULL, at, directions);
+                R(facet_group)(args, s, area ? &light_samples.light_sample[s] : NULL, at, directions);
     }
 }

@@ -304,7 +304,7 @@ static inline const glint_shade_material *material_of(const glint_shade_args *ar
     return &args->materials[index];
 }
 
-#include "engine/stages/shade_planes.h"
+#include "engine/stages/shade/planes.h"
 
 /// A group of one sample, added to sums.
 static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, uint32_t g, const group_sums *to)

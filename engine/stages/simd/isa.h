@@ -90,8 +90,8 @@
         .cast_rays = cast_rays_##real, .surface = surface_##real, .lit_surface = lit_surface_##real, \
         .view = GLINT_WITH_FACET ? view_##real : NULL, .light = light_##real, \
         .facet = GLINT_WITH_FACET ? facet_##real : NULL, .occlude = GLINT_WITH_SHADOW ? occlude_##real : NULL, \
-        .soft_light = GLINT_WITH_LAMP && GLINT_WITH_SHADOW ? soft_light_##real : NULL, \
-        .scan = GLINT_WITH_SCAN ? scan_##real : NULL, \
+        .soft_light = GLINT_WITH_AREA && GLINT_WITH_SHADOW ? soft_light_##real : NULL, \
+        .raster = GLINT_WITH_RASTER ? raster_##real : NULL, \
         .bounce = GLINT_WITH_BOUNCE ? bounce_##real : NULL, .vertex = GLINT_WITH_VERTEX ? vertex_##real : NULL, \
         .scatter = GLINT_WITH_INDIRECT ? scatter_##real : NULL, \
     }

@@ -30,19 +30,19 @@ bool glint_stages_usable(const glint_stages *stages)
     return stages != NULL;
 }
 
-const glint_stages *glint_stages_select(const char *name, const char **asked, bool *unknown)
+const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown)
 {
     const glint_stages *best = NULL;
     if (!name || !*name)
         name = getenv("GLINT_ISA");
-    *asked = name && *name ? name : NULL;
-    *unknown = *asked != NULL;
+    *requested = name && *name ? name : NULL;
+    *unknown = *requested != NULL;
     for (const glint_stages *const *isa = glint_stages_built; *isa; isa++) {
-        if (*asked && strcmp((*isa)->name, *asked) == 0) {
+        if (*requested && strcmp((*isa)->name, *requested) == 0) {
             *unknown = false;
             return glint_stages_usable(*isa) ? *isa : NULL;
         }
-        if (!*asked && glint_stages_usable(*isa))
+        if (!*requested && glint_stages_usable(*isa))
             best = *isa;
     }
     return best;

@@ -1,11 +1,12 @@
 // vertex: what was worked out at the corners of a triangle, or once for its face, in each sample. Contract: stages.h.
 
 /// Adds the light of one lane's sites; w: the weights of the corners.
-static inline void R(add_sites)(const glint_vertex_args *args, const glint_sites *sites, unsigned back,
-                                const double w[3], size_t lane)
+static inline void R(add_shading_points)(const glint_vertex_args *args, const glint_shading_points *shading_points,
+                                         unsigned back, const double w[3], size_t lane)
 {
-    const glint_site_light *light = args->light[back];
-    const glint_site_light *a = &light[sites->at[0]], *b = &light[sites->at[1]], *c = &light[sites->at[2]];
+    const glint_shading_point_light *light = args->light[back];
+    const glint_shading_point_light *a = &light[shading_points->at[0]], *b = &light[shading_points->at[1]],
+                                    *c = &light[shading_points->at[2]];
     const bool face = a == b && a == c;
     for (int term = 0; term < (args->sum[1][0] ? 2 : 1); term++)
         for (int k = 0; k < 3; k++) {
@@ -18,8 +19,8 @@ static inline void R(add_sites)(const glint_vertex_args *args, const glint_sites
 static inline void R(vertex_lanes)(const glint_vertex_args *args, const glint_prim *prim,
                                    R(group_directions) directions, size_t at, unsigned lanes)
 {
-    const glint_sites *sites = &args->sites[prim->sites];
-    const bool face = sites->at[0] == sites->at[1] && sites->at[0] == sites->at[2];
+    const glint_shading_points *shading_points = &args->shading_points[prim->shading_points];
+    const bool face = shading_points->at[0] == shading_points->at[1] && shading_points->at[0] == shading_points->at[2];
     const unsigned back = args->back[at / GLINT_GROUP];
     _Alignas(64) real w[3][GLINT_GROUP];
     for (int i = 0; i < GLINT_GROUP && !face; i += VR) {
@@ -38,7 +39,7 @@ static inline void R(vertex_lanes)(const glint_vertex_args *args, const glint_pr
         const unsigned lane = (unsigned)__builtin_ctz(lanes);
         const double weights[3] = { face ? 0 : (double)w[0][lane], face ? 0 : (double)w[1][lane],
                                     face ? 0 : (double)w[2][lane] };
-        R(add_sites)(args, sites, back >> lane & 1, weights, at + lane);
+        R(add_shading_points)(args, shading_points, back >> lane & 1, weights, at + lane);
     }
 }
 
