@@ -11,14 +11,16 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
     tile->transparent_shadow = to->transparent_shadow;
-    tile->rays = batch->ray;
+    tile->batch_rays = batch->ray;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
     tile->visible_light = to->visible_light;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
-    tile->at = (glint_tile_sample) { .t = tile->t, .prim = tile->prim, .hits = tile->hits, .sampled = tile->hits };
+    tile->at = (glint_tile_sample) {
+        .t = tile->hit.t, .prim = tile->hit.prim, .hits = tile->hit.mask, .sampled = tile->hit.mask
+    };
     tile->own_lights = 0;
     for (uint32_t i = 0; i < GLINT_LIGHT_CHUNK; i++)
         glint_tile_use_own_light(tile, i);
@@ -48,8 +50,8 @@ void glint_batch_load(glint_batch *batch, glint_precision precision)
         const uint32_t g = i / GLINT_GROUP, lane = i % GLINT_GROUP;
         const glint_batch_ray *ray = glint_has_lane(tile->active, i) ? &batch->ray[i] : &nowhere;
         for (int c = 0; c < 3; c++) {
-            glint_real_put(tile->origin[c], precision, i, ray->origin[c]);
-            glint_real_put(tile->direction[c], precision, i, ray->direction[c]);
+            glint_real_put(tile->rays.origin[c], precision, i, ray->origin[c]);
+            glint_real_put(tile->rays.direction[c], precision, i, ray->direction[c]);
         }
         batch->leaving[i] = ray->leaving;
         batch->inward[g] = (uint16_t)((lane ? batch->inward[g] : 0) | (unsigned)ray->inward << lane);
@@ -70,8 +72,8 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
                              .hits = tile->at.hits,
                              .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->origin[c];
-        args.direction[c] = tile->direction[c];
+        args.origin[c] = tile->rays.origin[c];
+        args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
     if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
@@ -91,9 +93,10 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
             continue;
         glint_batch_ray *ray = &batch->ray[i];
         const bool hit = glint_has_lane(tile->at.hits, i);
-        const uint32_t medium = hit && frame->plan->bouncing[tile->material[i]].transmits
-                                    ? glint_media_before(&ray->media, tile->material[i], glint_has_lane(tile->back, i))
-                                    : glint_media_top(&ray->media);
+        const uint32_t medium =
+            hit && frame->plan->bouncing[tile->surface.material[i]].transmits
+                ? glint_media_before(&ray->media, tile->surface.material[i], glint_has_lane(tile->hit.back, i))
+                : glint_media_top(&ray->media);
         if (medium == GLINT_NO_MEDIUM)
             continue;
         const double way = glint_real_at(tile->at.t, frame->plan->desc.precision, i); // the directions are unit
@@ -150,7 +153,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     uint32_t from = 0;
     for (int k = 0; k < GLINT_TERM_LOCAL; k++)
         for (int c = 0; c < 3; c++)
-            memset(tile->sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->sum[k][c]);
+            memset(tile->film.sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->film.sum[k][c]);
     if (any && plan->runs[GLINT_STAGE_VIEW])
         glint_tile_view(tile, frame);
     do {
@@ -167,9 +170,9 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
 
 double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
 {
-    double light = batch->tile.sum[0][c][i];
+    double light = batch->tile.film.sum[0][c][i];
     for (int k = 1; k < GLINT_TERM_LOCAL; k++)
-        light += batch->tile.sum[k][c][i];
+        light += batch->tile.film.sum[k][c][i];
     return light;
 }
 
@@ -208,16 +211,16 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
                                .reflectance = batch->reflectance,
                                .total = batch->total };
     for (int c = 0; c < 3; c++) {
-        args.direction[c] = tile->direction[c];
-        args.normal[c] = tile->normal[c];
+        args.direction[c] = tile->rays.direction[c];
+        args.normal[c] = tile->surface.normal[c];
         args.reflected[c] = batch->reflected[c];
         args.refracted[c] = batch->refracted[c];
     }
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         double ratio = 1;
         if (glint_has_lane(batch->wanted, i))
-            ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->material[i],
-                                glint_has_lane(tile->back, i));
+            ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->surface.material[i],
+                                glint_has_lane(tile->hit.back, i));
         glint_real_put(batch->ratio, precision, i, ratio);
     }
     frame->stages->geometry[precision].bounce(&args);
@@ -231,7 +234,7 @@ glint_batch_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile
         ray = batch->ray[i];
     ray.leaving = tile->at.prim[i];
     for (int c = 0; c < 3; c++)
-        ray.origin[c] = glint_real_at(tile->point[c], frame->plan->desc.precision, i);
+        ray.origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);
     return ray;
 }
 
@@ -257,8 +260,8 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
                        glint_batch_ray *mirror, glint_batch_ray *through)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const glint_bounce_material *m = &frame->plan->bouncing[tile->material[i]];
-    const bool back = glint_has_lane(tile->back, i), total = glint_has_lane(batch->total, i);
+    const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
+    const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
     double rest[3];
     total_share(m, rest);
@@ -271,5 +274,5 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
          m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;
     if (!total)
-        glint_media_cross(&through->media, tile->material[i], back);
+        glint_media_cross(&through->media, tile->surface.material[i], back);
 }

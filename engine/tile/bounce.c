@@ -36,7 +36,7 @@ bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_bounce_material *materials = frame->plan->bouncing;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         if (glint_has_lane(tile->at.hits, i) &&
-            (materials[tile->material[i]].mirrors || materials[tile->material[i]].transmits))
+            (materials[tile->surface.material[i]].mirrors || materials[tile->surface.material[i]].transmits))
             return true;
     return false;
 }
@@ -52,7 +52,7 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
         bounce->batch.wanted[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_bounce_material *m = &plan->bouncing[tile->material[i]];
+            const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
             const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.ray[i].depth : 0;
             if ((m->mirrors || m->transmits) && depth < plan->desc.max_depth)
                 bounce->batch.wanted[g] |= (uint16_t)(left & -left);
@@ -170,7 +170,7 @@ static void collect(const glint_batch *batch, glint_tile *to)
     for (uint32_t i = 0; i < batch->tile.group_count * GLINT_GROUP; i++) {
         const glint_batch_ray *ray = &batch->ray[i];
         for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++)
-            to->sum[ray->term][c][ray->pixel] += ray->weight[c] * glint_batch_found(batch, c, i);
+            to->film.sum[ray->term][c][ray->pixel] += ray->weight[c] * glint_batch_found(batch, c, i);
     }
 }
 

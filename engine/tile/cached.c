@@ -40,10 +40,10 @@ bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint
     const size_t first = (size_t)k * GLINT_TILE_SAMPLES;
     const bool known = cached && glint_key_equal(cached->cast, frame->plan->keys[GLINT_STAGE_CAST]);
     tile->at.box = NULL;
-    tile->at.t = tile->t;
-    tile->at.prim = tile->prim;
-    tile->at.hits = tile->hits;
-    tile->at.sampled = tile->hits;
+    tile->at.t = tile->hit.t;
+    tile->at.prim = tile->hit.prim;
+    tile->at.hits = tile->hit.mask;
+    tile->at.sampled = tile->hit.mask;
     if (known || (cached && reuse->keep_cast && (k ? cached->t != NULL : glint_reuse_hold_cast(reuse, cached)))) {
         tile->at.t = (char *)cached->t + first * reuse->real_size;
         tile->at.prim = cached->prim + first;

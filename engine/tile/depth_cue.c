@@ -57,7 +57,7 @@ void glint_tile_depth_cue(glint_tile *tile, const glint_tile_frame *frame)
     const double *share = tile->depth_cue->share;
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3 && glint_plan_has_term(plan, (glint_term)k); c++) {
-            double *sum = tile->sum[k][c], *total = tile->depth_cue->total[k][c];
+            double *sum = tile->film.sum[k][c], *total = tile->depth_cue->total[k][c];
             const double *left = tile->depth_cue->left[c];
             const double color = k == GLINT_TERM_BACKGROUND ? plan->depth_cue.color[c] : 0;
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
@@ -73,5 +73,5 @@ void glint_tile_take_faded(glint_tile *tile, const glint_plan *plan)
 {
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
-            memcpy(tile->sum[k], tile->depth_cue->total[k], sizeof tile->sum[k]);
+            memcpy(tile->film.sum[k], tile->depth_cue->total[k], sizeof tile->film.sum[k]);
 }

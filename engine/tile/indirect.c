@@ -124,7 +124,7 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
             const glint_batch_ray *ray = from ? &from->ray[i] : NULL;
             const double weight = ray ? largest(ray->weight) : 1;
             const double samples = plan->indirect.samples;
-            if (largest(plan->materials[seen->material[i]].diffuse) == 0)
+            if (largest(plan->materials[seen->surface.material[i]].diffuse) == 0)
                 continue;
             indirect->ways[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
             indirect->matt[g] |= (uint16_t)(left & -left);
@@ -140,7 +140,7 @@ static void scatter(struct glint_indirect *indirect, const glint_tile *tile, con
 {
     glint_scatter_args args = { .group_count = tile->group_count, .wanted = indirect->scattered };
     for (int c = 0; c < 3; c++) {
-        args.normal[c] = tile->normal[c];
+        args.normal[c] = tile->surface.normal[c];
         args.direction[c] = indirect->direction[c];
     }
     args.square[0] = indirect->square[0];
@@ -152,7 +152,7 @@ static void scatter(struct glint_indirect *indirect, const glint_tile *tile, con
 static void leave(const struct glint_indirect *indirect, const glint_tile *tile, glint_precision precision,
                   const double share[3], double factor, uint32_t i, glint_batch_ray *ray)
 {
-    ray->inward = glint_has_lane(tile->back, i);
+    ray->inward = glint_has_lane(tile->hit.back, i);
     ray->scatters++;
     for (int c = 0; c < 3; c++) {
         ray->direction[c] = glint_real_at(indirect->direction[c], precision, i);
@@ -193,8 +193,8 @@ static bool begin_ways(struct glint_indirect *indirect, const glint_tile_frame *
             if (!from)
                 ray->term = GLINT_TERM_INDIRECT;
             ray->least = largest(ray->weight) * share * frame->plan->indirect.least;
-            leave(indirect, seen, frame->plan->desc.precision, frame->plan->materials[seen->material[i]].diffuse, share,
-                  i, ray);
+            leave(indirect, seen, frame->plan->desc.precision,
+                  frame->plan->materials[seen->surface.material[i]].diffuse, share, i, ray);
         }
     return true;
 }
@@ -211,7 +211,7 @@ static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *f
         batch->wanted[g] = 0;
         for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_bounce_material *m = &plan->bouncing[batch->tile.material[i]];
+            const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
             if ((m->mirrors || m->transmits) && batch->ray[i].depth < plan->desc.max_depth)
                 batch->wanted[g] |= (uint16_t)(left & -left);
         }
@@ -227,7 +227,7 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
 {
     glint_batch *batch = &indirect->batch;
     const glint_batch_ray *ray = &batch->ray[i];
-    const double *diffuse = frame->plan->materials[batch->tile.material[i]].diffuse;
+    const double *diffuse = frame->plan->materials[batch->tile.surface.material[i]].diffuse;
     double share[3] = { 0 }, least = 0;
     glint_batch_ray split[2];
     if (ray->scatters < frame->plan->indirect.bounces)
@@ -295,8 +295,8 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            leave(indirect, tile, frame->plan->desc.precision, frame->plan->materials[tile->material[i]].diffuse, 1, i,
-                  &batch->ray[i]);
+            leave(indirect, tile, frame->plan->desc.precision,
+                  frame->plan->materials[tile->surface.material[i]].diffuse, 1, i, &batch->ray[i]);
         }
     return true;
 }
@@ -310,8 +310,8 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
         const glint_batch_ray *ray = &batch->ray[i];
         const bool last = glint_has_lane(batch->tile.at.hits, i) && ray->scatters == plan->indirect.bounces;
         for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++) {
-            const double rest = last ? plan->indirect.rest[batch->tile.material[i]][c] : 0;
-            to->sum[ray->term][c][ray->pixel] += ray->weight[c] * (glint_batch_found(batch, c, i) + rest);
+            const double rest = last ? plan->indirect.rest[batch->tile.surface.material[i]][c] : 0;
+            to->film.sum[ray->term][c][ray->pixel] += ray->weight[c] * (glint_batch_found(batch, c, i) + rest);
         }
     }
 }

@@ -57,8 +57,8 @@ void glint_tile_view(glint_tile *tile, const glint_tile_frame *frame)
                              .camera = glint_tile_rays_of(tile),
                              .facing = tile->at.facing };
     for (int c = 0; c < 3; c++) {
-        args.normal[c] = tile->normal[c];
-        args.direction[c] = tile->direction[c];
+        args.normal[c] = tile->surface.normal[c];
+        args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].view(&args);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_VIEW, false);
@@ -71,7 +71,7 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     const glint_plan_light *light = &plan->lights[first + slot[0]];
     glint_facet_args args = { .group_count = tile->group_count,
                               .camera = glint_tile_rays_of(tile),
-                              .material = tile->material,
+                              .material = tile->surface.material,
                               .materials = plan->materials,
                               .directional = light->directional,
                               .scale = light->scale,
@@ -84,9 +84,9 @@ void glint_tile_facet(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.schlick[i] = tile->at.light[slot[i]].schlick;
     }
     for (int c = 0; c < 3; c++) {
-        args.point[c] = tile->point[c];
-        args.normal[c] = tile->normal[c];
-        args.direction[c] = tile->direction[c];
+        args.point[c] = tile->surface.point[c];
+        args.normal[c] = tile->surface.normal[c];
+        args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[plan->desc.precision].facet(&args);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_FACET, false);

@@ -34,11 +34,11 @@ static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, gl
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
 {
     if (tile->camera.orthographic)
-        return glint_real_at(tile->direction[c], precision, i);
+        return glint_real_at(tile->rays.direction[c], precision, i);
     const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
     const uint32_t lane = i % GLINT_GROUP;
-    const double d = glint_real_at(tile->across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
-                     glint_real_at(tile->down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
+    const double d = glint_real_at(tile->rays.across, precision, (3 * x + (uint32_t)c) * GLINT_GROUP + lane) +
+                     glint_real_at(tile->rays.down, precision, (3 * y + (uint32_t)c) * GLINT_GROUP + lane);
     return precision == GLINT_FLOAT ? (float)d : d;
 }
 
@@ -77,7 +77,7 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
         if (!hit && sees_light(tile, frame->plan, i))
             glint_tile_visible_light_normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
-            normal[c][i] = (float)(hit ? glint_real_at(tile->normal[c], frame->plan->desc.precision, i) : n[c]);
+            normal[c][i] = (float)(hit ? glint_real_at(tile->surface.normal[c], frame->plan->desc.precision, i) : n[c]);
     }
     store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
 }
@@ -119,14 +119,14 @@ void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k)
 {
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const bool light = plan->visible_light_count && glint_tile_sees_light(tile, i);
-        tile->covered[i] =
-            (k ? tile->covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
+        tile->film.covered[i] =
+            (k ? tile->film.covered[i] : 0) + (light || tile->at.hits[i / GLINT_GROUP] >> i % GLINT_GROUP & 1u);
     }
 }
 
 static float coverage_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    return (float)(tile->covered[i] / plan->desc.samples);
+    return (float)(tile->film.covered[i] / plan->desc.samples);
 }
 
 static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame)
@@ -159,10 +159,10 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
     for (int k = GLINT_TERM_LOCAL; k < GLINT_TERM_COUNT; k++)
         if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
             frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
-            memset(tile->film[k], 0, sizeof tile->film[k]);
-    store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->beauty[0]);
+            memset(tile->film.terms[k], 0, sizeof tile->film.terms[k]);
+    store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
-        store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film[k][0]);
+        store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
 }
 
 /// Where in the tile's arrays pixel (x, y) of it is.
@@ -180,7 +180,7 @@ static void tone_alpha(glint_tile *tile, const glint_tile_frame *frame)
             const uint32_t i = place_of(tile, x, y);
             alpha[x] = coverage_at(tile, frame->plan, i);
             for (int c = 0; c < 3; c++)
-                row[c][x] = tile->beauty[c][i];
+                row[c][x] = tile->film.beauty[c][i];
         }
         const size_t at = (size_t)(tile->y0 + y) * (size_t)image->width + tile->x0;
         glint_tone_row_alpha(frame->tone_table, frame->gain, (const float *const[3]) { row[0], row[1], row[2] }, alpha,
@@ -196,7 +196,7 @@ static void tone16(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t y = 0; y < tile->height; y++) {
         for (uint32_t x = 0; x < tile->width; x++)
             for (int c = 0; c < 3; c++)
-                row[c][x] = tile->beauty[c][place_of(tile, x, y)];
+                row[c][x] = tile->film.beauty[c][place_of(tile, x, y)];
         uint16_t *to = codes + 3 * ((size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0);
         glint_tone_row16(frame->tone_table, frame->gain, row[0], row[1], row[2], tile->width, to, &tile->counts.clipped,
                          &tile->counts.nonfinite);
@@ -234,7 +234,7 @@ void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame)
                              .clipped = &tile->counts.clipped,
                              .nonfinite = &tile->counts.nonfinite };
     for (int c = 0; c < 3; c++)
-        args.beauty[c] = tile->beauty[c];
+        args.beauty[c] = tile->film.beauty[c];
     frame->stages->tone(&args);
 }
 

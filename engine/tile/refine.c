@@ -60,7 +60,7 @@ static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
     take_plane(tile, frame, frame->base->plane[GLINT_PASS_ALPHA][0], alpha);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         if (!glint_has_lane(tile->active, i))
-            tile->covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
+            tile->film.covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
 }
 
 /// What is of the base for all pixels, and which were refined.
@@ -83,10 +83,10 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *base = frame->base;
     for (int c = 0; c < 3; c++) {
-        take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->beauty[c]);
+        take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->film.beauty[c]);
         for (int k = 0; k < GLINT_TERM_COUNT; k++)
             if (frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
-                take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film[k][c]);
+                take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film.terms[k][c]);
     }
     if (glint_tile_wants_coverage(frame->plan))
         take_coverage(tile, frame);

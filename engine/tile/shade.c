@@ -34,7 +34,7 @@ glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
                               .hits = tile->at.hits,
-                              .material = tile->material,
+                              .material = tile->surface.material,
                               .only = tile->at.only ? &frame->geometry.prims[*tile->at.only].material : NULL,
                               .materials = plan->materials,
                               .facing = tile->at.facing,
@@ -56,8 +56,8 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
 {
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < GLINT_TERM_COUNT; k++)
-            film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film[k][c] : NULL;
-        beauty[c] = tile->beauty[c];
+            film[k][c] = plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1 ? tile->film.terms[k][c] : NULL;
+        beauty[c] = tile->film.beauty[c];
     }
 }
 
@@ -80,7 +80,7 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         args.active = glint_tile_unlit_lanes(tile, unlit);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3; c++)
-            args.sum[k][c] = plan->accumulate ? tile->sum[k][c] : NULL;
+            args.sum[k][c] = plan->accumulate ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->shade(&args);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
@@ -95,7 +95,7 @@ void glint_tile_resolve(glint_tile *tile, const glint_tile_frame *frame)
     glint_resolve_args args = { .group_count = tile->group_count, .samples = plan->desc.samples };
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
         for (int c = 0; c < 3; c++)
-            args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->sum[k][c] : NULL;
+            args.sum[k][c] = glint_plan_has_term(plan, (glint_term)k) ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->resolve(&args);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_RESOLVE, false);
@@ -122,7 +122,8 @@ void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame,
     *shade = glint_tile_shade_args(tile, frame, 0, light_count, &samples->lights[tile->own_lights]);
     memcpy(samples->hits[k], tile->at.hits, tile->group_count * sizeof *samples->hits[k]);
     shade->hits = samples->hits[k];
-    memcpy(samples->material[k], tile->material, tile->group_count * GLINT_GROUP * sizeof *samples->material[k]);
+    memcpy(samples->material[k], tile->surface.material,
+           tile->group_count * GLINT_GROUP * sizeof *samples->material[k]);
     shade->material = samples->material[k];
     glint_tile_count_powers(tile, frame, 0, light_count);
 }

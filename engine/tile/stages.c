@@ -53,11 +53,11 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     vec_copy(args->forward, camera->forward);
     vec_copy(args->right, camera->right);
     vec_copy(args->up, camera->up);
-    args->across = tile->across;
-    args->down = tile->down;
+    args->across = tile->rays.across;
+    args->down = tile->rays.down;
     for (int c = 0; c < 3; c++) {
-        args->origin[c] = tile->origin[c];
-        args->direction[c] = tile->direction[c];
+        args->origin[c] = tile->rays.origin[c];
+        args->direction[c] = tile->rays.direction[c];
     }
 }
 
@@ -81,8 +81,8 @@ static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint
                                 .hits = tile->at.hits,
                                 .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
-        args->origin[c] = tile->origin[c];
-        args->direction[c] = tile->direction[c];
+        args->origin[c] = tile->rays.origin[c];
+        args->direction[c] = tile->rays.direction[c];
     }
 }
 
@@ -153,18 +153,18 @@ static glint_surface_args surface_args(glint_tile *tile, const glint_tile_frame 
                                 .scale = frame->geometry.scale,
                                 .solids = frame->geometry.solids,
                                 .corner_normals = frame->geometry.corner_normals,
-                                .slack = frame->geometry.triangles ? tile->slack : NULL,
+                                .slack = frame->geometry.triangles ? tile->surface.slack : NULL,
                                 .camera = glint_tile_rays_of(tile),
                                 .t = tile->at.t,
-                                .material = tile->material,
-                                .back = tile->back,
-                                .dark = tile->dark,
-                                .box = has_box(tile, frame) ? NULL : &tile->box };
+                                .material = tile->surface.material,
+                                .back = tile->hit.back,
+                                .dark = tile->hit.dark,
+                                .box = has_box(tile, frame) ? NULL : &tile->surface.box };
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->origin[c];
-        args.direction[c] = tile->direction[c];
-        args.point[c] = tile->point[c];
-        args.normal[c] = tile->normal[c];
+        args.origin[c] = tile->rays.origin[c];
+        args.direction[c] = tile->rays.direction[c];
+        args.point[c] = tile->surface.point[c];
+        args.normal[c] = tile->surface.normal[c];
     }
     return args;
 }
@@ -183,14 +183,14 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     uint32_t last = GLINT_MISS, material = 0;
     for (uint32_t g = 0; tile->at.only && g < tile->group_count; g++)
         for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-            tile->material[g * GLINT_GROUP + lane] = prims[*tile->at.only].material;
+            tile->surface.material[g * GLINT_GROUP + lane] = prims[*tile->at.only].material;
     if (tile->at.only)
         return;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const uint32_t prim = tile->at.prim[i];
         if (prim != last && prim != GLINT_MISS)
             material = prims[last = prim].material;
-        tile->material[i] = material;
+        tile->surface.material[i] = material;
     }
 }
 
@@ -227,9 +227,9 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     glint_light_args args = { .group_count = tile->group_count,
                               .hits = tile->at.sampled,
                               .camera = glint_tile_rays_of(tile),
-                              .material = tile->material,
+                              .material = tile->surface.material,
                               .materials = plan->materials,
-                              .dark = tile->dark,
+                              .dark = tile->hit.dark,
                               .directional = light->directional,
                               .scale = light->scale,
                               .spot = light->is_spot ? &light->spot : NULL,
@@ -248,9 +248,9 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
         args.brightest[i] = &tile->at.light[slot[i]].brightest;
     }
     for (int c = 0; c < 3; c++) {
-        args.point[c] = tile->point[c];
-        args.normal[c] = tile->normal[c];
-        args.direction[c] = tile->direction[c];
+        args.point[c] = tile->surface.point[c];
+        args.normal[c] = tile->surface.normal[c];
+        args.direction[c] = tile->rays.direction[c];
     }
     return args;
 }
@@ -288,7 +288,7 @@ static void weaken(glint_tile *tile, const glint_tile_frame *frame, const glint_
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             double way[3], most = HUGE_VAL;
             for (int c = 0; c < 3 && light->radiant_cap; c++)
-                way[c] = light->position[c] - glint_real_at(tile->point[c], precision, i);
+                way[c] = light->position[c] - glint_real_at(tile->surface.point[c], precision, i);
             if (light->radiant_cap && vec_dot(way, way) < light->cap->radius * light->cap->radius)
                 most = 1 / (light->cap->radius * light->cap->radius);
             if (light->attenuated)
@@ -305,8 +305,8 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
         const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
         double way[3], normal[3];
         for (int c = 0; c < 3; c++) {
-            way[c] = middle[c] - glint_real_at(tile->point[c], plan->desc.precision, i);
-            normal[c] = glint_real_at(tile->normal[c], plan->desc.precision, i);
+            way[c] = middle[c] - glint_real_at(tile->surface.point[c], plan->desc.precision, i);
+            normal[c] = glint_real_at(tile->surface.normal[c], plan->desc.precision, i);
         }
         if (!(vec_dot(normal, way) < 0))
             facing |= (uint16_t)(lanes & -lanes);
@@ -342,13 +342,13 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
     glint_occlude_args args = { .group_count = tile->group_count,
                                 .sample_count = count,
                                 .prim = tile->owner ? tile->owner : tile->at.prim,
-                                .back = tile->back,
+                                .back = tile->hit.back,
                                 .directional = light->directional,
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
-                                .slack = tile->slack,
+                                .slack = tile->surface.slack,
                                 .box = tile->at.box,
                                 .rays = &tile->counts.shadow,
                                 .tests = glint_tile_tests_of(tile, frame) };
@@ -359,8 +359,8 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
         args.open[i] = tile->at.light[slot[i]].open;
     }
     for (int c = 0; c < 3; c++) {
-        args.point[c] = tile->point[c];
-        args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->direction[c];
+        args.point[c] = tile->surface.point[c];
+        args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->rays.direction[c];
     }
     return args;
 }

@@ -70,27 +70,49 @@ typedef struct glint_tile_sample {
     float *facing;
 } glint_tile_sample;
 
-/// A worker's memory for one tile. Arrays of real are as long as doubles need.
-typedef struct glint_tile {
+/// The rays of the current sample. Arrays of real are as long as doubles need, here and below.
+typedef struct glint_tile_rays {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double across[GLINT_TILE_WIDTH / 4][3][GLINT_GROUP], down[GLINT_TILE_HEIGHT / 4][3][GLINT_GROUP];
+} glint_tile_rays;
+
+/// What they meet first.
+typedef struct glint_tile_hit {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
+    uint16_t mask[GLINT_TILE_GROUPS]; ///< lanes that meet anything
+    uint16_t back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+} glint_tile_hit;
+
+/// The surface there.
+typedef struct glint_tile_surface {
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double slack[GLINT_TILE_SAMPLES]; ///< see glint_surface_args
-    _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t material[GLINT_TILE_SAMPLES];
+    glint_point_box box; ///< what at.box points to
+} glint_tile_surface;
+
+/// What the samples so far add up to.
+typedef struct glint_tile_film {
     _Alignas(64) double sum[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
-    _Alignas(64) float film[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) float terms[GLINT_TERM_COUNT][3][GLINT_TILE_SAMPLES];
     _Alignas(64) float beauty[3][GLINT_TILE_SAMPLES];
+    uint32_t covered[GLINT_TILE_SAMPLES]; ///< samples that hit something, where the plan needs coverage
+} glint_tile_film;
+
+/// A worker's memory for one tile.
+typedef struct glint_tile {
+    glint_tile_rays rays;
+    glint_tile_hit hit;
+    glint_tile_surface surface;
+    glint_tile_film film;
     glint_tile_light lights[GLINT_LIGHT_CHUNK];
-    uint32_t covered[GLINT_TILE_SAMPLES]; ///< samples so far that hit something, where the plan asks for coverage
     bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
-    uint16_t active[GLINT_TILE_GROUPS], hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
+    uint16_t active[GLINT_TILE_GROUPS]; ///< lanes whose rays are followed
     glint_camera_args camera; ///< of the current sample
     glint_cast_view view; ///< of the frame's cameras
-    glint_point_box box; ///< what at.box points to
     uint32_t sample; ///< which it is
     uint32_t boxed; ///< samples so far whose points are in the kept box
     glint_tile_sample at;
@@ -102,15 +124,17 @@ typedef struct glint_tile {
     uint16_t own_light[GLINT_TILE_GROUPS]; ///< what at.sampled points to in frames with the stage vertex
     const uint32_t *owner; ///< for occlude: the primitives that points are on; NULL: those that were hit
     const void *viewed[3]; ///< for occlude: the rays that found the points; NULL: the tile's
-    struct glint_bounce *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
+    struct glint_bounce
+        *bounce; ///< memory of tile/bounce.c and of tile/transparent_shadow.c; NULL until a frame needs it
     struct glint_transparent_shadow *transparent_shadow;
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
-    const struct glint_batch_ray *rays; ///< of a batch: the ray that found each sample; NULL: the eye's
+    const struct glint_batch_ray *batch_rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
     struct glint_depth_cue *depth_cue; ///< of tile/depth_cue.c; NULL until a frame fades
     struct glint_shared_edge *shared_edge; ///< likewise, of tile/raster.c
-    struct glint_visible_light *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
+    struct glint_visible_light
+        *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
     struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
@@ -258,7 +282,8 @@ bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame 
 void glint_tile_see_lights(glint_tile *tile, const glint_tile_frame *frame, const uint16_t *lanes);
 /// Whether ray i sees one; the normal of its surface there, turned to the eye.
 bool glint_tile_sees_light(const glint_tile *tile, uint32_t i);
-void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i, double normal[3]);
+void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                                     double normal[3]);
 /// Fills in the active lanes that see no light.
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
@@ -297,7 +322,8 @@ static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile
 }
 
 /// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.
-static inline const glint_light_sample *glint_tile_light_sample_of(const glint_tile *tile, const glint_plan_light *light)
+static inline const glint_light_sample *glint_tile_light_sample_of(const glint_tile *tile,
+                                                                   const glint_plan_light *light)
 {
     return light->light_samples ? &light->light_samples[tile->sample % light->turn_count] : NULL;
 }

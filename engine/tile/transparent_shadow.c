@@ -42,9 +42,9 @@ void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transpare
 /// What is around a sample's point, on the side of the viewer, to which the light comes as well.
 static glint_media media_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    glint_media media = tile->rays ? tile->rays[i].media : plan->eye_media;
-    const uint32_t material = tile->material[i];
-    if (plan->bouncing[material].transmits && glint_has_lane(tile->back, i) && !glint_media_has(&media, material))
+    glint_media media = tile->batch_rays ? tile->batch_rays[i].media : plan->eye_media;
+    const uint32_t material = tile->surface.material[i];
+    if (plan->bouncing[material].transmits && glint_has_lane(tile->hit.back, i) && !glint_media_has(&media, material))
         glint_media_enter(&media, material);
     return media;
 }
@@ -117,7 +117,8 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
         for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             transparent_shadow->media[i] = media_at(tile, frame->plan, i);
-            aim(transparent_shadow, tile, frame, light, tile->point, i, tile->at.prim[i], tile->back[g] & left & -left);
+            aim(transparent_shadow, tile, frame, light, tile->surface.point, i, tile->at.prim[i],
+                tile->hit.back[g] & left & -left);
         }
     }
 }
@@ -151,7 +152,7 @@ static void dim(struct glint_transparent_shadow *transparent_shadow, const glint
         for (unsigned left = tile->at.light[slot].open[g] & transparent_shadow->dim[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             transparent_shadow->media[i] = media_at(tile, frame->plan, i);
-            aim(transparent_shadow, tile, frame, light, tile->point, i, tile->at.prim[i], false);
+            aim(transparent_shadow, tile, frame, light, tile->surface.point, i, tile->at.prim[i], false);
             arrive(transparent_shadow, frame, light, i);
         }
 }
@@ -256,7 +257,7 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
                               .hits = tile->at.hits,
-                              .material = tile->material,
+                              .material = tile->surface.material,
                               .materials = frame->plan->materials,
                               .facing = tile->at.facing,
                               .highlights = frame->plan->highlights,
@@ -272,7 +273,7 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
         lights[c].diffuse[c] = light->diffuse[c];
         lights[c].specular[c] = light->specular[c];
         for (int k = 0; k < GLINT_TERM_LOCAL; k++)
-            args.sum[k][c] = tile->sum[k][c];
+            args.sum[k][c] = tile->film.sum[k][c];
     }
     frame->stages->shade(&args);
 }

@@ -183,13 +183,13 @@ static void put_shading_point(glint_tile *tile, const glint_tile_frame *frame, u
     double view[3];
     view_of(&frame->plan->camera, s->point, view);
     for (int c = 0; c < 3; c++) {
-        glint_real_put(tile->point[c], precision, i, s->point[c]);
-        glint_real_put(tile->normal[c], precision, i, back ? -s->normal[c] : s->normal[c]);
-        glint_real_put(tile->direction[c], precision, i, view[c]);
+        glint_real_put(tile->surface.point[c], precision, i, s->point[c]);
+        glint_real_put(tile->surface.normal[c], precision, i, back ? -s->normal[c] : s->normal[c]);
+        glint_real_put(tile->rays.direction[c], precision, i, view[c]);
     }
-    glint_real_put(tile->slack, precision, i, rounding * s->slack);
-    tile->prim[i] = s->prim;
-    tile->material[i] = frame->geometry.prims[s->prim].material;
+    glint_real_put(tile->surface.slack, precision, i, rounding * s->slack);
+    tile->hit.prim[i] = s->prim;
+    tile->surface.material[i] = frame->geometry.prims[s->prim].material;
 }
 
 /// Puts a block's sites into the arrays. The backs of one-sided surfaces have no light.
@@ -202,8 +202,8 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
     const uint32_t left = frame->geometry.shading_point_count - first;
     tile->group_count = GLINT_SHADING_POINT_BLOCK / GLINT_GROUP;
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        tile->hits[g] = tile->dark[g] = 0;
-        tile->back[g] = back ? 0xffff : 0;
+        tile->hit.mask[g] = tile->hit.dark[g] = 0;
+        tile->hit.back[g] = back ? 0xffff : 0;
     }
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++) {
         const bool there = i < left && frame->plan->geometry->shading_point_prims[first + i] != GLINT_MISS;
@@ -212,10 +212,10 @@ static void load_block(struct glint_vertex *vertex, const glint_tile_frame *fram
             find_shading_point(frame->plan->geometry, first + i, &s);
         put_shading_point(tile, frame, i, &s, back);
         if (there && (!back || frame->geometry.prims[s.prim].two_sided))
-            tile->hits[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+            tile->hit.mask[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
     }
     for (uint32_t g = 0; g < tile->group_count; g++)
-        tile->active[g] = tile->hits[g];
+        tile->active[g] = tile->hit.mask[g];
 }
 
 static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame *frame, uint32_t block)
@@ -225,7 +225,7 @@ static void keep_block(const struct glint_vertex *vertex, const glint_tile_frame
     for (uint32_t i = 0; i < GLINT_SHADING_POINT_BLOCK; i++)
         for (int term = 0; term < 2; term++)
             for (int c = 0; c < 3; c++)
-                light[i].term[term][c] = (float)fmin(tile->sum[GLINT_TERM_DIFFUSE + term][c][i], FLT_MAX);
+                light[i].term[term][c] = (float)fmin(tile->film.sum[GLINT_TERM_DIFFUSE + term][c][i], FLT_MAX);
 }
 
 static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t block)
@@ -242,7 +242,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     glint_batch_end(&vertex->batch, to);
     keep_block(vertex, frame, block);
     for (uint32_t g = 0; frame->count_work && g < tile->group_count; g++)
-        to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hits[g]);
+        to->counts.work.sites += (uint64_t)__builtin_popcount(tile->hit.mask[g]);
     to->counts.runs[GLINT_STAGE_VERTEX]++;
 }
 
@@ -275,7 +275,7 @@ static void each_block(glint_tile *tile, const glint_tile_frame *frame,
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = tile->vertex->wanted[g]; left; left &= left - 1) {
             const uint32_t lane = (uint32_t)__builtin_ctz(left), prim = tile->at.prim[g * GLINT_GROUP + lane];
-            const uint32_t side = tile->back[g] >> lane & 1;
+            const uint32_t side = tile->hit.back[g] >> lane & 1;
             if (prim == last && side == last_side)
                 continue;
             const uint32_t *at = frame->geometry.shading_points[frame->geometry.prims[prim].shading_points].at;
@@ -326,7 +326,7 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame)
     const glint_shading_points_cached *shading_points = frame->shading_points;
     glint_vertex_args args = { .group_count = tile->group_count,
                                .wanted = tile->vertex->wanted,
-                               .back = tile->back,
+                               .back = tile->hit.back,
                                .prim = tile->at.prim,
                                .prims = frame->geometry.prims,
                                .scale = frame->geometry.scale,
@@ -336,10 +336,10 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame)
                                               (size_t)shading_points->blocks * GLINT_SHADING_POINT_BLOCK },
                                .camera = glint_tile_rays_of(tile) };
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->origin[c];
-        args.direction[c] = tile->direction[c];
+        args.origin[c] = tile->rays.origin[c];
+        args.direction[c] = tile->rays.direction[c];
         for (int term = 0; term < (plan->highlights ? 2 : 1); term++)
-            args.sum[term][c] = tile->sum[GLINT_TERM_DIFFUSE + term][c];
+            args.sum[term][c] = tile->film.sum[GLINT_TERM_DIFFUSE + term][c];
     }
     frame->stages->geometry[plan->desc.precision].vertex(&args);
 }
@@ -347,7 +347,7 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame)
 {
     for (uint32_t g = 0; g < tile->group_count; g++)
-        tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->dark[g]));
+        tile->vertex->wanted[g] = (uint16_t)(tile->at.hits[g] & ~(tile->own_light[g] | tile->hit.dark[g]));
     each_block(tile, frame, ask_for);
     each_block(tile, frame, wait_for);
     spread(tile, frame);

@@ -186,15 +186,15 @@ bool glint_tile_visible_light_in_sight(glint_tile *tile, const glint_tile_frame 
 static void own_hits(glint_tile *tile, glint_precision precision)
 {
     const size_t count = tile->group_count * GLINT_GROUP;
-    if (tile->at.hits == tile->hits)
+    if (tile->at.hits == tile->hit.mask)
         return;
-    memcpy(tile->t, tile->at.t, count * (precision == GLINT_FLOAT ? sizeof(float) : sizeof(double)));
-    memcpy(tile->prim, tile->at.prim, count * sizeof *tile->prim);
-    memcpy(tile->hits, tile->at.hits, tile->group_count * sizeof *tile->hits);
-    tile->at.t = tile->t;
-    tile->at.prim = tile->prim;
-    tile->at.hits = tile->hits;
-    tile->at.sampled = tile->hits;
+    memcpy(tile->hit.t, tile->at.t, count * (precision == GLINT_FLOAT ? sizeof(float) : sizeof(double)));
+    memcpy(tile->hit.prim, tile->at.prim, count * sizeof *tile->hit.prim);
+    memcpy(tile->hit.mask, tile->at.hits, tile->group_count * sizeof *tile->hit.mask);
+    tile->at.t = tile->hit.t;
+    tile->at.prim = tile->hit.prim;
+    tile->at.hits = tile->hit.mask;
+    tile->at.sampled = tile->hit.mask;
 }
 
 static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
@@ -204,7 +204,8 @@ static void see_lane(glint_tile *tile, const glint_tile_frame *frame, uint32_t i
     uint16_t *hits = &tile->at.hits[i / GLINT_GROUP];
     visible_light_ray ray = { .slack = plane_slack[precision] };
     for (int c = 0; c < 3; c++) {
-        ray.origin[c] = glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->origin[c], precision, i);
+        ray.origin[c] =
+            glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->rays.origin[c], precision, i);
         ray.direction[c] = glint_tile_direction(tile, precision, c, i);
     }
     double t = *hits & bit ? glint_real_at(tile->at.t, precision, i) : HUGE_VAL;
@@ -242,7 +243,7 @@ void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_fr
     double d[3];
     for (int c = 0; c < 3; c++) {
         const double from =
-            glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->origin[c], precision, i);
+            glint_tile_rays_of(tile) ? tile->camera.eye[c] : glint_real_at(tile->rays.origin[c], precision, i);
         d[c] = glint_tile_direction(tile, precision, c, i);
         normal[c] =
             light->ball ? from + glint_real_at(tile->at.t, precision, i) * d[c] - light->center[c] : light->normal[c];
@@ -265,7 +266,7 @@ void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *fram
         for (unsigned left = tile->visible_light->seen[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             for (int c = 0; c < 3; c++)
-                tile->sum[GLINT_TERM_BACKGROUND][c][i] +=
+                tile->film.sum[GLINT_TERM_BACKGROUND][c][i] +=
                     frame->plan->visible_lights[tile->visible_light->which[i]].shown[c];
         }
 }

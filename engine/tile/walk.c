@@ -301,7 +301,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_prefetch_codes(tile, frame->image);
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
-            memset(tile->sum[k], 0, sizeof tile->sum[k]);
+            memset(tile->film.sum[k], 0, sizeof tile->film.sum[k]);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
     for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);
