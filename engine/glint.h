@@ -40,6 +40,212 @@ typedef struct glint_error {
     char message[512];
 } glint_error;
 
+// ---- Programs: patterns and shaders -------------------------------------------------------------------------------
+
+/// A straight list of operations on doubles, run for many points at once: a pattern says what a material is at a point,
+/// a shader what one light leaves there. A builder makes it, value by value; it has no branches and no loops, so that its
+/// time is its length. The same numbers give the same bits on every machine.
+
+typedef struct glint_program glint_program; ///< immutable
+typedef struct glint_builder glint_builder; ///< a program on its way; of one thread at a time
+typedef struct glint_texture glint_texture; ///< immutable
+typedef uint32_t glint_value; ///< a value of a builder: one double for each point
+
+#define GLINT_PROGRAM_LENGTH_MAX 4096 ///< instructions of a program
+#define GLINT_PROGRAM_ROWS_MAX 256 ///< intermediate values that a program may need at the same time
+#define GLINT_PROGRAM_OUTPUTS_MAX 8
+
+typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
+
+/// What a program may read of a point. Vectors are unit where they are directions.
+typedef enum glint_input {
+    GLINT_INPUT_P_X, ///< the point in its shape's own space, before the shape's transform and its groups'
+    GLINT_INPUT_P_Y,
+    GLINT_INPUT_P_Z,
+    GLINT_INPUT_WORLD_X, ///< the point in world space
+    GLINT_INPUT_WORLD_Y,
+    GLINT_INPUT_WORLD_Z,
+    GLINT_INPUT_N_X, ///< the geometric normal, on the viewer's side
+    GLINT_INPUT_N_Y,
+    GLINT_INPUT_N_Z,
+    GLINT_INPUT_V_X, ///< towards the eye
+    GLINT_INPUT_V_Y,
+    GLINT_INPUT_V_Z,
+    GLINT_INPUT_UV_U, ///< the shape's own coordinates on its surface
+    GLINT_INPUT_UV_V,
+    GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, world units
+    GLINT_INPUT_UV_FOOTPRINT, ///< the same in units of u and v
+    GLINT_INPUT_L_X, ///< towards the light; this and all that follow in shaders alone
+    GLINT_INPUT_L_Y,
+    GLINT_INPUT_L_Z,
+    GLINT_INPUT_LIGHT_R, ///< colour times intensity times attenuation
+    GLINT_INPUT_LIGHT_G,
+    GLINT_INPUT_LIGHT_B,
+    GLINT_INPUT_DISTANCE, ///< to the light, world units; infinite where it is directional
+    GLINT_INPUT_KD_R, ///< the material's diffuse, specular and shininess at the point
+    GLINT_INPUT_KD_G,
+    GLINT_INPUT_KD_B,
+    GLINT_INPUT_KS_R,
+    GLINT_INPUT_KS_G,
+    GLINT_INPUT_KS_B,
+    GLINT_INPUT_SHININESS,
+    GLINT_INPUT_COUNT
+} glint_input;
+
+/// Operations. `true` is 1 and `false` 0; as a condition, every number but 0 is true. min and max are a < b ? a : b and
+/// a > b ? a : b. The rows of "exact" are those of IEEE 754, rounded once; where nothing else is said, the others are made of
+/// them in the order written here.
+typedef enum glint_op {
+    // exact
+    GLINT_OP_ADD, ///< a + b
+    GLINT_OP_SUB, ///< a - b
+    GLINT_OP_MUL, ///< a b
+    GLINT_OP_DIV, ///< a / b
+    GLINT_OP_NEG, ///< -a
+    GLINT_OP_ABS, ///< |a|
+    GLINT_OP_SQRT,
+    GLINT_OP_MIN,
+    GLINT_OP_MAX,
+    GLINT_OP_FLOOR,
+    GLINT_OP_CEIL,
+    GLINT_OP_ROUND, ///< to the nearest whole number, halves away from 0
+    GLINT_OP_FRACT, ///< a - floor(a)
+    GLINT_OP_MOD, ///< a % b of Lua on floats: exact, with the sign of b
+    GLINT_OP_SIGN, ///< 1, -1; 0 for 0 and NaN
+    // two roundings
+    GLINT_OP_MULADD, ///< a b + c
+    GLINT_OP_SUBMUL, ///< a - b c
+    GLINT_OP_MULSUB, ///< a b - c
+    GLINT_OP_MIX, ///< a + t (b - a), of a, b, t
+    // choice
+    GLINT_OP_LESS, ///< a < b
+    GLINT_OP_LESSEQ, ///< a <= b
+    GLINT_OP_EQUAL, ///< a == b
+    GLINT_OP_AND,
+    GLINT_OP_OR,
+    GLINT_OP_NOT,
+    GLINT_OP_SELECT, ///< c ? a : b, of c, a, b
+    GLINT_OP_STEP, ///< x < e ? 0 : 1, of e, x
+    GLINT_OP_SMOOTHSTEP, ///< t t (3 - 2 t), t = min(max((x - a) / (b - a), 0), 1), of a, b, x
+    GLINT_OP_CLAMP, ///< min(max(x, a), b), of x, a, b
+    // elementary, our own; how far they may be off stands in engine/stages/program
+    GLINT_OP_SIN,
+    GLINT_OP_COS,
+    GLINT_OP_EXP2,
+    GLINT_OP_LOG2,
+    GLINT_OP_POW, ///< 1 where x = 1 or y = 0; NaN where x < 0 and y is not whole
+    GLINT_OP_ATAN2, ///< of y, x; -pi .. pi
+    GLINT_OP_ACOS, ///< 0 .. pi; NaN beyond -1 .. 1
+    GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, as the built-in models have it: the bits of their S, in
+                        ///< float; 0 where x <= 0, x > 1 as 1, s < 0 as 0
+    // patterns
+    GLINT_OP_NOISE, ///< of x, y, z: gradient noise, smooth, -1 .. 1, 0 at whole numbers (K. Perlin, "Improving Noise",
+                    ///< SIGGRAPH 2002: his gradients and fade; the hash is our own); repeats after 2^32
+    GLINT_OP_NOISE3, ///< three of them, unlike: 3 results
+    GLINT_OP_CELL, ///< of x, y, z: distances to the nearest and the next of points of which each unit cube has one
+                   ///< (S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996): 2 results
+    GLINT_OP_HASH, ///< of x, y, z: a number of [0, 1) that has nothing to do with that of other x, y, z
+    GLINT_OP_PARITY, ///< of x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a checkerboard
+    // what differentiation makes, and textures: not for glint_builder_op
+    GLINT_OP_NOISE_SLOPE, ///< of x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3 results
+    GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second result: 6 results
+    GLINT_OP_TEXEL, ///< glint_builder_texel: 4 results
+    GLINT_OP_TEXEL_SLOPE, ///< derivatives of TEXEL's results by u, and by v: 8 results
+    GLINT_OP_COUNT
+} glint_op;
+
+#define GLINT_OPERANDS_MAX 4
+#define GLINT_RESULTS_MAX 8
+
+typedef struct glint_op_info {
+    const char *name; ///< "add"
+    uint32_t operands; ///< 1 .. GLINT_OPERANDS_MAX
+    uint32_t results; ///< 1 .. GLINT_RESULTS_MAX
+} glint_op_info;
+
+/// What is known of an operation; static. NULL: there is no such operation.
+const glint_op_info *glint_op_info_of(glint_op op);
+/// "p.x", "light.r"; static. NULL: there is no such input.
+const char *glint_input_name(glint_input input);
+
+glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error);
+/// NULL does nothing. Programs that were finished stay.
+void glint_builder_destroy(glint_builder *builder);
+/// A number: any double. The same bits are the same value.
+glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error);
+/// GLINT_ERR_INVALID for an input of shaders in a pattern.
+glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error);
+/// operands  as many values of this builder as the operation has.
+/// out       written: as many values as the operation has results.
+///
+/// What is made of numbers alone is a number, by the reference kernels; what is there already is not made again.
+/// GLINT_ERR_INVALID for an operand that is no value of the builder, or an operation that a caller cannot have.
+glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
+                              glint_error *error);
+/// The colour of a texture, as red, green, blue and alpha.
+///
+/// u, v       (0, 0) is the lower left corner of the picture, (1, 1) the upper right.
+/// footprint  width over which the picture is averaged, in units of u and v; 0 or less: the picture as it is.
+///
+/// The program keeps a reference to the texture.
+glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                 glint_value footprint, glint_value out[4], glint_error *error);
+/// Whether a value is a number, and which. False for what is no value of the builder. `number` may be NULL.
+bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number);
+/// How many instructions the builder has so far, those that no output needs included.
+size_t glint_builder_length(const glint_builder *builder);
+/// Makes a program that gives these values; the builder may go on.
+///
+/// count  pattern: 1 or 3; shader: 3, the diffuse part, or 6, diffuse and specular.
+///
+/// GLINT_ERR_INVALID when the program is longer than GLINT_PROGRAM_LENGTH_MAX or needs more rows than
+/// GLINT_PROGRAM_ROWS_MAX.
+glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
+                                  glint_error *error);
+
+glint_program *glint_program_retain(glint_program *program);
+void glint_program_release(glint_program *program);
+/// By the kernel a frame uses, with the bits a frame gets before it rounds to float.
+///
+/// inputs   those that the program does not read may be anything.
+/// outputs  written: as many as the program has.
+///
+/// GLINT_ERR_UNSUPPORTED, GLINT_ERR_INVALID: GLINT_ISA names what this machine lacks or what does not exist.
+glint_status glint_program_evaluate(const glint_program *program, const double inputs[GLINT_INPUT_COUNT],
+                                    double *outputs, glint_error *error);
+glint_program_kind glint_program_kind_of(const glint_program *program);
+size_t glint_program_output_count(const glint_program *program);
+size_t glint_program_length(const glint_program *program); ///< instructions; 0 where all outputs are inputs or numbers
+size_t glint_program_rows(const glint_program *program); ///< intermediate values at the same time
+bool glint_program_reads(const glint_program *program, glint_input input);
+/// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
+bool glint_program_constant(const glint_program *program, double *outputs);
+/// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers can be read back as they
+/// are. The caller frees it. NULL: out of memory.
+char *glint_program_listing(const glint_program *program);
+
+typedef enum glint_wrap { GLINT_WRAP_REPEAT, GLINT_WRAP_CLAMP } glint_wrap;
+typedef enum glint_filter {
+    GLINT_FILTER_BILINEAR, ///< between four texels; of the picture halved as often as the footprint calls for
+    GLINT_FILTER_NEAREST ///< the texel in which u, v lies; of the picture as it is
+} glint_filter;
+
+typedef struct glint_texture_desc {
+    const char *path; ///< a .png
+    glint_wrap wrap; ///< default repeat
+    glint_filter filter; ///< default bilinear
+    bool linear; ///< false, the default: codes are sRGB and are decoded, but for a picture that says it is linear; true: they
+                 ///< are numbers as they are
+} glint_texture_desc;
+
+glint_texture_desc glint_texture_desc_default(void);
+/// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is no whole PNG; GLINT_ERR_NOMEM.
+glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
+glint_texture *glint_texture_retain(glint_texture *texture);
+void glint_texture_release(glint_texture *texture);
+int glint_texture_width(const glint_texture *texture);
+int glint_texture_height(const glint_texture *texture);
+
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
 typedef struct glint_material glint_material;

@@ -30,10 +30,11 @@ layer engine/base
 layer engine/scene engine/stages $base
 layer engine/geometry engine/scene engine/stages $base
 layer engine/film engine/stages $base
-layer engine/plan engine/geometry engine/scene engine/film $stages $base
+layer engine/program engine/file $stages $base
+layer engine/plan engine/program engine/geometry engine/scene engine/film $stages $base
 layer engine/reuse engine/plan engine/film $stages $base
-layer engine/tile engine/reuse engine/plan engine/film $stages $base
-layer engine/frame engine/tile engine/reuse engine/plan engine/film $base
+layer engine/tile engine/program engine/reuse engine/plan engine/film $stages $base
+layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
 layer engine/file engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
 layer engine/sheet engine/file $base
@@ -48,5 +49,5 @@ layer bindings/watch bindings/command bindings/run
 scene='glint_(scene|material|light|camera|shape|plan|renderer|image)(_desc)?'
 forbid engine '[<"](lua|lauxlib|lualib)\.h|\blua_State\b' 'the engine has never heard of Lua'
 forbid engine/stages "\\b$scene\\b" 'stages take plain arrays, not scenes'
-forbid engine/stages '#include "engine/(glint|[a-rt-z][a-z]*/|s[a-su-z][a-z]*/)' 'stages include stages only'
+forbid engine/stages '#include "engine/(glint|[ac-rt-z][a-z]*/|s[a-su-z][a-z]*/)' 'stages include stages and base only'
 exit $bad

@@ -19,6 +19,7 @@
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"
 #include "engine/stages/contract/light.h"
+#include "engine/stages/contract/program.h"
 #include "engine/stages/contract/tables.h"
 
 /// One instruction set's stages. The object file defines this table and nothing else that can be seen.
@@ -41,6 +42,7 @@ typedef struct glint_stages {
         void (*scatter)(const glint_scatter_args *args);
         void (*raster)(const glint_raster_args *args);
     } geometry[2]; ///< by glint_precision: double, float
+    void (*program)(const glint_program_args *args);
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);
     void (*resolve_samples)(const glint_shade_args *sample, uint32_t count);

@@ -1,5 +1,6 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
 /// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
+#include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"
 #include "engine/stages/stages.h"
 
@@ -438,6 +439,8 @@ static void resolve_samples(const glint_shade_args *sample, uint32_t count)
     }
 }
 
+#include "engine/stages/ref/program.h"
+
 // ---- tone --------------------------------------------------------------------------------------------------------
 
 static uint32_t tone_code(const uint32_t *table, float top, float value)
@@ -489,6 +492,7 @@ static void tone(const glint_tone_args *args)
 const glint_stages glint_stages_ref = {
     .name = "ref",
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
+    .program = program,
     .shade = shade,
     .resolve = resolve,
     .resolve_samples = resolve_samples,

@@ -1,0 +1,277 @@
+/// glint_builder: values in static single assignment. Numbers are folded and equal values shared as they come.
+#include "engine/program/builder.h"
+
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error)
+{
+    if ((unsigned)kind > GLINT_PROGRAM_SHADER)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: pattern or shader expected, got %d", (int)kind);
+    glint_builder *builder = calloc(1, sizeof *builder);
+    if (!builder)
+        return glint_fail_nomem(error);
+    builder->kind = kind;
+    *out = builder;
+    return GLINT_OK;
+}
+
+void glint_builder_destroy(glint_builder *builder)
+{
+    if (!builder)
+        return;
+    for (uint32_t i = 0; i < builder->texture_count; i++)
+        glint_texture_release(builder->textures[i]);
+    free(builder->textures);
+    free(builder->nodes);
+    free(builder->slots);
+    free(builder);
+}
+
+// ---- Values that are there already --------------------------------------------------------------------------------
+
+static uint64_t hash_node(const glint_ssa_node *node)
+{
+    uint64_t h = node->op * 0x9e3779b97f4a7c15u + node->texture, number;
+    memcpy(&number, &node->number, sizeof number);
+    for (int k = 0; k < GLINT_OPERANDS_MAX; k++)
+        h = (h ^ node->operand[k]) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ number) * 0x94d049bb133111ebu;
+    return h ^ h >> 31;
+}
+
+static bool same_node(const glint_ssa_node *a, const glint_ssa_node *b)
+{
+    return a->op == b->op && a->texture == b->texture && memcmp(a->operand, b->operand, sizeof a->operand) == 0 &&
+           memcmp(&a->number, &b->number, sizeof a->number) == 0;
+}
+
+/// Where the node is, or could be put.
+static uint32_t *find_slot(const glint_builder *builder, const glint_ssa_node *node)
+{
+    uint32_t at = (uint32_t)hash_node(node) & (builder->slot_count - 1);
+    while (builder->slots[at] && !same_node(&builder->nodes[builder->slots[at] - 1], node))
+        at = (at + 1) & (builder->slot_count - 1);
+    return &builder->slots[at];
+}
+
+/// Room for GLINT_RESULTS_MAX more nodes and a slot.
+static glint_status make_room(glint_builder *builder, glint_error *error)
+{
+    if (builder->count + GLINT_RESULTS_MAX <= builder->capacity)
+        return GLINT_OK;
+    if (builder->count + GLINT_RESULTS_MAX > GLINT_VALUES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "program: at most %u values expected, numbers included",
+                          GLINT_VALUES_MAX);
+    const uint32_t capacity = builder->capacity ? 2 * builder->capacity : 64;
+    glint_ssa_node *nodes = realloc(builder->nodes, capacity * sizeof *nodes);
+    if (!nodes)
+        return glint_fail_nomem(error);
+    builder->nodes = nodes;
+    uint32_t *slots = calloc(2 * (size_t)capacity, sizeof *slots);
+    if (!slots)
+        return glint_fail_nomem(error);
+    free(builder->slots);
+    builder->slots = slots;
+    builder->slot_count = 2 * capacity;
+    builder->capacity = capacity;
+    for (uint32_t i = 0; i < builder->count; i++)
+        if (nodes[i].part == 0)
+            *find_slot(builder, &nodes[i]) = i + 1;
+    return GLINT_OK;
+}
+
+/// The value of a node, new unless there is an equal one. A first result is followed by the others.
+static glint_status share(glint_builder *builder, const glint_ssa_node *node, uint32_t results, glint_value *out,
+                          glint_error *error)
+{
+    const glint_status status = make_room(builder, error);
+    if (status)
+        return status;
+    uint32_t *slot = find_slot(builder, node);
+    if (!*slot || (builder->plain && glint_ssa_is_op(node))) {
+        *slot = builder->count + 1;
+        for (uint32_t k = 0; k < results; k++) {
+            builder->nodes[builder->count] = *node;
+            builder->nodes[builder->count++].part = (uint16_t)k;
+        }
+    }
+    for (uint32_t k = 0; k < results; k++)
+        out[k] = *slot - 1 + k;
+    return GLINT_OK;
+}
+
+glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error)
+{
+    const glint_ssa_node node = { .op = GLINT_SSA_NUMBER, .number = number };
+    return share(builder, &node, 1, out, error);
+}
+
+glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error)
+{
+    if ((unsigned)input >= GLINT_INPUT_COUNT)
+        return glint_fail(error, GLINT_ERR_INVALID, "input: no such input: %d", (int)input);
+    if (builder->kind == GLINT_PROGRAM_PATTERN && input >= GLINT_INPUT_L_X)
+        return glint_fail(error, GLINT_ERR_INVALID, "input: a pattern has no %s, which a shader has",
+                          glint_input_name(input));
+    const glint_ssa_node node = { .op = GLINT_SSA_INPUT, .operand = { input } };
+    return share(builder, &node, 1, out, error);
+}
+
+bool glint_builder_is_number(const glint_builder *builder, glint_value value, double *number)
+{
+    if (value >= builder->count || builder->nodes[value].op != GLINT_SSA_NUMBER)
+        return false;
+    if (number)
+        *number = builder->nodes[value].number;
+    return true;
+}
+
+size_t glint_builder_length(const glint_builder *builder)
+{
+    size_t length = 0;
+    for (uint32_t i = 0; i < builder->count; i++)
+        length += glint_ssa_is_op(&builder->nodes[i]) && builder->nodes[i].part == 0;
+    return length;
+}
+
+// ---- Operations ---------------------------------------------------------------------------------------------------
+
+void glint_fold(glint_op op, const glint_texture *texture, const double *operands, double results[GLINT_RESULTS_MAX])
+{
+    const glint_op_info *info = glint_op_info_of(op);
+    const uint16_t first_lane = 1;
+    double numbers[GLINT_OPERANDS_MAX][GLINT_NUMBER_LANES] = { { 0 } }, rows[GLINT_RESULTS_MAX * GLINT_PROGRAM_LANES];
+    double lanes[GLINT_RESULTS_MAX][GLINT_GROUP];
+    glint_instruction at = { .op = (uint16_t)op };
+    glint_program_code code = { .instructions = &at,
+                                .length = 1,
+                                .row_count = info->results,
+                                .output_count = info->results,
+                                .numbers = (const double(*)[GLINT_NUMBER_LANES])numbers };
+    glint_program_args args = { .code = &code, .group_count = 1, .wanted = &first_lane, .rows = rows };
+    const glint_texture_table *table = texture ? glint_texture_table_of(texture) : NULL;
+    code.textures = &table;
+    for (uint32_t k = 0; k < info->operands; k++) {
+        numbers[k][0] = operands[k];
+        at.in[k] = (uint16_t)(GLINT_ROW_NUMBER + k);
+    }
+    for (uint32_t k = 0; k < info->results; k++) {
+        at.out[k] = code.outputs[k] = (uint16_t)k;
+        args.result[k] = lanes[k];
+    }
+    glint_stages_ref.program(&args);
+    for (uint32_t k = 0; k < info->results; k++)
+        results[k] = lanes[k][0];
+}
+
+/// Replaces an operation on numbers by its results.
+static glint_status fold(glint_builder *builder, glint_op op, uint32_t texture, const glint_value *operands,
+                         glint_value *out, glint_error *error)
+{
+    const glint_op_info *info = glint_op_info_of(op);
+    double numbers[GLINT_OPERANDS_MAX], results[GLINT_RESULTS_MAX];
+    glint_status status = GLINT_OK;
+    for (uint32_t k = 0; k < info->operands; k++)
+        numbers[k] = builder->nodes[operands[k]].number;
+    glint_fold(op, builder->texture_count ? builder->textures[texture] : NULL, numbers, results);
+    for (uint32_t k = 0; k < info->results && !status; k++)
+        status = glint_builder_number(builder, results[k], &out[k], error);
+    return status;
+}
+
+static bool is_the_number(const glint_builder *builder, glint_value value, double number)
+{
+    return builder->nodes[value].op == GLINT_SSA_NUMBER &&
+           memcmp(&builder->nodes[value].number, &number, sizeof number) == 0;
+}
+
+/// Whether the operation gives one of its operands back, in every bit: *out.
+static bool gives_operand(const glint_builder *builder, glint_op op, const glint_value *operand, glint_value *out)
+{
+    double number;
+    int which = -1;
+    if (op == GLINT_OP_MUL && is_the_number(builder, operand[0], 1))
+        which = 1;
+    else if ((op == GLINT_OP_MUL || op == GLINT_OP_DIV) && is_the_number(builder, operand[1], 1))
+        which = 0;
+    else if (op == GLINT_OP_SUB && is_the_number(builder, operand[1], 0))
+        which = 0;
+    else if (op == GLINT_OP_SELECT && glint_builder_is_number(builder, operand[0], &number))
+        which = number != 0 ? 1 : 2;
+    else if (op == GLINT_OP_SELECT && operand[1] == operand[2])
+        which = 1;
+    if (which >= 0)
+        *out = operand[which];
+    return which >= 0;
+}
+
+glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t texture, const glint_value *operands,
+                               glint_value *out, glint_error *error)
+{
+    const glint_op_info *info = glint_op_info_of(op);
+    glint_ssa_node node = { .op = (uint16_t)op, .texture = texture };
+    bool numbers = true;
+    for (uint32_t k = 0; k < info->operands; k++) {
+        if (operands[k] >= builder->count)
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: operand %u is no value of this builder", info->name,
+                              (unsigned)k + 1);
+        node.operand[k] = operands[k];
+        numbers = numbers && builder->nodes[operands[k]].op == GLINT_SSA_NUMBER;
+    }
+    if (!builder->plain && numbers)
+        return fold(builder, op, texture, operands, out, error);
+    if (!builder->plain && gives_operand(builder, op, operands, out))
+        return GLINT_OK;
+    return share(builder, &node, info->results, out, error);
+}
+
+glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
+                              glint_error *error)
+{
+    if ((unsigned)op >= GLINT_OP_NOISE_SLOPE)
+        return glint_fail(error, GLINT_ERR_INVALID, "op: no operation of a caller's: %d", (int)op);
+    return glint_builder_add(builder, op, 0, operands, out, error);
+}
+
+// ---- Textures -----------------------------------------------------------------------------------------------------
+
+glint_status glint_builder_texture(glint_builder *builder, const glint_texture *texture, uint32_t *out,
+                                   glint_error *error)
+{
+    uint32_t i = 0;
+    while (i < builder->texture_count && builder->textures[i] != texture)
+        i++;
+    *out = i;
+    if (i < builder->texture_count)
+        return GLINT_OK;
+    glint_texture **textures = realloc(builder->textures, (i + 1) * sizeof(glint_texture *));
+    if (!textures)
+        return glint_fail_nomem(error);
+    builder->textures = textures;
+    textures[builder->texture_count++] = glint_texture_retain((glint_texture *)texture);
+    return GLINT_OK;
+}
+
+glint_status glint_builder_texel(glint_builder *builder, const glint_texture *texture, glint_value u, glint_value v,
+                                 glint_value footprint, glint_value out[4], glint_error *error)
+{
+    const glint_value operands[] = { u, v, footprint };
+    uint32_t index;
+    const glint_status status = glint_builder_texture(builder, texture, &index, error);
+    return status ? status : glint_builder_add(builder, GLINT_OP_TEXEL, index, operands, out, error);
+}
+
+glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
+                                  glint_error *error)
+{
+    const bool pattern = builder->kind == GLINT_PROGRAM_PATTERN;
+    if (pattern && count != 1 && count != 3)
+        return glint_fail(error, GLINT_ERR_INVALID, "count: 1 or 3 outputs of a pattern expected, got %zu", count);
+    if (!pattern && count != 3 && count != 6)
+        return glint_fail(error, GLINT_ERR_INVALID, "count: 3 or 6 outputs of a shader expected, got %zu", count);
+    return glint_program_make(builder, outputs, count, out, error);
+}

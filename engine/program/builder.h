@@ -1,0 +1,46 @@
+/// The values of a builder, in the order in which they came: operands before what is made of them. Internal.
+#ifndef GLINT_PROGRAM_BUILDER_H
+#define GLINT_PROGRAM_BUILDER_H
+
+#include "engine/program/program.h"
+
+#define GLINT_SSA_NUMBER GLINT_OP_COUNT ///< kinds of node that are no operation
+#define GLINT_SSA_INPUT (GLINT_OP_COUNT + 1)
+#define GLINT_VALUES_MAX 65536u ///< of a builder, those that no output needs included
+
+typedef struct glint_ssa_node {
+    uint16_t op; ///< or a kind of node
+    uint16_t part; ///< which result; the first has the operands
+    uint32_t operand[GLINT_OPERANDS_MAX]; ///< an input: which, in the first
+    uint32_t texture; ///< index into the builder's
+    double number;
+} glint_ssa_node;
+
+struct glint_builder {
+    glint_program_kind kind;
+    bool plain; ///< nothing is folded, shared or fused: for tests, to compare with
+    glint_ssa_node *nodes;
+    uint32_t count, capacity;
+    uint32_t *slots; ///< hash table of first results: node + 1, 0 where free
+    uint32_t slot_count; ///< a power of 2
+    glint_texture **textures; ///< retained
+    uint32_t texture_count;
+};
+
+static inline bool glint_ssa_is_op(const glint_ssa_node *node) { return node->op < GLINT_OP_COUNT; }
+
+/// As glint_builder_op, for operations that a caller cannot have, too.
+glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t texture, const glint_value *operands,
+                               glint_value *out, glint_error *error);
+/// The index of a texture in the builder's list, to which it is added.
+glint_status glint_builder_texture(glint_builder *builder, const glint_texture *texture, uint32_t *out,
+                                   glint_error *error);
+
+/// The results of an operation on numbers, by the reference kernels.
+void glint_fold(glint_op op, const glint_texture *texture, const double *operands, double results[GLINT_RESULTS_MAX]);
+
+/// glint_builder_finish without its check of how many outputs a kind of program has.
+glint_status glint_program_make(const glint_builder *builder, const glint_value *outputs, size_t count,
+                                glint_program **out, glint_error *error);
+
+#endif

@@ -1,0 +1,35 @@
+/// Programs as the engine knows them. Internal.
+#ifndef GLINT_PROGRAM_H
+#define GLINT_PROGRAM_H
+
+#include "engine/base/hash.h"
+#include "engine/stages/stages.h"
+
+#include <stdatomic.h>
+
+struct glint_program {
+    glint_program_kind kind;
+    glint_program_code code; ///< its arrays belong to the program
+    uint32_t number_count, texture_count;
+    uint32_t inputs; ///< a bit a glint_input that is read
+    glint_key structure; ///< of the operations, what they read and the textures
+    glint_key numbers; ///< of the numbers alone
+    glint_texture **textures; ///< retained
+    _Atomic uint32_t references;
+};
+
+/// The kernels' table of a texture, as long as the texture is there; and a hash of all that can change its texels.
+const glint_texture_table *glint_texture_table_of(const glint_texture *texture);
+glint_key glint_texture_key(const glint_texture *texture);
+
+/// A program of the derivatives of the first output of `program` by each of the inputs, in their order: exact, but that
+/// floor and its like have slope 0 everywhere, and so has a texel by its footprint.
+/// count  1 .. GLINT_PROGRAM_OUTPUTS_MAX. GLINT_ERR_INVALID as glint_builder_finish.
+glint_status glint_program_slope(const glint_program *program, const glint_input *inputs, size_t count,
+                                 glint_program **out, glint_error *error);
+
+/// Whether a kernel may run the code: operations, rows and textures that exist, and no row read before it is written.
+glint_status glint_code_check(const glint_program_code *code, uint32_t number_count, uint32_t texture_count,
+                              uint32_t inputs, glint_error *error);
+
+#endif

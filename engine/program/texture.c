@@ -1,0 +1,188 @@
+/// glint_texture: a picture as linear floats, and the same at half the size, a quarter ...
+#include "engine/program/program.h"
+
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/file/file.h"
+#include "engine/file/png.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FILE_LIMIT ((size_t)1 << 30)
+#define TEXELS_MAX ((size_t)1 << 25)
+#define LEVELS_MAX 17 // of 65535 texels
+
+struct glint_texture {
+    glint_texture_table table;
+    glint_texture_level levels[LEVELS_MAX];
+    glint_key key;
+    _Atomic uint32_t references;
+};
+
+glint_texture_desc glint_texture_desc_default(void) { return (glint_texture_desc) { .wrap = GLINT_WRAP_REPEAT }; }
+
+glint_texture *glint_texture_retain(glint_texture *texture)
+{
+    if (texture)
+        atomic_fetch_add(&texture->references, 1);
+    return texture;
+}
+
+void glint_texture_release(glint_texture *texture)
+{
+    if (!texture || atomic_fetch_sub(&texture->references, 1) > 1)
+        return;
+    for (uint32_t i = 0; i < texture->table.level_count; i++)
+        free((void *)texture->levels[i].texels);
+    free(texture);
+}
+
+int glint_texture_width(const glint_texture *texture) { return (int)texture->levels[0].width; }
+
+int glint_texture_height(const glint_texture *texture) { return (int)texture->levels[0].height; }
+
+const glint_texture_table *glint_texture_table_of(const glint_texture *texture) { return &texture->table; }
+
+glint_key glint_texture_key(const glint_texture *texture) { return texture->key; }
+
+// ---- Levels -------------------------------------------------------------------------------------------------------
+
+/// Room for the texels of the next level. NULL: out of memory.
+static float *add_level(glint_texture *texture, uint32_t width, uint32_t height)
+{
+    float *texels = glint_alloc_large((size_t)width * height, 4 * sizeof *texels);
+    if (texels)
+        texture->levels[texture->table.level_count++] = (glint_texture_level) { width, height, texels };
+    return texels;
+}
+
+/// What each code stands for. NULL: out of memory.
+static float *decoding(const glint_png *png, bool linear)
+{
+    const int last = png->bits == 16 ? 65535 : 255;
+    float *table = malloc((size_t)(last + 1) * sizeof *table);
+    for (int i = 0; table && i <= last; i++)
+        table[i] = (float)(linear ? (double)i / last : glint_srgb_decode((double)i / last));
+    return table;
+}
+
+static bool fill_first(glint_texture *texture, const glint_png *png, bool linear)
+{
+    const size_t count = (size_t)png->width * (size_t)png->height, channels = (size_t)png->channels;
+    const bool gray = channels < 3, alpha = channels == 2 || channels == 4;
+    const float most = png->bits == 16 ? 65535 : 255;
+    float *table = decoding(png, linear), *to = table ? add_level(texture, (uint32_t)png->width, (uint32_t)png->height) : NULL;
+    for (size_t i = 0; i < count && to; i++, to += 4) {
+        unsigned code[4] = { 0 };
+        for (size_t c = 0; c < channels; c++)
+            code[c] = png->bits == 16 ? ((const uint16_t *)png->codes)[i * channels + c]
+                                      : ((const uint8_t *)png->codes)[i * channels + c];
+        for (size_t c = 0; c < 3; c++)
+            to[c] = table[code[gray ? 0 : c]];
+        to[3] = alpha ? (float)code[channels - 1] / most : 1;
+    }
+    free(table);
+    return to != NULL;
+}
+
+/// A texel is the mean of the four that it covers; at the end of an odd side the last one counts twice.
+static bool add_half(glint_texture *texture)
+{
+    const glint_texture_level from = texture->levels[texture->table.level_count - 1];
+    const uint32_t width = (from.width + 1) / 2, height = (from.height + 1) / 2;
+    float *to = add_level(texture, width, height);
+    for (size_t y = 0; y < height && to; y++)
+        for (size_t x = 0; x < width; x++, to += 4) {
+            const size_t x0 = 2 * x, x1 = x0 + 1 < from.width ? x0 + 1 : x0;
+            const size_t y0 = 2 * y, y1 = y0 + 1 < from.height ? y0 + 1 : y0;
+            const float *a = from.texels + 4 * (y0 * from.width), *b = from.texels + 4 * (y1 * from.width);
+            for (size_t c = 0; c < 4; c++)
+                to[c] = (float)((((double)a[4 * x0 + c] + (double)a[4 * x1 + c]) +
+                                 ((double)b[4 * x0 + c] + (double)b[4 * x1 + c])) *
+                                0.25);
+        }
+    return to != NULL;
+}
+
+static bool fill(glint_texture *texture, const glint_png *png, bool linear)
+{
+    bool done = fill_first(texture, png, linear);
+    const glint_texture_level *last = texture->levels;
+    while (done && (last->width > 1 || last->height > 1)) {
+        done = add_half(texture);
+        last = &texture->levels[texture->table.level_count - 1];
+    }
+    return done;
+}
+
+// ---- Reading ------------------------------------------------------------------------------------------------------
+
+static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linear, glint_error *error)
+{
+    glint_png_head head;
+    glint_status status = glint_png_scan(bytes->data, bytes->size, &head, NULL, NULL, error);
+    if (status)
+        return status;
+    if ((size_t)head.width * (size_t)head.height > TEXELS_MAX)
+        return glint_fail(error, GLINT_ERR_FORMAT, "a picture of at most %zu pixels expected, got %d x %d", TEXELS_MAX,
+                          head.width, head.height);
+    *linear = *linear || head.transfer == GLINT_TRANSFER_LINEAR;
+    return glint_png_decode(bytes->data, bytes->size, png, error);
+}
+
+static glint_status read_picture(const glint_texture_desc *desc, glint_png *png, bool *linear, glint_error *error)
+{
+    glint_bytes bytes = { 0 };
+    glint_error inner;
+    glint_status status = glint_file_read(desc->path, FILE_LIMIT, &bytes, error);
+    if (status)
+        return status;
+    status = decode(&bytes, png, linear, &inner);
+    free(bytes.data);
+    return status ? glint_fail(error, status, "%.300s: %.200s", desc->path, inner.message) : GLINT_OK;
+}
+
+static glint_key key_of(const glint_texture *texture)
+{
+    const glint_texture_level *first = &texture->levels[0];
+    const uint32_t head[] = { first->width, first->height, texture->table.wrap, texture->table.filter };
+    const glint_key key = glint_key_add((glint_key) { 0 }, head, sizeof head);
+    return glint_key_add(key, first->texels, (size_t)first->width * first->height * 4 * sizeof *first->texels);
+}
+
+static glint_status check(const glint_texture_desc *desc, glint_error *error)
+{
+    if (!desc->path || !*desc->path)
+        return glint_fail(error, GLINT_ERR_INVALID, "path: name of a .png expected");
+    if ((unsigned)desc->wrap > GLINT_WRAP_CLAMP)
+        return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat or clamp expected, got %d", (int)desc->wrap);
+    if ((unsigned)desc->filter > GLINT_FILTER_NEAREST)
+        return glint_fail(error, GLINT_ERR_INVALID, "filter: bilinear or nearest expected, got %d", (int)desc->filter);
+    return GLINT_OK;
+}
+
+glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error)
+{
+    glint_png png = { 0 };
+    bool linear = desc->linear;
+    glint_status status = check(desc, error);
+    if (!status)
+        status = read_picture(desc, &png, &linear, error);
+    if (status)
+        return status;
+    glint_texture *texture = calloc(1, sizeof *texture);
+    if (texture) {
+        texture->references = 1;
+        texture->table = (glint_texture_table) { .levels = texture->levels, .wrap = desc->wrap, .filter = desc->filter };
+    }
+    if (texture && fill(texture, &png, linear)) {
+        texture->key = key_of(texture);
+        *out = texture;
+    } else {
+        glint_texture_release(texture);
+        status = glint_fail_nomem(error);
+    }
+    free(png.codes);
+    return status;
+}

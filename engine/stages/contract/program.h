@@ -1,0 +1,63 @@
+/// The contract of the stage `program`: the instructions of a pattern or a shader, for up to 128 points. Begin with stages.h.
+#ifndef GLINT_CONTRACT_PROGRAM_H
+#define GLINT_CONTRACT_PROGRAM_H
+
+#include "engine/base/math.h" // operations and inputs are those of glint.h
+
+#define GLINT_PROGRAM_GROUPS 8 ///< groups at a time
+#define GLINT_PROGRAM_LANES 128 ///< a row: one double a lane, 1 KB
+#define GLINT_NUMBER_LANES 8 ///< how often a number stands in memory: the widest vector
+
+// Where an operand is, and where a result goes.
+#define GLINT_ROW_INPUT 256u ///< + glint_input; below it: the rows of a program's own
+#define GLINT_ROW_NUMBER 512u ///< + index into the numbers
+#define GLINT_ROW_END (GLINT_ROW_NUMBER + 4u * GLINT_PROGRAM_LENGTH_MAX + GLINT_PROGRAM_OUTPUTS_MAX)
+
+typedef struct glint_instruction { ///< no padding: its bytes are hashed
+    uint16_t op; ///< glint_op
+    uint16_t texture; ///< index into the textures; 0 where the operation has none
+    uint16_t in[GLINT_OPERANDS_MAX]; ///< beyond the operation's operands 0
+    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, a results nobody reads included; beyond its results 0
+} glint_instruction;
+
+/// A picture at one size. Texels are red, green, blue, alpha, linear, row by row from the top.
+typedef struct glint_texture_level {
+    uint32_t width, height; ///< 1 .. 65535
+    const float *texels;
+} glint_texture_level;
+
+typedef struct glint_texture_table {
+    const glint_texture_level *levels; ///< each half the size of the one before, rounded up; the last is one texel
+    uint32_t level_count;
+    glint_wrap wrap;
+    glint_filter filter;
+} glint_texture_table;
+
+typedef struct glint_program_code {
+    const glint_instruction *instructions;
+    uint32_t length;
+    uint32_t row_count; ///< at most GLINT_PROGRAM_ROWS_MAX
+    uint32_t output_count;
+    uint16_t outputs[GLINT_PROGRAM_OUTPUTS_MAX]; ///< rows, inputs or numbers
+    const double (*numbers)[GLINT_NUMBER_LANES];
+    const glint_texture_table *const *textures;
+} glint_program_code;
+
+typedef struct glint_program_args {
+    const glint_program_code *code;
+    uint32_t group_count; ///< 1 .. GLINT_PROGRAM_GROUPS
+    const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
+    const double *input[GLINT_INPUT_COUNT]; ///< those that the program reads: 16 numbers a group
+    double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
+    const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
+    double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as they are; NULL: not wanted
+    float *plane[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as reflectances: v > 0 ? min(v, 2^100) : 0 in double, then
+                                             ///< rounded to float; NULL: not wanted
+    uint16_t *odd; ///< out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100; NULL: not wanted
+} glint_program_args;
+
+#define GLINT_REFLECTANCE_MAX 0x1p100
+
+// What each operation is stands in glint.h; the arithmetic and its order in ref/program.h and ref/pattern.h.
+
+#endif

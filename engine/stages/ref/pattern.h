@@ -1,0 +1,234 @@
+// Noise, cells, hash, parity and texels, a lane at a time. Included by ref_program.h.
+
+// ---- the hash ----------------------------------------------------------------------------------------------------
+
+static uint32_t fold(uint64_t x) { return (uint32_t)(x ^ x >> 32); }
+
+static uint64_t product(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
+
+/// The unit cube that x, y, z lies in, modulo 2^32, as a number without a pattern.
+static uint32_t hash_of_cube(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
+{
+    const uint32_t sum = fold(product(x, GLINT_HASH_X) + product(y, GLINT_HASH_Y) + product(z, GLINT_HASH_Z) +
+                              product(seed, GLINT_HASH_SEED));
+    return fold(product(sum, GLINT_HASH_A));
+}
+
+/// A whole number modulo 2^32; beyond 2^51, and for NaN, any.
+static uint32_t word_of(double whole) { return (uint32_t)bits_of_double(whole + GLINT_ROUNDER); }
+
+/// The bits of x, where -0 is 0 and every NaN is 0.
+static uint64_t canonical_bits(double x) { return x == x ? bits_of_double(x + 0.0) : 0; }
+
+static double op_hash(double x, double y, double z)
+{
+    const uint64_t bits[3] = { canonical_bits(x), canonical_bits(y), canonical_bits(z) };
+    uint32_t h = GLINT_HASH_SEED;
+    for (int k = 0; k < 3; k++) {
+        h = fold(product(h ^ (uint32_t)bits[k], GLINT_HASH_A));
+        h = fold(product(h ^ (uint32_t)(bits[k] >> 32), GLINT_HASH_B));
+    }
+    h = fold(product(h, GLINT_HASH_C));
+    h = (uint32_t)product(h, GLINT_HASH_X);
+    return (double)h * 0x1p-32;
+}
+
+static double parity_of(double x)
+{
+    x = floor(x);
+    return x - 2 * floor(0.5 * x);
+}
+
+static double op_parity(double x, double y, double z)
+{
+    const double sum = (parity_of(x) + parity_of(y)) + parity_of(z);
+    return sum - 2 * floor(0.5 * sum);
+}
+
+// ---- noise -------------------------------------------------------------------------------------------------------
+
+static double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
+
+static double fade_slope(double t) { return 30 * (t * t) * (t * (t - 2) + 1); }
+
+static double between_two(double t, double a, double b) { return a + t * (b - a); }
+
+/// The gradient of a corner, as Perlin's table has it.
+static void gradient_of(uint32_t hash, double g[3])
+{
+    const uint32_t h = (uint32_t)product(hash, GLINT_HASH_B) >> 28;
+    const int u = h < 8 ? 0 : 1, v = h < 4 ? 1 : h == 12 || h == 14 ? 0 : 2;
+    g[0] = g[1] = g[2] = 0;
+    g[u] = h & 1 ? -1 : 1;
+    g[v] = h & 2 ? -1 : 1;
+}
+
+/// Something of the eight corners of a cube, x fastest, between them.
+static double between_corners(const double at[8], const double f[3])
+{
+    const double near = between_two(f[1], between_two(f[0], at[0], at[1]), between_two(f[0], at[2], at[3]));
+    const double far = between_two(f[1], between_two(f[0], at[4], at[5]), between_two(f[0], at[6], at[7]));
+    return between_two(f[2], near, far);
+}
+
+/// What a step along one axis adds to it; the other two between corners.
+static double across_corners(const double at[8], const double f[3], int axis)
+{
+    const int step = 1 << axis, a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
+    double edge[4];
+    for (int k = 0; k < 4; k++) {
+        const int corner = (k & 1) << a | (k >> 1) << b;
+        edge[k] = at[corner + step] - at[corner];
+    }
+    return between_two(f[b], between_two(f[a], edge[0], edge[1]), between_two(f[a], edge[2], edge[3]));
+}
+
+/// Noise, and its three derivatives unless `slope` is NULL.
+static double op_noise(double x, double y, double z, uint32_t seed, double *slope)
+{
+    const double p[3] = { x, y, z };
+    double t[3], f[3], ramp[8], g[8][3];
+    uint32_t cube[3];
+    for (int k = 0; k < 3; k++) {
+        cube[k] = word_of(floor(p[k]));
+        t[k] = p[k] - floor(p[k]);
+        f[k] = fade(t[k]);
+    }
+    for (int c = 0; c < 8; c++) {
+        const uint32_t i = c & 1, j = c >> 1 & 1, k = (uint32_t)c >> 2;
+        gradient_of(hash_of_cube(cube[0] + i, cube[1] + j, cube[2] + k, seed), g[c]);
+        ramp[c] = (g[c][0] * (t[0] - i) + g[c][1] * (t[1] - j)) + g[c][2] * (t[2] - k);
+    }
+    for (int axis = 0; slope && axis < 3; axis++) {
+        double along[8];
+        for (int c = 0; c < 8; c++)
+            along[c] = g[c][axis];
+        slope[axis] = GLINT_NOISE_SCALE *
+                      (between_corners(along, f) + fade_slope(t[axis]) * across_corners(ramp, f, axis));
+    }
+    return GLINT_NOISE_SCALE * between_corners(ramp, f);
+}
+
+// ---- cells -------------------------------------------------------------------------------------------------------
+
+/// From the point to that of a cube: `x`: where the cube begins, from the point.
+static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
+{
+    static const uint32_t factor[3] = { GLINT_HASH_B, GLINT_HASH_C, GLINT_HASH_X };
+    const uint32_t h = hash_of_cube(cube[0], cube[1], cube[2], 4);
+    for (int k = 0; k < 3; k++)
+        d[k] = x[k] + (double)(uint32_t)product(h, factor[k]) * 0x1p-32;
+}
+
+/// The two nearest of the points of all cubes that may have them; of equal distances the first.
+static void op_cell(const double p[3], double *distance, double *slope)
+{
+    double d2[2] = { INFINITY, INFINITY }, to[2][3] = { { NAN, NAN, NAN }, { NAN, NAN, NAN } };
+    for (int c = 0; c < 125; c++) {
+        const int offset[3] = { c % 5 - 2, c / 5 % 5 - 2, c / 25 - 2 };
+        uint32_t cube[3];
+        double x[3], d[3];
+        for (int k = 0; k < 3; k++) {
+            cube[k] = word_of(floor(p[k])) + (uint32_t)offset[k];
+            x[k] = offset[k] - (p[k] - floor(p[k]));
+        }
+        to_feature(cube, x, d);
+        const double length2 = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+        if (length2 < d2[0]) {
+            d2[1] = d2[0];
+            memcpy(to[1], to[0], sizeof d);
+            d2[0] = length2;
+            memcpy(to[0], d, sizeof d);
+        } else if (length2 < d2[1]) {
+            d2[1] = length2;
+            memcpy(to[1], d, sizeof d);
+        }
+    }
+    for (int n = 0; n < 2; n++) {
+        const double length = sqrt(d2[n]);
+        if (distance)
+            distance[n] = length;
+        for (int k = 0; slope && k < 3; k++)
+            slope[3 * n + k] = -to[n][k] / length;
+    }
+}
+
+// ---- texels ------------------------------------------------------------------------------------------------------
+
+/// 0 .. 1 of a picture's side; NaN gives 0.
+static double wrapped(glint_wrap wrap, double u)
+{
+    if (wrap == GLINT_WRAP_REPEAT)
+        u = u - floor(u);
+    u = u > 0 ? u : 0;
+    return u < 1 ? u : 1;
+}
+
+/// The two texels around x of a side of n.
+static void neighbours(glint_wrap wrap, double x, uint32_t n, uint32_t at[2])
+{
+    const double first = floor(x);
+    const bool repeat = wrap == GLINT_WRAP_REPEAT;
+    at[0] = first < 0 ? (repeat ? n - 1 : 0) : (uint32_t)first;
+    at[1] = first + 1 < n ? (uint32_t)(first + 1) : repeat ? 0 : n - 1;
+}
+
+/// Colour and derivatives by u and v, of one level, each unless NULL.
+static void texel_of_level(const glint_texture_table *texture, uint32_t level, double u, double v, double color[4],
+                           double *slope)
+{
+    const glint_texture_level *l = &texture->levels[level];
+    const double w = l->width, h = l->height;
+    const double x = wrapped(texture->wrap, u) * w - 0.5, y = (1 - wrapped(texture->wrap, v)) * h - 0.5;
+    const double fx = x - floor(x), fy = y - floor(y);
+    uint32_t i[2], j[2];
+    neighbours(texture->wrap, x, l->width, i);
+    neighbours(texture->wrap, y, l->height, j);
+    for (int c = 0; c < 4; c++) {
+        double t[2][2];
+        for (int k = 0; k < 4; k++)
+            t[k >> 1][k & 1] = (double)l->texels[4 * ((size_t)j[k >> 1] * l->width + i[k & 1]) + (size_t)c];
+        const double top = between_two(fx, t[0][0], t[0][1]), bottom = between_two(fx, t[1][0], t[1][1]);
+        if (color)
+            color[c] = between_two(fy, top, bottom);
+        if (slope) {
+            slope[c] = w * between_two(fy, t[0][1] - t[0][0], t[1][1] - t[1][0]);
+            slope[4 + c] = -(h * (bottom - top));
+        }
+    }
+}
+
+static void nearest_texel(const glint_texture_table *texture, double u, double v, double *color)
+{
+    const glint_texture_level *l = &texture->levels[0];
+    const double x = floor(wrapped(texture->wrap, u) * l->width);
+    const double y = floor((1 - wrapped(texture->wrap, v)) * l->height);
+    const size_t i = (size_t)(x < l->width ? x : l->width - 1), j = (size_t)(y < l->height ? y : l->height - 1);
+    for (size_t c = 0; c < 4; c++)
+        color[c] = (double)l->texels[4 * (j * l->width + i) + c];
+}
+
+/// in: u, v, footprint. `color` or `slope` is NULL.
+static void op_texel(const glint_texture_table *texture, const double in[3], double *color, double *slope)
+{
+    double *out = color ? color : slope, next[GLINT_RESULTS_MAX];
+    const int count = color ? 4 : 8;
+    if (texture->filter == GLINT_FILTER_NEAREST) {
+        memset(next, 0, sizeof next);
+        if (color)
+            nearest_texel(texture, in[0], in[1], next);
+        memcpy(out, next, (size_t)count * sizeof *next);
+        return;
+    }
+    const glint_texture_level *whole = &texture->levels[0];
+    const double side = whole->width < whole->height ? whole->height : whole->width, size = in[2] * side;
+    double level = size > 1 ? op_log2(size) : 0;
+    level = level < texture->level_count - 1 ? level : texture->level_count - 1;
+    const uint32_t k = (uint32_t)level;
+    texel_of_level(texture, k, in[0], in[1], color, slope);
+    if (!(level > k))
+        return;
+    texel_of_level(texture, k + 1, in[0], in[1], color ? next : NULL, color ? NULL : next);
+    for (int c = 0; c < count; c++)
+        out[c] = between_two(level - k, out[c], next[c]);
+}
