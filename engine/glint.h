@@ -15,6 +15,8 @@
 #ifndef GLINT_H
 #define GLINT_H
 
+// clang-format off: comments stand beside what they explain, and it would part the two
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -24,10 +26,11 @@
 #define GLINT_NAME_SIZE 64 ///< bytes of an object's name, with the ending NUL
 #define GLINT_SIDE_MAX 65535 ///< longest side of an image, in pixels
 
+/// What a call that can fail returns.
 typedef enum glint_status {
-    GLINT_OK = 0,
+    GLINT_OK = 0, ///< done
     GLINT_ERR_INVALID, ///< an argument is out of its range
-    GLINT_ERR_NOMEM,
+    GLINT_ERR_NOMEM, ///< out of memory: nothing was changed
     GLINT_ERR_IO, ///< the outside world: a file that will not open, a short write
     GLINT_ERR_NO_SPACE, ///< disk or quota full: worth trying later
     GLINT_ERR_FORMAT, ///< a file that is not what it should be
@@ -35,9 +38,10 @@ typedef enum glint_status {
     GLINT_ERR_UNSUPPORTED ///< this machine or build cannot do it
 } glint_status;
 
+/// Why a call failed. Written on failure alone.
 typedef struct glint_error {
-    glint_status status;
-    char message[512];
+    glint_status status; ///< never GLINT_OK
+    char message[512]; ///< UTF-8, one line, begins with the argument
 } glint_error;
 
 // ---- Programs: patterns and shaders -------------------------------------------------------------------------------
@@ -248,8 +252,10 @@ int glint_texture_height(const glint_texture *texture);
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
+/// How a surface reflects, emits and passes light. Shared by reference between shapes; see Ownership.
 typedef struct glint_material glint_material;
 
+/// The specular term S of one light; n, l, v unit: the normal turned to the viewer, towards the light, towards the eye.
 typedef enum glint_model {
     GLINT_MODEL_PHONG, ///< S = max(0, r.v)^shininess, r = 2(n.l)n - l
     GLINT_MODEL_BLINN_PHONG, ///< S = max(0, n.h)^shininess, h = (l + v)/|l + v|
@@ -262,8 +268,9 @@ typedef enum glint_model {
 /// B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
+/// The fields of a material. Reflectances are shares of light in linear RGB.
 typedef struct glint_material_desc {
-    glint_model model;
+    glint_model model; ///< default phong
     bool has_ambient; ///< false: `ambient` follows `diffuse`
     double ambient[3]; ///< reflectances: finite, >= 0; above 1 a surface gives more light than it gets
     double diffuse[3]; ///< default 0.8
@@ -277,7 +284,7 @@ typedef struct glint_material_desc {
         ///< has crossed none: all of its light goes on, max(mirror, 1) of it with `mirror`
     double ior; ///< refractive index inside, > 0; default 1.5. Outside is 1, or that of the object around
     bool fresnel; ///< `mirror` is multiplied by a dielectric's reflectance R, `transmission` by 1 - R; default false
-    double absorption[3]; ///< per world unit of way inside, >= 0; default 0: of light, exp(-absorption way) is left
+    double absorption[3]; ///< per world unit inside, >= 0; default 0: exp(-absorption distance) of the light is left
     /// phong: S = (s + 2)/2 (r.v)^s (n.l) (E. Lafortune and Y. Willems 1994); blinn_phong:
     /// S = (s + 2)(s + 4)/(8 (2^(-s/2) + s)) (n.h)^s (n.l) (F. Giesen, "Phong and Blinn-Phong normalization factors",
     /// 2009): reciprocal, and no more light leaves than comes. Other models do not read it
@@ -291,13 +298,19 @@ typedef struct glint_material_desc {
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
+/// Every field at its default.
 glint_material_desc glint_material_desc_default(void);
 /// Writes `ambient`, `specular`, `f0` and `mirror` where they follow other fields, and marks them as set.
 void glint_material_desc_resolve(glint_material_desc *desc);
+/// Makes a material of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error);
+/// Replaces the whole description by a copy of `desc`; plans made before keep the old one. On error nothing changes.
 glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error);
+/// The description; borrowed, valid until the material is set or released.
 const glint_material_desc *glint_material_get(const glint_material *material);
+/// Takes another reference; returns its argument.
 glint_material *glint_material_retain(glint_material *material);
+/// Gives a reference back; the last one frees the material. NULL: nothing.
 void glint_material_release(glint_material *material);
 
 /// The two terms of one light of strength 1, by the kernels a frame uses.
@@ -312,15 +325,17 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
+/// A source of light. Shared by reference between scenes.
 typedef struct glint_light glint_light;
 
+/// Where the light comes from. Area lights (disk, polygon, sphere) throw soft shadows.
 typedef enum glint_light_kind {
-    GLINT_LIGHT_POINT,
-    GLINT_LIGHT_DIRECTIONAL,
+    GLINT_LIGHT_POINT, ///< shines the same to all sides from `position`
+    GLINT_LIGHT_DIRECTIONAL, ///< parallel light that travels along `direction`
     GLINT_LIGHT_SPOT, ///< a point light within a cone
     GLINT_LIGHT_DISK, ///< area lights: `samples` points of their surface, other ones for each pixel of a 4 x 4 block
-    GLINT_LIGHT_POLYGON,
-    GLINT_LIGHT_SPHERE
+    GLINT_LIGHT_POLYGON, ///< convex, flat; shines to one side unless `two_sided`
+    GLINT_LIGHT_SPHERE ///< the surface of a ball
 } glint_light_kind;
 
 #define GLINT_CORNERS_MAX 4096 ///< of a polygon light
@@ -332,13 +347,14 @@ typedef enum glint_shadow {
     GLINT_SHADOW_CAPS ///< sphere lights: by how much of the light's disk in the sky those of spheres cover, in closed form
 } glint_shadow;
 
+/// The fields of a light; each kind reads those that name it, and those that name none.
 typedef struct glint_light_desc {
-    glint_light_kind kind;
+    glint_light_kind kind; ///< not changed by glint_light_set
     double color[3]; ///< default 1; finite, >= 0
     double intensity; ///< default 1; finite, >= 0; multiplies each of the three terms
     bool has_diffuse, has_specular; ///< false: the term's colour is `color`
     double ambient[3]; ///< default 0; neither attenuated nor shadowed
-    double diffuse[3], specular[3];
+    double diffuse[3], specular[3]; ///< reflectances' own colours of the light; finite, >= 0; default `color`
     double attenuation[3]; ///< c0, c1, c2 of A = 1/(c0 + c1 d + c2 d^2); >= 0, not all 0; default {1, 0, 0}
     bool shadows; ///< default true
     /// Area lights; default GLINT_SHADOW_RAYS. Caps: without noise; the light's terms are those of a point at its centre
@@ -348,12 +364,11 @@ typedef struct glint_light_desc {
     /// their share of its diameter. Scenes with other shapes, or with transparent ones, have rays all the same: see
     /// the effects of the plan
     glint_shadow shadow;
-    bool
-        visible; ///< rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default
-    ///< false. It shows pi L color by `radiance` L, as the background does: pixels are pi times radiance. By
-    ///< `intensity` I: color I A(D), with D its radius, of a polygon that of a disk of its area. It throws no
-    ///< shadow, and is no object: to the passes it is background with a depth and a normal. Lights without a
-    ///< surface may be called visible too, and are not
+    /// Rays of the eye, of mirrors and of glass see the light's surface, from the sides that shine; default false. It shows
+    /// pi L color by `radiance` L, as the background does: pixels are pi times radiance. By `intensity` I: color I A(D),
+    /// with D its radius, of a polygon that of a disk of its area. It throws no shadow, and is no object: to the passes it
+    /// is background with a depth and a normal. Lights without a surface may be called visible too, and are not
+    bool visible;
     double position[3]; ///< point and spot light; disk and sphere light: the centre
     double direction[3]; ///< directional and spot light: the direction of travel; not zero, need not be unit
     double inner_rad, outer_rad; ///< spot: half angles, 0 <= inner <= outer <= pi: full light within, none without,
@@ -361,9 +376,10 @@ typedef struct glint_light_desc {
     double exponent; ///< spot: the light falls off as cos^exponent from the axis; >= 0, default 0
     double normal[3]; ///< disk: the side that shines; not zero, need not be unit; default {0, -1, 0}
     double radius; ///< disk and sphere: >= 0, 0 is a point; by `radiance` 0 or 1e-150 .. 1e150; default 1
-    const double (
-        *vertices)[3]; ///< polygon: its corners, convex and in one plane; it shines to the side from which they
-    size_t vertex_count; ///< run counter-clockwise. 3 .. GLINT_CORNERS_MAX; copied
+    /// Polygon: its corners, convex and in one plane, 3 .. GLINT_CORNERS_MAX; copied. It shines to the side from which they
+    /// run counter-clockwise
+    const double (*vertices)[3];
+    size_t vertex_count;
     bool two_sided; ///< polygon: shines to both sides; default false
     double samples; ///< area lights: shadow rays a sample of a pixel; whole number, 1 .. 65536; default 16
     bool has_radiance; ///< area lights: `radiance` says how strong it is; `intensity` must then be 1
@@ -372,65 +388,83 @@ typedef struct glint_light_desc {
     char name[GLINT_NAME_SIZE];
 } glint_light_desc;
 
+/// Every field of a light of this kind at its default.
 glint_light_desc glint_light_desc_default(glint_light_kind kind);
+/// Makes a light of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_light_create(const glint_light_desc *desc, glint_light **out, glint_error *error);
-/// `desc->kind` must be the light's kind.
+/// Replaces the description by a copy; on error nothing changes. `desc->kind` must be the light's kind.
 glint_status glint_light_set(glint_light *light, const glint_light_desc *desc, glint_error *error);
 /// `vertices` is the light's own copy, until it is set or released.
 const glint_light_desc *glint_light_get(const glint_light *light);
+/// Takes another reference; returns its argument.
 glint_light *glint_light_retain(glint_light *light);
+/// Gives a reference back; the last one frees the light. NULL: nothing.
 void glint_light_release(glint_light *light);
 
 // ---- Camera -------------------------------------------------------------------------------------------------------
 
+/// The eye of a scene. Shared by reference between scenes.
 typedef struct glint_camera glint_camera;
 
+/// Rays from one point, or parallel ones.
 typedef enum glint_projection { GLINT_PERSPECTIVE, GLINT_ORTHOGRAPHIC } glint_projection;
 
+/// The fields of a camera; lengths in world units.
 typedef struct glint_camera_desc {
-    glint_projection projection;
-    double eye[3];
+    glint_projection projection; ///< default GLINT_PERSPECTIVE
+    double eye[3]; ///< world units, finite; default {0, 0, 10}
     bool has_direction; ///< true: look along `direction`; false: look at the point `at`
-    double at[3], direction[3];
+    double at[3], direction[3]; ///< finite; `at` is not the eye, `direction` not zero; default the origin, {0, 0, -1}
     double up[3]; ///< default {0,1,0}; not zero. Parallel to the view: the world axis least aligned with it is taken
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
     double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
-    char name[GLINT_NAME_SIZE];
+    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_camera_desc;
 
+/// A perspective camera at (0, 0, 10) that looks at the origin, every field at its default.
 glint_camera_desc glint_camera_desc_default(void);
+/// Makes a camera of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
 glint_status glint_camera_create(const glint_camera_desc *desc, glint_camera **out, glint_error *error);
+/// Replaces the whole description by a copy of `desc`; on error nothing changes.
 glint_status glint_camera_set(glint_camera *camera, const glint_camera_desc *desc, glint_error *error);
+/// The description; borrowed, valid until the camera is set or released.
 const glint_camera_desc *glint_camera_get(const glint_camera *camera);
+/// Takes another reference; returns its argument.
 glint_camera *glint_camera_retain(glint_camera *camera);
+/// Gives a reference back; the last one frees the camera. NULL: nothing.
 void glint_camera_release(glint_camera *camera);
 
 // ---- Shapes -------------------------------------------------------------------------------------------------------
 
+/// A surface, or a group of them. Shared by reference between groups and scenes.
 typedef struct glint_shape glint_shape;
 
+/// What a shape is; it says which fields of its description mean anything.
 typedef enum glint_shape_kind {
-    GLINT_SHAPE_SPHERE,
-    GLINT_SHAPE_PLANE,
+    GLINT_SHAPE_SPHERE, ///< `center`, `radius`
+    GLINT_SHAPE_PLANE, ///< `point`, `normal`; without end
     GLINT_SHAPE_SPHERES, ///< made by glint_spheres_create
     GLINT_SHAPE_MESH, ///< made by the functions of meshes
-    GLINT_SHAPE_BOX,
-    GLINT_SHAPE_DISK,
-    GLINT_SHAPE_CYLINDER,
-    GLINT_SHAPE_CONE,
+    GLINT_SHAPE_BOX, ///< `min`, `max`
+    GLINT_SHAPE_DISK, ///< `center`, `normal`, `radius`
+    GLINT_SHAPE_CYLINDER, ///< `base`, `top`, `radius`
+    GLINT_SHAPE_CONE, ///< `base`, `top`, the apex, `radius` at the base
     GLINT_SHAPE_GROUP ///< of shapes; see glint_group_add
 } glint_shape_kind;
 
 /// An affine map: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
 typedef struct glint_transform {
-    double m[3][4];
+    double m[3][4]; ///< the last column moves, world units
 } glint_transform;
 
+/// The map that leaves everything in place.
 glint_transform glint_transform_identity(void);
 /// First `inner`, then `outer`.
 glint_transform glint_transform_product(const glint_transform *outer, const glint_transform *inner);
+/// Moves by `by`, world units.
 glint_transform glint_transform_translate(const double by[3]);
+/// Multiplies x, y and z by the three factors; negative ones mirror. 0 makes a map that shapes refuse.
 glint_transform glint_transform_scale(const double by[3]);
 /// Counter-clockwise as seen with the axis pointing at the eye. The axis is not zero and need not be unit; quarter turns
 /// are exact.
@@ -445,6 +479,7 @@ typedef enum glint_shading {
     GLINT_SHADING_GOURAUD ///< once a vertex; between them by barycentric coordinates, over triangles
 } glint_shading;
 
+/// The fields of a shape; each kind reads those that name it, and those that name none. Lengths in world units.
 typedef struct glint_shape_desc {
     glint_shape_kind kind; ///< of glint_shape_create: not spheres and mesh
     glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none
@@ -460,13 +495,18 @@ typedef struct glint_shape_desc {
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;
 
+/// Every field of a shape of this kind at its default.
 glint_shape_desc glint_shape_desc_default(glint_shape_kind kind);
+/// Makes a shape of a copy of `desc`, and retains its material. GLINT_ERR_INVALID names the field; GLINT_ERR_NOMEM.
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error);
+/// Replaces the description by a copy, of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
 /// The description; of a GLINT_SHAPE_SPHERES shape only kind, transform, two_sided, name and material (its first) mean
 /// anything, of a mesh these and `shading`, of a group kind, transform and name.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
+/// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);
+/// Gives a reference back; the last one frees the shape and releases what it retains. NULL: nothing.
 void glint_shape_release(glint_shape *shape);
 
 /// The materials of a shape, one for most; returns how many. The list belongs to the shape.
@@ -481,7 +521,9 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
 /// The group retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
 /// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
+/// Takes the shape out of the group and releases it. GLINT_ERR_INVALID when it is not there.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
+/// How many shapes the group holds itself, those within its groups not counted.
 size_t glint_group_count(const glint_shape *group);
 glint_shape *glint_group_child(const glint_shape *group, size_t index); ///< borrowed
 
@@ -493,8 +535,8 @@ typedef struct glint_spheres_desc {
     glint_material *const *materials; ///< retained; NULL entries are not allowed
     size_t material_count; ///< 0: one material with default fields
     const uint32_t *material_index; ///< count numbers < material_count, copied; NULL: all are 0
-    bool two_sided;
-    char name[GLINT_NAME_SIZE];
+    bool two_sided; ///< default true: the normal turns to the viewer
+    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_spheres_desc;
 
 /// A message names the sphere at fault, counted from 1: "data: sphere 12: radius > 0 expected, got -1".
@@ -510,13 +552,13 @@ typedef struct glint_mesh_desc {
     const uint32_t *face_sizes; ///< corners of each face, 3 or more
     size_t face_count; ///< 1 .. 2^31 - 2; so is the number of triangles
     const double *normals; ///< x, y, z each; finite, not zero, need not be unit; NULL: none
-    size_t normal_count;
-    const uint32_t
-        *normal_corners; ///< a number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none
-    ///< there. NULL: normals belong to vertices, one each
+    size_t normal_count; ///< 0 without `normals`
+    /// A number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none there. NULL: normals belong to
+    /// vertices, one each
+    const uint32_t *normal_corners;
     bool has_shading; ///< false: phong where there are normals, faceted where there are none
-    glint_shading
-        shading; ///< phong and gouraud without normals: those of the faces around a vertex are averaged by area
+    /// Phong and gouraud without normals: those of the faces around a vertex are averaged by area
+    glint_shading shading;
     glint_material *material; ///< retained; NULL: one with default fields
     glint_transform transform; ///< default identity
     bool two_sided;
@@ -540,13 +582,15 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
 glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 
-/// What glint_sphere_mesh_create was asked for; false, and nothing written, when the shape was not made by it.
+/// The arguments of glint_sphere_mesh_create; false, and nothing written, when the shape was not made by it.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
 
 // ---- Scene --------------------------------------------------------------------------------------------------------
 
+/// Shapes and lights under one camera.
 typedef struct glint_scene glint_scene;
 
+/// What a scene is beside its shapes and lights. Light in linear RGB, lengths in world units.
 typedef struct glint_scene_desc {
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
     double ambient[3]; ///< finite, >= 0; default 0
@@ -559,19 +603,24 @@ typedef struct glint_scene_desc {
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
     bool has_indirect; ///< false: `ambient` stands for all light that surfaces get from each other and the background
-    /// Ways of light that are followed from each point seen, over cosine-weighted directions: the diffuse term gets kd times
+    /// Paths of light that are followed from each point seen, over cosine-weighted directions: the diffuse term gets kd times
     /// the mean of what they find. Whole number, 1 .. 65536.
     double indirect_samples;
-    /// Matt surfaces on such a way that light is followed beyond; whole number, 0 .. 2^31. At the one after the last
+    /// Matt surfaces on such a path that light is followed beyond; whole number, 0 .. 2^31. At the one after the last
     /// `ambient` stands for the rest: with 0 it does so at once. What a material's `ambient` has beyond its `diffuse` is
     /// light of its own, and stays everywhere.
     double indirect_bounces;
 } glint_scene_desc;
 
+/// Makes an empty scene without a camera. GLINT_ERR_NOMEM.
 glint_status glint_scene_create(glint_scene **out, glint_error *error);
+/// Replaces the description by a copy, and retains its camera; on error nothing changes.
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error);
+/// The description; borrowed, valid until the scene is set or released.
 const glint_scene_desc *glint_scene_get(const glint_scene *scene);
+/// Takes another reference; returns its argument.
 glint_scene *glint_scene_retain(glint_scene *scene);
+/// Gives a reference back; the last one frees the scene and releases what it retains. NULL: nothing.
 void glint_scene_release(glint_scene *scene);
 /// Objects are numbered in the order they were added. The scene retains them; adding one twice is an error, and so
 /// is removing one that is not there. One object may be in several scenes.
@@ -579,6 +628,7 @@ glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint
 glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error);
 glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
 glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error);
+/// How many shapes and lights were added; a group counts as one.
 size_t glint_scene_shape_count(const glint_scene *scene);
 size_t glint_scene_light_count(const glint_scene *scene);
 
@@ -586,9 +636,10 @@ size_t glint_scene_light_count(const glint_scene *scene);
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
 
+/// What a ray meets first; lengths in units of its direction or of the world.
 typedef struct glint_hit {
     double t; ///< point = origin + t direction; t > 0
-    double point[3];
+    double point[3]; ///< world units, double
     double normal[3]; ///< unit, geometric, outward (a plane's own normal; a triangle's faces where its corners run
         ///< counter-clockwise)
     glint_shape *shape; ///< borrowed from the scene
@@ -600,8 +651,9 @@ typedef struct glint_hit {
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error);
 
-// ---- What a frame is asked to be ----------------------------------------------------------------------------------
+// ---- A frame --------------------------------------------------------------------------------------------------------
 
+/// What decides hits, their order and shadows: binary64, or binary32 to show what that costs.
 typedef enum glint_precision { GLINT_DOUBLE, GLINT_FLOAT } glint_precision;
 
 /// How it is found what the eye sees. The pictures are the same in every bit, but where a ray runs in the very plane of a
@@ -612,22 +664,23 @@ typedef enum glint_visibility {
     GLINT_VISIBILITY_SCAN ///< triangles are projected; what is none is cast
 } glint_visibility;
 
+/// What a picture holds of each pixel, as linear float32. The light is that of the mean of its samples.
 typedef enum glint_pass {
     GLINT_PASS_BEAUTY, ///< (((((background + ambient) + diffuse) + specular) + indirect) + mirror) + transmission, in float32
-    GLINT_PASS_BACKGROUND,
-    GLINT_PASS_AMBIENT,
-    GLINT_PASS_DIFFUSE,
-    GLINT_PASS_SPECULAR,
-    GLINT_PASS_INDIRECT,
-    GLINT_PASS_MIRROR,
-    GLINT_PASS_TRANSMISSION,
+    GLINT_PASS_BACKGROUND, ///< light of pixels that hit nothing, and the depth cue
+    GLINT_PASS_AMBIENT, ///< ambient terms
+    GLINT_PASS_DIFFUSE, ///< diffuse terms of all lights
+    GLINT_PASS_SPECULAR, ///< specular terms of all lights
+    GLINT_PASS_INDIRECT, ///< diffuse light from other surfaces
+    GLINT_PASS_MIRROR, ///< mirror times what mirrored rays bring
+    GLINT_PASS_TRANSMISSION, ///< transmission times what refracted rays bring
     GLINT_PASS_DEPTH, ///< one channel: distance from the eye, +inf where nothing is hit; of the first sample
     GLINT_PASS_NORMAL, ///< shading normal turned to the eye, 0 where nothing is hit; of the first sample
     GLINT_PASS_OBJECT_ID, ///< one channel: 1.. in order of definition, 0 where nothing is hit; of the first sample
     GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
     GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
-    GLINT_PASS_COUNT
+    GLINT_PASS_COUNT ///< how many there are
 } glint_pass;
 
 /// "beauty", "background", ...; NULL when out of range.
@@ -636,11 +689,13 @@ const char *glint_pass_name(glint_pass pass);
 glint_pass glint_pass_from_name(const char *name);
 int glint_pass_channels(glint_pass pass); ///< 1 or 3
 
+/// How light becomes codes.
 typedef enum glint_transfer {
-    GLINT_TRANSFER_SRGB,
+    GLINT_TRANSFER_SRGB, ///< IEC 61966-2-1:1999
     GLINT_TRANSFER_LINEAR, ///< codes are light, and the file says so (gAMA): viewers brighten them
     GLINT_TRANSFER_NONE ///< codes are light, and the file does not say so: viewers take them for sRGB
 } glint_transfer;
+/// How a code between two whole numbers is rounded.
 typedef enum glint_rounding { GLINT_ROUND_NEAREST, GLINT_ROUND_TRUNCATE } glint_rounding;
 
 /// What becomes of bright light, each channel on its own. x is the light after exposure, the result 0 .. 1.
@@ -655,21 +710,23 @@ typedef enum glint_tone_curve {
 /// How linear light becomes integer codes: exposure, curve, transfer, rounding. NaN and negative become 0, above the
 /// range M.
 typedef struct glint_tone_desc {
-    glint_tone_curve curve;
+    glint_tone_curve curve; ///< default clamp
     glint_transfer transfer; ///< default sRGB, IEC 61966-2-1:1999
     glint_rounding rounding; ///< default nearest: floor(x M + 0.5); truncate: floor(x M)
     int bits; ///< 8 (default) or 16: M = 255 or 65535
     double exposure; ///< stops: light is first multiplied by 2^exposure, in float; default 0
 } glint_tone_desc;
 
+/// Clamp, sRGB, nearest, 8 bits, no exposure.
 glint_tone_desc glint_tone_desc_default(void);
 
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
 
+/// One frame: its size, samples and what is kept of it.
 typedef struct glint_render_desc {
-    double width,
-        height; ///< whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
+    /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
+    double width, height;
     double samples; ///< a pixel; whole number, 1 .. 65536; default 1
     /// 0 (default): every pixel gets all samples. Above, up to 3: first each gets one, in its middle. All are taken only
     /// where a pixel and one of its eight neighbours show two objects or normals 26 degrees apart, or codes that differ by
@@ -698,28 +755,34 @@ glint_render_desc glint_render_desc_default(void);
 
 // ---- Plan ---------------------------------------------------------------------------------------------------------
 
+/// The stages that one frame needs, with a snapshot of all they read. Immutable; any thread.
 typedef struct glint_plan glint_plan;
 
+/// Why a stage is in a plan. Both texts belong to the plan.
 typedef struct glint_effect {
     const char *effect; ///< "hard shadow", "specular phong", ...
     const char *caller; ///< which object called for it: "point_light 'lamp'"
 } glint_effect;
 
+/// A stage of a plan. The texts belong to the plan.
 typedef struct glint_stage_info {
     const char *name; ///< "camera", "cast", "surface", "view", "light", "facet", "occlude", "vertex", ...
     char key[33]; ///< hex XXH3-128 of exactly what the stage reads
     const char *why; ///< one line for people
 } glint_stage_info;
 
+/// Rays by what they are cast for.
 typedef struct glint_ray_counts {
-    uint64_t primary, shadow, mirror, refraction, indirect;
+    uint64_t primary, shadow, mirror, refraction, indirect; ///< 0 where none is cast
 } glint_ray_counts;
 
 /// Takes a snapshot of the scene for one frame and lists what the frame needs. The scene may be edited at once.
 /// Fails when the scene has no camera, or a field of `desc` is out of range.
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
+/// Frees the plan; images rendered from it stay. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
+/// The frame as planned: passes that others are made of are added. Belongs to the plan.
 const glint_render_desc *glint_plan_render_desc(const glint_plan *plan);
 /// The lists belong to the plan.
 size_t glint_plan_effects(const glint_plan *plan, const glint_effect **list);
@@ -731,9 +794,12 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 
 // ---- Render -------------------------------------------------------------------------------------------------------
 
+/// Worker threads, and what is kept from frame to frame.
 typedef struct glint_renderer glint_renderer;
+/// A rendered picture: planes of its passes, and codes. Immutable, reference counted; any thread.
 typedef struct glint_image glint_image;
 
+/// The fields of a renderer.
 typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
     const char *isa; ///< "ref", "sse2", "avx2", "avx512"; NULL (default): the environment's GLINT_ISA, else the best
@@ -743,12 +809,16 @@ typedef struct glint_renderer_desc {
     size_t reuse_memory; ///< bytes that may be kept between frames; 0 (default): a quarter of the machine's memory
 } glint_renderer_desc;
 
+/// A thread a processor, the best instruction set, reuse within a quarter of the memory.
 glint_renderer_desc glint_renderer_desc_default(void);
-/// GLINT_ERR_UNSUPPORTED when the machine lacks the instruction set asked for, GLINT_ERR_INVALID when there is none
+/// GLINT_ERR_UNSUPPORTED when the machine lacks that instruction set, GLINT_ERR_INVALID when there is none
 /// of that name.
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error);
+/// Ends the threads and frees what was kept; no frame may be running. NULL: nothing.
 void glint_renderer_destroy(glint_renderer *renderer);
+/// The instruction set in use: "avx2". A static string.
 const char *glint_renderer_isa(const glint_renderer *renderer);
+/// How many workers there are, the calling thread included.
 int glint_renderer_threads(const glint_renderer *renderer);
 /// Makes the running or next glint_render return GLINT_ERR_CANCELLED within a tile. Async-signal-safe; sticks.
 void glint_renderer_cancel(glint_renderer *renderer);
@@ -767,6 +837,7 @@ typedef struct glint_work {
     uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
 } glint_work;
 
+/// What a frame took.
 typedef struct glint_frame_stats {
     double build_ms; ///< wall time of building the spatial index; next to 0 when it was there
     double render_ms; ///< wall time of the stages up to the film
@@ -774,23 +845,26 @@ typedef struct glint_frame_stats {
     int stage_count; ///< the plan's stages, in its order
     const char *stage_name[GLINT_STAGE_MAX]; ///< static strings
     double stage_ms[GLINT_STAGE_MAX]; ///< summed over workers; 0 unless the renderer times stages
-    double stage_reused
-        [GLINT_STAGE_MAX]; ///< share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
-    glint_ray_counts rays;
+    /// Share of the stage's results taken from earlier frames: 0 it ran, 1 it did not
+    double stage_reused[GLINT_STAGE_MAX];
+    glint_ray_counts rays; ///< as cast; reused stages cast none
     glint_work work; ///< 0 unless the renderer counts it; what is reused took none
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
 } glint_frame_stats;
 
-/// Renders one frame. *out holds the passes and codes the plan's glint_render_desc asked for. `stats` may be NULL.
+/// Renders one frame. *out holds the passes and codes the plan's glint_render_desc names. `stats` may be NULL.
 glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
                           glint_error *error);
 
 // ---- Images -------------------------------------------------------------------------------------------------------
 
+/// Takes another reference; returns its argument. Any thread.
 glint_image *glint_image_retain(glint_image *image);
+/// Gives a reference back; the last one frees the image. NULL: nothing. Any thread.
 void glint_image_release(glint_image *image);
+/// Size in pixels.
 int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
 /// Whether the pass was kept; beauty alone may exist as codes only.
@@ -801,23 +875,26 @@ glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x,
 
 // ---- Files --------------------------------------------------------------------------------------------------------
 
+/// How PNG data are deflated: quickly, or into fewer bytes.
 typedef enum glint_encode { GLINT_ENCODE_FAST, GLINT_ENCODE_SMALL } glint_encode;
 
 /// Name and version of the deflate library behind a setting in this build: "isal 2.30.0".
 const char *glint_encoder_name(glint_encode encode);
 
+/// A text that a PNG carries. Both strings are borrowed.
 typedef struct glint_text {
     const char *keyword; ///< PNG tEXt keyword: 1 .. 79 Latin-1 characters
     const char *value; ///< any length up to 64 KiB; bytes outside Latin-1 are written as '?'
 } glint_text;
 
+/// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
     const char *path; ///< ends in .png or .pfm
-    glint_pass pass;
+    glint_pass pass; ///< one the image has
     glint_tone_desc tone; ///< .png; depth, normal and object_id are scaled for viewing, see README
-    glint_encode encode;
+    glint_encode encode; ///< default GLINT_ENCODE_FAST
     const glint_text *text; ///< .png
-    size_t text_count;
+    size_t text_count; ///< 0: no texts
 } glint_write_desc;
 
 /// Writes one pass to a file that appears whole or not at all: temporary name beside it, fsync, rename. An existing
@@ -841,9 +918,10 @@ bool glint_file_has_key(const char *path, const char *key);
 /// remembers the last picture deflated, about the size of its file, so as not to deflate again what has not changed.
 typedef struct glint_writer glint_writer;
 
+/// What became of one submitted file.
 typedef struct glint_write_result {
-    glint_status status;
-    char message[512];
+    glint_status status; ///< GLINT_OK: the file is there
+    char message[512]; ///< "" when it is; else the file and the reason
     double encode_ms; ///< codes to bytes
     double write_ms; ///< bytes to a synced, renamed file
     double reused; ///< share of the deflated bytes, in bands of rows, that the file before had already, 0 .. 1
@@ -865,14 +943,16 @@ bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *r
 /// Drops what is queued and not begun (their results read GLINT_ERR_CANCELLED); files that are begun are finished.
 void glint_writer_cancel(glint_writer *writer);
 
+/// How far two pictures are apart, over all pixels and channels.
 typedef struct glint_compare_result {
-    int width, height, channels;
+    int width, height, channels; ///< pixels; of both pictures
     double mean_error, rms_error, peak_snr, max_error; ///< of values in 0 .. 1 (PNG) or linear (PFM)
-    int max_x, max_y, max_channel;
+    int max_x, max_y, max_channel; ///< where max_error is, from 0
     uint64_t failed, warned; ///< pixels off by more than the two thresholds
-    uint64_t pixels;
+    uint64_t pixels; ///< width x height
 } glint_compare_result;
 
+/// What counts as different.
 typedef struct glint_compare_desc {
     double fail, warn; ///< thresholds, default 1e-6 as in idiff
 } glint_compare_desc;
@@ -887,6 +967,7 @@ glint_status glint_compare_files(const char *a, const char *b, const glint_compa
 /// A picture that others are measured against: the mean of pictures that ought to be the same. Immutable.
 typedef struct glint_reference glint_reference;
 
+/// How far a picture is from a reference.
 typedef struct glint_picture_error {
     double rmse; ///< root of the mean squared difference of linear light, over pixels and channels
     double relmse; ///< mean of (x - r)^2 / (r^2 + 0.01)
@@ -899,6 +980,7 @@ typedef struct glint_picture_error {
 /// tone    how the codes that are compared are made; its `bits` mean nothing here.
 glint_status glint_reference_create(const glint_image *const *images, size_t count, const glint_tone_desc *tone,
                                     glint_reference **out, glint_error *error);
+/// Frees the reference with its image. NULL: nothing.
 void glint_reference_destroy(glint_reference *reference);
 /// The mean, with the beauty pass; borrowed.
 const glint_image *glint_reference_image(const glint_reference *reference);
@@ -918,7 +1000,7 @@ glint_status glint_reference_difference(const glint_reference *reference, const 
 
 // ---- Finished files, sheets and films -------------------------------------------------------------------------------
 
-/// A file on its way: written under a hidden name beside its place, which has the whole file or none at any time.
+/// A file being written: it grows under a hidden name beside its place, which has the whole file or none at any time.
 typedef struct glint_draft glint_draft;
 
 /// Opens a draft for `path`. Missing folders are made, a symbolic link is followed. What exists there and is not a
@@ -941,11 +1023,14 @@ typedef struct glint_picture glint_picture;
 /// Reads `path`; what is not a whole file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
 /// deflated data are not looked at, the CRCs are. Messages name the file.
 glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error);
+/// Frees the picture with its texts. NULL: nothing.
 void glint_picture_destroy(glint_picture *picture);
+/// Size in pixels.
 int glint_picture_width(const glint_picture *picture);
 int glint_picture_height(const glint_picture *picture);
 int glint_picture_bits(const glint_picture *picture); ///< 8, 16; 32: a .pfm
 int glint_picture_channels(const glint_picture *picture); ///< 1 .. 4; 2 and 4: the last is alpha
+/// Whether codes are sRGB or light, by gAMA and sRGB chunks; a .pfm is light.
 glint_transfer glint_picture_transfer(const glint_picture *picture);
 /// The value of a PNG's tEXt, as UTF-8; the picture's; NULL: there is none.
 const char *glint_picture_text(const glint_picture *picture, const char *keyword);
@@ -953,11 +1038,13 @@ const char *glint_picture_text(const glint_picture *picture, const char *keyword
 /// are rounded, what shows through alpha is a grey of `backdrop`, 0 .. 255. Needs the pixels.
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
 
+/// One picture of a contact sheet. Strings are borrowed.
 typedef struct glint_sheet_cell {
     const char *path; ///< a .png or .pfm, all of one size
     const char *label; ///< UTF-8, parts divided by newlines, which share a line where they fit; NULL: none
 } glint_sheet_cell;
 
+/// A contact sheet. Pointers are borrowed for the call.
 typedef struct glint_sheet_desc {
     const glint_sheet_cell *cells; ///< row by row
     size_t cell_count; ///< >= 1
@@ -972,18 +1059,19 @@ typedef struct glint_sheet_desc {
 /// A row of differences holds |cell - chosen cell| times `gain`, in 8-bit sRGB codes.
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error);
 
-/// An animated PNG on its way.
+/// An animated PNG being written.
 typedef struct glint_apng glint_apng;
 
+/// The fields of an animated PNG.
 typedef struct glint_apng_desc {
     int width, height; ///< 1 .. GLINT_SIDE_MAX
     int bits; ///< 8 or 16
     bool alpha; ///< frames are RGBA
-    glint_transfer transfer;
+    glint_transfer transfer; ///< how the codes of all frames are made
     uint32_t frame_count; ///< 1 .. 2^30
     double fps; ///< 1/65535 .. 65535; a frame stays for the nearest ratio of two 16-bit numbers to 1/fps
     uint32_t plays; ///< 0: for ever
-    glint_encode encode;
+    glint_encode encode; ///< how frames are deflated
 } glint_apng_desc;
 
 /// Opens a draft for `path` and writes its head.
@@ -997,6 +1085,8 @@ void glint_apng_destroy(glint_apng *apng);
 
 // ---- Numbers that are the same on every machine -------------------------------------------------------------------
 
+/// Elementary functions with the same bits on every machine, within 0.51 ulp of the truth (0.76 where the result
+/// is subnormal). Infinite and NaN arguments as in C11 annex F.
 double glint_sin(double radians);
 double glint_cos(double radians);
 double glint_tan(double radians);

@@ -9,7 +9,7 @@ void *glint_alloc(size_t count, size_t size);
 /// The same but not zeroed, and of large pages where the system has them: for megabytes that are written at once.
 void *glint_alloc_large(size_t count, size_t size);
 
-/// Asks for memory that is soon read or written, into the second level of the caches: the first is full of what is worked on.
+/// Prefetches memory that is soon read or written, into the second level of the caches: the first is full of what is worked on.
 static inline void glint_prefetch(const void *memory, size_t bytes)
 {
     for (size_t i = 0; i < bytes; i += 64)

@@ -160,7 +160,7 @@ static int open_draft(glint_draft *draft)
         draft->file = open_again(path, O_WRONLY | O_CLOEXEC | O_NOCTTY, 0);
         return draft->file < 0 ? errno : 0;
     }
-    if (exists && access(path, W_OK) != 0) // a rename would not ask
+    if (exists && access(path, W_OK) != 0) // a rename does not look at this
         return errno;
     draft->target = target_of(path);
     return draft->target ? open_shared_edge(draft) : ENOMEM;

@@ -14,7 +14,7 @@ typedef struct glint_png_source {
     bool alpha; ///< four channels instead of three
     glint_tone_desc tone; ///< bits: 8 or 16; sRGB: an sRGB chunk; linear: gAMA 1.0
     /// The 3 * width codes, with alpha 4 * width (uint8_t, or uint16_t in native order) of row y, from 0 at the top: in `scratch`, which is
-    /// large enough, or where they already are. Rows may be asked for in any order and by several threads.
+    /// large enough, or where they already are. Rows may be read in any order and by several threads.
     const void *(*row)(const void *user, int y, void *scratch);
     const void *user;
     const uint64_t *stamp; ///< of the rows of tiles, as in glint_image; NULL: nothing is known of the codes

@@ -1,5 +1,5 @@
 /// glint_writer: one list of jobs in the order they were submitted. A thread encodes them (with a pool of its own, if it may
-/// use several), another brings them to disk, so that nobody computes less while a file is synced.
+/// use several), another brings them to disk, so that no thread computes less while a file is synced.
 #include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/file/file.h"

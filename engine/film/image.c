@@ -65,7 +65,7 @@ static glint_status create(int width, int height, uint32_t passes, bool alpha, c
         status = glint_tone_check(codes_tone, error);
     if (status)
         return status;
-    // The largest size that is asked for is below 2^36 bytes.
+    // The largest size is below 2^36 bytes.
     if (sizeof(size_t) < 8 && (double)width * height * 12 > (double)SIZE_MAX)
         return glint_fail_nomem(error);
     glint_image *image = calloc(1, sizeof *image);

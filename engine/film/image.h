@@ -1,4 +1,4 @@
-/// The rendered picture: float planes of the passes that were asked for, and integer codes. Internal.
+/// The rendered picture: float planes of the requested passes, and integer codes. Internal.
 #ifndef GLINT_IMAGE_IMAGE_H
 #define GLINT_IMAGE_IMAGE_H
 
@@ -24,7 +24,7 @@ struct glint_image {
     glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
-    glint_film_stamp *film; ///< one a tile, left to right, top to bottom. NULL: nobody asked. Owned
+    glint_film_stamp *film; ///< one a tile, left to right, top to bottom. may be NULL. Owned
     uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
         ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
 };

@@ -5,7 +5,7 @@
 /// are the sine of half the angle between the normals. It bends towards the eye, or one point hides in front of the other,
 /// where the larger of e.m and -e.n is positive: an edge above GLINT_OUTLINE_VALLEY; it bends away, an edge above
 /// GLINT_OUTLINE_RIDGE, where that much could also be a small ball. Where m.n is above GLINT_OUTLINE_SMOOTH, a mesh with
-/// normals between those of its corners may be so far from them that GLINT_OUTLINE_STEP is asked for: one surface behind the
+/// normals between those of its corners may be so far from them that GLINT_OUTLINE_STEP is needed: one surface behind the
 /// other. The line is one pixel wide, on the nearer side.
 #ifndef GLINT_OUTLINE_H
 #define GLINT_OUTLINE_H

@@ -31,7 +31,7 @@ struct glint_renderer {
     glint_shading_points_cached shading_points;
     glint_raster raster;
     glint_image *last; ///< the last frame, given again when nothing it reads changed
-    /// Pictures given before, whose memory is used again once nobody else holds them.
+    /// Pictures given before, whose memory is used again once no other reference holds them.
     glint_image *spare[GLINT_SPARE_IMAGES];
     glint_key last_key;
     glint_frame_stats last_stats;
@@ -283,7 +283,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
     const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
     glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
-    if (image->film && (base || !renderer->reuse.tile_count)) // nobody signs what is put there
+    if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
         memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
     if (!status)
         status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
@@ -349,7 +349,7 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     renderer->last_stats = *stats;
 }
 
-/// A picture to render into: one given before that nobody else holds any more, or a new one.
+/// A picture to render into: one given before with no other reference, or a new one.
 static glint_status take_image(glint_renderer *renderer, const glint_render_desc *desc, glint_image **out,
                                glint_error *error)
 {

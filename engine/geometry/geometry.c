@@ -452,7 +452,7 @@ glint_status glint_geometry_of(const glint_scene *scene, glint_geometry **out, g
             return status;
         }
         glint_geometry_release(scene->geometry);
-        ((glint_scene *)scene)->geometry = geometry; // a cache: nobody sees it
+        ((glint_scene *)scene)->geometry = geometry; // a cache: invisible from outside
     }
     *out = glint_geometry_retain(scene->geometry);
     return GLINT_OK;

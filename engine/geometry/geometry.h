@@ -47,8 +47,8 @@ struct glint_geometry {
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
-    glint_bvh others; ///< of what is neither triangle nor plane, once asked for
-    bool has_others; ///< it has been asked for
+    glint_bvh others; ///< of what is neither triangle nor plane, built on first use
+    bool has_others; ///< `others` is built
     uint32_t triangle_count;
     uint32_t id_count; ///< primitives that were described, repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
@@ -62,7 +62,7 @@ glint_geometry *glint_geometry_retain(glint_geometry *geometry);
 /// Builds the index unless it is there. Any thread; `pool` may be NULL. *table: with the index.
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                   glint_error *error);
-/// The same for who does not ask the index: it is not built, and *table is without it unless it is there. The order of the
+/// The same for callers that do not walk the index: it is not built, and *table is without it unless it is there. The order of the
 /// primitives is that of the first of these two calls, and stays.
 glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
                                     glint_error *error);

@@ -46,7 +46,7 @@ static inline void glint_media_leave(glint_media *media, uint32_t material)
     media->count--;
 }
 
-/// The medium that a way ended in at a surface: of the surface's own object where it is met from inside and nobody noted
+/// The medium that a path ended in at a surface: of the surface's own object where it is met from inside and no entry was noted
 /// the entry.
 static inline uint32_t glint_media_before(const glint_media *media, uint32_t material, bool back)
 {

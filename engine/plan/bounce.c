@@ -95,7 +95,7 @@ static double geometric(double g, double depth)
 
 // ---- How bright ----
 
-/// Bounds what a ray can bring, and with it what a way of indirect light must still weigh: two bounds' worth of what all
+/// Bounds what a ray can bring, and with it what a path of indirect light must still weigh: two bounds' worth of what all
 /// rays of a sample may lose together is left to mirrored and refracted ones.
 static void bound_light(glint_plan *plan)
 {

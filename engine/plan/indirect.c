@@ -1,8 +1,8 @@
 /// Indirect light: what surfaces get from other surfaces and from the background.
 ///
 /// A material's ambient light is ka Ia. As much of it as kd Ia stands for the light that its surroundings send, Ia being
-/// the mean L of all directions; that part is replaced by kd times what ways of light find, and comes back only where a
-/// way is followed no further. What ka has beyond kd is light of the surface's own.
+/// the mean L of all directions; that part is replaced by kd times what paths of light find, and comes back only where a
+/// path is followed no further. What ka has beyond kd is light of the surface's own.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"

@@ -21,10 +21,10 @@ typedef enum input {
     INPUT_MATERIALS, ///< reflectances, exponents
     INPUT_BACKGROUND, ///< and what lights look like
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
-    INPUT_INDIRECT, ///< how many ways of light are followed, how far, and what stands for the rest
+    INPUT_INDIRECT, ///< how many paths of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
-    INPUT_DEPTH_CUE, ///< how light fades with the way from the eye
+    INPUT_DEPTH_CUE, ///< how light fades with the distance from the eye
     INPUT_PASSES,
     INPUT_TONE
 } input;

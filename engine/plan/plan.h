@@ -94,7 +94,7 @@ typedef struct glint_plan_indirect {
     uint32_t *light_rows; ///< the first of plan->lights that belongs to each light, and one beyond
     uint32_t light_count;
     double (*rest)[3]; ///< beside materials: what `ambient` adds where light is followed no further
-    double least; ///< the share of its first weight below which a way of light ends
+    double least; ///< the share of its first weight below which a path of light ends
 } glint_plan_indirect;
 
 #define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile/bounce.c

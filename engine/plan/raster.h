@@ -1,6 +1,6 @@
 /// Scan conversion: which triangles each tile of a frame may show, found by projecting all of them. Internal.
 ///
-/// The other way round than casting: no index is asked. A triangle is entered in each tile that its image may touch,
+/// The other way round than casting: no index is walked. A triangle is entered in each tile that its image may touch,
 /// generously; whether a ray hits it is decided as ever. What is no triangle is cast, and the nearer of both is seen.
 #ifndef GLINT_RASTER_H
 #define GLINT_RASTER_H

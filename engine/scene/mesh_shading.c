@@ -1,4 +1,4 @@
-/// What smooth shading asks of a mesh: normals of its vertices, and where light is worked out once for several faces.
+/// What smooth shading needs of a mesh: normals of its vertices, and where light is worked out once for several faces.
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/scene/objects.h"

@@ -57,8 +57,8 @@ extern const glint_stages glint_stages_sse2, glint_stages_avx2, glint_stages_avx
 /// The stages by name, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
-/// By name; NULL asks for the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
-/// the name is unknown (true) or the machine lacks it (false); *asked is the name that was asked for.
+/// By name; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether
+/// the name is unknown (true) or the machine lacks it (false); *requested is that name.
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown);
 
 #endif

@@ -12,9 +12,9 @@ typedef struct glint_batch_ray {
     double origin[3], direction[3], weight[3]; ///< the direction is unit but for rounding
     uint32_t leaving; ///< the primitive it starts on
     uint32_t pixel; ///< its sample's place in the tile
-    uint32_t depth; ///< mirrors and refractions on its way so far
+    uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t scatters; ///< matt surfaces
-    double least; ///< the weight below which a way of indirect light ends
+    double least; ///< the weight below which a path of indirect light ends
     uint16_t term; ///< where its light goes
     bool inward;
     glint_media media;

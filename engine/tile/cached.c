@@ -11,7 +11,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
     const glint_cached_tile *cached = tile->cached;
     bool points = false;
     if (tile->index + 1 < reuse->tile_count)
-        glint_prefetch(cached + 1, sizeof *cached); // asked for, not read: it may be another worker's
+        glint_prefetch(cached + 1, sizeof *cached); // prefetched, not read: it may be another worker's
     if (!glint_key_equal(cached->cast, plan->keys[GLINT_STAGE_CAST]))
         return;
     glint_prefetch(cached->hits, GLINT_TILE_GROUPS * sizeof *cached->hits);
@@ -32,7 +32,7 @@ void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame)
 }
 
 /// Points the sample's results at kept memory where this frame keeps them or has them, else at the tile's own. Memory is
-/// asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
+/// allocated at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
     glint_reuse *reuse = frame->reuse;
@@ -191,7 +191,7 @@ void glint_tile_keep_box(glint_tile *tile, const glint_tile_frame *frame, const 
     if (!cached || tile->boxed != tile->sample || glint_key_equal(cached->boxed, surface))
         return;
     if (tile->sample == 0) {
-        cached->boxed = (glint_key) { 0 }; // until all samples are in it: others may not be asked for their points
+        cached->boxed = (glint_key) { 0 }; // until all samples are in it: others may not compute their points
         cached->box = (glint_point_box) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL }, 0 };
     }
     for (int c = 0; c < 3 && box; c++) {

@@ -1,4 +1,4 @@
-/// The way from the eye to the first surface of a sample. What absorbs around the eye leaves exp(-absorption x way) of the
+/// The distance from the eye to the first surface of a sample. What absorbs around the eye leaves exp(-absorption x distance) of the
 /// light; a depth cue then fades it towards a colour. What is left is scaled in every term, and the colour's share goes to
 /// the term of the background, whose place it takes: so passes still add up.
 ///
@@ -19,7 +19,7 @@ struct glint_depth_cue {
 struct glint_depth_cue *glint_depth_cue_create(void) { return glint_alloc(1, sizeof(struct glint_depth_cue)); }
 void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue) { free(depth_cue); }
 
-/// The way to what pixel i sees; infinite: to nothing.
+/// The distance to what pixel i sees; infinite: to nothing.
 static double way_of(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
     double d[3];

@@ -1,15 +1,15 @@
-/// Indirect light: from each matt point some ways of light are followed backwards, over directions as dense as their
+/// Indirect light: from each matt point some paths of light are followed backwards, over directions as dense as their
 /// cosine, and the mean of what they find, times kd, is what the point gives on.
 ///
-/// A way never parts. Where it meets a surface it takes the light that the lights send there, and goes on in one of the
+/// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
 /// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
-/// weighed by one over it. So the memory is one batch, however long ways are. They stay in the lane of their point: what
-/// a way finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
+/// weighed by one over it. So the memory is one batch, however long paths are. They stay in the lane of their point: what
+/// a path finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
 ///
-/// Of an area light each way asks one sample at each point, another from way to way. Light that is asked for at each point
-/// and found by chance as well would count twice: ways do not see lights, whether rays of the eye do or not.
+/// Of an area light each path takes one sample at each point, another from path to path. Light that is computed at each point
+/// and found by chance as well would count twice: paths do not see lights, whether rays of the eye do or not.
 ///
-/// A way too weak to be seen ends: what a sample loses so is, in the mean, a quarter of GLINT_BOUNCE_LOSS at most.
+/// A path too weak to be seen ends: what a sample loses so is, in the mean, a quarter of GLINT_BOUNCE_LOSS at most.
 #include "engine/base/alloc.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
@@ -28,7 +28,7 @@ struct glint_indirect {
     glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
     glint_tile_frame frame; ///< likewise
     glint_plan_light *lights; ///< of that plan; NULL: there are none
-    uint32_t ways[GLINT_TILE_SAMPLES]; ///< that each point gets
+    uint32_t paths[GLINT_TILE_SAMPLES]; ///< that each point gets
     uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that get any
     uint64_t
         block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
@@ -84,7 +84,7 @@ static void find_block(struct glint_indirect *indirect, const glint_tile *to, co
     indirect->lane[i] = lane_order(pixel % GLINT_GROUP);
 }
 
-/// The point of the unit square for way `number` of a pixel's point i: two for each turn, `which` says what for.
+/// The point of the unit square for path `number` of a pixel's point i: two for each turn, `which` says what for.
 static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
 {
     const uint64_t each = (uint64_t)indirect->plan.indirect.samples * (uint64_t)indirect->plan.desc.samples;
@@ -92,7 +92,7 @@ static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t num
     glint_sequence_scrambled((uint32_t)k, glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32), out);
 }
 
-/// One sample of each light, as strong as all of them: another for each way and turn.
+/// One sample of each light, as strong as all of them: another for each path and turn.
 static void take_lights(struct glint_indirect *indirect, const glint_plan *plan, uint64_t number, uint32_t step)
 {
     for (uint32_t i = 0; i < plan->indirect.light_count; i++) {
@@ -109,9 +109,9 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
     }
 }
 
-// ---- Where ways begin ----
+// ---- Where paths begin ----
 
-/// How many ways each point gets: fewer where it is seen by mirrors that leave little of it. Returns the most.
+/// How many paths each point gets: fewer where it is seen by mirrors that leave little of it. Returns the most.
 static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
                             const glint_tile *seen, const glint_batch *from)
 {
@@ -126,9 +126,9 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
             const double samples = plan->indirect.samples;
             if (largest(plan->materials[seen->surface.material[i]].diffuse) == 0)
                 continue;
-            indirect->ways[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
+            indirect->paths[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
             indirect->matt[g] |= (uint16_t)(left & -left);
-            most = indirect->ways[i] > most ? indirect->ways[i] : most;
+            most = indirect->paths[i] > most ? indirect->paths[i] : most;
             find_block(indirect, to, plan, ray, i);
         }
     }
@@ -160,9 +160,9 @@ static void leave(const struct glint_indirect *indirect, const glint_tile *tile,
     }
 }
 
-/// The first rays of way `way` of every point. Returns whether there are any.
-static bool begin_ways(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
-                       const glint_batch *from, uint32_t way, uint64_t number)
+/// The first rays of path `path` of every point. Returns whether there are any.
+static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
+                        const glint_batch *from, uint32_t path, uint64_t number)
 {
     glint_batch *batch = &indirect->batch;
     unsigned any = 0;
@@ -172,7 +172,7 @@ static bool begin_ways(struct glint_indirect *indirect, const glint_tile_frame *
         for (unsigned left = indirect->matt[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             double square[2];
-            if (way >= indirect->ways[i])
+            if (path >= indirect->paths[i])
                 continue;
             draw(indirect, i, number, 0, square);
             indirect->square[0][i] = square[0];
@@ -187,7 +187,7 @@ static bool begin_ways(struct glint_indirect *indirect, const glint_tile_frame *
     for (uint32_t g = 0; g < seen->group_count; g++)
         for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double share = 1.0 / indirect->ways[i];
+            const double share = 1.0 / indirect->paths[i];
             glint_batch_ray *ray = &batch->ray[i];
             *ray = glint_batch_start_ray(from ? from : batch, seen, frame, i);
             if (!from)
@@ -322,7 +322,7 @@ static void count_rays(const glint_batch *batch, glint_tile *to)
         to->counts.indirect += (unsigned)__builtin_popcount(batch->tile.active[g]);
 }
 
-/// The light of faces and vertices is kept for all who ask: it is made of every sample of the lights.
+/// The light of faces and vertices is kept for all readers: it is made of every sample of the lights.
 static void light(struct glint_indirect *indirect, const glint_tile_frame *frame, bool any)
 {
     glint_batch *batch = &indirect->batch;
@@ -333,7 +333,7 @@ static void light(struct glint_indirect *indirect, const glint_tile_frame *frame
         glint_tile_vertex(&batch->tile, frame);
 }
 
-/// One way of each point, to its end.
+/// One path of each point, to its end.
 static void follow(struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to, uint64_t number)
 {
     glint_batch *batch = &indirect->batch;
@@ -361,12 +361,12 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->plan.visible_light_count = 0;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
-    const uint32_t ways = find_points(indirect, tile, frame, seen, from);
+    const uint32_t paths = find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame);
-    for (uint32_t way = 0; way < ways && !glint_tile_cancelled(frame); way++) {
-        const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + way;
+    for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
+        const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;
-        if (begin_ways(indirect, frame, seen, from, way, number))
+        if (begin_paths(indirect, frame, seen, from, path, number))
             follow(indirect, frame, tile, number);
     }
     glint_batch_end(batch, tile);

@@ -1,4 +1,4 @@
-/// What a tile's working memory has beside the tile itself: made when the first frame asks for it, kept for those after it.
+/// What a tile's working memory has beside the tile itself: allocated for the first frame that needs it, kept for those after it.
 #include "engine/base/alloc.h"
 #include "engine/tile/tile.h"
 

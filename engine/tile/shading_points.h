@@ -1,7 +1,7 @@
 /// The light of faces and vertices that is worked out once: for flat and Gouraud shading. Internal.
 ///
 /// A site has two sides. Sides are worked out in blocks, the first time that a sample needs one of a block: the sites of a
-/// block are always the same and in the same lanes, so that every side gets the same light, whoever asks first. A block is
+/// block are always the same and in the same lanes, so that every side gets the same light, in whatever order tiles run. A block is
 /// worked out by the worker that claims it; others wait for it.
 #ifndef GLINT_SHADING_POINTS_H
 #define GLINT_SHADING_POINTS_H

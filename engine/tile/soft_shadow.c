@@ -1,9 +1,9 @@
-/// Area lights whose samples nobody asks for one by one: they are summed up where they are found.
+/// Sums the samples of an area light where they are found, without storing each.
 #include "engine/tile/tile.h"
 
 #include <string.h>
 
-/// Whether the sum of the samples is all that anybody reads: no kept memory, no count of their work, nothing that tells them
+/// Whether the sum of the samples is all that is read: no kept memory, no count of their work, nothing that tells them
 /// apart.
 static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                       uint32_t count)

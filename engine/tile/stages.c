@@ -194,7 +194,7 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
     }
 }
 
-/// Whether nobody but this frame's shading reads the highlights.
+/// Whether only this frame's shading reads the highlights.
 static bool is_sparing(const glint_tile *tile, const glint_tile_frame *frame, const uint32_t *slot, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++)

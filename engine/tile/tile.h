@@ -170,7 +170,7 @@ void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 /// tile/cached.c: points the results of the light in `slot` at the tile's own memory.
 void glint_tile_use_own_light(glint_tile *tile, uint32_t slot);
 /// Points the results of sample k at kept memory where this frame keeps them or has them, else at the tile's
-/// own. Memory is asked for at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are
+/// own. Memory is allocated at the first sample alone: all samples of a tile are kept, or none. Returns whether the hits are
 /// known.
 bool glint_tile_hit_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
 /// The same of light `light` of the plan, in `slot`.
@@ -196,7 +196,7 @@ typedef struct glint_film_counts {
 /// Writes down what the tile shows now.
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// tile/cached.c: asks memory for what the tile has kept and will read, of its first sample.
+/// tile/cached.c: prefetches what the tile has kept of its first sample and will read.
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// Each calls one stage for the current sample, and books it.
@@ -220,13 +220,13 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count);
 /// tile/soft_shadow.c: both in one, and books them, for the samples of a light in slots `slot` and on, where their sum is all that
-/// anybody reads. Returns whether it is, and marks the slots. The points are found.
+/// read. Returns whether it is, and marks the slots. The points are found.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
 /// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in.
 glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
                                        uint32_t count, glint_shade_light *lights);
-/// Where what is asked for of the picture goes.
+/// Where the requested parts of the picture go.
 void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3],
                            float *beauty[3]);
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
@@ -247,7 +247,7 @@ void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame);
 /// tile/work.c: when work is counted, adds what the last call of a stage took.
 /// Every hit looks at one light, or at `count` samples of it.
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count);
-/// Where kernels count what they decide; NULL: nobody asks.
+/// Where kernels count what they decide; NULL: they do not.
 static inline uint64_t *glint_tile_tests_of(glint_tile *tile, const glint_tile_frame *frame)
 {
     return frame->count_work ? &tile->counts.work.tests : NULL;
@@ -261,7 +261,7 @@ void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/depth_cue.c: light that fades with the way from the eye.
+/// tile/depth_cue.c: light that fades with the distance from the eye.
 struct glint_depth_cue *glint_depth_cue_create(void);
 void glint_depth_cue_destroy(struct glint_depth_cue *depth_cue);
 /// By what the current sample sees, before any other rays are followed. `any`: some ray sees something; the rays are made.
@@ -294,7 +294,7 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
 /// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 
-/// tile/indirect.c: follows ways of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
+/// tile/indirect.c: follows paths of light from the points that `seen` hits, and adds what they find to the sums of `tile`.
 /// `from`: the batch that `seen` belongs to; NULL: it is what the eye sees, `tile` itself.
 struct glint_batch;
 struct glint_indirect *glint_indirect_create(const glint_plan *plan);
@@ -380,7 +380,7 @@ bool glint_tile_wants_coverage(const glint_plan *plan);
 /// Counts the hits of sample k, from 0.
 void glint_tile_count_hits(glint_tile *tile, const glint_plan *plan, uint32_t k);
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame);
-/// Asks for the memory of the tile's codes, as tone will.
+/// Prefetches the tile's codes, which tone will write.
 void glint_tile_prefetch_codes(const glint_tile *tile, const glint_image *image);
 void glint_tile_tone(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether two pictures of one format have the same codes, if any, in the tile's pixels.

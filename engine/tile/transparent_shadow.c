@@ -1,6 +1,6 @@
-/// Light through transparent objects. Points that a light does not reach freely are asked again: a ray towards the light
-/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent on this way. What
-/// absorbs takes its part of the whole way: where the light stands in it, or the point, or both.
+/// Light through transparent objects. Points that a light does not reach freely are tested again: a ray towards the light
+/// is followed straight through whatever transmits, and takes its colour at each surface. No light is bent. What
+/// absorbs takes its part of the whole distance: where the light stands in it, or the point, or both.
 ///
 /// What parts a point from a light for good is decided by `occlude` alone: where the ray meets nothing that transmits, the
 /// point stays dark.
@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-#define CROSSINGS_MAX 4096 ///< surfaces on the way of one ray; a point behind more is dark
+#define CROSSINGS_MAX 4096 ///< surfaces that one ray crosses; a point behind more is dark
 
 struct glint_transparent_shadow {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
@@ -23,7 +23,7 @@ struct glint_transparent_shadow {
     _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
     _Alignas(64) float attenuation[3][GLINT_TILE_SAMPLES]; ///< the light's, times the colour, for each channel
     uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
-    uint16_t active[GLINT_TILE_GROUPS]; ///< rays on their way
+    uint16_t active[GLINT_TILE_GROUPS]; ///< rays not ended yet
     uint16_t inward[GLINT_TILE_GROUPS];
     uint16_t arrived[GLINT_TILE_GROUPS]; ///< through something
     uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
@@ -123,14 +123,14 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
     }
 }
 
-/// What a medium leaves of channel c on a way.
+/// What a medium leaves of channel c over a distance.
 static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
 {
     const double a = medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c];
     return a > 0 ? glint_exp(-a * way) : 1;
 }
 
-/// The rest of the way to the light, on which there is nothing more; directional light has none that ends.
+/// The rest of the distance to the light, on which there is nothing more; directional light has none that ends.
 static void arrive(struct glint_transparent_shadow *transparent_shadow, const glint_tile_frame *frame,
                    const glint_plan_light *light, uint32_t i)
 {
@@ -192,7 +192,7 @@ static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile
     stages->surface(&surfaces);
 }
 
-/// Takes the colour of one surface, and of the way up to it. Returns whether any light is left.
+/// Takes the colour of one surface, and of the distance up to it. Returns whether any light is left.
 static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t i,
                   double length)
 {
@@ -218,7 +218,7 @@ static double length_of(const struct glint_transparent_shadow *transparent_shado
     return glint_real_at(transparent_shadow->t, precision, i) * sqrt(vec_dot(d, d));
 }
 
-/// One surface further with every ray. Returns whether any is still on its way.
+/// One surface further with every ray. Returns whether any goes on.
 static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile, const glint_tile_frame *frame,
                  const glint_plan_light *light)
 {

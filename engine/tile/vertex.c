@@ -1,4 +1,4 @@
-/// The stage vertex: works out the light of faces and vertices as it is asked for, and gives each sample of their
+/// The stage vertex: computes the light of faces and vertices on first use, and gives each sample of their
 /// triangles what it has of them.
 ///
 /// A site lies on a surface and on none of its triangles: what touches it there neither shadows it nor is its own, so
@@ -15,7 +15,7 @@
 
 struct glint_vertex {
     glint_batch batch; ///< of one block
-    _Alignas(64) uint32_t nobody[GLINT_SHADING_POINT_BLOCK]; ///< GLINT_MISS
+    _Alignas(64) uint32_t no_owner[GLINT_SHADING_POINT_BLOCK]; ///< GLINT_MISS
     _Alignas(64) double nowhere[GLINT_SHADING_POINT_BLOCK]; ///< 0
     uint16_t wanted[GLINT_TILE_GROUPS];
 };
@@ -24,7 +24,7 @@ struct glint_vertex *glint_vertex_create(void)
 {
     struct glint_vertex *vertex = glint_alloc(1, sizeof *vertex);
     for (int i = 0; vertex && i < GLINT_SHADING_POINT_BLOCK; i++)
-        vertex->nobody[i] = GLINT_MISS;
+        vertex->no_owner[i] = GLINT_MISS;
     return vertex;
 }
 
@@ -234,7 +234,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     glint_tile *tile = &vertex->batch.tile;
     glint_batch_begin(&vertex->batch, to, frame);
     tile->sample = 0;
-    tile->owner = vertex->nobody;
+    tile->owner = vertex->no_owner;
     for (int c = 0; c < 3; c++)
         tile->viewed[c] = vertex->nowhere;
     load_block(vertex, frame, block);

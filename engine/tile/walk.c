@@ -42,7 +42,7 @@ static bool any_hit(const glint_tile *tile)
     return any;
 }
 
-/// Rays, hits and, as soon as somebody needs them, points: of one sample.
+/// Rays, hits and, as soon as a stage needs them, points: of one sample.
 typedef struct walk {
     uint32_t sample;
     bool rays, points; ///< made already
@@ -135,7 +135,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 }
 
 /// Whether the points and what the light does there can be found in one: of spheres, planes and one plain lamp, where
-/// nobody asks for normals. Where stages are timed, each runs by itself.
+/// normals are not needed. Where stages are timed, each runs by itself.
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;

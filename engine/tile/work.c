@@ -1,4 +1,4 @@
-/// Counting the work of a tile's stages, for those who ask what a frame is made of.
+/// Counts the work of a tile's stages, for the statistics of a frame.
 #include "engine/tile/tile.h"
 
 void glint_tile_count_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t count)

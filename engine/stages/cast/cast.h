@@ -36,7 +36,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
     args->hits[g] = (uint16_t)hits;
 }
 
-/// Groups that a sphere fills and that are inside the image: no pixel needs to be asked whether it hits.
+/// Groups that a sphere fills and that are inside the image: no pixel needs a test of its own.
 static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candidate, uint64_t groups)
 {
     const glint_cast_args *args = tile->args;
@@ -80,8 +80,8 @@ static inline void R(clear_groups)(R(tile_cast) * tile, uint64_t groups)
 }
 
 /// A group whose pixels decide, and the candidates that it may show.
-INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count,
-                                 const uint64_t may[], const uint64_t sure[], int slot)
+INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, const uint64_t may[],
+                         const uint64_t sure[], int slot)
 {
     const int x = slot % COVER_ACROSS, y = slot / COVER_ACROSS;
     const uint32_t g = (uint32_t)(y * tile->across + x);

@@ -1,4 +1,4 @@
-// solid: what cast, surface and occlude ask of affine images of the unit ball, cube, cylinder, cone and disk, and of a
+// solid: what cast, surface and occlude need of affine images of the unit ball, cube, cylinder, cone and disk, and of a
 // cylinder's and a cone's side alone. The ray is
 // taken to where the shape is the unit one; its t stays. Contract: stages.h.
 

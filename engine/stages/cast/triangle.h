@@ -1,4 +1,4 @@
-// triangle: what cast, surface and occlude ask of one. Which side of a ray an edge passes on is decided from the corners
+// triangle: what cast, surface and occlude need of one. Which side of a ray an edge passes on is decided from the corners
 // as seen along that ray, the same for all triangles that share them. Contract: stages.h.
 
 /// What a ray sees of a triangle.

@@ -136,7 +136,7 @@ typedef struct glint_shade_args {
     double *sum
         [GLINT_TERM_COUNT]
         [3]; ///< in and out: added to (specular: if highlights); NULL: the frame has one sample and these are all lights
-    float *film[GLINT_TERM_COUNT][3]; ///< out when sum is NULL: the terms; NULL where nobody asked for one
+    float *film[GLINT_TERM_COUNT][3]; ///< out when sum is NULL: the terms; NULL where it is not needed
     float *beauty[3]; ///< out when sum is NULL
 } glint_shade_args;
 // What a light adds to a term is float; terms are added up in double:

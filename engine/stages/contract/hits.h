@@ -42,15 +42,17 @@ typedef struct glint_cast_args {
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: none of
         ///< them does
-    const uint16_t *inward; ///< with `leaving`: a bit a lane: its way begins inside that primitive
+    const uint16_t *inward; ///< with `leaving`: a bit a lane: it begins inside that primitive
     void *t; ///< out, real: point = origin + t direction; +inf where nothing is hit
     uint32_t *prim; ///< out: index in prims, or GLINT_MISS
     uint16_t *hits; ///< out: a bit a lane
-    uint64_t *tests; ///< added to: pairs of a ray and a primitive that are decided, by the formulas below; how many these
-        ///< are is up to index and filter. NULL: nobody counts
+    uint64_t
+        *tests; ///< added to: pairs of a ray and a primitive that are decided, by the formulas below; how many these
+        ///< are is up to index and filter. may be NULL
 } glint_cast_args;
 #define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
-#define GLINT_NEAR_SHARED_EDGE 0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
+#define GLINT_NEAR_SHARED_EDGE \
+    0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
 // in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then
 // cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
@@ -165,12 +167,11 @@ typedef struct glint_surface_args {
     uint32_t *material; ///< out
     uint16_t *back; ///< out: lanes seen from behind (from inside), whose normal was turned to the viewer
     uint16_t *dark; ///< out: of these, lanes of one-sided surfaces: ambient only
-    void
-        *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; NULL: not asked
-    glint_point_box *box; ///< out: of all hits' points; NULL: not asked
+    void *slack; ///< out, real: bound of what rounding moved the point by off its triangle, a component; may be NULL
+    glint_point_box *box; ///< out: of all hits' points; may be NULL
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
-// and material = 0. Where it is asked, `slack` of lanes that hit no triangle is 0.
+// and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is 0.
 // sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
 //         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
 //         where length2(f) < GLINT_SPHERE_CLOSE: that is n. The error of t at a point that is seen at an angle i goes along the

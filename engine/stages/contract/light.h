@@ -53,11 +53,13 @@ typedef struct glint_light_args {
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
-    double scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1; 1 where that is
+    double
+        scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1; 1 where that is
         ///< near enough already
     const glint_spot *spot; ///< NULL: light in all directions
     uint32_t sample_count; ///< of an area light; else 1
-    const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is no area light
+    const glint_light_sample
+        *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is no area light
     bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written
@@ -68,7 +70,7 @@ typedef struct glint_light_args {
     float *attenuation[GLINT_LIGHT_CHUNK]; ///< w; 0 where unlit
     float *log2_specular
         [GLINT_LIGHT_CHUNK]; ///< log2 of r.v or n.h, GLINT_NO_SPECULAR where there is none or the lane is unlit
-    float *brightest[GLINT_LIGHT_CHUNK]; ///< the largest log2_specular written, or GLINT_NO_SPECULAR; NULL: not asked
+    float *brightest[GLINT_LIGHT_CHUNK]; ///< the largest log2_specular written, or GLINT_NO_SPECULAR; may be NULL
 } glint_light_args;
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
@@ -81,7 +83,7 @@ typedef struct glint_light_args {
 //   spot       c = min(-dot(axis, l) / sqrt(l2), 1), x = max(min((c - outer) inverse, 1), 0);  lit where x > 0
 //              w = min((float)A, GLINT_ATTENUATION_MAX) (float)((x x) (3 - 2 x))
 //              exponent not 0: lit where c >= 2^-126;  w = w S,  S as in shade with y = exponent log2(c)
-//   lamp       m = -dot(normal of the sample, l); EMIT_ALL: no m is asked
+//   lamp       m = -dot(normal of the sample, l); EMIT_ALL: m is not computed
 //              EMIT_RADIANT_BOTH: m = max(m, -m);  EMIT_RADIANT_BALL: likewise where length2(point - center) < radius radius
 //              lit where m > 0;  radiant: min((float)(A (m / (l2 sqrt(l2)))), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
@@ -148,7 +150,8 @@ typedef struct glint_occlude_args {
     ///< see any. There are spheres and planes alone, and lamp[0] is the light, whose samples mean nothing, around
     ///< `position`. NULL: no caps
     uint64_t *overlaps; ///< caps: added to: pairs of a point and a primitive that were looked at
-    uint64_t *tests; ///< added to: pairs of a point, or of a point and a sample, and a primitive that are decided, as in
+    uint64_t
+        *tests; ///< added to: pairs of a point, or of a point and a sample, and a primitive that are decided, as in
         ///< glint_cast_args
 } glint_occlude_args;
 // `position` stands for each lane's own in what follows.

@@ -57,7 +57,7 @@ static inline const glint_shade_material *only_material(const samples_frame *fra
     return material;
 }
 
-/// A group that shows one material, with no term asked for: in registers.
+/// A group that shows one material, with no term kept: in registers.
 static inline void resolve_whole(const samples_frame *frame, const glint_shade_material *material, uint32_t g)
 {
     const bool specular = frame->sample->highlights && material->highlight;

@@ -333,7 +333,7 @@ static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candida
             }
 }
 
-/// The tile's rays, as make_candidate and make_cover ask about them.
+/// The tile's rays, as make_candidate and make_cover see them.
 static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;

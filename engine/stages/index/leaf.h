@@ -10,7 +10,7 @@
 typedef struct leaf_on_screen {
     /// In: of each corner and axis, from the view's exact origin, in the index's units.
     _Alignas(64) float corner[3][3][GLINT_NODE_WIDTH];
-    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite where nobody knows on which side the
+    /// Of each edge: what is met has (edge[0] u + edge[1] v) + edge[2] >= 0. Infinite where it is not known on which side the
     /// corners run.
     _Alignas(64) float edge[3][3][GLINT_NODE_WIDTH];
     _Alignas(64) float near[GLINT_NODE_WIDTH]; ///< least w
@@ -91,7 +91,7 @@ static inline void bound_leaf(const leaf_lanes *at, vf slack, const screen_view 
 
 /// Edges as seen from a ray near the triangle's middle, which spares digits, x and y being across the way from there.
 ///
-/// An edge is the product (x_p y_q - x_q y_p) as seen from the ray it is asked about. A ray that meets the triangle is at most
+/// An edge is the product (x_p y_q - x_q y_p) as seen from the ray it is computed for. A ray that meets the triangle is at most
 /// `wide / 2` from each corner, all of these are off by no more than `off`, and the sums below add up to 22 roundings of
 /// products of k, place and x, and 12 of x and y. The volume is the sum of edges times k, as seen from the middle.
 static inline void edges_of_leaf(const leaf_lanes *at, vf slack, const screen_view *view, int i, leaf_on_screen *leaf)

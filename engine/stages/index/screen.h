@@ -1,5 +1,5 @@
 // screen: what one eye sees, or one light: boxes and surfaces of the index in front of a screen that is divided into cells.
-// Rays from one eye are a bundle, and so are segments to one light: what may meet them is asked about the cells of its place
+// Rays from one eye are a bundle, and so are segments to one light: what may meet them is tested against the cells of its place
 // on the screen alone. Float and conservative, as all of walk.h is.
 //
 // The frame: two axes across the way of the bundle, and one, w, along it. What is at (a, b, w) has its place at a / k and b / k,
@@ -166,7 +166,7 @@ static inline bool find_behind(const float (*far)[SCREEN_ACROSS], screen_entry e
 }
 
 /// The slots of `mask` whose boxes may have any of these behind them: of the lowest bits of `four`, those of the first row.
-/// Taller boxes are not asked.
+/// Taller boxes are not tested.
 static inline unsigned slots_before(const rows_behind *rows, const node_on_screen *seen, unsigned mask)
 {
     unsigned before = 0;

@@ -182,7 +182,7 @@ static unsigned boxes_on_ray(const glint_node *node, const ray_view *ray, float 
     return inside;
 }
 
-/// A walk may be long; it asks now and then whether it is still wanted.
+/// A walk may be long; it checks now and then for cancellation.
 static inline bool is_stopped(const atomic_bool *stop)
 {
     return stop && atomic_load_explicit(stop, memory_order_relaxed);

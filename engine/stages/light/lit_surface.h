@@ -10,7 +10,7 @@ typedef struct R(lit_whole) {
     unsigned lit, back, some; ///< lanes
 } R(lit_whole);
 
-/// What all groups of a call ask, as real; in memory as what is seen is.
+/// What all groups of a call read, as real; in memory as what is seen is.
 typedef struct R(lit_call) {
     R(surface_walk) walk;
     real eye[3], position[3], scale;

@@ -183,7 +183,7 @@ static R(soft_group)
     return out;
 }
 
-/// Makes what the samples of one call share, as soon as a group asks for them.
+/// Makes what the samples of one call share, when the first group needs them.
 static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;

@@ -16,7 +16,7 @@ static inline void R(close_point)(R(beam) * beam, uint32_t i)
     beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = far;
 }
 
-/// What is known of a point, as lane n of these arrays. Triangles ask for the ray that found it.
+/// What is known of a point, as lane n of these arrays. Triangles need the ray that found it.
 static inline void R(copy_point)(const R(beam) * beam, uint32_t i, bool triangle, int n, real *const point[3],
                                  real *const direction[3], real *slack)
 {

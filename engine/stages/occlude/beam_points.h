@@ -1,5 +1,5 @@
 // beam_points: the points of a tile in the order in which their light sees them (beam.h): in cells, so that what may come
-// between is asked about few of them.
+// between is tested against few of them.
 
 /// Points on their way to a decision: one surface, up to a group of points that need not be neighbours.
 typedef struct R(beam_batch) {

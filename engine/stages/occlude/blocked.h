@@ -46,7 +46,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     for (int k = 0; k < 3; k++)
         f[k] = position[k] - prim->center[k];
     if (prim->kind == GLINT_PRIM_TRIANGLE)
-        return 0; // asked for each lane
+        return 0; // decided lane by lane
     if (prim->kind == GLINT_PRIM_SOLID)
         return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], f) ? 1 : -1;
     if (prim->kind == GLINT_PRIM_PLANE) {
@@ -98,7 +98,7 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const glint_light_sample *li
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
     if (tile->count <= GLINT_OCCLUDERS)
-        return; // only lone segments ask where the light is in the index's frame
+        return; // only lone segments need where the light is in the index's frame
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
             const double x = light_sample ? light_sample->position[k][i] : args->position[k];
@@ -275,7 +275,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         return blocked;
     if (!group->made)
         R(make_shadow_rays)(tile, group);
-    if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is asked
+    if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is computed
         wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {

@@ -1,5 +1,5 @@
 // occlude_beam: where much lies between a tile and its light, the index is walked once with the tile's beam (beam.h), and
-// what may block a segment is asked about the points in its cells alone. Contract: stages.h, occlude.
+// what may block a segment is tested against the points in its cells alone. Contract: stages.h, occlude.
 
 // ---- The decision ----
 

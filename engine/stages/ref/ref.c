@@ -55,7 +55,7 @@ static float exp2_of(float y)
     return p * power;
 }
 
-/// Counts a decision about a ray and a primitive; `tests` NULL: nobody asks.
+/// Counts a decision about a ray and a primitive; `tests` may be NULL.
 static void note_test(uint64_t *tests)
 {
     if (tests)
@@ -159,7 +159,7 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
 static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE)
-        return 0; // is asked for each lane
+        return 0; // decided lane by lane
     if (prim->kind == GLINT_PRIM_SOLID)
         return directional || !is_within(&solids[prim->item], prim, position) ? 1 : -1;
     return prim->kind == GLINT_PRIM_SPHERE ? light_side_of_sphere(directional, position, prim)
@@ -251,8 +251,7 @@ static bool add_facets(const glint_shade_args *args, const glint_shade_light *li
     float sine2 = light->sine2[i], l = light->cosine[i], v = args->facing[i];
     if (!(sine2 > GLINT_NO_SPECULAR))
         return false;
-    float alpha =
-        number_at(material, GLINT_PLANE_ALPHA, material->alpha, args->planes ? args->planes->alpha : NULL, i);
+    float alpha = number_at(material, GLINT_PLANE_ALPHA, material->alpha, args->planes ? args->planes->alpha : NULL, i);
     float s = material->lobe == GLINT_LOBE_GGX ? ggx(alpha, sine2, l, v) : beckmann(alpha, sine2, l, v);
     float f = min_float(w * min_float(s, GLINT_ATTENUATION_MAX), GLINT_ATTENUATION_MAX);
     sum->specular += f;

@@ -330,7 +330,7 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
     }
 }
 
-/// Keeps the terms asked for and adds them up.
+/// Keeps the terms that are needed and adds them up.
 static inline void finish_terms(const group_terms *terms, float *const film[][3], float *const beauty[3], size_t at)
 {
     for (int c = 0; c < 3; c++)
@@ -360,7 +360,7 @@ static inline void start_direct(const glint_shade_args *args, uint32_t g, group_
     }
 }
 
-/// A group that shows one material in every lane and is lit by one light at most, with no term asked for: the common
+/// A group that shows one material in every lane and is lit by one light at most, with no term kept: the common
 /// case, in registers.
 INNER void shade_whole(const glint_shade_args *args, const glint_shade_material *material, bool specular,
                        const light_factors *factors, size_t at)

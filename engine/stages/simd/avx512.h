@@ -3,7 +3,7 @@
 /// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     fm, dm  masks of vf and vd
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
 /// bits in vf. Arithmetic is written with operators. fma appears in two_prod, and in the estimate of tone, whose rounding
-/// nobody sees.
+/// no result sees.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 

@@ -1,4 +1,4 @@
-// surface_mesh: groups that show several triangles: what surface asks of them is worked out a vector at a time, each lane with
+// surface_mesh: groups that show several triangles: what surface needs of them is computed a vector at a time, each lane with
 // a triangle of its own. The arithmetic is that of triangle.h. Contract: stages.h, surface.
 
 /// The triangles of a group, a lane each.

@@ -1,0 +1,45 @@
+-- engine/glint.h says of every type, function, field and constant what it is: in a comment on it, above it, or above the
+-- group of lines that it stands in.
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+
+-- Declarations of the header, each with its first line and whether a comment explains it.
+local function declarations(path)
+  local list, explained, depth, open = {}, false, 0, nil
+  local number = 0
+  for line in io.lines(path) do
+    number = number + 1
+    local code = line:gsub("//.*", "")
+    if line:match "^%s*$" then
+      explained = false
+    elseif line:match "^%s*///?[^/<]" and not line:match "^%s*///<" then
+      explained = true
+    elseif code:match "^#" or code:match "^%s*$" then
+      explained = explained or line:match "///<" ~= nil
+      if line:match "///<" and open then open.explained = true end
+    else
+      local noted = explained or line:match "///<" ~= nil
+      if not open then
+        open = { line = number, text = code, explained = noted }
+        list[#list + 1] = open
+      else
+        open.text = open.text .. code
+        open.explained = open.explained or noted
+      end
+      depth = depth + select(2, code:gsub("{", "")) - select(2, code:gsub("}", ""))
+      if code:match "[;,{}]%s*$" and (code:match "[;{}]" or depth > 0) then open = nil end
+      if code:match "{" or not code:match "^%s" then explained = depth == 0 and noted and not code:match "}" end
+    end
+  end
+  return list
+end
+
+local count = 0
+for _, d in ipairs(declarations "engine/glint.h") do
+  if not d.text:match "^%s*}" then
+    count = count + 1
+    check(d.explained, "engine/glint.h:%d: not explained: %s", d.line, d.text:match "^%s*(.-)%s*$")
+  end
+end
+check(count > 300, "%d declarations", count)
+tally.finish()
