@@ -42,7 +42,7 @@ layer engine/sheet engine/file $base
 layer bindings/value
 layer bindings/run bindings/value
 layer bindings/lua bindings/run bindings/value
-layer bindings/command bindings/cost bindings/run bindings/value scripts/lib scripts/lib/gr
+layer bindings/command bindings/run bindings/value scripts/lib scripts/lib/gr
 layer bindings/cost bindings/command bindings/run
 layer bindings/watch bindings/command bindings/run
 

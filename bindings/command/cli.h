@@ -34,6 +34,7 @@ typedef struct cli_command_name {
     const char *name;
     cli_command command;
     cli_words words;
+    const char *synopsis; ///< what follows it on the command line
     const char *help; ///< a line for people
 } cli_command_name;
 #define CLI_COMMAND_COUNT 11
@@ -77,19 +78,34 @@ typedef struct cli_options {
     const char *dialect_text[CLI_DIALECT_OPTIONS]; ///< what --gr-order ... were given; NULL: nothing
 } cli_options;
 
-#define CLI_MAY_HAVE_NUMBER 2
+#define CLI_SUGGEST_FILES "/" ///< completions: names of files,
+#define CLI_SUGGEST_PASSES "," ///< the names of the passes
 
+/// One option: all that is said of it but the paragraph of the manual page stands in its row.
 typedef struct cli_option cli_option;
 struct cli_option {
     const char *name;
     char letter; ///< 0: none
-    int has_text; ///< false, true, or CLI_MAY_HAVE_NUMBER: a number that may be left out, and `text` is then NULL
+    /// What stands for its text in --help: "LIST"; "show|error|none": one of these; "": the words of the field of
+    /// scene:render{}; "[PORT]": a number that may be left out, and `text` is then NULL; NULL: it takes no text.
+    const char *value;
     unsigned commands; ///< that know it
     /// Takes the option's text, which it may cut up. False: `message` says what was expected and what was got.
     bool (*read)(cli_options *options, const cli_option *option, char *text, char *message);
+    const char *help; ///< a line for people
+    size_t at; ///< of the member of cli_options, for readers of plain values
+    double min, max; ///< of a number
+    const char *expected; ///< of a number, in messages
+    const char *suggest; ///< completions where `value` has none: words, blanks between, or CLI_SUGGEST_...
+    bool repeats; ///< it may be given several times
+    const char *group; ///< heading in --help of this and the options after it
 };
 #define CLI_OPTION_COUNT 55
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
+#define CLI_VALUE_SIZE 64
+/// What stands for the option's text, its words where it takes words; "": it takes no text.
+void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE]);
+bool cli_option_may_lack(const cli_option *option); ///< its text may be left out
 /// Adds a --set. False: out of memory.
 bool cli_add_set(glintL_request *request, const char *name, const char *text);
 
@@ -101,8 +117,6 @@ void cli_print_usage(FILE *out); ///< usage.c
 // ---- dialect.c ----
 
 extern const char *const cli_dialect_options[CLI_DIALECT_OPTIONS]; ///< their names after "gr-"
-/// The reader of --dialect and its options.
-bool cli_read_dialect(cli_options *options, const cli_option *option, char *text, char *message);
 bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_SIZE]);
 /// Has `require` find the modules that the command carries.
 void cli_carry_dialect(lua_State *L);

@@ -68,9 +68,7 @@ static const cli_option *find_option(int code)
 
 static int argument_of(const cli_option *option)
 {
-    return option->has_text == CLI_MAY_HAVE_NUMBER ? optional_argument
-           : option->has_text                      ? required_argument
-                                                   : no_argument;
+    return cli_option_may_lack(option) ? optional_argument : option->value ? required_argument : no_argument;
 }
 
 static bool is_number(const char *word) { return *word && word[strspn(word, "0123456789")] == '\0'; }
@@ -84,7 +82,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
         list[i] = (struct option) { cli_option_list[i].name, argument_of(&cli_option_list[i]), NULL, 0x100 + (int)i };
         if (cli_option_list[i].letter) {
             *letter++ = cli_option_list[i].letter;
-            if (cli_option_list[i].has_text)
+            if (cli_option_list[i].value)
                 *letter++ = ':';
         }
     }
@@ -98,7 +96,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
             return complain(code, argv[optind > at ? optind - 1 : at], optopt, message);
         const cli_option *option = find_option(code);
         used[option - cli_option_list] = true;
-        if (option->has_text == CLI_MAY_HAVE_NUMBER && !optarg && optind < argc && is_number(argv[optind]))
+        if (cli_option_may_lack(option) && !optarg && optind < argc && is_number(argv[optind]))
             optarg = argv[optind++];
         if (!option->read(options, option, optarg, wrong)) {
             snprintf(message, MESSAGE, "--%s: %.1000s", option->name, wrong);
@@ -110,17 +108,20 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 // ---- What the words and the options say together ----
 
 const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
-    { "render", CLI_RENDER, CLI_SCRIPT, "render the frames of a script" },
-    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "what a frame needs, and who called for it" },
-    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "the parameters of a script" },
-    { "compare", CLI_COMPARE, CLI_FILES, "compare two pictures" },
-    { "sheet", CLI_SHEET, CLI_FILES, "a contact sheet of finished frames" },
-    { "assemble", CLI_ASSEMBLE, CLI_FILES, "a film of finished frames" },
-    { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "render a finished frame again" },
-    { "new", CLI_NEW, CLI_FILES, "write a scene to begin with" },
-    { "cost", CLI_COST, CLI_SCRIPT, "what accuracy costs in time" },
-    { "watch", CLI_WATCH, CLI_SCRIPT, "render at every save" },
-    { "completion", CLI_COMPLETION, CLI_SCRIPT, "what a shell completes" },
+    { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word may be left out" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--json]", "what a frame needs, and who called for it" },
+    { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "the parameters of a script, for programs" },
+    { "compare", CLI_COMPARE, CLI_FILES, "A B [--fail X] [--warn X]",
+      "compare pictures: 0 same, 1 warn, 2 differ, 3 size, 4 file" },
+    { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "a contact sheet, .png or .html, of finished frames" },
+    { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "a film of finished frames" },
+    { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "FILE SCRIPT",
+      "render a finished frame again: 0 same bytes, 3 same pixels, 4 another picture, 5 file" },
+    { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
+    { "cost", CLI_COST, CLI_SCRIPT, "SCRIPT [--report DIR]", "what accuracy costs in time" },
+    { "watch", CLI_WATCH, CLI_SCRIPT, "SCRIPT [--http [PORT]]", "render at every save, in the terminal and on a page" },
+    { "completion", CLI_COMPLETION, CLI_SCRIPT, "bash|zsh|fish",
+      "what a shell completes; make install puts it in place" },
 };
 
 static bool read_command(const char *word, cli_command *command, cli_words *words)

@@ -5,96 +5,37 @@
 
 typedef enum argument { WORD, FILES, CHOICES } argument;
 
-// What the option table does not say: a line for people, and how to complete the text.
-static const struct hint {
-    const char *name, *help, *choices; // choices: of the text, separated by blanks; NULL: those of the field, or none
-    bool is_file;
-} hints[] = {
-    { "frames", "frames to render: 1-3,5,7-20:2,90-", NULL, false },
-    { "start", "first frame", NULL, false },
-    { "end", "last frame", NULL, false },
-    { "jump", "step from frame to frame", NULL, false },
-    { "shard", "K/N: the K-th of N parts", NULL, false },
-    { "frame", "frame to look at", NULL, false },
-    { "output", "pattern of the files, a film, a sheet, or none", NULL, true },
-    { "fps", "frames a second of a film", NULL, false },
-    { "apng", "a .png is a film", NULL, false },
-    { "columns", "pictures in a row of the sheet", NULL, false },
-    { "label", "TEXT under each picture, with {name}, {file}, {frame}", NULL, false },
-    { "title", "TEXT above the sheet", NULL, false },
-    { "difference", "N: also the difference from the N-th picture", NULL, false },
-    { "gain", "X: times the difference", NULL, false },
-    { "set", "NAME=VALUE: a parameter of the script", NULL, false },
-    { "sweep", "NAME=A:B:N: N values of a parameter", NULL, false },
-    { "size", "WxH: pixels across and down", "640x360 1280x720 1920x1080 3840x2160", false },
-    { "samples", "samples a pixel", NULL, false },
-    { "adaptive", "all samples only where neighbours differ by more", "0.3 0.1 0.03 0.01", false },
-    { "precision", "what decides hits and shadows", NULL, false },
-    { "visibility", "how it is found what the eye sees", NULL, false },
-    { "bits", "of a channel", "8 16", false },
-    { "transfer", "from light to codes", NULL, false },
-    { "rounding", "of codes", NULL, false },
-    { "tone", "curve", NULL, false },
-    { "exposure", "stops brighter or darker", NULL, false },
-    { "alpha", "transparent background", NULL, false },
-    { "outline", "lines where objects end or have an edge", NULL, false },
-    { "passes", "also write these",
-      "background ambient diffuse specular indirect mirror transmission depth normal object_id alpha "
-      "outline refined",
-      false },
-    { "encode", "fast to write or small on disk", NULL, false },
-    { "seed", "another sample pattern", NULL, false },
-    { "threads", "worker threads", NULL, false },
-    { "no-reuse", "keep nothing from frame to frame", NULL, false },
-    { "reuse-memory", "SIZE: what may be kept, 512M, 4G", NULL, false },
-    { "force", "render finished frames, too", NULL, false },
-    { "repeat", "render each frame N times", NULL, false },
-    { "quick", "fewer runs of each setting", NULL, false },
-    { "budget", "SECONDS the study may take", NULL, false },
-    { "report", "DIR of the page with the plot", NULL, true },
-    { "knobs", "LIST: these only", NULL, false },
-    { "dialect", "what the script is written in", "gr", false },
-    { "gr-order", "of transforms: the last acts first, or the first", "post pre", false },
-    { "gr-pixel", "where in its pixel a ray passes", "0 0.5", false },
-    { "gr-specular", "how highlights fall off", "phong blinn", false },
-    { "gr-background", "R,G,B from 0 to 1, or #rrggbb", NULL, false },
-    { "json", "events on stdout, one a line", NULL, false },
-    { "quiet", "no report of frames", NULL, false },
-    { "warnings", "what a warning does", "show error none", false },
-    { "http", "also serve a page; on PORT", NULL, false },
-    { "terminal", "how to draw", "kitty sixel blocks text", false },
-    { "untrusted", "the script gets a process behind walls; SECONDS", NULL, false },
-    { "fail", "threshold of failure", NULL, false },
-    { "warn", "threshold of a warning", NULL, false },
-    { "help", "help, with a script its parameters", NULL, false },
-    { "version", "print the version", NULL, false },
-};
-#define HINT_COUNT (sizeof hints / sizeof *hints)
-
-static const struct hint *find_hint(const char *name)
+// What is offered for an option's text, blanks between; "": anything, CLI_SUGGEST_FILES: files.
+static void find_offers(const cli_option *option, char out[256])
 {
-    for (size_t i = 0; i < HINT_COUNT; i++)
-        if (strcmp(hints[i].name, name) == 0)
-            return &hints[i];
-    return NULL;
+    size_t used = 0;
+    out[0] = '\0';
+    if (!option->suggest) {
+        cli_option_value(option, out);
+        if (!strchr(out, '|'))
+            out[0] = '\0';
+        for (char *at = out; *at; at++)
+            *at = *at == '|' ? ' ' : *at;
+    } else if (strcmp(option->suggest, CLI_SUGGEST_PASSES) == 0) {
+        for (int pass = GLINT_PASS_BEAUTY + 1; pass < GLINT_PASS_COUNT; pass++)
+            used += (size_t)snprintf(out + used, 256 - used, "%s%s", used ? " " : "", glint_pass_name(pass));
+    } else {
+        snprintf(out, 256, "%s", option->suggest);
+    }
 }
 
 static argument argument_of(const cli_option *option)
 {
-    int field = glintL_render_find(option->name);
-    if (find_hint(option->name)->is_file)
-        return FILES;
-    return find_hint(option->name)->choices || (field >= 0 && glintL_render_choices(field)) ? CHOICES : WORD;
+    char offers[256];
+    find_offers(option, offers);
+    return strcmp(offers, CLI_SUGGEST_FILES) == 0 ? FILES : *offers ? CHOICES : WORD;
 }
 
-// The choices of an option, separated by blanks.
 static void print_choices(FILE *out, const cli_option *option)
 {
-    const struct hint *hint = find_hint(option->name);
-    const char *const *names = hint->choices ? NULL : glintL_render_choices(glintL_render_find(option->name));
-    fputs(hint->choices ? hint->choices : "", out);
-    for (int i = 0; names && names[i]; i++)
-        fprintf(out, "%s%s", i ? " " : "", names[i]);
+    char offers[256];
+    find_offers(option, offers);
+    fputs(offers, out);
 }
 
 // The names of all commands that know the option; of all commands when it is NULL.
@@ -126,7 +67,7 @@ static void print_bash_texts(FILE *out)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
         const cli_option *option = &cli_option_list[i];
-        if (option->has_text != true)
+        if (!option->value || cli_option_may_lack(option))
             continue;
         fprintf(out, "    --%s", option->name);
         if (option->letter)
@@ -185,15 +126,15 @@ static void print_zsh_help(FILE *out, const char *help)
 
 static void print_zsh_option(FILE *out, const cli_option *option)
 {
-    const char *repeats = strcmp(option->name, "set") == 0 || strcmp(option->name, "sweep") == 0 ? "*" : "";
+    const char *repeats = option->repeats ? "*" : "";
     if (option->letter)
         fprintf(out, "      '%s'{-%c,--%s}'[", repeats, option->letter, option->name);
     else
         fprintf(out, "      '%s--%s[", repeats, option->name);
-    print_zsh_help(out, find_hint(option->name)->help);
+    print_zsh_help(out, option->help);
     fputs("]", out);
-    if (option->has_text) {
-        fprintf(out, "%s:%s:", option->has_text == CLI_MAY_HAVE_NUMBER ? ":" : "", option->name);
+    if (option->value) {
+        fprintf(out, "%s:%s:", cli_option_may_lack(option) ? ":" : "", option->name);
         if (argument_of(option) == FILES)
             fputs("_files", out);
         if (argument_of(option) == CHOICES) {
@@ -247,14 +188,14 @@ static void print_fish_option(FILE *out, const cli_option *option)
     fprintf(out, "' -l %s", option->name);
     if (option->letter)
         fprintf(out, " -s %c", option->letter);
-    if (option->has_text == true)
+    if (option->value && !cli_option_may_lack(option))
         fputs(argument_of(option) == FILES ? " -r -F" : " -x", out);
     if (argument_of(option) == CHOICES) {
         fputs(" -a '", out);
         print_choices(out, option);
         fputs("'", out);
     }
-    fprintf(out, " -d '%s'\n", find_hint(option->name)->help);
+    fprintf(out, " -d '%s'\n", option->help);
 }
 
 static void print_fish(FILE *out)
@@ -286,27 +227,6 @@ static void print_fish(FILE *out)
 
 // ---- The command ----
 
-// Every option has its hint, and every hint its option. False: `message` names the one that has not.
-static bool check_hints(char message[GLINTL_MESSAGE_SIZE])
-{
-    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
-        if (!find_hint(cli_option_list[i].name)) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "completion: bindings/command/completion.c does not know --%s",
-                     cli_option_list[i].name);
-            return false;
-        }
-    for (size_t h = 0; h < HINT_COUNT; h++) {
-        bool known = false;
-        for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
-            known = known || strcmp(cli_option_list[i].name, hints[h].name) == 0;
-        if (!known) {
-            snprintf(message, GLINTL_MESSAGE_SIZE, "completion: there is no option --%s", hints[h].name);
-            return false;
-        }
-    }
-    return true;
-}
-
 int cli_completion(const cli_options *options, cli_output *output)
 {
     static const struct {
@@ -314,7 +234,7 @@ int cli_completion(const cli_options *options, cli_output *output)
         void (*print)(FILE *out);
     } shells[] = { { "bash", print_bash }, { "zsh", print_zsh }, { "fish", print_fish } };
     char message[GLINTL_MESSAGE_SIZE] = "completion: a shell expected: bash, zsh or fish";
-    if (options->script && check_hints(message)) {
+    if (options->script) {
         for (int i = 0; i < 3; i++)
             if (strcmp(options->script, shells[i].name) == 0) {
                 shells[i].print(output->data);

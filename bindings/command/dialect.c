@@ -137,22 +137,6 @@ void cli_open_dialect(lua_State *L, const cli_options *options)
 
 const char *const cli_dialect_options[CLI_DIALECT_OPTIONS] = { "order", "pixel", "specular", "background" };
 
-bool cli_read_dialect(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    static const char prefix[] = "gr-";
-    if (strncmp(option->name, prefix, sizeof prefix - 1) != 0) {
-        options->dialect = text;
-        if (strcmp(text, "gr") == 0)
-            return true;
-        snprintf(message, GLINTL_MESSAGE_SIZE, "gr expected, got '%.200s'", text);
-        return false;
-    }
-    for (int i = 0; i < CLI_DIALECT_OPTIONS; i++)
-        if (strcmp(option->name + sizeof prefix - 1, cli_dialect_options[i]) == 0)
-            options->dialect_text[i] = text;
-    return true;
-}
-
 bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_SIZE])
 {
     for (int i = 0; i < CLI_DIALECT_OPTIONS && !options->dialect; i++)

@@ -1,11 +1,13 @@
 // The options: what each takes, checked before the script runs.
 #include <errno.h>
+#include <float.h>
 #include <inttypes.h>
-#include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/cost/cost.h"
+#include "bindings/command/cli.h"
+#include "bindings/run/render_fields.h"
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
@@ -28,17 +30,77 @@ static bool read_whole(const char *text, int64_t min, int64_t max, int64_t *out,
     return false;
 }
 
+// Where the row says the value goes.
+static void *place_of(cli_options *options, const cli_option *option) { return (char *)options + option->at; }
+
 static bool read_flag(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)text, (void)message;
-    static const char *const names[] = { "json", "quiet", "help", "version", "force", "no-reuse", "apng", "quick" };
-    bool *const flags[] = { &options->json,         &options->quiet,         &options->help,
-                            &options->version,      &options->request.force, &options->request.no_reuse,
-                            &options->request.apng, &options->quick };
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (strcmp(option->name, names[i]) == 0)
-            *flags[i] = true;
+    *(bool *)place_of(options, option) = true;
     return true;
+}
+
+static bool read_text(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    (void)message;
+    *(const char **)place_of(options, option) = text;
+    return true;
+}
+
+static bool read_count(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    return read_whole(text, (int64_t)option->min, (int64_t)option->max, place_of(options, option), message);
+}
+
+static bool read_int(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    int64_t value = 0;
+    bool good = read_whole(text, (int64_t)option->min, (int64_t)option->max, &value, message);
+    if (good)
+        *(int *)place_of(options, option) = (int)value;
+    return good;
+}
+
+static bool read_real(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    char *end;
+    double value = strtod(text, &end);
+    if (end > text && *end == '\0' && value >= option->min && value <= option->max) {
+        *(double *)place_of(options, option) = value;
+        return true;
+    }
+    snprintf(message, MESSAGE, "%s expected, got '%.200s'", option->expected, text);
+    return false;
+}
+
+// Which of the words "show|error|none" the text is, from 0; -1: none, and `message` is written.
+static int find_word(const cli_option *option, const char *text, char *message)
+{
+    const size_t length = strlen(text);
+    size_t used = 0;
+    int index = 0;
+    for (const char *at = option->value; *at; at += *at == '|', index++) {
+        size_t word = strcspn(at, "|");
+        if (word == length && strncmp(at, text, length) == 0)
+            return index;
+        const char *before = at == option->value ? "" : at[word] ? ", " : " or ";
+        used += (size_t)snprintf(message + used, MESSAGE - used, "%s%.*s", before, (int)word, at);
+        at += word;
+    }
+    snprintf(message + used, MESSAGE - used, " expected, got '%.200s'", text);
+    return -1;
+}
+
+static bool read_word(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    return find_word(option, text, message) >= 0 && read_text(options, option, text, message);
+}
+
+static bool read_warnings(cli_options *options, const cli_option *option, char *text, char *message)
+{
+    int word = find_word(option, text, message);
+    options->request.warnings = (glintL_warnings)word;
+    return word >= 0;
 }
 
 static bool read_frames(cli_options *options, const cli_option *option, char *text, char *message)
@@ -55,72 +117,20 @@ static bool read_frame(cli_options *options, const cli_option *option, char *tex
     return read_frames(options, option, text, message);
 }
 
-static bool read_step(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    int64_t *out = option->letter == 's' ? &options->start : option->letter == 'e' ? &options->end : &options->jump;
-    return read_whole(text, 1, GLINTL_FRAMES_MAX, out, message);
-}
-
 static bool read_shard(cli_options *options, const cli_option *option, char *text, char *message)
 {
     (void)option;
     return glintL_selection_parse_shard(&options->request.selection, text, message);
 }
 
-// An option of the same name as a field of scene:render{}.
+// An option of the same name as a field of scene:render{}; without a text it is a switch.
 static bool read_render(cli_options *options, const cli_option *option, char *text, char *message)
 {
     glintL_render scratch = glintL_render_default();
     int field = glintL_render_find(option->name);
-    options->request.render_text[field] = text;
-    return glintL_render_set_text(&scratch, field, text, message);
-}
-
-// The same without a text.
-static bool read_switch(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)text, (void)message;
-    options->request.render_text[glintL_render_find(option->name)] = "true";
-    return true;
-}
-
-// Which endings are right depends on the command, which is known when all is read.
-static bool read_output(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option, (void)message;
-    options->output = text;
-    return true;
-}
-
-static bool read_fps(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    char *end;
-    double fps = strtod(text, &end);
-    if (end == text || *end || !(fps > 0 && fps <= 1e6)) {
-        snprintf(message, MESSAGE, "frames a second > 0 expected, got '%.200s'", text);
-        return false;
-    }
-    options->request.fps = fps;
-    return true;
-}
-
-static bool read_sheet(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    char *end;
-    if (option->name[0] == 'c')
-        return read_whole(text, 1, GLINT_SIDE_MAX, &options->columns, message);
-    if (option->name[0] == 'd')
-        return read_whole(text, 1, 1000000, &options->difference, message);
-    if (option->name[0] == 'g') {
-        options->gain = strtod(text, &end);
-        if (end > text && *end == '\0' && options->gain >= 1e-3 && options->gain <= 1e6)
-            return true;
-        snprintf(message, MESSAGE, "number 0.001 .. 1000000 expected, got '%.200s'", text);
-        return false;
-    }
-    *(option->name[0] == 'l' ? &options->label : &options->title) = text;
-    return true;
+    const char *value = text ? text : "true";
+    options->request.render_text[field] = value;
+    return glintL_render_set_text(&scratch, field, value, message);
 }
 
 static bool read_size(cli_options *options, const cli_option *option, char *text, char *message)
@@ -169,16 +179,6 @@ static bool read_sweep(cli_options *options, const cli_option *option, char *tex
     return true;
 }
 
-static bool read_count(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    bool threads = option->letter == 't';
-    int64_t count = 0;
-    bool good = read_whole(text, 1, threads ? 1024 : 1000000, &count, message);
-    if (good)
-        *(threads ? &options->request.threads : &options->request.repeat) = (int)count;
-    return good;
-}
-
 // A size such as 512M, in bytes. 0 keeps nothing.
 static bool read_memory(cli_options *options, const cli_option *option, char *text, char *message)
 {
@@ -211,19 +211,6 @@ static bool read_port(cli_options *options, const cli_option *option, char *text
     return true;
 }
 
-static bool read_terminal(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    static const char *const known[] = { "kitty", "sixel", "blocks", "text" };
-    for (int i = 0; i < 4; i++)
-        if (strcmp(text, known[i]) == 0) {
-            options->terminal = text;
-            return true;
-        }
-    snprintf(message, MESSAGE, "kitty, sixel, blocks or text expected, got '%.200s'", text);
-    return false;
-}
-
 // The seconds that the script may take; without a number a minute.
 static bool read_untrusted(cli_options *options, const cli_option *option, char *text, char *message)
 {
@@ -236,113 +223,101 @@ static bool read_untrusted(cli_options *options, const cli_option *option, char 
     return true;
 }
 
-static bool read_warnings(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    static const char *const known[] = { "show", "error", "none" };
-    for (int i = 0; i < 3; i++)
-        if (strcmp(text, known[i]) == 0) {
-            options->request.warnings = (glintL_warnings)i;
-            return true;
-        }
-    snprintf(message, MESSAGE, "show, error or none expected, got '%.200s'", text);
-    return false;
-}
+// ---- The table ----
 
-static bool read_threshold(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= 0) || !isfinite(value)) {
-        snprintf(message, MESSAGE, "number >= 0 expected, got '%.200s'", text);
-        return false;
-    }
-    *(option->name[0] == 'f' ? &options->fail : &options->warn) = value;
-    return true;
-}
+#define AT(member) .at = offsetof(cli_options, member)
+#define WITHIN(least, most) .min = (least), .max = (most)
+#define LOOKED CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST
 
-static bool read_budget(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value > 0 && value <= 1e6)) {
-        snprintf(message, MESSAGE, "seconds, a number above 0 and up to 1000000, expected, got '%.200s'", text);
-        return false;
-    }
-    options->budget_s = value;
-    return true;
-}
-
-static bool read_report(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    options->report = text;
-    return cost_report_check(text, message);
-}
-
-// The names are checked here, whether the scene responds later.
-static bool read_knobs(cli_options *options, const cli_option *option, char *text, char *message)
-{
-    (void)option;
-    options->knobs = text;
-    return cost_knobs_check(text, message);
-}
+// The options that are fields of scene:render{} and need no more than that list has.
+#define FIELD(...)
+#define OPTION(field, kind, sort, member, min, max, words, text, say) \
+    { #field, 0, text, SHOWN, read_render, .help = say },
 
 const cli_option cli_option_list[CLI_OPTION_COUNT] = {
-    { "frames", 'f', true, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_frames },
-    { "start", 's', true, CLI_RENDER, read_step },
-    { "end", 'e', true, CLI_RENDER, read_step },
-    { "jump", 'j', true, CLI_RENDER, read_step },
-    { "shard", 0, true, CLI_RENDER, read_shard },
-    { "frame", 0, true, CLI_RENDER | CLI_EXPLAIN | CLI_WATCH | CLI_COST, read_frame },
-    { "output", 'o', true, CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE, read_output },
-    { "fps", 0, true, CLI_RENDER | CLI_ASSEMBLE, read_fps },
-    { "apng", 0, false, CLI_RENDER | CLI_ASSEMBLE, read_flag },
-    { "columns", 0, true, CLI_SHEET, read_sheet },
-    { "label", 0, true, CLI_SHEET, read_sheet },
-    { "title", 0, true, CLI_SHEET, read_sheet },
-    { "difference", 0, true, CLI_SHEET, read_sheet },
-    { "gain", 0, true, CLI_SHEET, read_sheet },
-    { "set", 'D', true, SHOWN, read_set },
-    { "sweep", 0, true, CLI_RENDER, read_sweep },
-    { "size", 0, true, SHOWN, read_size },
-    { "samples", 0, true, SHOWN, read_render },
-    { "adaptive", 0, true, SHOWN, read_render },
-    { "precision", 0, true, SHOWN, read_render },
-    { "visibility", 0, true, SHOWN, read_render },
-    { "bits", 0, true, SHOWN, read_render },
-    { "transfer", 0, true, SHOWN, read_render },
-    { "rounding", 0, true, SHOWN, read_render },
-    { "tone", 0, true, SHOWN, read_render },
-    { "exposure", 0, true, SHOWN, read_render },
-    { "alpha", 0, false, SHOWN, read_switch },
-    { "outline", 0, true, SHOWN, read_render },
-    { "passes", 0, true, SCRIPTED, read_render },
-    { "encode", 0, true, SHOWN, read_render },
-    { "seed", 0, true, SHOWN, read_render },
-    { "threads", 't', true, SHOWN | CLI_REPRODUCE, read_count },
-    { "no-reuse", 0, false, CLI_RENDER | CLI_WATCH, read_flag },
-    { "reuse-memory", 0, true, CLI_RENDER | CLI_WATCH, read_memory },
-    { "force", 0, false, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag },
-    { "repeat", 0, true, CLI_RENDER, read_count },
-    { "quick", 0, false, CLI_COST, read_flag },
-    { "budget", 0, true, CLI_COST, read_budget },
-    { "report", 0, true, CLI_COST, read_report },
-    { "knobs", 0, true, CLI_COST, read_knobs },
-    { "dialect", 0, true, SHOWN | CLI_REPRODUCE, cli_read_dialect },
-    { "gr-order", 0, true, SHOWN | CLI_REPRODUCE, cli_read_dialect },
-    { "gr-pixel", 0, true, SHOWN | CLI_REPRODUCE, cli_read_dialect },
-    { "gr-specular", 0, true, SHOWN | CLI_REPRODUCE, cli_read_dialect },
-    { "gr-background", 0, true, SHOWN | CLI_REPRODUCE, cli_read_dialect },
-    { "json", 0, false, ALL, read_flag },
-    { "quiet", 'q', false, ALL, read_flag },
-    { "warnings", 0, true, CLI_RENDER | CLI_WATCH, read_warnings },
-    { "http", 0, CLI_MAY_HAVE_NUMBER, CLI_WATCH, read_port },
-    { "terminal", 0, true, CLI_WATCH, read_terminal },
-    { "untrusted", 0, CLI_MAY_HAVE_NUMBER, CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE, read_untrusted },
-    { "fail", 0, true, CLI_COMPARE, read_threshold },
-    { "warn", 0, true, CLI_COMPARE, read_threshold },
-    { "help", 'h', false, ALL, read_flag },
-    { "version", 0, false, ALL, read_flag },
+    { "frames", 'f', "LIST", CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_frames,
+      .help = "frames to render: 1-3,5,7-20:2,90-; the first is 1", .group = "frames" },
+    { "start", 's', "N", CLI_RENDER, read_count, .help = "first frame", AT(start), WITHIN(1, GLINTL_FRAMES_MAX) },
+    { "end", 'e', "N", CLI_RENDER, read_count, .help = "last frame", AT(end), WITHIN(1, GLINTL_FRAMES_MAX) },
+    { "jump", 'j', "N", CLI_RENDER, read_count, .help = "step from frame to frame", AT(jump),
+      WITHIN(1, GLINTL_FRAMES_MAX) },
+    { "shard", 0, "K/N", CLI_RENDER, read_shard, .help = "the K-th of N parts" },
+    { "frame", 0, "N", LOOKED, read_frame, .help = "frame to look at" },
+    { "sweep", 0, "NAME=A:B:N", CLI_RENDER, read_sweep, .help = "the script for N values of a parameter",
+      .repeats = true },
+    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE, read_text,
+      .help = "%04d or #### is the number; .png, .pfm, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,
+      .group = "files" },
+    { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },
+    { "force", 0, NULL, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag,
+      .help = "render frames that are there already", AT(request.force) },
+    { "fps", 0, "N", CLI_RENDER | CLI_ASSEMBLE, read_real,
+      .help = "frames a second of a film: .mp4, .webm, .gif, .apng", AT(request.fps), WITHIN(DBL_TRUE_MIN, 1e6),
+      .expected = "frames a second > 0" },
+    { "apng", 0, NULL, CLI_RENDER | CLI_ASSEMBLE, read_flag, .help = "a .png is a film", AT(request.apng) },
+    { "columns", 0, "N", CLI_SHEET, read_count, .help = "pictures in a row of the sheet", AT(columns),
+      WITHIN(1, GLINT_SIDE_MAX), .group = "sheets" },
+    { "label", 0, "TEXT", CLI_SHEET, read_text, .help = "text under each picture, with {name}, {file}, {frame}",
+      AT(label) },
+    { "title", 0, "TEXT", CLI_SHEET, read_text, .help = "text above the sheet", AT(title) },
+    { "difference", 0, "N", CLI_SHEET, read_count, .help = "also the difference from the N-th picture", AT(difference),
+      WITHIN(1, 1000000) },
+    { "gain", 0, "X", CLI_SHEET, read_real, .help = "the difference times X", AT(gain), WITHIN(1e-3, 1e6),
+      .expected = "number 0.001 .. 1000000" },
+    { "set", 'D', "NAME=VALUE", SHOWN, read_set, .help = "a parameter of the script", .repeats = true,
+      .group = "picture" },
+    { "size", 0, "WxH", SHOWN, read_size, .help = "pixels across and down",
+      .suggest = "640x360 1280x720 1920x1080 3840x2160" },
+    GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
+                                        .help = "all samples only where neighbours differ by more",
+                                        .suggest = "0.3 0.1 0.03 0.01" },
+    { "threads", 't', "N", SHOWN | CLI_REPRODUCE, read_int, .help = "worker threads", AT(request.threads),
+      WITHIN(1, 1024), .group = "machine" },
+    { "no-reuse", 0, NULL, CLI_RENDER | CLI_WATCH, read_flag, .help = "keep nothing from frame to frame",
+      AT(request.no_reuse) },
+    { "reuse-memory", 0, "SIZE", CLI_RENDER | CLI_WATCH, read_memory, .help = "what may be kept, 512M, 4G" },
+    { "repeat", 0, "N", CLI_RENDER, read_int, .help = "render each frame N times, report each", AT(request.repeat),
+      WITHIN(1, 1000000) },
+    { "untrusted", 0, "[SECONDS]", CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE, read_untrusted,
+      .help = "the script can compute, and write pictures; no more" },
+    { "quick", 0, NULL, CLI_COST, read_flag, .help = "fewer runs of each setting", AT(quick), .group = "cost" },
+    { "budget", 0, "SECONDS", CLI_COST, read_real, .help = "how long the study may take", AT(budget_s),
+      WITHIN(DBL_TRUE_MIN, 1e6), .expected = "seconds, a number above 0 and up to 1000000," },
+    { "knobs", 0, "LIST", CLI_COST, read_text, .help = "these only: samples,precision", AT(knobs) },
+    { "report", 0, "DIR", CLI_COST, read_text, .help = "a page with the plot and the pictures", AT(report),
+      .suggest = CLI_SUGGEST_FILES },
+    { "http", 0, "[PORT]", CLI_WATCH, read_port, .help = "also serve a page", .group = "watch" },
+    { "terminal", 0, "kitty|sixel|blocks|text", CLI_WATCH, read_word, .help = "how to draw", AT(terminal) },
+    { "dialect", 0, "gr", SHOWN | CLI_REPRODUCE, read_word, .help = "what the script is written in", AT(dialect),
+      .suggest = "gr", .group = "dialect" },
+    { "gr-order", 0, "pre|post", SHOWN | CLI_REPRODUCE, read_text,
+      .help = "of transforms: the first acts first, or the last", AT(dialect_text[0]) },
+    { "gr-pixel", 0, "0|0.5", SHOWN | CLI_REPRODUCE, read_text, .help = "where in its pixel a ray passes",
+      AT(dialect_text[1]) },
+    { "gr-specular", 0, "phong|blinn", SHOWN | CLI_REPRODUCE, read_text, .help = "how highlights fall off",
+      AT(dialect_text[2]) },
+    { "gr-background", 0, "COLOR", SHOWN | CLI_REPRODUCE, read_text, .help = "R,G,B from 0 to 1, or #rrggbb",
+      AT(dialect_text[3]) },
+    { "fail", 0, "X", CLI_COMPARE, read_real, .help = "threshold of failure", AT(fail), WITHIN(0, DBL_MAX),
+      .expected = "number >= 0", .group = "compare" },
+    { "warn", 0, "X", CLI_COMPARE, read_real, .help = "threshold of a warning", AT(warn), WITHIN(0, DBL_MAX),
+      .expected = "number >= 0" },
+    { "json", 0, NULL, ALL, read_flag, .help = "events on stdout, one a line", AT(json), .group = "report" },
+    { "quiet", 'q', NULL, ALL, read_flag, .help = "no report of frames", AT(quiet) },
+    { "warnings", 0, "show|error|none", CLI_RENDER | CLI_WATCH, read_warnings, .help = "what a warning does" },
+    { "help", 'h', NULL, ALL, read_flag, .help = "help, with a script its parameters", AT(help) },
+    { "version", 0, NULL, ALL, read_flag, .help = "print the version", AT(version) },
 };
+
+void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE])
+{
+    const char *const *words = glintL_render_choices(glintL_render_find(option->name));
+    size_t used = (size_t)snprintf(out, CLI_VALUE_SIZE, "%s", option->value ? option->value : "");
+    for (int i = 0; used == 0 || i > 0; i++) {
+        if (!words || !words[i])
+            return;
+        used += (size_t)snprintf(out + used, CLI_VALUE_SIZE - used, "%s%s", i ? "|" : "", words[i]);
+    }
+}
+
+bool cli_option_may_lack(const cli_option *option) { return option->value && option->value[0] == '['; }

@@ -1,57 +1,64 @@
-// glint --help.
+// glint --help, made from the tables of commands and options.
+#include <string.h>
+
 #include "bindings/command/cli.h"
+
+#define COLUMN 36 // the helps begin here
+#define LINE 100 // and end before this
+
+static void print_words(FILE *out, int *at, const char *words)
+{
+    while (*words) {
+        int length = (int)strcspn(words, " ");
+        if (*at > COLUMN && *at + 1 + length > LINE) {
+            fprintf(out, "\n%*s", COLUMN, "");
+            *at = COLUMN;
+        }
+        *at += fprintf(out, "%s%.*s", *at > COLUMN ? " " : "", length, words);
+        words += length + strspn(words + length, " ");
+    }
+}
+
+// A line of --help: what is written, then what it does, beside it or where it is long below it.
+static void print_line(FILE *out, const char *head, const char *help, bool lists_passes)
+{
+    int at = fprintf(out, "  %s", head);
+    at += fprintf(out, at < COLUMN ? "%*s" : "\n%*s", at < COLUMN ? COLUMN - at : COLUMN, "");
+    at = COLUMN;
+    print_words(out, &at, help);
+    for (int pass = 0; pass < GLINT_PASS_COUNT && lists_passes; pass++) {
+        char name[32];
+        snprintf(name, sizeof name, "%s%s", glint_pass_name(pass), pass + 1 < GLINT_PASS_COUNT ? "," : "");
+        print_words(out, &at, name);
+    }
+    fputc('\n', out);
+}
+
+static void print_option(FILE *out, const cli_option *option)
+{
+    char head[CLI_VALUE_SIZE + 32], value[CLI_VALUE_SIZE], letter[8] = "";
+    cli_option_value(option, value);
+    if (option->letter)
+        snprintf(letter, sizeof letter, "-%c, ", option->letter);
+    snprintf(head, sizeof head, "%s--%s%s%s", letter, option->name, *value ? " " : "", value);
+    if (option->group)
+        fprintf(out, "\n%s:\n", option->group);
+    print_line(out, head, option->help, option->suggest && strcmp(option->suggest, CLI_SUGGEST_PASSES) == 0);
+}
 
 void cli_print_usage(FILE *out)
 {
-    fputs("usage: glint [render] SCRIPT [options]        render the frames that a Lua script describes\n"
-          "       glint SCRIPT --help                    the script's parameters\n"
-          "       glint watch SCRIPT [--http [PORT]]     render at every save, in the terminal and on a page\n"
-          "       glint explain SCRIPT [--frame N] [--json]   what a frame needs, and who called for it\n"
-          "       glint cost SCRIPT [--frame N] [--json] [--report DIR]\n"
-          "                                              what accuracy costs in time\n"
-          "       glint describe SCRIPT --json           the script's parameters, for programs\n"
-          "       glint compare A B [--fail X] [--warn X] [--json]\n"
-          "                                              0 same, 1 warn, 2 differ, 3 size, 4 file\n"
-          "       glint sheet FILES -o SHEET             a contact sheet, .png or .html, of finished frames\n"
-          "       glint assemble FILES -o FILM           a film, .mp4 .webm .gif or animated .png, of finished frames\n"
-          "       glint reproduce FILE SCRIPT            renders a finished frame again:\n"
-          "                                              0 same bytes, 3 same pixels, 4 another picture, 5 file\n"
-          "       glint new NAME                         writes a scene to begin with\n"
-          "       glint completion bash|zsh|fish         what the shell completes; make install puts it in place\n"
-          "\n"
-          "frames     -f, --frames 1-3,5,7-20:2,90-      frames are numbered from 1\n"
-          "           -s, --start N  -e, --end N  -j, --jump N\n"
-          "           --shard K/N                        the K-th of N parts\n"
-          "           --sweep NAME=A:B:N                 the script for N values of a parameter\n"
-          "files      -o, --output PATTERN               %04d or #### is the frame's number; .png or .pfm; none\n"
-          "           --passes LIST                      background,ambient,diffuse,specular,indirect,mirror,\n"
-          "                                              transmission,depth,normal,object_id,alpha,outline,\n"
-          "                                              refined\n"
-          "           --bits 8|16  --encode fast|small\n"
-          "           --force                            render frames that are there already\n"
-          "films      -o FILM.mp4, .webm, .gif (by ffmpeg), .apng; -o FILM.png --apng; --fps N\n"
-          "sheets     --columns N  --label TEXT  --title TEXT  --difference N  --gain X\n"
-          "picture    -D, --set NAME=VALUE               a parameter of the script\n"
-          "           --adaptive X                       all samples only where neighbours differ by X: 0.1\n"
-          "           --size WxH  --samples N  --seed N  --precision double|float\n"
-          "           --visibility auto|cast|scan        how it is found what the eye sees: the same pictures\n"
-          "           --transfer srgb|linear|none  --rounding nearest|truncate\n"
-          "           --tone clamp|reinhard|filmic  --exposure STOPS\n"
-          "           --alpha                            transparent background\n"
-          "           --outline black|white              lines where objects end or have an edge\n"
-          "machine    -t, --threads N  --no-reuse  --reuse-memory SIZE\n"
-          "           --repeat N                         render each frame N times, report each\n"
-          "           --untrusted [SECONDS]              the script can compute, and write pictures; no more\n"
-          "cost       --quick  --budget SECONDS          fewer runs; what fits, and what was left out\n"
-          "           --knobs LIST                       these only: samples,precision\n"
-          "           --report DIR                       a page with the plot and the pictures\n"
-          "watch      --frame N  --http [PORT]  --terminal kitty|sixel|blocks|text\n"
-          "dialect    --dialect gr                       the script is a scene of the gr dialect\n"
-          "           --gr-order pre|post  --gr-pixel 0|0.5  --gr-specular phong|blinn\n"
-          "           --gr-background COLOR              R,G,B from 0 to 1, or #rrggbb\n"
-          "report     --warnings show|error|none  --json  -q, --quiet  --version  -h, --help\n"
-          "\n"
-          "Words after -- are the script's `arg`. What the command line says beats what the script says.\n"
+    char head[128];
+    fputs("usage: glint [render] SCRIPT [options]\n"
+          "       glint SCRIPT --help         the script's parameters\n\ncommands:\n",
+          out);
+    for (size_t i = 0; i < CLI_COMMAND_COUNT; i++) {
+        snprintf(head, sizeof head, "%s %s", cli_command_list[i].name, cli_command_list[i].synopsis);
+        print_line(out, head, cli_command_list[i].help, false);
+    }
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        print_option(out, &cli_option_list[i]);
+    fputs("\nWords after -- are the script's `arg`. What the command line says beats what the script says.\n"
           "Exit: 0 done, 1 a frame failed, 2 usage or script error, 75 disk full (try later), 130 and 143 by signal.\n",
           out);
 }

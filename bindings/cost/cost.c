@@ -259,9 +259,20 @@ static void present(cost_study *study)
         glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "--report: %s", message);
 }
 
+// The names of the knobs are checked here, whether the scene responds later.
+static bool check_options(const cli_options *options, glintL_run *run)
+{
+    char message[GLINTL_MESSAGE_SIZE];
+    if (options->knobs && !cost_knobs_check(options->knobs, message))
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--knobs: %s", message);
+    if (options->report && !cost_report_check(options->report, message))
+        return glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "--report: %s", message);
+    return true;
+}
+
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
 {
-    cost_study *study = read_scene(options, run) ? open_study(options, output, run) : NULL;
+    cost_study *study = check_options(options, run) && read_scene(options, run) ? open_study(options, output, run) : NULL;
     if (study && !run->exit_code) {
         say_frame(study);
         if (!output->quiet)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bindings/run/render_fields.h"
 #include "bindings/run/run.h"
 
 #define SEED_MAX 9007199254740992.0 // 2^53
@@ -39,47 +40,19 @@ static const char *const encodes[] = { "fast", "small", NULL };
 
 const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
 
+#define WITH_TEXT(name, kind, sort, member, min, max, words, text, help) \
+    FIELD(name, kind, sort, member, min, max, words)
+
 const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1] = {
-    { .name = "width", .kind = GLINTL_NUMBER },
-    { .name = "height", .kind = GLINTL_NUMBER },
-    { .name = "samples", .kind = GLINTL_NUMBER },
-    { .name = "seed", .kind = GLINTL_NUMBER },
-    { .name = "max_depth", .kind = GLINTL_NUMBER },
-    { .name = "bits", .kind = GLINTL_NUMBER },
-    { .name = "precision", .kind = GLINTL_ENUM },
-    { .name = "transfer", .kind = GLINTL_ENUM },
-    { .name = "rounding", .kind = GLINTL_ENUM },
-    { .name = "tone", .kind = GLINTL_ENUM },
-    { .name = "encode", .kind = GLINTL_ENUM },
-    { .name = "output", .kind = GLINTL_STRING },
-    { .name = "passes", .kind = GLINTL_STRING },
-    { .name = "exposure", .kind = GLINTL_NUMBER },
-    { .name = "alpha", .kind = GLINTL_BOOLEAN },
-    { .name = "outline", .kind = GLINTL_ENUM },
-    { .name = "visibility", .kind = GLINTL_ENUM },
-    { .name = "adaptive", .kind = GLINTL_NUMBER },
-    { .name = NULL },
+#define FIELD(field, letters, ...) { .name = #field, .kind = GLINTL_##letters },
+    GLINTL_RENDER_LIST(FIELD, WITH_TEXT) { .name = NULL },
+#undef FIELD
 };
 
 static const detail details[GLINTL_RENDER_FIELDS] = {
-    { WHOLE, AT(desc.width), 1, GLINT_SIDE_MAX, NULL },
-    { WHOLE, AT(desc.height), 1, GLINT_SIDE_MAX, NULL },
-    { WHOLE, AT(desc.samples), 1, SAMPLES_MAX, NULL },
-    { WHOLE, AT(desc.seed), 0, SEED_MAX, NULL },
-    { WHOLE, AT(desc.max_depth), 0, DEPTH_MAX, NULL },
-    { BITS, AT(desc.tone.bits), 0, 0, NULL },
-    { CHOICE, AT(desc.precision), 0, 0, precisions },
-    { CHOICE, AT(desc.tone.transfer), 0, 0, transfers },
-    { CHOICE, AT(desc.tone.rounding), 0, 0, roundings },
-    { CHOICE, AT(desc.tone.curve), 0, 0, glintL_tone_curves },
-    { CHOICE, AT(encode), 0, 0, encodes },
-    { OUTPUT, AT(output), 0, 0, NULL },
-    { PASSES, AT(file_passes), 0, 0, NULL },
-    { REAL, AT(desc.tone.exposure), -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL },
-    { FLAG, AT(desc.alpha), 0, 0, NULL },
-    { CHOICE, AT(desc.outline), 0, 0, outlines },
-    { CHOICE, AT(desc.visibility), 0, 0, visibilities },
-    { REAL, AT(desc.adaptive), 0, 3, NULL },
+#define FIELD(name, kind, sort, member, min, max, words) { sort, AT(member), min, max, words },
+    GLINTL_RENDER_LIST(FIELD, WITH_TEXT)
+#undef FIELD
 };
 
 glintL_render glintL_render_default(void)
@@ -100,10 +73,7 @@ int glintL_render_find(const char *name)
     return -1;
 }
 
-const char *const *glintL_render_choices(int field)
-{
-    return details[field].sort == CHOICE ? details[field].names : NULL;
-}
+const char *const *glintL_render_choices(int field) { return field >= 0 ? details[field].names : NULL; }
 
 static bool is_number(const detail *what) { return what->sort == WHOLE || what->sort == REAL || what->sort == BITS; }
 

@@ -65,7 +65,7 @@ extern const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1]; ///< n
 glintL_render glintL_render_default(void);
 /// The field's number, or -1.
 int glintL_render_find(const char *name);
-/// The words a field takes, ended by NULL; NULL: it takes something else.
+/// The words a field takes, ended by NULL; NULL: it takes something else, or `field` is -1.
 const char *const *glintL_render_choices(int field);
 /// Sets a field from text as on the command line. False: `message` says what was expected and what was got.
 bool glintL_render_set_text(glintL_render *render, int field, const char *text, char message[GLINTL_MESSAGE_SIZE]);

@@ -1,0 +1,31 @@
+/// The fields that describe a frame and its file, each once: scene:render{}, animations and sweeps, the options of the
+/// command with their help and completions, and what a file says of itself are all made of this list, in its order.
+#ifndef GLINT_L_RENDER_FIELDS_H
+#define GLINT_L_RENDER_FIELDS_H
+
+/// FIELD(name, kind, sort, member of glintL_render, least, most, words)
+/// OPTION(the same, text of the option in --help, help): a field with an option of its name that needs no more than this;
+/// text "": its words; NULL: a switch. Other fields have their options in bindings/command/options.c.
+#define GLINTL_RENDER_LIST(FIELD, OPTION)                                                                               \
+    FIELD(width, NUMBER, WHOLE, desc.width, 1, GLINT_SIDE_MAX, NULL)                                                    \
+    FIELD(height, NUMBER, WHOLE, desc.height, 1, GLINT_SIDE_MAX, NULL)                                                  \
+    OPTION(samples, NUMBER, WHOLE, desc.samples, 1, SAMPLES_MAX, NULL, "N", "samples a pixel")                          \
+    OPTION(seed, NUMBER, WHOLE, desc.seed, 0, SEED_MAX, NULL, "N", "another sample pattern")                            \
+    FIELD(max_depth, NUMBER, WHOLE, desc.max_depth, 0, DEPTH_MAX, NULL)                                                 \
+    OPTION(bits, NUMBER, BITS, desc.tone.bits, 0, 0, NULL, "8|16", "of a channel")                                      \
+    OPTION(precision, ENUM, CHOICE, desc.precision, 0, 0, precisions, "", "what decides hits and shadows")              \
+    OPTION(transfer, ENUM, CHOICE, desc.tone.transfer, 0, 0, transfers, "", "from light to codes")                      \
+    OPTION(rounding, ENUM, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
+    OPTION(tone, ENUM, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
+    OPTION(encode, ENUM, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
+    FIELD(output, STRING, OUTPUT, output, 0, 0, NULL)                                                                   \
+    FIELD(passes, STRING, PASSES, file_passes, 0, 0, NULL)                                                              \
+    OPTION(exposure, NUMBER, REAL, desc.tone.exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL, "STOPS",          \
+           "stops brighter or darker")                                                                                  \
+    OPTION(alpha, BOOLEAN, FLAG, desc.alpha, 0, 0, NULL, NULL, "transparent background")                                \
+    OPTION(outline, ENUM, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
+    OPTION(visibility, ENUM, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
+           "how it is found what the eye sees; same pictures")                                                          \
+    FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)
+
+#endif
