@@ -1,0 +1,46 @@
+// phong: the local lighting of one light: diffuse w (n.l), and the highlight w S with S = 2^(shininess log2 x). The stage light
+// has found x: r.v of Phong (B. T. Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975), n.h of Blinn-Phong
+// (J. F. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977). w is attenuation. Contract: stages.h.
+
+/// The geometric factors of the lights that reach a group: w (n.l), and w S for one material. Lanes that a light does
+/// not reach have 0.
+typedef struct light_factors {
+    _Alignas(64) float diffuse[GLINT_LIGHT_CHUNK][GLINT_GROUP], specular[GLINT_LIGHT_CHUNK][GLINT_GROUP];
+    _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
+    const glint_shade_light *light[GLINT_LIGHT_CHUNK];
+    uint32_t count;
+    bool shiny; ///< false: the specular factors are 0
+} light_factors;
+
+/// w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a constant: the
+/// material's. `add`: to what is there, of the light it is joined to. Returns whether w S may be more than 0 anywhere.
+INNER bool put_factors(const glint_shade_light *light, const glint_shade_material *material, const float *exponent,
+                       bool specular, size_t at, bool add, float diffuse[GLINT_GROUP], float highlight[GLINT_GROUP])
+{
+    const unsigned lit = light->lit[at / GLINT_GROUP];
+    bool any = false;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vf w = f_set(1);
+        if (light->attenuation)
+            w = w * f_load(light->attenuation + at + i);
+        const fm mask = fm_from_bits(lit >> i & ((1u << VF) - 1));
+        vf share = f_select(mask, w * f_load(light->cosine + at + i), f_set(0));
+        if (add)
+            share = f_load(diffuse + i) + share;
+        f_store(diffuse + i, share);
+        if (specular) {
+            const vf log2 = f_load(light->log2_specular + at + i);
+            const vf y = (exponent ? f_load(exponent + i) : f_set(material->shininess)) * log2;
+            const fm there = fm_and(mask, f_lt(f_set(GLINT_NO_SPECULAR), log2));
+            share = f_set(0);
+            if (fm_bits(fm_andnot(there, f_lt(y, f_set(GLINT_EXP2_LOWEST))))) {
+                share = f_select(there, w * f_exp2(y), f_set(0));
+                any = true;
+            }
+            if (add)
+                share = f_load(highlight + i) + share;
+            f_store(highlight + i, share);
+        }
+    }
+    return any;
+}
