@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Runs tests and prints a line for each, then the totals: 'N passed, N failed, N skipped'.
+# Runs tests, JOBS at a time, and prints a line for each as it ends, then the totals: 'N passed, N failed, N skipped'.
 #   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, or make:TARGET
-# From the environment: BUILD (the build folder), T (run the items whose name has it), PRELOAD (a sanitizer's runtime,
-# for the Lua tests), LUA, MAKE. A test exits 0 when it passed and 77 when it cannot run here. What it prints goes to
-# BUILD/tests/log/NAME and is shown when it fails. Cases are counted from a line of totals like our own, from
-# cmocka's lines or from TAP; a test that prints none of these counts as one.
+# From the environment: BUILD (the build folder), T (run the items whose name has it), JOBS (as many as there are
+# processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, TEST_LIMIT_S (for one item). A test exits 0
+# when it passed and 77 when it cannot run here. What it prints goes to BUILD/tests/log/NAME and is shown when it fails.
+# Cases are counted from a line of totals like our own, from cmocka's lines or from TAP; a test that prints none of
+# these counts as one. Tests run beside each other, so each has its files in a folder of its own.
 set -u
 
 BUILD=${BUILD:-build}
@@ -13,7 +14,6 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1} UBSAN_OPTIONS=${UBSAN_OPTION
 export LSAN_OPTIONS=${LSAN_OPTIONS:-print_suppressions=0}
 log_folder=$BUILD/tests/log
 limit_s=${TEST_LIMIT_S:-300}
-passed=0 failed=0 skipped=0
 
 run_item() {
     case $1 in
@@ -39,12 +39,11 @@ read_cases() {
     bad=$(count '^(\[  FAILED  \] [a-zA-Z_0-9]+$|not ok )' "$1")
 }
 
-# Adds the cases of one finished test to the totals and prints its line.
-tally() {
+# Prints the line of one finished test; sets good, bad and skips.
+tell() {
     local name=$1 status=$2 log=$3 seconds=$4
-    local good bad skips
+    good=0 bad=0 skips=1
     if [ "$status" -eq 77 ]; then
-        skipped=$((skipped + 1))
         printf 'skip  %-24s %s\n' "$name" "$(tail -n 1 "$log")"
         return
     fi
@@ -59,23 +58,36 @@ tally() {
         printf 'FAIL  %-24s %5d failed, exit %d, all of it in %s\n' "$name" "$bad" "$status" "$log"
     fi
     grep -E '(^|# )(skip|SKIP|skipped|\[  SKIPPED \] [a-zA-Z_]+)( |:|$)' "$log" | sort -u | sed 's/^/        /'
-    passed=$((passed + good)) failed=$((failed + bad)) skipped=$((skipped + skips))
 }
 
+# Runs one item; its lines go out together, its totals to NAME.count.
+if [ "${1:-}" = --one ]; then
+    name=$(basename "${2#make:}")
+    log=$log_folder/$name
+    start=$(date +%s%N)
+    run_item "$2" >"$log" 2>&1 </dev/null
+    status=$?
+    tell "$name" "$status" "$log" "$(awk "BEGIN { print ($(date +%s%N) - $start) / 1e9 }")" >"$log.told"
+    echo "$good $bad $skips" >"$log.count"
+    cat "$log.told"
+    rm -f "$log.told"
+    exit 0
+fi
+
 mkdir -p "$log_folder"
+items=() counts=()
 for item in "$@"; do
     name=$(basename "${item#make:}")
     case $name in *"${T:-}"*) ;; *) continue ;; esac
-    start=$(date +%s%N)
-    run_item "$item" >"$log_folder/$name" 2>&1 </dev/null
-    status=$?
-    tally "$name" "$status" "$log_folder/$name" "$(awk "BEGIN { print ($(date +%s%N) - $start) / 1e9 }")"
+    items+=("$item")
+    counts+=("$log_folder/$name.count")
+    echo "0 1 0" >"$log_folder/$name.count" # until it has ended
 done
-
-if [ $((passed + failed + skipped)) -eq 0 ]; then
+if [ ${#items[@]} -eq 0 ]; then
     echo "no test has '${T:-}' in its name" >&2
     exit 2
 fi
+printf '%s\0' "${items[@]}" | xargs -0 -n 1 -P "${JOBS:-$(getconf _NPROCESSORS_ONLN)}" bash "$0" --one
 echo
-echo "$passed passed, $failed failed, $skipped skipped"
-[ "$failed" -eq 0 ]
+awk '{ good += $1; bad += $2; skips += $3 }
+     END { printf "%d passed, %d failed, %d skipped\n", good, bad, skips; exit bad > 0 }' "${counts[@]}"
