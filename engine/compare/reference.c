@@ -21,7 +21,8 @@ typedef struct codes {
 
 static size_t pixel_count(const glint_image *image) { return (size_t)image->width * (size_t)image->height; }
 
-static glint_status make_codes(const glint_image *image, glint_tone_desc tone, int bits, codes *out, glint_error *error)
+/// Of an open store of tables.
+static glint_status fill_codes(const glint_image *image, glint_tone_desc tone, int bits, codes *out, glint_error *error)
 {
     const glint_tone_table *table = NULL;
     float *const *p = image->plane[GLINT_PASS_BEAUTY];
@@ -38,6 +39,14 @@ static glint_status make_codes(const glint_image *image, glint_tone_desc tone, i
     else
         glint_tone_row8(table, glint_tone_gain(&tone), p[0], p[1], p[2], pixels, out->rgb, NULL, NULL);
     return GLINT_OK;
+}
+
+static glint_status make_codes(const glint_image *image, glint_tone_desc tone, int bits, codes *out, glint_error *error)
+{
+    glint_tone_store_open();
+    glint_status status = fill_codes(image, tone, bits, out, error);
+    glint_tone_store_close();
+    return status;
 }
 
 /// Value number i in steps of 8 bits.

@@ -196,8 +196,9 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
 }
 
-static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
-                               glint_bytes *out, double *reused, glint_error *error)
+/// Of an open store of tables.
+static glint_status encode_rows(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                                glint_bytes *out, double *reused, glint_error *error)
 {
     picture p = { .image = image, .plane = image->plane[desc->pass], .tone = desc->tone };
     glint_status status = glint_tone_check(&desc->tone, error);
@@ -231,6 +232,15 @@ static glint_status encode_png(const glint_image *image, const glint_write_desc 
         source.stamp = NULL; // of the codes without lines
     }
     return status ? status : glint_png_encode(bands, &source, &png, out, reused, error);
+}
+
+static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
+                               glint_bytes *out, double *reused, glint_error *error)
+{
+    glint_tone_store_open();
+    glint_status status = encode_rows(image, desc, bands, out, reused, error);
+    glint_tone_store_close();
+    return status;
 }
 
 glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,

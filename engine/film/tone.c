@@ -248,21 +248,42 @@ void glint_tone_table_destroy(glint_tone_table *table)
     free(table);
 }
 
+static pthread_mutex_t store_lock = PTHREAD_MUTEX_INITIALIZER;
+static glint_tone_table *store[GLINT_TONE_FILMIC + 1][2][2][2];
+static size_t store_users;
+
+void glint_tone_store_open(void)
+{
+    pthread_mutex_lock(&store_lock);
+    store_users++;
+    pthread_mutex_unlock(&store_lock);
+}
+
+void glint_tone_store_close(void)
+{
+    glint_tone_table **slot = &store[0][0][0][0];
+    pthread_mutex_lock(&store_lock);
+    store_users--;
+    for (size_t i = 0; store_users == 0 && i < sizeof store / sizeof *slot; i++) {
+        glint_tone_table_destroy(slot[i]);
+        slot[i] = NULL;
+    }
+    pthread_mutex_unlock(&store_lock);
+}
+
 glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error)
 {
-    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static glint_tone_table *made[GLINT_TONE_FILMIC + 1][2][2][2];
     glint_status status = glint_tone_check(desc, error);
     if (status)
         return status;
-    glint_tone_table **slot = &made[desc->curve][desc->transfer == GLINT_TRANSFER_SRGB]
-                                   [desc->rounding == GLINT_ROUND_NEAREST][desc->bits == 16];
-    pthread_mutex_lock(&lock);
+    glint_tone_table **slot = &store[desc->curve][desc->transfer == GLINT_TRANSFER_SRGB]
+                                    [desc->rounding == GLINT_ROUND_NEAREST][desc->bits == 16];
+    pthread_mutex_lock(&store_lock);
     if (!*slot)
         status = glint_tone_table_create(desc, slot, error);
     if (!status)
         *out = *slot;
-    pthread_mutex_unlock(&lock);
+    pthread_mutex_unlock(&store_lock);
     return status;
 }
 

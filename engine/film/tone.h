@@ -39,7 +39,12 @@ double glint_tone_value(const glint_tone_desc *desc, double linear);
 glint_status glint_tone_table_create(const glint_tone_desc *desc, glint_tone_table **out, glint_error *error);
 void glint_tone_table_destroy(glint_tone_table *table);
 
-/// The same from a store of the process: made at the first call, kept to its end. Any thread.
+/// Every user of the process's store of tables opens it first and closes it at the end; the last one to close it frees
+/// the tables, so that a module can be unloaded without leaving them behind. Any thread.
+void glint_tone_store_open(void);
+void glint_tone_store_close(void);
+
+/// A table of the open store, made at the first call and valid until the caller closes the store. Any thread.
 glint_status glint_tone_table_shared(const glint_tone_desc *desc, const glint_tone_table **out, glint_error *error);
 
 /// Converts `count` pixels of three planes to interleaved codes. The table's bits must be 8 or 16 as the name says.

@@ -56,6 +56,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     glint_renderer *renderer = calloc(1, sizeof *renderer);
     if (!renderer)
         return glint_fail_nomem(error);
+    glint_tone_store_open();
     renderer->stop = &renderer->cancelled;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
@@ -102,8 +103,10 @@ void glint_renderer_destroy(glint_renderer *renderer)
     glint_raster_clear(&renderer->raster);
     glint_reuse_destroy(&renderer->reuse);
     glint_image_release(renderer->last);
-    if (!renderer->shares)
+    if (!renderer->shares) {
         glint_pool_destroy(renderer->pool);
+        glint_tone_store_close();
+    }
     free(renderer);
 }
 

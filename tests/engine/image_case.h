@@ -92,9 +92,11 @@ static inline glint_image *make_image(int width, int height, const glint_tone_de
     }
     if (codes && codes->bits == 8) {
         const glint_tone_table *table;
+        glint_tone_store_open();
         assert_int_equal(glint_tone_table_shared(codes, &table, NULL), GLINT_OK);
         float **p = image->plane[GLINT_PASS_BEAUTY];
         glint_tone_row8(table, glint_tone_gain(codes), p[0], p[1], p[2], count, image->codes, NULL, NULL);
+        glint_tone_store_close();
     }
     return image;
 }

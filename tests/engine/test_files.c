@@ -366,5 +366,8 @@ int main(void)
         WITH_FOLDER(test_file_pipe),      WITH_FOLDER(test_file_limit),       WITH_FOLDER(test_writer_order),
         WITH_FOLDER(test_writer_cancel),  WITH_FOLDER(test_writer_reuse),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    glint_tone_store_open();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    glint_tone_store_close();
+    return failed;
 }

@@ -303,5 +303,8 @@ int main(void)
         cmocka_unit_test(test_tone_counts),   cmocka_unit_test(test_tone_curves), cmocka_unit_test(test_tone_exposure), WITH_FOLDER(test_view_passes),     WITH_FOLDER(test_pass_not_cached),
         WITH_FOLDER(test_compare),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    glint_tone_store_open();
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    glint_tone_store_close();
+    return failed;
 }

@@ -228,7 +228,9 @@ int main(void)
         cmocka_unit_test(test_tone_cases),
         cmocka_unit_test(test_tone_every_float),
     };
+    glint_tone_store_open();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    glint_tone_store_close();
     for (const glint_stages *const *isa = glint_stages_built; *isa; isa++)
         if (!glint_stages_usable(*isa))
             printf("skipped: %s\n", (*isa)->name);

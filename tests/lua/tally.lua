@@ -28,10 +28,11 @@ function tally.run(tests)
   end
 end
 
--- Prints the totals and ends the process: 0 when nothing failed.
+-- Prints the totals and ends the process: 0 when nothing failed. The state is closed, which unloads the module: under
+-- AddressSanitizer what the module alone still knew of is a leak then.
 function tally.finish()
   print(("%d passed, %d failed"):format(tally.passed, tally.failed))
-  os.exit(tally.failed == 0)
+  os.exit(tally.failed == 0, true)
 end
 
 return tally
