@@ -147,7 +147,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects films gallery golden install povray readme untrusted warnings watch)))
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects films gallery golden install memory povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it

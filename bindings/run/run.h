@@ -261,7 +261,8 @@ int glintL_message_handler(lua_State *L);
 
 // ---- warnings.c, warn_view.c ----
 
-/// Gives a warning unless it was given before; under --warnings=error the run fails with it.
+/// Gives a warning unless it was given before, if only of another frame ("frame 7: ..."), or a hundred others were; under
+/// --warnings=error the run fails with it.
 void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /// The same with the position of the Lua code that called: "<position>: <message>".
 void glintL_warn(lua_State *L, const char *message);

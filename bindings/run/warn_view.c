@@ -12,8 +12,11 @@
 
 #define MEMBERS_MAX 1000 // of a scene, and of its groups: above that nobody looks for a single shape
 #define LIGHTS_MAX 64
+#define UNSEEN_MAX 1000 // shapes that a run keeps a line about; more are not told of
 
-static const char OUTSIDE; // its address is the registry's key: userdata -> message, or false when it was in a view
+// The addresses are the registry's keys of two tables. A shape's userdata -> its place in the other, or false once a view
+// has had it: weak, so that no shape is held on to. The place -> what the shape is called; it outlives the shape.
+static const char NOTED, UNSEEN;
 
 typedef struct view {
     double eye[3];
@@ -231,7 +234,7 @@ typedef struct look {
     int64_t number;
     const view *view; // NULL: unknown
     const members *all;
-    int noted; // the table OUTSIDE
+    int noted, unseen; // the tables of these names
     bool whole; // every frame is rendered
 } look;
 
@@ -287,27 +290,48 @@ static bool is_unseen(const look *l, const ball *b)
     return unseen;
 }
 
-// Remembers of the shape whose key is on top whether any frame has shown it.
-static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
+// Gives the shape a line in the list of the unseen, and pushes its place; pushes nil when the list is full.
+static void push_place(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
 {
     char name[160];
+    lua_rawgeti(L, l->unseen, 0);
+    lua_Integer place = lua_tointeger(L, -1) + 1;
+    lua_pop(L, 1);
+    if (place > UNSEEN_MAX) {
+        lua_pushnil(L);
+        return;
+    }
+    describe(shape, b, name);
+    lua_pushstring(L, name);
+    lua_rawseti(L, l->unseen, place);
+    lua_pushinteger(L, place);
+    lua_pushvalue(L, -1);
+    lua_rawseti(L, l->unseen, 0);
+}
+
+// Remembers of the shape whose userdata is on top whether any frame has shown it.
+static void look_for_unseen(lua_State *L, const look *l, const glint_shape_desc *shape, const ball *b)
+{
     lua_pushvalue(L, -1);
     int before = lua_rawget(L, l->noted);
+    lua_Integer place = lua_tointeger(L, -1);
     lua_pop(L, 1);
     bool seen = !l->view || l->all->shows_more || !is_unseen(l, b);
-    if (before == LUA_TBOOLEAN || (before == LUA_TSTRING && !seen))
+    if (before == LUA_TBOOLEAN || (before == LUA_TNUMBER && !seen))
         return;
-    lua_pushvalue(L, -1);
-    if (seen) {
-        lua_pushboolean(L, false);
-    } else {
-        describe(shape, b, name);
-        lua_pushstring(L, name);
+    if (before == LUA_TNUMBER) {
+        lua_pushnil(L);
+        lua_rawseti(L, l->unseen, place);
     }
+    lua_pushvalue(L, -1);
+    if (seen)
+        lua_pushboolean(L, false);
+    else
+        push_place(L, l, shape, b);
     lua_rawset(L, l->noted);
 }
 
-// One shape, or all of a group, under the transforms around it; the key of the shape is on top.
+// One shape, or all of a group, under the transforms around it; its userdata is on top, or nil.
 static void look_into(lua_State *L, const look *l, const glint_shape *shape, const glint_transform *outer, int *count)
 {
     ball b;
@@ -317,7 +341,7 @@ static void look_into(lua_State *L, const look *l, const glint_shape *shape, con
         return;
     for (size_t i = 0; i < glint_group_count(shape); i++) {
         const glint_shape *child = glint_group_child(shape, i);
-        lua_pushlightuserdata(L, glint_group_child(shape, i));
+        glintL_push_remembered(L, child);
         look_into(L, l, child, &placed, count);
         lua_pop(L, 1);
     }
@@ -326,7 +350,7 @@ static void look_into(lua_State *L, const look *l, const glint_shape *shape, con
     move_ball(&placed, &b);
     if (l->view && b.is_sphere && !shows_through(L, desc->material))
         look_for_inner_light(l, desc, &b);
-    if (l->whole)
+    if (l->whole && !lua_isnil(L, -1))
         look_for_unseen(L, l, desc, &b);
 }
 
@@ -352,14 +376,15 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
         return;
     luaL_checkstack(L, 16 + GLINT_GROUP_DEPTH, "scene");
     scene_index = lua_absindex(L, scene_index);
-    glintL_push_table(L, &OUTSIDE);
-    look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) };
+    glintL_push_weak_table(L, &NOTED, "k");
+    glintL_push_table(L, &UNSEEN);
+    look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) - 1, .unseen = lua_gettop(L) };
     l.view = make_view(glint_camera_get(camera), desc, &v) ? &v : NULL;
     l.whole = glintL_selection_is_whole(&run->request.selection);
     all.shows_more = has(L, GLINTL_SCENE, scene, glint_scene_get(scene), scene_index, "indirect");
     each_member(L, scene_index, gather, &all);
     each_member(L, scene_index, look_at, &l);
-    lua_pop(L, 1);
+    lua_pop(L, 2);
 }
 
 void glintL_report_unseen(lua_State *L, glintL_run *run)
@@ -367,7 +392,7 @@ void glintL_report_unseen(lua_State *L, glintL_run *run)
     const char *first = NULL;
     int count = 0;
     luaL_checkstack(L, 8, "warnings");
-    glintL_push_table(L, &OUTSIDE);
+    glintL_push_table(L, &UNSEEN);
     lua_pushnil(L);
     while (lua_next(L, -2)) {
         const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : NULL;

@@ -13,16 +13,30 @@
 
 #include "bindings/run/run.h"
 
-static const char DULL; // its address is the registry's key: address of a material's box, or 1 .. -> where it was made
+#define SAID_MAX 100 // warnings of one run
+
+// The addresses are the registry's keys of two tables: a material's userdata, weak -> where it was made; and that place ->
+// how many materials made there have a shininess and never had a specular.
+static const char MADE, DULL;
 
 // ---- Said once ----
 
-// Whether it is new. Without memory it may be said again.
+// What tells a message from others: not the frame that it begins with.
+static const char *gist_of(const char *message)
+{
+    const size_t digits = strncmp(message, "frame ", 6) == 0 ? strspn(message + 6, "0123456789") : 0;
+    return digits && message[6 + digits] == ':' ? message + 6 + digits : message;
+}
+
+// Whether it is new, and among the first SAID_MAX. Without memory it may be said again.
 static bool is_new(glintL_run *run, const char *message)
 {
+    message = gist_of(message);
     for (size_t i = 0; i < run->said_count; i++)
         if (strcmp(run->said[i], message) == 0)
             return false;
+    if (run->said_count == SAID_MAX)
+        return false;
     char *copy = strdup(message), **grown = realloc(run->said, (run->said_count + 1) * sizeof *grown);
     run->said = grown ? grown : run->said;
     if (copy && grown)
@@ -62,6 +76,8 @@ void glintL_run_warn(glintL_run *run, const char *format, ...)
         glintL_run_fail(run, GLINTL_EXIT_USAGE, 0, "%.1000s (--warnings=error)", message);
     else
         say(run, message);
+    if (run->said_count == SAID_MAX)
+        say(run, "these were many warnings; no more are shown");
 }
 
 void glintL_warn(lua_State *L, const char *message)
@@ -84,29 +100,52 @@ void glintL_run_note(const glintL_run *run, const char *format, ...)
 
 // ---- Shininess without specular ----
 
-void glintL_note_material(lua_State *L, int index, bool is_dull)
+// Adds to the count of the place on top, and pops it.
+static void count_dull(lua_State *L, lua_Integer change)
 {
-    const void *box = lua_touserdata(L, index);
-    luaL_checkstack(L, 6, "material");
     glintL_push_table(L, &DULL);
-    if (lua_rawgetp(L, -1, box) != LUA_TNIL) // of a material that is gone: it never had a specular
-        lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
-    else
-        lua_pop(L, 1);
-    if (is_dull)
-        luaL_where(L, 1);
+    lua_pushvalue(L, -2);
+    lua_rawget(L, -2);
+    lua_Integer count = lua_tointeger(L, -1) + change;
+    lua_pop(L, 1);
+    lua_pushvalue(L, -2);
+    if (count > 0)
+        lua_pushinteger(L, count);
     else
         lua_pushnil(L);
-    lua_rawsetp(L, -2, box);
+    lua_rawset(L, -3);
+    lua_pop(L, 2);
+}
+
+void glintL_note_material(lua_State *L, int index, bool is_dull)
+{
+    if (!is_dull)
+        return;
+    luaL_checkstack(L, 8, "material");
+    index = lua_absindex(L, index);
+    glintL_push_weak_table(L, &MADE, "k");
+    lua_pushvalue(L, index);
+    luaL_where(L, 1);
+    lua_rawset(L, -3);
     lua_pop(L, 1);
+    luaL_where(L, 1);
+    count_dull(L, 1);
 }
 
 void glintL_note_specular(lua_State *L, int index)
 {
-    luaL_checkstack(L, 4, "material");
-    glintL_push_table(L, &DULL);
-    lua_pushnil(L);
-    lua_rawsetp(L, -2, lua_touserdata(L, index));
+    luaL_checkstack(L, 8, "material");
+    index = lua_absindex(L, index);
+    glintL_push_weak_table(L, &MADE, "k");
+    lua_pushvalue(L, index);
+    if (lua_rawget(L, -2) == LUA_TSTRING) {
+        count_dull(L, -1);
+        lua_pushvalue(L, index);
+        lua_pushnil(L);
+        lua_rawset(L, -3);
+    } else {
+        lua_pop(L, 1);
+    }
     lua_pop(L, 1);
 }
 
@@ -116,7 +155,7 @@ static void report_dull(lua_State *L, glintL_run *run)
     glintL_push_table(L, &DULL);
     lua_pushnil(L);
     while (lua_next(L, -2)) {
-        const char *where = lua_tostring(L, -1); // the table keeps it
+        const char *where = lua_tostring(L, -2); // the table keeps it
         if (!first || strcmp(where, first) < 0)
             first = where;
         lua_pop(L, 1);

@@ -156,6 +156,8 @@ typedef struct glintL_class {
 const glintL_class *glintL_class_of(lua_State *L, const char *type);
 /// Pushes the table of the registry at `key`, an address; made when it is not there.
 void glintL_push_table(lua_State *L, const void *key);
+/// Likewise, a table whose keys ("k") or values ("v") do not keep what they stand for.
+void glintL_push_weak_table(lua_State *L, const void *key, const char *mode);
 
 // ---- class.c: fields and metatables of boxes ----
 

@@ -4,6 +4,8 @@
 
 #include "bindings/value/glintL.h"
 
+#define OBJECT_BYTES 1024 // about what the engine keeps of a sphere, a light or a material
+
 static const char BOXES; // its address is the registry's key of the boxes by object
 
 glintL_box *glintL_new_box(lua_State *L, const char *type)
@@ -42,21 +44,27 @@ void glintL_push_table(lua_State *L, const void *key)
     lua_rawsetp(L, LUA_REGISTRYINDEX, key);
 }
 
-void glintL_remember(lua_State *L, void *object)
+void glintL_push_weak_table(lua_State *L, const void *key, const char *mode)
 {
-    luaL_checkstack(L, 4, "object");
-    glintL_push_table(L, &BOXES);
+    glintL_push_table(L, key);
     if (!lua_getmetatable(L, -1)) {
         lua_createtable(L, 0, 1);
-        lua_pushliteral(L, "v");
+        lua_pushstring(L, mode);
         lua_setfield(L, -2, "__mode");
         lua_pushvalue(L, -1);
         lua_setmetatable(L, -3);
     }
     lua_pop(L, 1);
+}
+
+void glintL_remember(lua_State *L, void *object)
+{
+    luaL_checkstack(L, 4, "object");
+    glintL_push_weak_table(L, &BOXES, "v");
     lua_pushvalue(L, -2);
     lua_rawsetp(L, -2, object);
     lua_pop(L, 1);
+    glintL_charge(L, OBJECT_BYTES);
 }
 
 // Allocates nothing.

@@ -72,6 +72,13 @@ silent "with the eye inside, too, it is a room"
 scene "$inside" 'function frame(t, n) lamp.position = { 0, n == 3 and 1 or 9, 0 } end'
 warns "in a frame of many" "frame 3: a point_light 'lamp'"
 
+scene "$inside" 'lamp.position = { 0, 1, 0 }'
+warns "once for all frames" "frame 1: a point_light 'lamp' is inside"
+scene "$inside" 'function frame(t, n) objects[1].name = "ball " .. n; lamp.position = { 0, 1, 0 } end'
+sed -i 's/frames = 4/frames = 120/' scene.lua
+run scene.lua && [ "$(wc -l <err)" -eq 101 ] && tail -n 1 err | grep -q 'no more are shown'
+result $? "a hundred warnings, and no more"
+
 # ---- Outside the view ----
 
 scene 'objects = { glint.sphere { center = { 0, 0, 20 }, radius = 1, name = "ball" } }'

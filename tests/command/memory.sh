@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Soak test of memory: what a run holds on to does not grow with the scenes, meshes and frames that have gone. A script
+# reads its own process's resident bytes after a full collection, at a fifth of the way and at its end. Prints TAP.
+set -u
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+if [ -n "${PRELOAD:-}" ] || ldd "$glint" | grep -qE "lib[at]san"; then
+    echo "skip: a sanitizer keeps what was freed"
+    exit 77
+fi
+[ -r /proc/self/statm ] || { echo "skip: no /proc/self/statm"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+bad=0
+
+# grows NAME MOST OPTION...: scene.lua prints by how many bytes it has grown; more than MOST is a failure
+grows() {
+    local name=$1 most=$2 grown
+    shift 2
+    grown=$("$glint" scene.lua -t 1 -q "$@" 2>err </dev/null)
+    if [ "${grown:-none}" != none ] && [ "$grown" -le "$most" ]; then echo "ok - $name ($grown bytes more)"; else
+        echo "not ok - $name: at most $most bytes more expected, got '$grown'"
+        cat err
+        bad=1
+    fi
+}
+# script COUNT LINE...: what a script of COUNT rounds measures, then the lines
+script() {
+    cat >scene.lua <<LUA
+local glint = require "glint"
+local rounds, early = $1
+local function measure(i)
+  if i ~= rounds // 5 and i ~= rounds then return end
+  collectgarbage() collectgarbage()
+  local file = io.open "/proc/self/statm"
+  local _, pages = file:read("n", "n")
+  file:close()
+  if i == rounds then print((pages - early) * 4096) end
+  early = pages
+end
+LUA
+    shift
+    printf '%s\n' "$@" >>scene.lua
+}
+
+# Materials without a highlight, shapes that no frame shows, groups: all that warnings keep account of.
+script 20000 'for i = 1, rounds do' \
+    '  local dull = glint.material { diffuse = 0.5, shininess = 64 }' \
+    '  local box = glint.box { min = { 0, 0, 0 }, max = { 1, 1, 1 }, material = dull }' \
+    '  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1,' \
+    '    glint.point_light { position = { 0, 8, 4 } }, glint.sphere { center = { i, 0, 30 }, radius = 1 },' \
+    '    glint.sphere { center = { 0, 0, i % 7 }, radius = 1, material = dull }, glint.group { box } }' \
+    '  scene:render { width = 4, height = 4 }' '  measure(i)' 'end'
+grows "20,000 scenes" 1000000 -o none
+grows "20,000 scenes without warnings" 1000000 -o none --warnings none
+
+script 60 'for i = 1, rounds do' \
+    '  local ball = glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 128, shading = "phong" }' \
+    '  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1, ball }' \
+    '  scene:render { width = 16, height = 16 }' '  measure(i)' 'end'
+grows "60 meshes" 8000000 -o none
+
+script 20000 'local lamp = glint.point_light { position = { 0, 8, 4 } }' \
+    'local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp,' \
+    '  glint.sphere { center = { 0, 0, 0 }, radius = 1 } }' \
+    'return glint.animation { scene = scene, frames = rounds, width = 4, height = 4, frame = function(t, n)' \
+    '  lamp.position = { 9 * glint.cos(6 * t), t - 0.5, 4 }' '  measure(n)' 'end }'
+grows "20,000 frames" 1000000 -o none
+exit $bad
