@@ -62,7 +62,7 @@ LINK       := $(SAN_FLAGS) $(LDFLAGS) -Wl,--as-needed
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 ifeq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
-  ENGINE_SRC := $(filter-out engine/stages/simd/isa_%.c,$(ENGINE_SRC))
+  ENGINE_SRC := $(filter-out $(addprefix engine/stages/simd/isa_,sse2.c avx2.c avx512.c),$(ENGINE_SRC))
 endif
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
@@ -90,6 +90,7 @@ all: $(BUILD)/glint $(BUILD)/glint.so $(BUILD)/libglint.a ## the command build/g
 # Only isa_*.c is compiled for an instruction set, each for its own; ref.c for none. Unrolling pays in these files alone.
 # Processors with AVX2 have instructions for masks too; select.c asks.
 X86_BITS := -mbmi -mbmi2 -mpopcnt
+$(BUILD)/engine/stages/simd/isa_generic.o: ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma

@@ -802,7 +802,7 @@ typedef struct glint_image glint_image;
 /// The fields of a renderer.
 typedef struct glint_renderer_desc {
     int threads; ///< 1 .. 1024 workers; 0 (default): one per processor the process may use
-    const char *isa; ///< "ref", "sse2", "avx2", "avx512"; NULL (default): the environment's GLINT_ISA, else the best
+    const char *isa; ///< "ref", "generic", "sse2", "avx2", "avx512"; NULL: the environment's GLINT_ISA, else the best
     bool time_stages; ///< measure each stage on each tile (costs a few per cent)
     bool count_work; ///< fill in the work of the stats (costs some per cent)
     bool no_reuse; ///< keep nothing from frame to frame; the pictures are the same

@@ -1,6 +1,6 @@
 #!/bin/bash
 # headers.sh FLAGS...: each header compiles alone. A stage's header is written in the vector vocabulary and is included
-# by the isa_*.c files only; simd/avx2.h and simd/avx512.h need their instruction sets.
+# by the isa_*.c files only; simd/avx2.h and simd/avx512.h need their instruction sets. Then: which machines are refused.
 set -u
 bad=0
 for header in engine/*.h engine/*/*.h engine/stages/*/*.h bindings/*/*.h; do
@@ -8,7 +8,7 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h bindings/*/*.h; do
     case $header in
     *simd/avx2.h) flags=(-mavx2 -mfma) ;;
     *simd/avx512.h) flags=(-mavx512f -mavx512dq -mavx512vl -mavx512bw -mavx2 -mfma) ;;
-    */simd/sse2.h | engine/stages/stages.h | engine/stages/contract/*.h | */coefficients.h) ;;
+    */simd/sse2.h | */simd/generic.h | engine/stages/stages.h | engine/stages/contract/*.h | */coefficients.h) ;;
     engine/stages/*/*.h) continue ;;
     esac
     # Twice: the guard holds.
@@ -18,4 +18,18 @@ for header in engine/*.h engine/*/*.h engine/stages/*/*.h bindings/*/*.h; do
         bad=1
     fi
 done
+
+# refused SENTENCE FLAG...    A machine that the engine does not work on is refused with a sentence.
+refused() {
+    local sentence=$1 said
+    shift
+    if said=$(echo '#include "engine/base/machine.h"' | ${CC:-cc} -I. "$@" -fsyntax-only -x c - 2>&1) ||
+        [[ $said != *"$sentence"* ]]; then
+        printf '%s: "%s" expected, got: %s\n' "$*" "$sentence" "$said"
+        bad=1
+    fi
+}
+refused "little-endian machines" -U__BYTE_ORDER__ -D__BYTE_ORDER__=__ORDER_BIG_ENDIAN__
+refused "without excess precision" -U__FLT_EVAL_METHOD__ -D__FLT_EVAL_METHOD__=2
+refused "same bits" -ffast-math
 exit $bad

@@ -16,6 +16,7 @@
 #ifndef GLINT_STAGES_H
 #define GLINT_STAGES_H
 
+#include "engine/base/machine.h"
 #include "engine/stages/contract/film.h"
 #include "engine/stages/contract/hits.h"
 #include "engine/stages/contract/light.h"
@@ -49,7 +50,7 @@ typedef struct glint_stages {
     void (*tone)(const glint_tone_args *args);
 } glint_stages;
 
-extern const glint_stages glint_stages_ref;
+extern const glint_stages glint_stages_ref, glint_stages_generic;
 #if defined(__x86_64__)
 extern const glint_stages glint_stages_sse2, glint_stages_avx2, glint_stages_avx512;
 #endif

@@ -476,6 +476,7 @@ errors() {
     exits 2 "bytecode" code.lua
     GLINT_ISA=foo run ten.lua -o none
     check "GLINT_ISA=foo" test "$status" -eq 2
+    says "GLINT_ISA=foo" 'GLINT_ISA: ref, generic, sse2, avx2 or avx512 expected'
     script results 'local s = require("scene").scene return s, s'
     exits 2 "two results" results.lua
     script exits 'local S = require "scene"
@@ -633,7 +634,7 @@ same_bits() {
         check "$threads threads" test "$(sums other)" = "$want"
         rm -rf other
     done
-    for isa in ref sse2 avx2 avx512; do
+    for isa in ref generic sse2 avx2 avx512; do
         mkdir -p other
         GLINT_ISA=$isa run ten.lua -o 'other/%04d.png' --passes depth
         if [ "$status" -eq 2 ] && grep -q "$isa" err; then

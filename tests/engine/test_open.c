@@ -9,8 +9,7 @@
 #include <string.h>
 
 #include "engine/glint.h"
-
-typedef __float128 quad;
+#include "tests/engine/quad.h"
 
 static uint64_t state;
 

@@ -6,6 +6,7 @@
 
 const glint_stages *const glint_stages_built[] = {
     &glint_stages_ref,
+    &glint_stages_generic,
 #if defined(__x86_64__)
     &glint_stages_sse2,
     &glint_stages_avx2,
@@ -30,18 +31,26 @@ bool glint_stages_usable(const glint_stages *stages)
     return stages != NULL;
 }
 
+/// Whether some machine has an instruction set of this name.
+static bool is_known(const char *name)
+{
+    static const char *const known[] = { "ref", "generic", "sse2", "avx2", "avx512" };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcmp(known[i], name) == 0)
+            return true;
+    return false;
+}
+
 const glint_stages *glint_stages_select(const char *name, const char **requested, bool *unknown)
 {
     const glint_stages *best = NULL;
     if (!name || !*name)
         name = getenv("GLINT_ISA");
     *requested = name && *name ? name : NULL;
-    *unknown = *requested != NULL;
+    *unknown = *requested && !is_known(*requested);
     for (const glint_stages *const *isa = glint_stages_built; *isa; isa++) {
-        if (*requested && strcmp((*isa)->name, *requested) == 0) {
-            *unknown = false;
+        if (*requested && strcmp((*isa)->name, *requested) == 0)
             return glint_stages_usable(*isa) ? *isa : NULL;
-        }
         if (!*requested && glint_stages_usable(*isa))
             best = *isa;
     }
