@@ -137,7 +137,7 @@ typedef enum glint_op {
     GLINT_OP_COS,
     GLINT_OP_EXP2,
     GLINT_OP_LOG2,
-    GLINT_OP_POW, ///< 1 where x = 1 or y = 0; NaN where x < 0 and y is not whole
+    GLINT_OP_POW, ///< as C99, annex F has it
     GLINT_OP_ATAN2, ///< of y, x; -pi .. pi
     GLINT_OP_ACOS, ///< 0 .. pi; NaN beyond -1 .. 1
     GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, as the built-in models have it: the bits of their S, in

@@ -24,7 +24,7 @@ glint_status glint_program_evaluate(const glint_program *program, const double i
     for (size_t k = 0; k < program->code.output_count && lanes; k++)
         args.result[k] = lanes + (GLINT_INPUT_COUNT + k) * GLINT_GROUP;
     if (lanes && rows) {
-        (stages->program ? stages : &glint_stages_ref)->program(&args);
+        stages->program(&args);
         for (size_t k = 0; k < program->code.output_count; k++)
             outputs[k] = args.result[k][0];
     }

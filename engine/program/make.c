@@ -291,6 +291,8 @@ static void write_code(maker *m, const glint_builder *builder, glint_program *pr
         const glint_op_info *info = glint_op_info_of((glint_op)m->nodes[i].op);
         glint_instruction *to = (glint_instruction *)&code->instructions[at];
         to->op = m->nodes[i].op;
+        to->operands = (uint8_t)info->operands;
+        to->results = (uint8_t)info->results;
         if (to->op >= GLINT_OP_TEXEL)
             to->texture = place_of_texture(program, builder->textures[m->nodes[i].texture]);
         for (uint32_t k = 0; k < info->operands; k++)

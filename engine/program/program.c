@@ -70,7 +70,7 @@ static glint_status check_instruction(known *k, const glint_program_code *code, 
 {
     const glint_instruction *in = &code->instructions[at];
     const glint_op_info *info = glint_op_info_of((glint_op)in->op);
-    if (!info)
+    if (!info || in->operands != info->operands || in->results != info->results)
         return glint_fail(error, GLINT_ERR_INVALID, "instruction %u: no such operation: %u", at, in->op);
     if (in->op >= GLINT_OP_TEXEL && in->texture >= texture_count)
         return glint_fail(error, GLINT_ERR_INVALID, "instruction %u: no such texture: %u", at, in->texture);

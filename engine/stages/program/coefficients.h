@@ -5,7 +5,7 @@
 #ifndef GLINT_PROGRAM_COEFFICIENTS_H
 #define GLINT_PROGRAM_COEFFICIENTS_H
 
-#define GLINT_ROUNDER 0x1.8p52 ///< added and taken away again, it leaves a whole number
+#include "engine/stages/simd/coefficients.h"
 
 // pi/2 = high + middle + low, the first two of 33 bits, so that their products with a number of 20 bits are exact
 #define GLINT_HALF_PI_HIGH 0x1.921fb54400000p+0

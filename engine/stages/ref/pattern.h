@@ -15,7 +15,7 @@ static uint32_t hash_of_cube(uint32_t x, uint32_t y, uint32_t z, uint32_t seed)
 }
 
 /// A whole number modulo 2^32; beyond 2^51, and for NaN, any.
-static uint32_t word_of(double whole) { return (uint32_t)bits_of_double(whole + GLINT_ROUNDER); }
+static uint32_t word_of(double whole) { return (uint32_t)bits_of_double(whole + GLINT_ROUNDER_DOUBLE); }
 
 /// The bits of x, where -0 is 0 and every NaN is 0.
 static uint64_t canonical_bits(double x) { return x == x ? bits_of_double(x + 0.0) : 0; }
@@ -53,14 +53,15 @@ static double fade_slope(double t) { return 30 * (t * t) * (t * (t - 2) + 1); }
 
 static double between_two(double t, double a, double b) { return a + t * (b - a); }
 
-/// The gradient of a corner, as Perlin's table has it.
-static void gradient_of(uint32_t hash, double g[3])
+/// The gradient of a corner, as Perlin's table has it, times the way d from there.
+static double ramp_of(uint32_t hash, const double d[3], double gradient[3])
 {
     const uint32_t h = (uint32_t)product(hash, GLINT_HASH_B) >> 28;
     const int u = h < 8 ? 0 : 1, v = h < 4 ? 1 : h == 12 || h == 14 ? 0 : 2;
-    g[0] = g[1] = g[2] = 0;
-    g[u] = h & 1 ? -1 : 1;
-    g[v] = h & 2 ? -1 : 1;
+    gradient[0] = gradient[1] = gradient[2] = 0;
+    gradient[u] = h & 1 ? -1 : 1;
+    gradient[v] = h & 2 ? -1 : 1;
+    return gradient[u] * d[u] + gradient[v] * d[v];
 }
 
 /// Something of the eight corners of a cube, x fastest, between them.
@@ -96,8 +97,8 @@ static double op_noise(double x, double y, double z, uint32_t seed, double *slop
     }
     for (int c = 0; c < 8; c++) {
         const uint32_t i = c & 1, j = c >> 1 & 1, k = (uint32_t)c >> 2;
-        gradient_of(hash_of_cube(cube[0] + i, cube[1] + j, cube[2] + k, seed), g[c]);
-        ramp[c] = (g[c][0] * (t[0] - i) + g[c][1] * (t[1] - j)) + g[c][2] * (t[2] - k);
+        const double d[3] = { t[0] - i, t[1] - j, t[2] - k };
+        ramp[c] = ramp_of(hash_of_cube(cube[0] + i, cube[1] + j, cube[2] + k, seed), d, g[c]);
     }
     for (int axis = 0; slope && axis < 3; axis++) {
         double along[8];
@@ -120,13 +121,18 @@ static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
         d[k] = x[k] + (double)(uint32_t)product(h, factor[k]) * 0x1p-32;
 }
 
-/// The two nearest of the points of all cubes that may have them; of equal distances the first.
+/// The two nearest of the points of all cubes that may have them; of equal distances the first, from the point's own cube
+/// outwards.
 static void op_cell(const double p[3], double *distance, double *slope)
 {
     double d2[2] = { INFINITY, INFINITY }, to[2][3] = { { NAN, NAN, NAN }, { NAN, NAN, NAN } };
-    for (int c = 0; c < 125; c++) {
-        const int offset[3] = { c % 5 - 2, c / 5 % 5 - 2, c / 25 - 2 };
+    for (int c = 0; c < 3 * 125; c++) {
+        const int offset[3] = { c % 5 - 2, c / 5 % 5 - 2, c / 25 % 5 - 2 };
+        const bool inner = abs(offset[0]) < 2 && abs(offset[1]) < 2 && abs(offset[2]) < 2;
+        const bool own = !offset[0] && !offset[1] && !offset[2];
         uint32_t cube[3];
+        if ((own ? 0 : inner ? 1 : 2) != c / 125)
+            continue;
         double x[3], d[3];
         for (int k = 0; k < 3; k++) {
             cube[k] = word_of(floor(p[k])) + (uint32_t)offset[k];

@@ -66,7 +66,7 @@ static double op_sine(double x, unsigned turn)
     static const double sine[] = GLINT_SINE, cosine[] = GLINT_COSINE;
     if (!(fabs(x) <= GLINT_ANGLE_MAX))
         return turn ? glint_cos(x) : glint_sin(x);
-    double q = (x * GLINT_2_PI + GLINT_ROUNDER) - GLINT_ROUNDER;
+    double q = (x * GLINT_2_PI + GLINT_ROUNDER_DOUBLE) - GLINT_ROUNDER_DOUBLE;
     double r = ((x - q * GLINT_HALF_PI_HIGH) - q * GLINT_HALF_PI_MIDDLE) - q * GLINT_HALF_PI_LOW, z = r * r;
     unsigned quadrant = ((unsigned)(int)q + turn) & 3;
     double y = quadrant & 1 ? 1 + z * HORNER(cosine, z) : r + (r * z) * HORNER(sine, z);
@@ -81,7 +81,7 @@ static double op_exp2(double y)
         return y;
     double x = y > -1100 ? y : -1100;
     x = x < 1100 ? x : 1100;
-    double n = (x + GLINT_ROUNDER) - GLINT_ROUNDER, half = floor(0.5 * n);
+    double n = (x + GLINT_ROUNDER_DOUBLE) - GLINT_ROUNDER_DOUBLE, half = floor(0.5 * n);
     return (HORNER(series, x - n) * ldexp(1, (int)half)) * ldexp(1, (int)(n - half));
 }
 
@@ -112,7 +112,7 @@ static double op_pow(double x, double y)
     bool whole = floor(y) == y, odd = whole && 2 * floor(0.5 * y) != y;
     if (size == 1 && !isnan(y))
         power = 1;
-    if (x < 0 && !whole)
+    if (x < 0 && x > -INFINITY && !whole)
         power = NAN;
     if (signbit(x) && odd)
         power = -power;
@@ -265,12 +265,11 @@ static void program(const glint_program_args *args)
         if (!(args->wanted[lane / GLINT_GROUP] >> lane % GLINT_GROUP & 1))
             continue;
         for (const glint_instruction *at = code->instructions; at < code->instructions + code->length; at++) {
-            const glint_op_info *info = glint_op_info_of((glint_op)at->op);
             double in[GLINT_OPERANDS_MAX] = { 0 }, out[GLINT_RESULTS_MAX];
-            for (uint32_t k = 0; k < info->operands; k++)
+            for (uint32_t k = 0; k < at->operands; k++)
                 in[k] = row_value(args, rows, at->in[k], lane);
             run_instruction(at, code, in, out);
-            for (uint32_t k = 0; k < info->results; k++)
+            for (uint32_t k = 0; k < at->results; k++)
                 rows[at->out[k]] = out[k];
         }
         store_outputs(args, rows, lane);

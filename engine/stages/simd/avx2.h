@@ -13,6 +13,7 @@
 typedef __m256 vf;
 typedef __m256d vd;
 typedef __m256i vi;
+typedef __m256i vq;
 typedef __m256 fm;
 typedef __m256d dm;
 
@@ -163,6 +164,30 @@ static inline vd d_mantissa(vd x)
 {
     __m256i m = _mm256_and_si256(_mm256_castpd_si256(x), _mm256_set1_epi64x(0x000fffffffffffff));
     return _mm256_castsi256_pd(_mm256_or_si256(m, _mm256_set1_epi64x(0x3ff0000000000000)));
+}
+
+static inline vd d_abs(vd x) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), x); }
+static inline vd d_copysign(vd size, vd sign)
+{
+    return _mm256_or_pd(_mm256_andnot_pd(_mm256_set1_pd(-0.0), size), _mm256_and_pd(_mm256_set1_pd(-0.0), sign));
+}
+static inline vd d_floor(vd x) { return _mm256_floor_pd(x); }
+static inline vd d_ceil(vd x) { return _mm256_ceil_pd(x); }
+
+static inline vq d_bits(vd x) { return _mm256_castpd_si256(x); }
+static inline vd d_of_bits(vq x) { return _mm256_castsi256_pd(x); }
+static inline vq q_set(uint64_t x) { return _mm256_set1_epi64x((long long)x); }
+static inline vq q_add(vq a, vq b) { return _mm256_add_epi64(a, b); }
+static inline vq q_and(vq a, vq b) { return _mm256_and_si256(a, b); }
+static inline vq q_or(vq a, vq b) { return _mm256_or_si256(a, b); }
+static inline vq q_xor(vq a, vq b) { return _mm256_xor_si256(a, b); }
+static inline vq q_mul(vq a, vq b) { return _mm256_mul_epu32(a, b); }
+#define q_shl(x, n) _mm256_slli_epi64(x, n)
+#define q_shr(x, n) _mm256_srli_epi64(x, n)
+static inline dm q_test(vq x, uint32_t bit)
+{
+    const vq want = q_set(bit);
+    return _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(x, want), want));
 }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)

@@ -1,6 +1,7 @@
 /// The vector vocabulary, spelled for AVX-512 (F, DQ, VL, BW) and FMA.
 ///
-/// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     fm, dm  masks of vf and vd
+/// vf  16 floats     vd  8 doubles     vi  32-bit integers, as many as vf     vq  64-bit integers, as many as vd
+/// fm, dm  masks of vf and vd
 /// An index is a 32-bit number below 2^31 (or GLINT_MISS) in a lane of either width: a double's value in vd, the raw
 /// bits in vf. Arithmetic is written with operators. fma appears in two_prod, and in the estimate of tone, whose rounding
 /// no result sees.
@@ -18,6 +19,7 @@
 typedef __m512 vf;
 typedef __m512d vd;
 typedef __m512i vi;
+typedef __m512i vq;
 typedef __mmask16 fm;
 typedef __mmask8 dm;
 
@@ -154,6 +156,30 @@ static inline vd d_mantissa(vd x)
     __m512i m = _mm512_and_si512(_mm512_castpd_si512(x), _mm512_set1_epi64(0x000fffffffffffff));
     return _mm512_castsi512_pd(_mm512_or_si512(m, _mm512_set1_epi64(0x3ff0000000000000)));
 }
+
+static inline vd d_abs(vd x) { return _mm512_abs_pd(x); }
+static inline vd d_copysign(vd size, vd sign)
+{
+    return _mm512_or_pd(_mm512_andnot_pd(_mm512_set1_pd(-0.0), size), _mm512_and_pd(_mm512_set1_pd(-0.0), sign));
+}
+static inline vd d_floor(vd x) { return _mm512_roundscale_pd(x, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); }
+static inline vd d_ceil(vd x) { return _mm512_roundscale_pd(x, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC); }
+
+static inline vq d_bits(vd x) { return _mm512_castpd_si512(x); }
+static inline vd d_of_bits(vq x) { return _mm512_castsi512_pd(x); }
+static inline vq q_set(uint64_t x) { return _mm512_set1_epi64((long long)x); }
+static inline vq q_add(vq a, vq b) { return _mm512_add_epi64(a, b); }
+static inline vq q_and(vq a, vq b) { return _mm512_and_si512(a, b); }
+static inline vq q_or(vq a, vq b) { return _mm512_or_si512(a, b); }
+static inline vq q_xor(vq a, vq b) { return _mm512_xor_si512(a, b); }
+#define q_shl(x, n) _mm512_slli_epi64(x, n)
+#define q_shr(x, n) _mm512_srli_epi64(x, n)
+
+/// The products of the lower 32 bits, without sign: 64 bits.
+static inline vq q_mul(vq a, vq b) { return _mm512_mul_epu32(a, b); }
+
+/// Lanes where the bit, one of the lower 32, is set.
+static inline dm q_test(vq x, uint32_t bit) { return _mm512_test_epi64_mask(x, q_set(bit)); }
 
 static inline vd d_two_prod(vd a, vd b, vd *error)
 {

@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 
 #include "engine/stages/simd/elementary.h"
 #include "engine/stages/stages.h"
@@ -20,6 +21,8 @@
 #define GLINT_REAL 32
 #include "engine/stages/simd/geometry_stages.h"
 
+#include "engine/stages/program/coefficients.h"
+#include "engine/stages/program/program.h"
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/film/resolve.h"
 #include "engine/stages/film/samples.h"
@@ -41,6 +44,7 @@
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
+    .program = program,
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,

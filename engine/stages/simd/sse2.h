@@ -13,6 +13,7 @@
 typedef __m128 vf;
 typedef __m128d vd;
 typedef __m128i vi;
+typedef __m128i vq;
 typedef __m128 fm;
 typedef __m128d dm;
 
@@ -142,6 +143,35 @@ static inline vd d_mantissa(vd x)
 {
     __m128i m = _mm_and_si128(_mm_castpd_si128(x), _mm_set1_epi64x(0x000fffffffffffff));
     return _mm_castsi128_pd(_mm_or_si128(m, _mm_set1_epi64x(0x3ff0000000000000)));
+}
+
+static inline vd d_abs(vd x) { return _mm_andnot_pd(_mm_set1_pd(-0.0), x); }
+static inline vd d_copysign(vd size, vd sign)
+{
+    return _mm_or_pd(_mm_andnot_pd(_mm_set1_pd(-0.0), size), _mm_and_pd(_mm_set1_pd(-0.0), sign));
+}
+static inline vd d_floor(vd x)
+{
+    const vd big = d_set(0x1p52), size = d_abs(x);
+    const vd near = d_copysign((size + big) - big, x), low = near - d_select(d_lt(x, near), d_set(1), d_set(0));
+    return d_select(d_lt(size, big), d_copysign(low, x), x);
+}
+static inline vd d_ceil(vd x) { return -d_floor(-x); }
+
+static inline vq d_bits(vd x) { return _mm_castpd_si128(x); }
+static inline vd d_of_bits(vq x) { return _mm_castsi128_pd(x); }
+static inline vq q_set(uint64_t x) { return _mm_set1_epi64x((long long)x); }
+static inline vq q_add(vq a, vq b) { return _mm_add_epi64(a, b); }
+static inline vq q_and(vq a, vq b) { return _mm_and_si128(a, b); }
+static inline vq q_or(vq a, vq b) { return _mm_or_si128(a, b); }
+static inline vq q_xor(vq a, vq b) { return _mm_xor_si128(a, b); }
+static inline vq q_mul(vq a, vq b) { return _mm_mul_epu32(a, b); }
+#define q_shl(x, n) _mm_slli_epi64(x, n)
+#define q_shr(x, n) _mm_srli_epi64(x, n)
+static inline dm q_test(vq x, uint32_t bit)
+{
+    const vq want = q_set(bit);
+    return _mm_castsi128_pd(_mm_shuffle_epi32(_mm_cmpeq_epi32(_mm_and_si128(x, want), want), 0xa0));
 }
 
 /// Dekker's product (1971), with Veltkamp's splitting: the same bits as the FMA, short of over- and underflow.

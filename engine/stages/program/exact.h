@@ -1,0 +1,67 @@
+// Operations of one or two roundings, and choices. Contract: contract/program.h.
+
+static inline vd d_round(vd x)
+{
+    const vd size = d_abs(x), whole = d_floor(size);
+    const dm up = d_le(d_set(0.5), size - whole);
+    return d_copysign(d_select(up, whole + d_set(1), whole), x);
+}
+
+static double scalar_fmod(double a, double b) { return fmod(a, b); }
+
+/// fmod: a - n b is exact where n is the quotient's whole part, or, where the quotient was rounded up to it, one more.
+static inline vd d_fmod(vd a, vd b)
+{
+    const vd size = d_abs(b), quotient = d_abs(a / b), n = d_floor(quotient);
+    const dm easy = dm_and(d_lt(quotient, d_set(0x1p52)), dm_and(d_le(d_set(0x1p-500), size), d_le(size, d_set(0x1p500))));
+    vd error, rest = d_two_prod(n, size, &error);
+    rest = (d_abs(a) - rest) - error;
+    rest = d_copysign(d_select(d_lt(rest, d_set(0)), rest + size, rest), a);
+    const unsigned hard = D_ALL & ~dm_bits(easy);
+    return hard ? d_each(rest, hard, a, b, scalar_fmod) : rest;
+}
+
+static inline vd d_mod(vd a, vd b)
+{
+    const vd zero = d_set(0), m = d_fmod(a, b);
+    const dm apart = dm_or(dm_and(d_lt(zero, m), d_lt(b, zero)), dm_and(d_lt(m, zero), d_lt(zero, b)));
+    return d_select(apart, m + b, m);
+}
+
+static inline vd d_clamp(vd x, vd low, vd high) { return d_min(d_max(x, low), high); }
+
+static inline vd d_smoothstep(vd a, vd b, vd x)
+{
+    const vd t = d_clamp((x - a) / (b - a), d_set(0), d_set(1));
+    return (t * t) * (d_set(3) - d_set(2) * t);
+}
+
+OP_KERNEL(add, OP_AB, a + b)
+OP_KERNEL(sub, OP_AB, a - b)
+OP_KERNEL(mul, OP_AB, (a * b))
+OP_KERNEL(div, OP_AB, a / b)
+OP_KERNEL(neg, OP_A, -a)
+OP_KERNEL(abs, OP_A, d_abs(a))
+OP_KERNEL(sqrt, OP_A, d_sqrt(a))
+OP_KERNEL(min, OP_AB, d_min(a, b))
+OP_KERNEL(max, OP_AB, d_max(a, b))
+OP_KERNEL(floor, OP_A, d_floor(a))
+OP_KERNEL(ceil, OP_A, d_ceil(a))
+OP_KERNEL(round, OP_A, d_round(a))
+OP_KERNEL(fract, OP_A, a - d_floor(a))
+OP_KERNEL(mod, OP_AB, d_mod(a, b))
+OP_KERNEL(sign, OP_A, d_truth(d_lt(d_set(0), a)) - d_truth(d_lt(a, d_set(0))))
+OP_KERNEL(muladd, OP_ABC, (a * b) + c)
+OP_KERNEL(submul, OP_ABC, a - b * c)
+OP_KERNEL(mulsub, OP_ABC, (a * b) - c)
+OP_KERNEL(mix, OP_ABC, a + c * (b - a))
+OP_KERNEL(less, OP_AB, d_truth(d_lt(a, b)))
+OP_KERNEL(lesseq, OP_AB, d_truth(d_le(a, b)))
+OP_KERNEL(equal, OP_AB, d_truth(d_eq(a, b)))
+OP_KERNEL(and, OP_AB, d_select(dm_or(d_eq(a, d_set(0)), d_eq(b, d_set(0))), d_set(0), d_set(1)))
+OP_KERNEL(or, OP_AB, d_select(dm_and(d_eq(a, d_set(0)), d_eq(b, d_set(0))), d_set(0), d_set(1)))
+OP_KERNEL(not, OP_A, d_truth(d_eq(a, d_set(0))))
+OP_KERNEL(select, OP_ABC, d_select(d_eq(a, d_set(0)), c, b))
+OP_KERNEL(step, OP_AB, d_select(d_lt(b, a), d_set(0), d_set(1)))
+OP_KERNEL(smoothstep, OP_ABC, d_smoothstep(a, b, c))
+OP_KERNEL(clamp, OP_ABC, d_clamp(a, b, c))

@@ -1,0 +1,129 @@
+// The stage `program`: one call for each instruction, over all lanes. Contract: contract/program.h.
+
+#include "engine/stages/program/call.h"
+#include "engine/stages/program/exact.h"
+#include "engine/stages/program/elementary.h"
+#include "engine/stages/program/noise.h"
+#include "engine/stages/program/cell.h"
+#include "engine/stages/program/texel.h"
+
+static void (*const op_kernels[GLINT_OP_COUNT])(const op_call *call) = {
+    [GLINT_OP_ADD] = op_add,
+    [GLINT_OP_SUB] = op_sub,
+    [GLINT_OP_MUL] = op_mul,
+    [GLINT_OP_DIV] = op_div,
+    [GLINT_OP_NEG] = op_neg,
+    [GLINT_OP_ABS] = op_abs,
+    [GLINT_OP_SQRT] = op_sqrt,
+    [GLINT_OP_MIN] = op_min,
+    [GLINT_OP_MAX] = op_max,
+    [GLINT_OP_FLOOR] = op_floor,
+    [GLINT_OP_CEIL] = op_ceil,
+    [GLINT_OP_ROUND] = op_round,
+    [GLINT_OP_FRACT] = op_fract,
+    [GLINT_OP_MOD] = op_mod,
+    [GLINT_OP_SIGN] = op_sign,
+    [GLINT_OP_MULADD] = op_muladd,
+    [GLINT_OP_SUBMUL] = op_submul,
+    [GLINT_OP_MULSUB] = op_mulsub,
+    [GLINT_OP_MIX] = op_mix,
+    [GLINT_OP_LESS] = op_less,
+    [GLINT_OP_LESSEQ] = op_lesseq,
+    [GLINT_OP_EQUAL] = op_equal,
+    [GLINT_OP_AND] = op_and,
+    [GLINT_OP_OR] = op_or,
+    [GLINT_OP_NOT] = op_not,
+    [GLINT_OP_SELECT] = op_select,
+    [GLINT_OP_STEP] = op_step,
+    [GLINT_OP_SMOOTHSTEP] = op_smoothstep,
+    [GLINT_OP_CLAMP] = op_clamp,
+    [GLINT_OP_SIN] = op_sin,
+    [GLINT_OP_COS] = op_cos,
+    [GLINT_OP_EXP2] = op_exp2,
+    [GLINT_OP_LOG2] = op_log2,
+    [GLINT_OP_POW] = op_pow,
+    [GLINT_OP_ATAN2] = op_atan2,
+    [GLINT_OP_ACOS] = op_acos,
+    [GLINT_OP_HIGHLIGHT] = op_highlight,
+    [GLINT_OP_NOISE] = op_noise,
+    [GLINT_OP_NOISE3] = op_noise3,
+    [GLINT_OP_CELL] = op_cell,
+    [GLINT_OP_HASH] = op_hash,
+    [GLINT_OP_PARITY] = op_parity,
+    [GLINT_OP_NOISE_SLOPE] = op_noise_slope,
+    [GLINT_OP_CELL_SLOPE] = op_cell_slope,
+    [GLINT_OP_TEXEL] = op_texel,
+    [GLINT_OP_TEXEL_SLOPE] = op_texel_slope,
+};
+
+/// Where an operand is read.
+static inline void find_operand(const glint_program_args *args, uint32_t row, const double **from, size_t *step)
+{
+    *step = ~(size_t)0;
+    if (row < GLINT_ROW_INPUT) {
+        *from = args->rows + row * GLINT_PROGRAM_LANES;
+    } else if (row < GLINT_ROW_NUMBER) {
+        *from = args->input[row - GLINT_ROW_INPUT];
+    } else {
+        *from = args->code->numbers[row - GLINT_ROW_NUMBER];
+        *step = 0;
+    }
+}
+
+/// A group of one output. Returns the lanes that are no reflectance.
+static unsigned store_group(const op_call *from, size_t lane, unsigned wanted, double *result, float *plane)
+{
+    const vd zero = d_set(0), most = d_set(GLINT_REFLECTANCE_MAX);
+    unsigned odd = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vd narrow[VF / VD];
+        for (int k = 0; k < VF / VD; k++) {
+            const int at = i + k * VD;
+            const vd v = op_in(from, 0, lane + (size_t)at);
+            if (result)
+                d_store(result + at, d_select(dm_from_bits(wanted >> at & D_ALL), v, d_load(result + at)));
+            odd |= (D_ALL & ~dm_bits(dm_and(d_le(zero, v), d_le(v, most)))) << at;
+            narrow[k] = d_select(d_lt(zero, v), d_min(v, most), zero);
+        }
+        if (plane)
+            f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), f_join(narrow[0], narrow[1]),
+                                        f_load(plane + i)));
+    }
+    return odd & wanted;
+}
+
+static void store_outputs(const glint_program_args *args)
+{
+    for (uint32_t g = 0; args->odd && g < args->group_count; g++)
+        args->odd[g] = 0;
+    for (uint32_t k = 0; k < args->code->output_count; k++) {
+        op_call from;
+        if (!args->result[k] && !args->plane[k])
+            continue;
+        find_operand(args, args->code->outputs[k], &from.in[0], &from.step[0]);
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            const size_t to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
+            const unsigned odd = store_group(&from, (size_t)g * GLINT_GROUP, args->wanted[g],
+                                             args->result[k] ? args->result[k] + to : NULL,
+                                             args->plane[k] ? args->plane[k] + to : NULL);
+            if (args->odd && args->plane[k])
+                args->odd[g] |= (uint16_t)odd;
+        }
+    }
+}
+
+static void program(const glint_program_args *args)
+{
+    const glint_program_code *code = args->code;
+    op_call call = { .lanes = (size_t)args->group_count * GLINT_GROUP };
+    for (const glint_instruction *at = code->instructions; at < code->instructions + code->length; at++) {
+        for (uint32_t k = 0; k < at->operands; k++)
+            find_operand(args, at->in[k], &call.in[k], &call.step[k]);
+        for (uint32_t k = 0; k < at->results; k++)
+            call.out[k] = args->rows + (size_t)at->out[k] * GLINT_PROGRAM_LANES;
+        if (at->op >= GLINT_OP_TEXEL)
+            call.texture = code->textures[at->texture];
+        op_kernels[at->op](&call);
+    }
+    store_outputs(args);
+}

@@ -1,0 +1,153 @@
+// Texels: where in which level a lane reads is worked out for all lanes at once, what stands there is read lane by lane.
+// Contract: contract/program.h.
+
+/// Of one level: what four texels are read and how they are weighed.
+typedef struct texel_place {
+    _Alignas(64) double x[VD], y[VD]; ///< of the first of them, -1 .. side - 1
+    _Alignas(64) double fx[VD], fy[VD];
+} texel_place;
+
+static inline vd texel_wrap(const glint_texture_table *texture, vd u)
+{
+    if (texture->wrap == GLINT_WRAP_REPEAT)
+        u = u - d_floor(u);
+    return d_min(d_max(u, d_set(0)), d_set(1));
+}
+
+/// width, height: of each lane's level.
+static void texel_locate(vd u, vd v, vd width, vd height, texel_place *at)
+{
+    const vd x = u * width - d_set(0.5), y = (d_set(1) - v) * height - d_set(0.5);
+    d_store(at->x, d_floor(x));
+    d_store(at->y, d_floor(y));
+    d_store(at->fx, x - d_floor(x));
+    d_store(at->fy, y - d_floor(y));
+}
+
+/// The index before and after a wrapping: `at` is -1 .. side.
+static inline size_t texel_index(bool repeat, int at, uint32_t side)
+{
+    if (at < 0)
+        return repeat ? side - 1 : 0;
+    if ((uint32_t)at < side)
+        return (size_t)at;
+    return repeat ? 0 : side - 1;
+}
+
+/// The four channels of the four texels of a lane: upper left, upper right, lower left, lower right.
+static inline void texel_corners(const glint_texture_table *texture, const glint_texture_level *level,
+                                 const texel_place *at, int lane, const float *corner[4])
+{
+    const bool repeat = texture->wrap == GLINT_WRAP_REPEAT;
+    const int x = (int)at->x[lane], y = (int)at->y[lane];
+    const size_t left = texel_index(repeat, x, level->width), right = texel_index(repeat, x + 1, level->width);
+    const size_t upper = texel_index(repeat, y, level->height) * level->width;
+    const size_t lower = texel_index(repeat, y + 1, level->height) * level->width;
+    corner[0] = level->texels + 4 * (upper + left);
+    corner[1] = level->texels + 4 * (upper + right);
+    corner[2] = level->texels + 4 * (lower + left);
+    corner[3] = level->texels + 4 * (lower + right);
+}
+
+static inline double mixed(double t, double a, double b) { return a + t * (b - a); }
+
+static void texel_color(const float *const corner[4], double fx, double fy, double out[4])
+{
+    for (int c = 0; c < 4; c++) {
+        const double upper = mixed(fx, (double)corner[0][c], (double)corner[1][c]);
+        const double lower = mixed(fx, (double)corner[2][c], (double)corner[3][c]);
+        out[c] = mixed(fy, upper, lower);
+    }
+}
+
+static void texel_slopes(const float *const corner[4], double fx, double fy, const glint_texture_level *level,
+                         double out[8])
+{
+    for (int c = 0; c < 4; c++) {
+        const double a = (double)corner[0][c], b = (double)corner[1][c];
+        const double d = (double)corner[2][c], e = (double)corner[3][c];
+        out[c] = (double)level->width * mixed(fy, b - a, e - d);
+        out[4 + c] = -((double)level->height * (mixed(fx, d, e) - mixed(fx, a, b)));
+    }
+}
+
+/// The level of each lane, with a fraction.
+static inline vd texel_level(const glint_texture_table *texture, vd footprint)
+{
+    const glint_texture_level *whole = &texture->levels[0];
+    const uint32_t side = whole->width < whole->height ? whole->height : whole->width;
+    const vd size = footprint * d_set(side), one = d_set(1);
+    const vd level = d_select(d_lt(one, size), d_log2(size), d_set(0));
+    return d_min(level, d_set(texture->level_count - 1));
+}
+
+/// The given lanes' level, or, with `next` 1, the one after it, by its share, on top of that.
+static void texel_add(const op_call *call, vd u, vd v, const double level[VD], unsigned lanes, int next, bool slope,
+                      double out[VD][GLINT_RESULTS_MAX])
+{
+    _Alignas(64) double width[VD] = { 0 }, height[VD] = { 0 };
+    texel_place at;
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        width[lane] = call->texture->levels[(int)level[lane] + next].width;
+        height[lane] = call->texture->levels[(int)level[lane] + next].height;
+    }
+    texel_locate(u, v, d_load(width), d_load(height), &at);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        const glint_texture_level *from = &call->texture->levels[(int)level[lane] + next];
+        const float *corner[4];
+        double made[GLINT_RESULTS_MAX];
+        texel_corners(call->texture, from, &at, lane, corner);
+        if (slope)
+            texel_slopes(corner, at.fx[lane], at.fy[lane], from, made);
+        else
+            texel_color(corner, at.fx[lane], at.fy[lane], made);
+        for (int c = 0; c < (slope ? 8 : 4); c++)
+            out[lane][c] = next ? mixed(level[lane] - (int)level[lane], out[lane][c], made[c]) : made[c];
+    }
+}
+
+static void texel_nearest(const op_call *call, vd u, vd v, bool slope, double out[VD][GLINT_RESULTS_MAX])
+{
+    const glint_texture_level *from = &call->texture->levels[0];
+    const vd width = d_set(from->width), height = d_set(from->height), one = d_set(1);
+    _Alignas(64) double x[VD], y[VD];
+    d_store(x, d_min(d_floor(u * width), width - one));
+    d_store(y, d_min(d_floor((one - v) * height), height - one));
+    for (int lane = 0; lane < VD; lane++)
+        for (size_t c = 0; c < (slope ? 8 : 4); c++)
+            out[lane][c] = slope ? 0 : (double)from->texels[4 * ((size_t)y[lane] * from->width + (size_t)x[lane]) + c];
+}
+
+INNER void texel_vector(const op_call *call, size_t i, bool slope)
+{
+    const vd u = texel_wrap(call->texture, op_in(call, 0, i)), v = texel_wrap(call->texture, op_in(call, 1, i));
+    const vd level = texel_level(call->texture, op_in(call, 2, i));
+    double out[VD][GLINT_RESULTS_MAX];
+    _Alignas(64) double levels[VD];
+    d_store(levels, level);
+    if (call->texture->filter == GLINT_FILTER_NEAREST) {
+        texel_nearest(call, u, v, slope, out);
+    } else {
+        const unsigned between = dm_bits(d_lt(d_floor(level), level));
+        texel_add(call, u, v, levels, D_ALL, 0, slope, out);
+        if (between)
+            texel_add(call, u, v, levels, between, 1, slope, out);
+    }
+    for (int c = 0; c < (slope ? 8 : 4); c++)
+        for (int lane = 0; lane < VD; lane++)
+            call->out[c][i + (size_t)lane] = out[lane][c];
+}
+
+static void op_texel(const op_call *call)
+{
+    for (size_t i = 0; i < call->lanes; i += VD)
+        texel_vector(call, i, false);
+}
+
+static void op_texel_slope(const op_call *call)
+{
+    for (size_t i = 0; i < call->lanes; i += VD)
+        texel_vector(call, i, true);
+}

@@ -1,0 +1,122 @@
+/// The stage `program`: every operation and thousands of random programs on every instruction set against the scalar
+/// reference, and programs as the builder makes them against the same without anything folded, shared or fused.
+#include "tests/engine/program_case.h"
+
+#define CASES 4000
+
+/// One operation on numbers of every kind.
+static void operation_case(glint_op op, bool odd)
+{
+    glint_builder *b;
+    glint_program *program;
+    glint_error error;
+    glint_value operand[GLINT_OPERANDS_MAX], out[GLINT_RESULTS_MAX];
+    const glint_op_info *info = glint_op_info_of(op);
+    uint32_t texture = 0;
+    assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error), GLINT_OK);
+    for (uint32_t k = 0; k < info->operands; k++)
+        glint_builder_input(b, (glint_input)k, &operand[k], &error);
+    if (op == GLINT_OP_NOISE_SLOPE)
+        glint_builder_number(b, below(4), &operand[3], &error);
+    if (op >= GLINT_OP_TEXEL)
+        glint_builder_texture(b, recipe_texture, &texture, &error);
+    glint_builder_add(b, op, texture, operand, out, &error);
+    assert_int_equal(glint_program_make(b, out, info->results, &program, &error), GLINT_OK);
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS);
+    glint_program_args args = program_inputs(program, groups, odd);
+    for (uint32_t k = 0; k < info->operands; k++)
+        for (uint32_t i = 0; i < groups * GLINT_GROUP; i++) {
+            double *x = &((double *)(uintptr_t)args.input[k])[i];
+            if (one_in(3))
+                *x = odd && one_in(3) ? either_sign(power_of_ten(-308, 308)) : either_sign(power_of_ten(-3, 3));
+            if (one_in(3))
+                *x = between(-1.1, 1.1);
+        }
+    args.wanted = masks(groups);
+    FOR_EACH_TESTED
+    {
+        for (uint32_t k = 0; k < info->results; k++)
+            args.result[k] = output(info->name, KIND_DOUBLE, groups * GLINT_GROUP);
+        running->program(&args);
+        compare_outputs("program");
+    }
+    glint_program_release(program);
+    glint_builder_destroy(b);
+}
+
+static void every_operation(int precision, bool odd)
+{
+    (void)precision;
+    for (int op = 0; op < GLINT_OP_COUNT; op++)
+        if (recipe_may_have((glint_op)op)) {
+            operation_case((glint_op)op, odd);
+            end_case();
+        }
+}
+
+static void test_operations(void **state)
+{
+    (void)state;
+    run_cases(300, 41000, every_operation);
+}
+
+/// Stored as they are and as reflectances, in groups that lie anywhere.
+static void random_program(int precision, bool odd)
+{
+    (void)precision;
+    const recipe r = random_recipe(odd);
+    glint_program *program = recipe_build(&r, false), *plain = recipe_build(&r, true);
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), places = groups + below(5);
+    uint32_t *place = input(KIND_U32, groups);
+    glint_program_args args = program_inputs(program, groups, odd);
+    double *plain_rows = input(KIND_DOUBLE, (plain->code.row_count + 1) * GLINT_PROGRAM_LANES);
+    args.wanted = masks(groups);
+    for (uint32_t g = 0; g < groups; g++)
+        place[g] = g + places - groups;
+    args.groups = one_in(2) ? place : NULL;
+    FOR_EACH_TESTED
+    {
+        double *rows = args.rows;
+        for (uint32_t k = 0; k < program->code.output_count; k++) {
+            args.result[k] = output("result", KIND_DOUBLE, places * GLINT_GROUP);
+            args.plane[k] = output("plane", KIND_FLOAT, places * GLINT_GROUP);
+        }
+        args.odd = output("odd", KIND_U16, groups);
+        args.code = &program->code;
+        running->program(&args);
+        if (running != &glint_stages_ref) {
+            compare_outputs("program");
+            continue;
+        }
+        for (uint32_t k = 0; k < program->code.output_count; k++) { // compared below with what the plain program gives
+            args.result[k] = new_array(gotten, &gotten_count, "plain", KIND_DOUBLE, places * GLINT_GROUP);
+            args.plane[k] = new_array(gotten, &gotten_count, "plain", KIND_FLOAT, places * GLINT_GROUP);
+        }
+        args.odd = new_array(gotten, &gotten_count, "plain", KIND_U16, groups);
+        args.code = &plain->code;
+        args.rows = plain_rows;
+        running->program(&args);
+        args.rows = rows;
+        compare_outputs("plain program");
+    }
+    glint_program_release(program);
+    glint_program_release(plain);
+}
+
+static void test_random_programs(void **state)
+{
+    (void)state;
+    run_cases(CASES, 42000, random_program);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_operations),
+        cmocka_unit_test(test_random_programs),
+    };
+    find_tested();
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    print_skipped();
+    return failed;
+}
