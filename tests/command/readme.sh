@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Runs every script and every command of README.md: the ```lua blocks by glint at a small size, the ```sh blocks line
-# by line, with the build's glint first in the path. The two indented make commands are what this runs under.
+# Runs every script and every command of the pages: the ```lua blocks by glint at a small size, the ```sh blocks line by line,
+# with the build's glint first in the path, each page in a folder of its own. Files that pages name must be there. The two
+# indented make commands of README.md are what this runs under.
 set -u
 root=$PWD
 build=${BUILD:-build}
@@ -9,17 +10,8 @@ work=$root/$build/tests/readme
 rm -rf "$work"
 mkdir -p "$work/bin"
 ln -s "$glint" "$work/bin/glint"
-ln -s "$root/scripts" "$work/scripts"
-
-# Each fenced block becomes a file: 01.lua, 02.sh ...
-awk -v folder="$work" '
-    /^```(lua|sh)$/ { kind = substr($0, 4); name = sprintf("%s/%02d.%s", folder, ++blocks, kind); next }
-    /^```/ { if (name) close(name); name = ""; next }
-    name { print > name }' README.md
-
-bad=0
 export PATH="$work/bin:$PATH"
-cd "$work" || exit 1
+bad=0
 
 # run NAME COMMAND...
 run() {
@@ -34,14 +26,46 @@ run() {
     fi
 }
 
-for block in [0-9]*.lua; do
-    run "$block" glint "$block" --size 64x36 --quiet
+# Runs the blocks of a page: each becomes a file, 01.lua, 02.sh ...
+run_page() {
+    local folder=$work/${1//\//_} block line
+    mkdir -p "$folder"
+    ln -s "$root/scripts" "$folder/scripts"
+    awk -v folder="$folder" '
+        /^```(lua|sh)$/ { kind = substr($0, 4); name = sprintf("%s/%02d.%s", folder, ++blocks, kind); next }
+        /^```/ { if (name) close(name); name = ""; next }
+        name { print > name }' "$root/$1"
+    cd "$folder" || exit 1
+    for block in [0-9]*.*; do
+        case $block in
+        *.lua) run "$1: $block" glint "$block" --size 64x36 --quiet ;;
+        *.sh) while read -r line; do run "${line%%#*}" bash -c "$line" </dev/null; done <"$block" ;;
+        esac
+    done
+}
+
+# Files in backquotes are named from the root, from the page's folder or from a folder below it; links from the page's folder.
+check_paths() {
+    local folder path
+    folder=$root/$(dirname "$1")
+    for path in $(grep -oE '`[a-z_/.0-9]+\.(c|h|lua|sh|md|csv|png|1)`' "$root/$1" | tr -d '`' | sort -u); do
+        case $path in *_.* | */.*) continue ;; esac
+        [ -e "$root/$path" ] || [ -e "$folder/$path" ] || git -C "$root" ls-files | grep -q "/$path\$" ||
+            { echo "not ok - $1 names $path, which is not there"; bad=1; }
+    done
+    for path in $(grep -oE '\]\([a-zA-Z_/.0-9]+\)' "$root/$1" | tr -d '])(' | sort -u); do
+        [ -e "$folder/$path" ] || { echo "not ok - $1 links to $path, which is not there"; bad=1; }
+    done
+}
+
+for page in README.md bindings/README.md engine/README.md engine/stages/README.md tests/README.md scripts/README.md \
+    .github/CONTRIBUTING.md; do
+    run_page "$page"
+    check_paths "$page"
 done
-for block in [0-9]*.sh; do
-    while read -r line; do
-        run "${line%%#*}" bash -c "$line" </dev/null
-    done <"$block"
-done
+lines=$(wc -l <"$root/README.md")
+[ "$lines" -le 200 ] || { echo "not ok - README.md has $lines lines, more than a first look takes (200)"; bad=1; }
+cd "$work/README.md" || exit 1
 
 # The study's plot is drawn as the one in README, by today's hand: the same but for what is measured.
 style() { sed -n '1,/<\/style>/p' "$1"; }
@@ -53,9 +77,5 @@ else
     bad=1
 fi
 
-# Paths that README names must be there.
-for path in $(grep -oE '`(engine|bindings|scripts|tests)/[a-z_/.0-9]+`' "$root/README.md" | tr -d '`' | sort -u); do
-    [ -e "$root/$path" ] || { echo "not ok - README names $path, which is not there"; bad=1; }
-done
 [ -e "$root/scripts/pictures/readme.png" ] || { echo "not ok - README's picture is not there"; bad=1; }
 exit $bad
