@@ -3,11 +3,12 @@
 #include "engine/program/builder.h"
 
 #include "engine/base/status.h"
-#include "engine/stages/program/coefficients.h"
 
 #include <stdlib.h>
 
 #define NOTHING UINT32_MAX
+#define LN_2 0x1.62e42fefa39efp-1
+#define ONE_OVER_LN_2 0x1.71547652b82fep+0
 
 typedef struct slope_maker {
     glint_builder *builder;
@@ -182,7 +183,7 @@ static void pass_powers(slope_maker *s, const rule_case *x)
                          where(s, there, two(s, GLINT_OP_DIV, times(s, times(s, g, b), x->r), a))));
     if (s->varies[b]) {
         const glint_value base = power ? a : two(s, GLINT_OP_MIN, a, number(s, 1));
-        const glint_value log = times(s, one(s, GLINT_OP_LOG2, base), number(s, GLINT_LN_2));
+        const glint_value log = times(s, one(s, GLINT_OP_LOG2, base), number(s, LN_2));
         give(s, b, where(s, there, times(s, times(s, g, x->r), log)));
     }
 }
@@ -193,8 +194,8 @@ static void pass_elementary(slope_maker *s, const rule_case *x)
     switch (x->op) {
     case GLINT_OP_SIN: give(s, a, times(s, g, one(s, GLINT_OP_COS, a))); break;
     case GLINT_OP_COS: give(s, a, one(s, GLINT_OP_NEG, times(s, g, one(s, GLINT_OP_SIN, a)))); break;
-    case GLINT_OP_EXP2: give(s, a, times(s, times(s, g, x->r), number(s, GLINT_LN_2))); break;
-    case GLINT_OP_LOG2: give(s, a, two(s, GLINT_OP_DIV, times(s, g, number(s, GLINT_1_LN_2)), a)); break;
+    case GLINT_OP_EXP2: give(s, a, times(s, times(s, g, x->r), number(s, LN_2))); break;
+    case GLINT_OP_LOG2: give(s, a, two(s, GLINT_OP_DIV, times(s, g, number(s, ONE_OVER_LN_2)), a)); break;
     case GLINT_OP_ATAN2: {
         const glint_value share = two(s, GLINT_OP_DIV, g, three(s, GLINT_OP_MULADD, a, a, times(s, b, b)));
         give(s, a, times(s, share, b));

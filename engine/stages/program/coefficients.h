@@ -17,8 +17,6 @@
 #define GLINT_PI_1 0x1.921fb54442d18p+1
 #define GLINT_ANGLE_MAX 0x1p20 ///< beyond it angles are reduced one by one
 #define GLINT_TAN_PI_8 0x1.a827999fcef32p-2
-#define GLINT_LN_2 0x1.62e42fefa39efp-1
-#define GLINT_1_LN_2 0x1.71547652b82fep+0
 
 // sin(x) = x + (x z) (S0 + S1 z ...), cos(x) = 1 + z (C0 + C1 z ...), z = x x, |x| <= pi/4: Taylor
 #define GLINT_SINE \

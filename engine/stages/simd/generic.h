@@ -18,6 +18,7 @@ typedef uint32_t vi __attribute__((vector_size(16), may_alias));
 typedef int32_t fm __attribute__((vector_size(16)));
 typedef int64_t dm __attribute__((vector_size(16)));
 typedef uint64_t glint_u64x2 __attribute__((vector_size(16)));
+typedef glint_u64x2 vq;
 typedef float glint_f32x2 __attribute__((vector_size(8)));
 
 static inline vf f_set(float x) { return (vf) { x, x, x, x }; }
@@ -152,6 +153,23 @@ static inline vd d_exponent(vd x)
     return (vd)((glint_u64x2)x >> 52 | 0x4330000000000000) - d_set(0x1p52 + 1023);
 }
 static inline vd d_mantissa(vd x) { return (vd)(((glint_u64x2)x & 0x000fffffffffffff) | 0x3ff0000000000000); }
+
+static inline vd d_abs(vd x) { return (vd)((dm)x & INT64_MAX); }
+static inline vd d_copysign(vd size, vd sign) { return (vd)(((dm)size & INT64_MAX) | ((dm)sign & INT64_MIN)); }
+static inline vd d_floor(vd x) { return (vd) { floor(x[0]), floor(x[1]) }; }
+static inline vd d_ceil(vd x) { return (vd) { ceil(x[0]), ceil(x[1]) }; }
+
+static inline vq d_bits(vd x) { return (vq)x; }
+static inline vd d_of_bits(vq x) { return (vd)x; }
+static inline vq q_set(uint64_t x) { return (vq) { x, x }; }
+static inline vq q_add(vq a, vq b) { return a + b; }
+static inline vq q_and(vq a, vq b) { return a & b; }
+static inline vq q_or(vq a, vq b) { return a | b; }
+static inline vq q_xor(vq a, vq b) { return a ^ b; }
+static inline vq q_mul(vq a, vq b) { return (a & UINT32_MAX) * (b & UINT32_MAX); }
+#define q_shl(x, n) ((x) << (n))
+#define q_shr(x, n) ((x) >> (n))
+static inline dm q_test(vq x, uint32_t bit) { return (x & bit) != 0; }
 
 #ifdef __FP_FAST_FMA
 static inline vd d_two_prod(vd a, vd b, vd *error)
