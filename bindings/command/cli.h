@@ -174,7 +174,7 @@ void cli_report_error(cli_output *output, int64_t index, int exit_code, const ch
 void cli_warning_event(cli_output *output, const char *message); ///< under --json
 /// When much of what the run rendered is above white.
 void cli_warn_clipped(glintL_run *run);
-/// The end of a run that did all it was asked.
+/// The end of a run that did all that was requested.
 void cli_report_end(cli_output *output);
 /// Ends a line of data and flushes it; a reader that has gone ends the run.
 void cli_end_line(cli_output *output);

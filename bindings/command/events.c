@@ -87,7 +87,7 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
     fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
-    if (record->kept) { // nobody looked
+    if (record->kept) { // its pixels were not looked at
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {
         fputs(",\"clipped\":", out);

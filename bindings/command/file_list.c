@@ -88,7 +88,7 @@ static bool check_gaps(const char *pattern, const int64_t *numbers, size_t count
     return !any;
 }
 
-// The last number that a selection asks for itself; 0: it is open, or there is none.
+// The last number that a selection names; 0: it is open, or there is none.
 static int64_t last_request(const glintL_selection *selection)
 {
     int64_t last = 0;

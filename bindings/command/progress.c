@@ -21,7 +21,7 @@ struct cli_progress {
     pthread_cond_t wake;
     bool stops, is_drawn, color;
     double start_ms;
-    int64_t done, kept, todo; // todo 0: nobody knows
+    int64_t done, kept, todo; // todo 0: not known
     char what[80]; // of a step of a study, or of a film; "": it is frames that are counted
     double done_ms, step_ms, left_ms;
     double film_ms; // when the film was begun

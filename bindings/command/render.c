@@ -44,7 +44,7 @@ static bool run_points(cli_options *options, glintL_run *run)
     return true;
 }
 
-// Calls are counted as they come: what was asked for beyond them shows at the end.
+// Calls are counted as they come: what was selected beyond them shows at the end.
 static void warn_calls(glintL_run *run)
 {
     char message[GLINTL_MESSAGE_SIZE];

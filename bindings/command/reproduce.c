@@ -23,7 +23,7 @@ typedef struct reproduction {
     char reason[GLINTL_MESSAGE_SIZE];
 } reproduction;
 
-// ---- Asking for the frame ----
+// ---- Requesting the frame ----
 
 static const char *text_of(const reproduction *r, const char *keyword)
 {
@@ -95,8 +95,8 @@ static bool check_options(const glintL_request *request, char *message)
     return true;
 }
 
-// Fills what the run is asked. 0 or an exit code, with the message.
-static int ask(reproduction *r, glintL_run *run, char *message)
+// Fills the request of the run. 0 or an exit code, with the message.
+static int make_request(reproduction *r, glintL_run *run, char *message)
 {
     const char *frame = text_of(r, "glint:frame"), *temporary = getenv("TMPDIR");
     glintL_request *request = &run->request;
@@ -293,7 +293,7 @@ int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run)
     if (glint_picture_read(r.file, false, &r.picture, &error))
         snprintf(message, sizeof message, "%s", error.message);
     else
-        code = ask(&r, run, message);
+        code = make_request(&r, run, message);
     if (!code)
         code = render(&r, options, run, message);
     if (!code) {

@@ -1,4 +1,4 @@
-// --untrusted: a script that nobody has read runs in a process of its own, which may compute, and write pictures into one
+// --untrusted: a script that is not trusted runs in a process of its own, which may compute, and write pictures into one
 // folder. The process is the wall (rlimits, Landlock, seccomp); the small Lua of untrusted_lua.c is comfort behind it.
 #include "bindings/command/untrusted.h"
 
@@ -174,7 +174,7 @@ static bool close_calls(char *message)
         if (!code) // signals to itself: it ends by the one that ended it
             code =
                 seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1, SCMP_A0(SCMP_CMP_EQ, (uint64_t)getpid()));
-        if (!code) // what is asked of a terminal
+        if (!code) // queries of a terminal
             code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(ioctl), 1, SCMP_A1(SCMP_CMP_EQ, TCGETS));
         if (!code)
             code = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(ioctl), 1, SCMP_A1(SCMP_CMP_EQ, TIOCGWINSZ));

@@ -1,4 +1,4 @@
-/// --untrusted: a script of somebody else's. Private to bindings/.
+/// --untrusted: a script that is not trusted. Private to bindings/.
 #ifndef GLINT_UNTRUSTED_H
 #define GLINT_UNTRUSTED_H
 
@@ -9,7 +9,7 @@
 /// Goes on in a child process behind walls: it has no files but the script and a folder for its pictures, no network, no
 /// other processes, and limits of memory and time. True: this is the child. False: the child has ended (or could not
 /// begin, which is reported), *code is the exit code and *signal_number the signal that ended it, or 0.
-/// To be called before there are threads. options->asked.folder is the folder, owned by it; NULL: none.
+/// To be called before there are threads. options->request.folder is the folder, owned by it; NULL: none.
 bool cli_untrusted_begin(cli_options *options, cli_output *output, int *code, int *signal_number);
 
 // ---- untrusted_lua.c ----

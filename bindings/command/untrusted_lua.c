@@ -165,7 +165,7 @@ void cli_open_untrusted(lua_State *L, glintL_run *run)
     lua_setfield(L, 1, "setmetatable");
     lua_pushvalue(L, 1);
     lua_setfield(L, 1, LUA_GNAME);
-    // Strings have the methods of the small library, and a metatable that nobody reaches.
+    // Strings have the methods of the small library, and a metatable out of reach.
     lua_pushliteral(L, "");
     lua_getmetatable(L, -1);
     lua_getfield(L, 1, LUA_STRLIBNAME);

@@ -1,7 +1,7 @@
 /// glint cost SCRIPT: what each setting of a scene costs in time and how far its picture is from a converged one.
 /// Private to bindings/.
 ///
-///   cost.c          the command: what is asked, the phases of a study in order
+///   cost.c          the command: its options, the phases of a study in order
 ///   cost/values.c   the values of a knob
 ///   cost/knobs.c    the table of knobs: a setting that trades accuracy for time is a row of it
 ///   cost/scene.c    a scene whose materials and lights a knob edits, and gets back as they were
@@ -92,7 +92,7 @@ typedef struct cost_value {
     double number;
 } cost_value;
 
-/// What a knob is asked about.
+/// What a knob is applied to.
 typedef struct cost_subject {
     const glint_plan *plan; ///< of the frame as the script has it
     const glintL_render *render;
@@ -128,7 +128,7 @@ typedef struct cost_knob {
     cost_source source; ///< where its error comes from
     bool combines; ///< it trades accuracy for time: combinations with others are looked at
     bool is_other_time; ///< its times are of another thing than a whole frame: no point of the front
-    /// Asks the plan whether the scene responds, and lists the values.
+    /// Tells by the plan whether the scene responds, and lists the values.
     void (*list)(const cost_subject *subject, cost_values *out);
     glint_status (*apply)(cost_draft *draft, cost_value value, glint_error *error);
 } cost_knob;
@@ -203,7 +203,7 @@ typedef struct cost_study {
     const cli_options *options;
     cost_scene scene;
     const glintL_render *own;
-    cost_values values[COST_KNOBS_MAX]; ///< of each knob; count 0: not asked, or the scene does not respond
+    cost_values values[COST_KNOBS_MAX]; ///< of each knob; count 0: not selected, or the scene does not respond
     glint_renderer *renderers[2][2]; ///< [keeps stages][counts work]; owned, but for the one that is the run's
     cost_case *cases; ///< number 0 is the base
     int case_count;

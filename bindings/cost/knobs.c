@@ -1,5 +1,5 @@
 // The knobs of glint cost. A setting that trades accuracy for time is a row of the table at the end: its name, what it
-// asks of the plan, its values, how a value is applied, and where its error comes from. A new stage adds its row.
+// reads of the plan, its values, how a value is applied, and where its error comes from. A new stage adds its row.
 #include <string.h>
 
 #include "bindings/cost/cost.h"

@@ -41,7 +41,7 @@ static void read_fields(lua_State *L, int index, glintL_render *render)
     }
 }
 
-// Whether the numbered call is one of those to render. Every Nth, since nobody knows how many there will be.
+// Whether the numbered call is one of those to render. Every Nth, since their number is not known.
 static bool is_selected(glintL_run *run)
 {
     const glintL_selection *selection = &run->request.selection;

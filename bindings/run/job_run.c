@@ -87,7 +87,7 @@ static int run_protected(lua_State *L)
     return 0;
 }
 
-// Runs the list at `list`, which holds the job at 1 alone, as `asked`; the run and the job are as before afterwards.
+// Runs the list at `list`, which holds the job at 1 alone, as `request` says; the run and the job are as before afterwards.
 // Does not raise.
 static bool run_as(lua_State *L, glintL_run *run, int list, const glintL_request *request, const glintL_render *render)
 {

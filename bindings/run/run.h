@@ -1,4 +1,4 @@
-/// The job side of the binding: what a run is asked, and the walk of its frames. Private to bindings/.
+/// The job side of the binding: what is requested of a run, and the walk of its frames. Private to bindings/.
 ///
 ///   selection.c       which frames: --frames, --shard
 ///   render_options.c  the fields of scene:render{}, animations and sweeps that describe a frame
@@ -54,7 +54,7 @@ bool glintL_selection_has(const glintL_selection *selection, int64_t number);
 int64_t glintL_selection_count(const glintL_selection *selection, int64_t first, int64_t last);
 /// Which of the selected frames of 1 .. total are this shard's, counted from 1: *from .. *to, empty when to < from.
 void glintL_selection_part(const glintL_selection *selection, int64_t first, int64_t last, int64_t *from, int64_t *to);
-/// Whether frames outside 1 .. total were asked for by number; writes the warning.
+/// Whether frames outside 1 .. total were named by number; writes the warning.
 bool glintL_selection_outside(const glintL_selection *selection, int64_t total, char message[GLINTL_MESSAGE_SIZE]);
 
 // ---- render_options.c ----
@@ -94,7 +94,7 @@ bool glintL_name_is_special(const char *path); ///< an existing pipe or device
 bool glintL_name_is_plain(const char *name, size_t length);
 #define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.', at most 200 bytes)"
 
-// ---- What is asked ----
+// ---- The request ----
 
 typedef struct glintL_set { ///< --set name=text
     const char *name;
@@ -173,13 +173,13 @@ typedef struct glintL_reporter {
     void (*warn)(void *context, const char *message);
     /// A sheet or film was made of `count` frames.
     void (*figure)(void *context, const char *kind, const char *path, int64_t count);
-    /// A film is being made: `done` of its `count` frames are in it. NULL: nobody asks.
+    /// A film is being made: `done` of its `count` frames are in it. May be NULL.
     void (*making)(void *context, const char *path, size_t done, size_t count);
-    /// A picture is rendered, with its linear beauty pass when the run keeps images. NULL: nobody looks.
+    /// A picture is rendered, with its linear beauty pass when the run keeps images. May be NULL.
     void (*image)(void *context, const glintL_run *run, const glintL_work *work);
     /// The script is about to run in `L`, whose libraries are open. May raise. NULL: nothing to do.
     void (*prepare)(void *context, lua_State *L);
-    /// The engine is about to read a file that the script names: a mesh. NULL: nobody asks.
+    /// The engine is about to read a file that the script names: a mesh. May be NULL.
     void (*reads)(void *context, const char *path);
 } glintL_reporter;
 
@@ -202,11 +202,11 @@ struct glintL_run {
     glintL_reporter reporter;
 
     glint_renderer *renderer;
-    int renderer_threads; ///< as asked
+    int renderer_threads; ///< as requested
     glint_writer *writer;
     glintL_record *head, *tail; ///< in the order of frames
     int64_t files_pending;
-    glintL_work *deferred; ///< the first call, while nobody knows whether there is a second
+    glintL_work *deferred; ///< the first call, while it is not known whether there is a second
     char *params_text; ///< owned; "name=value" lines
     struct glintL_film *films; ///< owned; made when all their frames are there
 
@@ -235,7 +235,7 @@ struct glintL_run {
 
 glintL_run *glintL_run_create(void);
 void glintL_run_destroy(glintL_run *run);
-/// As if nothing had run yet: counts, failure, parameters. Renderer, writer, what is asked and a signal stay.
+/// As if nothing had run yet: counts, failure, parameters. Renderer, writer, request and a signal stay.
 void glintL_run_reset(glintL_run *run);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
@@ -310,7 +310,7 @@ typedef struct glintL_provenance {
     glint_text text[GLINTL_TEXT_COUNT];
     size_t count;
     char frame[24]; ///< number within the script
-    char options[1024]; ///< "name=value" lines: what the frame was asked to be
+    char options[1024]; ///< "name=value" lines: the options of the frame
     char *sweep; ///< owned; "name=value" lines: the axes of glint.sweep, then of --sweep; NULL: none
 } glintL_provenance;
 
@@ -383,7 +383,7 @@ bool glintL_jobs_explain(lua_State *L, int index, glintL_run *run);
 
 /// Settles the name of the first call now that the script has ended. False: the run has failed.
 bool glintL_call_settle(glintL_run *run);
-/// Raises the error that ends a script which has shown what was asked of it (its parameters, one frame's plan).
+/// Raises the error that ends a script which has shown what was requested (its parameters, one frame's plan).
 int glintL_stop_script(lua_State *L);
 void glintL_open_kept_image(lua_State *L);
 /// Pushes an image that is rendered only when the script looks at it; it gets its plan, which it owns, later.

@@ -66,7 +66,7 @@ void glintL_sweep_check_sheet(lua_State *L, int index);
 /// Checks the sheet of the sweep at `index` against its axes, once it has both; raises.
 void glintL_sweep_check_together(lua_State *L, int index);
 /// Draws the sheet of the sweep at `index` whose frames are numbered from `first`, when it has one. Waits for the frames
-/// to be written. `partial`: some were not asked for, and missing ones are a warning. False: the run has failed.
+/// to be written. `partial`: some were not selected, and missing ones are a warning. False: the run has failed.
 bool glintL_sweep_make_sheet(lua_State *L, int index, const glintL_naming *naming, int64_t first, bool partial);
 
 #endif

@@ -10,7 +10,7 @@
 
 #include "bindings/run/run.h"
 
-#define MEMBERS_MAX 1000 // of a scene, and of its groups: above that nobody looks for a single shape
+#define MEMBERS_MAX 1000 // of a scene, and of its groups: above that single shapes are not looked for
 #define LIGHTS_MAX 64
 #define UNSEEN_MAX 1000 // shapes that a run keeps a line about; more are not told of
 

@@ -213,7 +213,7 @@ typedef struct glintL_render {
 
 // ---- run.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
 
-/// What the command line (or :run{}) asked. Strings are owned by the run.
+/// What the command line (or :run{}) requests. Strings are owned by the run.
 typedef struct glintL_run glintL_run;
 glintL_run *glintL_get_run(lua_State *L);
 /// scene:render{...} of the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its

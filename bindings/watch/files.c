@@ -239,7 +239,7 @@ static void wait_for_events(watch_files *files, int timeout_ms)
     struct pollfd wait[2] = { { .fd = files->notify, .events = POLLIN }, { .fd = files->wake, .events = POLLIN } };
     pthread_mutex_unlock(&files->lock);
     if (poll(wait, 2, timeout_ms) > 0 && wait[1].revents && read(files->wake, &count, sizeof count) < 0)
-        count = 0; // somebody else has read it; there is nobody else
+        count = 0; // read already, which only this thread does
     pthread_mutex_lock(&files->lock);
 }
 

@@ -7,7 +7,7 @@
 //   POST /TOKEN/set         body: name=value, as --set takes it
 //   POST /TOKEN/reset       parameters as the command line has them
 //
-// Anything else is 404, whoever asks. The token is random, so other users and pages of other sites cannot ask.
+// Anything else is 404. The token is random, so that other users and pages of other sites cannot guess it.
 #include <arpa/inet.h>
 #include <errno.h>
 #include <poll.h>

@@ -14,8 +14,8 @@
 
 // ---- What the terminal says ----
 
-// Asks whether it knows the kitty protocol, then what it is: every terminal answers the second.
-static size_t ask(int terminal, char *answer, size_t room)
+// Queries whether it knows the kitty protocol, then what it is: every terminal answers the second.
+static size_t query(int terminal, char *answer, size_t room)
 {
     static const char question[] = "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\\033[c";
     struct pollfd wait = { .fd = terminal, .events = POLLIN };
@@ -51,12 +51,12 @@ static watch_graphics find_graphics(void)
     int terminal = open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
     if (terminal < 0)
         return WATCH_BLOCKS;
-    bool foreground = tcgetpgrp(terminal) == getpgrp(); // in the background nobody may ask
+    bool foreground = tcgetpgrp(terminal) == getpgrp(); // a query from the background would stop the process
     if (foreground && tcgetattr(terminal, &before) == 0) {
         raw = before;
         raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
         tcsetattr(terminal, TCSANOW, &raw);
-        answer[ask(terminal, answer, sizeof answer)] = '\0';
+        answer[query(terminal, answer, sizeof answer)] = '\0';
         tcsetattr(terminal, TCSAFLUSH, &before);
     }
     close(terminal);

@@ -26,7 +26,7 @@ typedef struct watcher {
     cli_output *output;
     glintL_run *run;
     cli_script script;
-    watch_asks asks;
+    watch_requests requests;
     watch_files *files;
     watch_server *server; // NULL: no page
     watch_terminal terminal;
@@ -35,9 +35,9 @@ typedef struct watcher {
     size_t given_count;
     quality now;
     bool shown; // this run has shown a picture
-    bool has_begun; // what is shown now was asked for later than at the start
+    bool has_begun; // what is shown now was requested later than at the start
     bool differs; // the picture in full is another than the preview
-    double since_ms; // when what is shown now was asked for; 0: at the start
+    double since_ms; // when what is shown now was requested; 0: at the start
     int64_t pictures, frame, frames; // pictures: shown so far
     int64_t calls; // of scene:render in the script; the frames of its jobs are numbered after them
     int width, height;
@@ -156,8 +156,8 @@ static void around_render(void *context, const glintL_run *run, bool begins)
 {
     watcher *w = context;
     if (begins) {
-        watch_asks_begin_render(&w->asks, run->renderer, w->now == PREVIEW);
-    } else if (watch_asks_end_render(&w->asks)) { // a cancelled renderer is of no use any more
+        watch_requests_begin_render(&w->requests, run->renderer, w->now == PREVIEW);
+    } else if (watch_requests_end_render(&w->requests)) { // a cancelled renderer is of no use any more
         glint_renderer_destroy(w->run->renderer);
         w->run->renderer = NULL;
     }
@@ -200,7 +200,7 @@ static watcher *current; // for the hook, which gets no more than the state
 static void look(lua_State *L, lua_Debug *where)
 {
     (void)where;
-    if (atomic_load(&current->asks.supersedes))
+    if (atomic_load(&current->requests.supersedes))
         luaL_error(L, "changed meanwhile");
 }
 
@@ -291,8 +291,8 @@ static bool run_script(watcher *w, quality now)
     cli_close_script(&w->script);
     free_run_sets(w);
     begin_run(w, now);
-    select_frame(w, watch_asks_frame(&w->asks, 0));
-    if (!watch_asks_sets(&w->asks, w->given, w->given_count, &run->request.sets, &run->request.set_count))
+    select_frame(w, watch_requests_frame(&w->requests, 0));
+    if (!watch_requests_sets(&w->requests, w->given, w->given_count, &run->request.sets, &run->request.set_count))
         return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
     watch_files_begin(w->files);
     watch_files_add(w->files, w->options->script, false);
@@ -307,21 +307,21 @@ static bool run_jobs(watcher *w)
 {
     w->frames = w->calls + w->script.frames;
     w->run->count = w->calls;
-    select_frame(w, watch_asks_frame(&w->asks, w->frames));
+    select_frame(w, watch_requests_frame(&w->requests, w->frames));
     return cli_run_jobs(&w->script, w->run);
 }
 
-// A loop of calls counts itself while it runs. When it is shorter than the frame asked for, its last is shown.
+// A loop of calls counts itself while it runs. When it is shorter than the requested frame, its last is shown.
 static bool run_calls(watcher *w, quality now)
 {
     w->frames = w->run->count;
     if (w->shown || w->frames == 0)
         return true;
-    watch_asks_frame(&w->asks, w->frames);
+    watch_requests_frame(&w->requests, w->frames);
     return run_script(w, now);
 }
 
-// Shows the wanted frame in one quality. False: an error, or something newer was asked for.
+// Shows the wanted frame in one quality. False: an error, or something newer was requested.
 static bool render(watcher *w, quality now, bool run_again)
 {
     bool good = true, has_jobs = w->script.state && w->script.has_jobs;
@@ -347,13 +347,13 @@ static void answer(watcher *w, bool run_again)
 {
     w->differs = false;
     bool good = render(w, PREVIEW, run_again);
-    if (good && w->differs && !watch_asks_waiting(&w->asks) && !w->run->interrupted)
+    if (good && w->differs && !watch_requests_waiting(&w->requests) && !w->run->interrupted)
         good = render(w, FULL, false);
     if (good && *w->error) { // good again, with nothing new to show
         w->error[0] = '\0';
         publish(w, NULL);
     }
-    if (!good && !watch_asks_waiting(&w->asks) && !w->run->interrupted)
+    if (!good && !watch_requests_waiting(&w->requests) && !w->run->interrupted)
         tell_error(w, w->run->message);
 }
 
@@ -362,13 +362,13 @@ static void answer(watcher *w, bool run_again)
 static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
 {
     glintL_run *run = w->run;
-    if (!watch_asks_open(&w->asks, message))
+    if (!watch_requests_open(&w->requests, message))
         return false;
-    w->files = watch_files_create(watch_asks_change, &w->asks, message);
+    w->files = watch_files_create(watch_requests_change, &w->requests, message);
     if (!w->files)
         return false;
     if (w->options->http_port >= 0) {
-        watch_orders orders = watch_asks_orders(&w->asks);
+        watch_orders orders = watch_requests_orders(&w->requests);
         w->server = watch_server_create(w->options->http_port, &orders, message);
         if (!w->server)
             return false;
@@ -384,7 +384,7 @@ static bool open_watcher(watcher *w, char message[GLINTL_MESSAGE_SIZE])
     run->reporter = (glintL_reporter) {
         .context = w, .rendering = around_render, .warn = warn, .image = show, .prepare = prepare, .reads = note_mesh
     };
-    w->asks.wanted = w->options->frame;
+    w->requests.wanted = w->options->frame;
     return true;
 }
 
@@ -394,7 +394,7 @@ static void close_watcher(watcher *w)
     free_run_sets(w);
     watch_files_destroy(w->files);
     watch_server_destroy(w->server);
-    watch_asks_close(&w->asks);
+    watch_requests_close(&w->requests);
     watch_terminal_close(&w->terminal);
     glint_renderer_destroy(w->renderers[PREVIEW]);
     glint_renderer_destroy(w->renderers[FULL]);
@@ -419,10 +419,10 @@ static void tell_start(watcher *w)
     cli_end_line(w->output);
 }
 
-static bool take_ask(watcher *w, watch_ask *ask)
+static bool take_request(watcher *w, watch_request *request)
 {
-    bool good = watch_asks_take(&w->asks, w->run, ask);
-    w->since_ms = good ? ask->since_ms : 0;
+    bool good = watch_requests_take(&w->requests, w->run, request);
+    w->since_ms = good ? request->since_ms : 0;
     return good;
 }
 
@@ -430,7 +430,7 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
 {
     watcher w = { .options = options, .output = output, .run = run };
     char message[GLINTL_MESSAGE_SIZE];
-    watch_ask ask = { .run_again = true };
+    watch_request request = { .run_again = true };
     struct stat info;
     const bool is_folder = stat(options->script, &info) == 0 && S_ISDIR(info.st_mode);
     if (is_folder || access(options->script, R_OK) != 0) {
@@ -444,10 +444,10 @@ int cli_watch(cli_options *options, cli_output *output, glintL_run *run)
         w.since_ms = glintL_now_ms();
         tell_start(&w);
         do {
-            tell_change(&w, ask.changed);
-            answer(&w, ask.run_again);
+            tell_change(&w, request.changed);
+            answer(&w, request.run_again);
             w.has_begun = true;
-        } while (!output->data_failed && !run->interrupted && take_ask(&w, &ask));
+        } while (!output->data_failed && !run->interrupted && take_request(&w, &request));
     }
     close_watcher(&w);
     if (!good)

@@ -1,7 +1,7 @@
 /// glint watch: a script rendered again at every save. Private to bindings/.
 ///
 ///   watch.c           the loop: runs the script, renders a preview and then the picture in full
-///   watch/asks.c      what the other threads ask of the loop, and the overrides of parameters
+///   watch/requests.c      what the other threads request of the loop, and the overrides of parameters
 ///   watch/files.c     a thread that waits for changes of files; watch_track.lua tells it which
 ///   watch/client.c    one connection to that server: its request, and what is still to be sent
 ///   watch/http.c      the server of the page, a thread with a poll loop; watch_page.html is the page
@@ -60,7 +60,7 @@ size_t watch_files_count(watch_files *files);
 
 typedef struct watch_server watch_server;
 
-/// What the page asks. Called in the server's thread; the texts are borrowed.
+/// What the page requests. Called in the server's thread; the texts are borrowed.
 typedef struct watch_orders {
     void *context;
     void (*frame)(void *context, int64_t frame);
@@ -84,7 +84,7 @@ typedef struct watch_terminal {
     bool full_color, color, is_fresh; ///< is_fresh: nothing is drawn yet
 } watch_terminal;
 
-/// What stderr's terminal says of itself; `name` as in --terminal, NULL: ask it.
+/// What stderr's terminal says of itself; `name` as in --terminal, NULL: query it.
 void watch_terminal_open(watch_terminal *terminal, const char *name, bool color);
 void watch_terminal_close(watch_terminal *terminal);
 /// Draws a picture with a line below it. `picture` is the same one as PNG.
@@ -92,42 +92,43 @@ void watch_terminal_draw(watch_terminal *terminal, const glint_image *image, con
                          const char *line);
 void watch_terminal_error(watch_terminal *terminal, const char *message);
 
-// ---- watch/asks.c ----
+// ---- watch/requests.c ----
 
 /// What is to be done next, told by the threads of the files and of the server, and by signals.
-typedef struct watch_asks {
+typedef struct watch_requests {
     pthread_mutex_t lock;
     int wake; ///< eventfd
     bool script, frame; ///< the script runs again; another frame is shown
     char changed[GLINTL_PATH_SIZE]; ///< a file that has; "": none
-    double since_ms; ///< of the first ask that waits
+    double since_ms; ///< of the first request that waits
     int64_t wanted; ///< frame to show
     glintL_set *overrides; ///< owned with their texts
     size_t override_count;
     atomic_bool supersedes; ///< the running script is of no use any more
     glint_renderer *rendering; ///< what may be cancelled; else NULL
     bool is_preview, cancelled;
-} watch_asks;
+} watch_requests;
 
-bool watch_asks_open(watch_asks *asks, char message[GLINTL_MESSAGE_SIZE]);
-void watch_asks_close(watch_asks *asks);
-void watch_asks_change(void *asks, const char *path); ///< of watch_files
-watch_orders watch_asks_orders(watch_asks *asks);
-typedef struct watch_ask {
+bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_SIZE]);
+void watch_requests_close(watch_requests *requests);
+void watch_requests_change(void *requests, const char *path); ///< of watch_files
+watch_orders watch_requests_orders(watch_requests *requests);
+typedef struct watch_request {
     bool run_again; ///< the script; else only another frame is shown
-    double since_ms; ///< when it was asked
+    double since_ms; ///< when it was made
     char changed[GLINTL_PATH_SIZE]; ///< the file whose change it is; "": none
-} watch_ask;
+} watch_request;
 
-/// Waits until something is asked, takes it and returns true; false: a signal came.
-bool watch_asks_take(watch_asks *asks, const glintL_run *run, watch_ask *out);
-bool watch_asks_waiting(watch_asks *asks);
-int64_t watch_asks_frame(watch_asks *asks, int64_t last); ///< the wanted frame, at most `last`
-/// Around a render: what is asked meanwhile cancels it, unless it is a preview that will end soon.
-void watch_asks_begin_render(watch_asks *asks, glint_renderer *renderer, bool is_preview);
-bool watch_asks_end_render(watch_asks *asks); ///< true: it was cancelled, and its renderer is spent
+/// Waits for a request, takes it and returns true; false: a signal came.
+bool watch_requests_take(watch_requests *requests, const glintL_run *run, watch_request *out);
+bool watch_requests_waiting(watch_requests *requests);
+int64_t watch_requests_frame(watch_requests *requests, int64_t last); ///< the wanted frame, at most `last`
+/// Around a render: what is requested meanwhile cancels it, unless it is a preview that will end soon.
+void watch_requests_begin_render(watch_requests *requests, glint_renderer *renderer, bool is_preview);
+bool watch_requests_end_render(watch_requests *requests); ///< true: it was cancelled, and its renderer is spent
 /// The sets of the command line with the overrides: owned by the caller, with texts of their own. False: out of memory.
-bool watch_asks_sets(watch_asks *asks, const glintL_set *given, size_t given_count, glintL_set **out, size_t *count);
+bool watch_requests_sets(watch_requests *requests, const glintL_set *given, size_t given_count, glintL_set **out,
+                         size_t *count);
 void watch_free_sets(glintL_set *sets, size_t count);
 
 #endif

@@ -13,7 +13,7 @@
 typedef struct maker {
     uint32_t count;
     glint_ssa_node *nodes; ///< the builder's, of which some are fused
-    uint32_t *uses; ///< of each value, by what is needed; of a result that nobody reads 0
+    uint32_t *uses; ///< of each value, by what is needed; of a result that is not read 0
     bool *needed; ///< first results
     uint32_t *order, length; ///< first results of operations, as they are run
     uint32_t *last; ///< position in the order where a value is read last; UNUSED: nowhere; length: it is an output

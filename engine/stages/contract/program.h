@@ -18,7 +18,7 @@ typedef struct glint_instruction { ///< no padding: its bytes are hashed
     uint16_t texture; ///< index into the textures; 0 where the operation has none
     uint8_t operands, results; ///< how many the operation has
     uint16_t in[GLINT_OPERANDS_MAX]; ///< beyond the operation's operands 0
-    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, a results nobody reads included; beyond its results 0
+    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, results that are not read included; beyond its results 0
 } glint_instruction;
 
 /// A picture at one size. Texels are red, green, blue, alpha, linear, row by row from the top.

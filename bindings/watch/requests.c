@@ -1,0 +1,206 @@
+// What the threads of glint watch request of its loop: a changed file, a frame to show, a parameter's value.
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "bindings/watch/watch.h"
+
+bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_SIZE])
+{
+    memset(requests, 0, sizeof *requests);
+    requests->wanted = 1;
+    requests->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (requests->wake < 0) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "watch: eventfd: %s", strerror(errno));
+        return false;
+    }
+    pthread_mutex_init(&requests->lock, NULL);
+    return true;
+}
+
+void watch_free_sets(glintL_set *sets, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        free((char *)sets[i].name);
+        free((char *)sets[i].text);
+    }
+    free(sets);
+}
+
+void watch_requests_close(watch_requests *requests)
+{
+    close(requests->wake);
+    watch_free_sets(requests->overrides, requests->override_count);
+    pthread_mutex_destroy(&requests->lock);
+}
+
+// The lock is held. A preview ends soon, and showing it beats never showing any while a slider moves.
+static void post(watch_requests *requests, bool cancels_preview)
+{
+    uint64_t one = 1;
+    if (requests->since_ms == 0)
+        requests->since_ms = glintL_now_ms();
+    if (requests->rendering && (!requests->is_preview || cancels_preview)) {
+        glint_renderer_cancel(requests->rendering);
+        requests->cancelled = true;
+    }
+    if (write(requests->wake, &one, sizeof one) < 0)
+        return; // the counter is full: it is awake
+}
+
+void watch_requests_change(void *context, const char *path)
+{
+    watch_requests *requests = context;
+    pthread_mutex_lock(&requests->lock);
+    requests->script = true;
+    snprintf(requests->changed, sizeof requests->changed, "%s", path);
+    atomic_store(&requests->supersedes, true);
+    post(requests, true);
+    pthread_mutex_unlock(&requests->lock);
+}
+
+static void request_frame(void *context, int64_t frame)
+{
+    watch_requests *requests = context;
+    pthread_mutex_lock(&requests->lock);
+    requests->frame = requests->frame || frame != requests->wanted;
+    if (frame != requests->wanted) {
+        requests->wanted = frame;
+        post(requests, false);
+    }
+    pthread_mutex_unlock(&requests->lock);
+}
+
+// Puts a set in the place of one of the same name, or behind. False: out of memory.
+static bool put(glintL_set **sets, size_t *count, const char *name, const char *text, bool is_known)
+{
+    size_t at = 0;
+    while (at < *count && strcmp((*sets)[at].name, name) != 0)
+        at++;
+    char *copy = strdup(text), *own = at < *count ? NULL : strdup(name);
+    glintL_set *grown = at < *count ? *sets : realloc(*sets, (at + 1) * sizeof *grown);
+    if (grown)
+        *sets = grown;
+    if (!copy || !grown || (at == *count && !own)) {
+        free(copy);
+        free(own);
+        return false;
+    }
+    if (at < *count)
+        free((char *)grown[at].text);
+    else
+        grown[(*count)++].name = own;
+    grown[at].text = copy;
+    grown[at].is_known = is_known;
+    return true;
+}
+
+static void request_set(void *context, const char *name, const char *text)
+{
+    watch_requests *requests = context;
+    pthread_mutex_lock(&requests->lock);
+    if (put(&requests->overrides, &requests->override_count, name, text, false)) {
+        requests->script = true;
+        post(requests, false);
+    }
+    pthread_mutex_unlock(&requests->lock);
+}
+
+static void request_reset(void *context)
+{
+    watch_requests *requests = context;
+    pthread_mutex_lock(&requests->lock);
+    watch_free_sets(requests->overrides, requests->override_count);
+    requests->overrides = NULL;
+    requests->override_count = 0;
+    requests->script = true;
+    post(requests, false);
+    pthread_mutex_unlock(&requests->lock);
+}
+
+watch_orders watch_requests_orders(watch_requests *requests)
+{
+    return (watch_orders) { requests, request_frame, request_set, request_reset };
+}
+
+bool watch_requests_waiting(watch_requests *requests)
+{
+    pthread_mutex_lock(&requests->lock);
+    bool waiting = requests->script || requests->frame;
+    pthread_mutex_unlock(&requests->lock);
+    return waiting;
+}
+
+bool watch_requests_take(watch_requests *requests, const glintL_run *run, watch_request *out)
+{
+    struct pollfd wait = { .fd = requests->wake, .events = POLLIN };
+    uint64_t count;
+    while (!watch_requests_waiting(requests)) {
+        // A signal between the test and poll() is seen at the next wake, a second later at most.
+        if (run->interrupted)
+            return false;
+        if (poll(&wait, 1, 1000) > 0 && read(requests->wake, &count, sizeof count) < 0 && errno != EAGAIN)
+            return false;
+    }
+    pthread_mutex_lock(&requests->lock);
+    *out = (watch_request) { .run_again = requests->script, .since_ms = requests->since_ms };
+    memcpy(out->changed, requests->changed, sizeof out->changed);
+    requests->changed[0] = '\0';
+    requests->script = requests->frame = false;
+    requests->since_ms = 0;
+    atomic_store(&requests->supersedes, false);
+    pthread_mutex_unlock(&requests->lock);
+    return !run->interrupted;
+}
+
+int64_t watch_requests_frame(watch_requests *requests, int64_t last)
+{
+    pthread_mutex_lock(&requests->lock);
+    if (last > 0 && requests->wanted > last)
+        requests->wanted = last;
+    int64_t wanted = requests->wanted;
+    pthread_mutex_unlock(&requests->lock);
+    return wanted;
+}
+
+void watch_requests_begin_render(watch_requests *requests, glint_renderer *renderer, bool is_preview)
+{
+    pthread_mutex_lock(&requests->lock);
+    requests->rendering = renderer;
+    requests->is_preview = is_preview;
+    if ((requests->script || requests->frame) && !is_preview) { // requested since the loop looked
+        glint_renderer_cancel(renderer);
+        requests->cancelled = true;
+    }
+    pthread_mutex_unlock(&requests->lock);
+}
+
+bool watch_requests_end_render(watch_requests *requests)
+{
+    pthread_mutex_lock(&requests->lock);
+    bool cancelled = requests->cancelled;
+    requests->rendering = NULL;
+    requests->cancelled = false;
+    pthread_mutex_unlock(&requests->lock);
+    return cancelled;
+}
+
+bool watch_requests_sets(watch_requests *requests, const glintL_set *given, size_t given_count, glintL_set **out,
+                         size_t *count)
+{
+    bool good = true;
+    *out = NULL;
+    *count = 0;
+    pthread_mutex_lock(&requests->lock);
+    for (size_t i = 0; i < given_count && good; i++)
+        good = put(out, count, given[i].name, given[i].text, false);
+    for (size_t i = 0; i < requests->override_count && good; i++) // the script may have lost the parameter since
+        good = put(out, count, requests->overrides[i].name, requests->overrides[i].text, true);
+    pthread_mutex_unlock(&requests->lock);
+    if (!good)
+        watch_free_sets(*out, *count);
+    return good;
+}
