@@ -169,6 +169,11 @@ typedef struct glint_op_info {
 
 /// What is known of an operation; static. NULL: there is no such operation.
 const glint_op_info *glint_op_info_of(glint_op op);
+/// One operation on plain numbers, with the bits that a program has. Any thread.
+/// op        not a texture's.
+/// operands  as many as the operation has.
+/// results   written: as many as the operation has.
+void glint_op_apply(glint_op op, const double *operands, double *results);
 /// "p.x", "light.r"; static. NULL: there is no such input.
 const char *glint_input_name(glint_input input);
 
@@ -222,6 +227,9 @@ size_t glint_program_output_count(const glint_program *program);
 size_t glint_program_length(const glint_program *program); ///< instructions; 0 where all outputs are inputs or numbers
 size_t glint_program_rows(const glint_program *program); ///< intermediate values at the same time
 bool glint_program_reads(const glint_program *program, glint_input input);
+/// A hash of the operations, of what they read and of the textures, but not of the numbers: programs that differ in numbers
+/// alone have the same.
+void glint_program_structure(const glint_program *program, uint64_t key[2]);
 /// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
 bool glint_program_constant(const glint_program *program, double *outputs);
 /// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers can be read back as they

@@ -168,6 +168,13 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
         results[k] = lanes[k][0];
 }
 
+void glint_op_apply(glint_op op, const double *operands, double *results)
+{
+    double all[GLINT_RESULTS_MAX];
+    glint_fold(op, NULL, operands, all);
+    memcpy(results, all, glint_op_info_of(op)->results * sizeof *all);
+}
+
 /// Replaces an operation on numbers by its results.
 static glint_status fold(glint_builder *builder, glint_op op, uint32_t texture, const glint_value *operands,
                          glint_value *out, glint_error *error)

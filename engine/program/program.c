@@ -38,6 +38,12 @@ bool glint_program_reads(const glint_program *program, glint_input input)
     return (unsigned)input < GLINT_INPUT_COUNT && (program->inputs >> input & 1);
 }
 
+void glint_program_structure(const glint_program *program, uint64_t key[2])
+{
+    key[0] = program->structure.high;
+    key[1] = program->structure.low;
+}
+
 bool glint_program_constant(const glint_program *program, double *outputs)
 {
     const glint_program_code *code = &program->code;
