@@ -41,6 +41,7 @@ layer engine/sheet engine/file $base
 
 layer bindings/value
 layer bindings/run bindings/value
+layer bindings/pattern bindings/run bindings/value
 layer bindings/lua bindings/run bindings/value
 layer bindings/command bindings/run bindings/value scripts/lib scripts/lib/gr
 layer bindings/cost bindings/command bindings/run

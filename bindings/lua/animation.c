@@ -223,6 +223,11 @@ void glintL_job_build(lua_State *L, int index, int64_t n)
     } else {
         lua_pop(L, 1);
     }
+    lua_getiuservalue(L, index, GLINTL_JOB_SCENE);
+    const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
+    if (scene)
+        glintL_trace_scene(L, scene);
+    lua_pop(L, 1);
 }
 
 static void list_fields(lua_State *L, const char *name, const glintL_field *own)

@@ -29,6 +29,7 @@ static void add_child(lua_State *L, int index, int value, const char *path)
 int glintL_group_add(lua_State *L)
 {
     check_group(L, 1);
+    glintL_refuse_within_trace(L, "group.add");
     if (lua_gettop(L) != 2)
         return glintL_error(L, "group.add: one shape expected, got %d", lua_gettop(L) - 1);
     add_child(L, 1, 2, "group.add");
@@ -40,6 +41,7 @@ int glintL_group_remove(lua_State *L)
     char key[32];
     glint_error error;
     glint_shape *group = check_group(L, 1), *child = glintL_test_object(L, 2, GLINTL_SHAPE);
+    glintL_refuse_within_trace(L, "group.remove");
     if (!child)
         glintL_refuse(L, 2, "group.remove", "shape");
     snprintf(key, sizeof key, "%p", (void *)child);

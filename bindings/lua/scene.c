@@ -136,6 +136,7 @@ static void add_member(lua_State *L, int index, int value, const char *path)
 static int add(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
+    glintL_refuse_within_trace(L, "scene.add");
     if (lua_gettop(L) > 2) // an object that is passed over would be missing from the picture
         return glintL_error(L, "scene.add: one object expected, got %d", lua_gettop(L) - 1);
     lua_settop(L, 2);
@@ -150,6 +151,7 @@ static int drop(lua_State *L)
     glint_status status;
     glint_error error;
     glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
+    glintL_refuse_within_trace(L, "scene.remove");
     check_member(L, 2, "scene.remove", &shape, &light);
     if (shape)
         status = glint_scene_remove_shape(scene, shape, &error);
@@ -222,6 +224,7 @@ static int cast(lua_State *L)
 static int render(lua_State *L)
 {
     glintL_check_object(L, 1, GLINTL_SCENE);
+    glintL_refuse_within_trace(L, "scene.render");
     lua_settop(L, 2);
     glintL_box *box = glintL_new_box(L, GLINTL_SCENE);
     box->object = glint_scene_retain(glintL_check_object(L, 1, GLINTL_SCENE));

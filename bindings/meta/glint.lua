@@ -37,6 +37,26 @@ local vector = {}
 ---@return number z
 function vector:unpack() end
 
+---@param b glint.values
+---@return number
+function vector:dot(b) end
+
+---@param b glint.values
+---@return glint.triple
+function vector:cross(b) end
+
+---@return number
+function vector:length() end
+
+--- Divided by its length.
+---@return glint.triple
+function vector:unit() end
+
+--- A direction that arrives, after a mirror of that unit normal: d - 2 (n.d) n.
+---@param n glint.values
+---@return glint.triple
+function vector:reflect(n) end
+
 --- A vector, or an array of exactly three numbers. Read from an object it is always a vector.
 ---@alias glint.vec3 glint.vector|number[]
 
@@ -652,15 +672,428 @@ function sweep:run(options) end
 ---@return glint.sweep
 function glint.sweep(fields) end
 
--- ---- Numbers that are the same on every machine ----
+-- ---- Patterns and shaders ----
 
----@param radians number
----@return number
-function glint.sin(radians) end
+-- A function that says what a material is at a point, or what one light leaves there. It is called once a frame, with
+-- symbols in place of numbers; what it does to them is written down as a program, which runs at the speed of a kernel
+-- with the bits of plain Lua. Loops and calls are unrolled; variables outside may change from frame to frame. What is
+-- not known yet cannot be asked: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, and say what to write. `if`,
+-- `and` and `or` cannot raise; a function of a new form is run by plain Lua at 64 points, too, and must give what the
+-- program gives. A branch that none of them takes is not seen.
 
----@param radians number
+--- Three numbers or symbols: p, s.n, and what is made of them. `a + b`, `a - b`, `a * b`, `a / b`, `a % b`, `a // b`, `a ^ b`
+--- and `-a` work component by component; either side may be a number or a symbol. Where an operation takes a vector, a
+--- table with x, y and z or a list of three will do.
+---@class glint.triple
+---@field x number  also v[1]
+---@field y number  also v[2]
+---@field z number  also v[3]
+---@field r number  the same as x
+---@field g number  the same as y
+---@field b number  the same as z
+---@field u number  the same as x, of s.uv
+---@field v number  the same as y, of s.uv
+---@operator add(glint.values): glint.triple
+---@operator sub(glint.values): glint.triple
+---@operator mul(glint.values): glint.triple
+---@operator div(glint.values): glint.triple
+---@operator mod(glint.values): glint.triple
+---@operator idiv(glint.values): glint.triple
+---@operator pow(glint.values): glint.triple
+---@operator unm: glint.triple
+local triple = {}
+
+---@param b glint.values
 ---@return number
-function glint.cos(radians) end
+function triple:dot(b) end
+
+---@param b glint.values
+---@return glint.triple
+function triple:cross(b) end
+
+---@return number
+function triple:length() end
+
+--- Divided by its length.
+---@return glint.triple
+function triple:unit() end
+
+--- A direction that arrives, after a mirror of that unit normal: d - 2 (n.d) n.
+---@param n glint.values
+---@return glint.triple
+function triple:reflect(n) end
+
+---@return number x
+---@return number y
+---@return number z
+function triple:unpack() end
+
+--- A number, a symbol, a vector, a table {x, y, z} of numbers and symbols, or (of operations by name) the name of a colour.
+---@alias glint.values glint.triple|glint.vector|number[]|number|string
+
+--- What a function knows of a point.
+---@class glint.surroundings
+---@field p glint.triple  the point in its shape's own space, before the shape's transform and those of its groups. On planes with an axis as normal and on faces of boxes that component is the face's own number exactly
+---@field world glint.triple  the point in world space
+---@field n glint.triple  the geometric normal, unit, on the viewer's side
+---@field v glint.triple  towards the eye, unit
+---@field uv glint.triple  coordinates on the surface, u and v: world units along a plane, 0 .. 1 around and along spheres, cylinders and cones, on its face of a box, `vt` of a mesh
+---@field footprint number  width of the pixel at the point, world units; 0 where it is not known
+---@field uv_footprint number  the same in units of u and v
+---@field l glint.triple  of shaders: towards the light, unit; n.l > 0
+---@field light glint.triple  of shaders: colour x intensity x attenuation of the light; shadows are the engine's
+---@field distance number  of shaders: to the light, world units
+---@field kd glint.triple  of shaders: the material's diffuse
+---@field ks glint.triple  of shaders: the material's specular
+---@field shininess number  of shaders: the material's
+
+--- A colour or a number at each point. Of a material's fields diffuse, specular, mirror, transmission, shininess,
+--- roughness and bump take one. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
+--- calls the function. NaN and what is below 0 count as 0.
+---@class glint.pattern
+local pattern = {}
+
+--- The colour at a point, by the frame's kernel; of one number, three times that. Values of `s` go by their names.
+---@param at table  {p = {x, y, z}, uv = {u, v}, n = ..., ...}
+---@return glint.vector
+function pattern:evaluate(at) end
+
+---@param f fun(p: glint.triple, s: glint.surroundings): glint.values
+---@return glint.pattern
+function glint.pattern(f) end
+
+--- What one light leaves at each point: the diffuse part, and the specular one or nothing. It is a material's `model`, and
+--- called where n.l > 0. Ambient light stays the engine's.
+---@class glint.shader
+local shader = {}
+
+--- Both parts at a point, by the frame's kernel.
+---@param at table  {n = {x, y, z}, l = ..., v = ..., light = ..., kd = ..., ...}
+---@return glint.reflection
+function shader:evaluate(at) end
+
+---@param f fun(s: glint.surroundings): glint.values, glint.values?
+---@return glint.shader
+function glint.shader(f) end
+
+---@class glint.texture_fields
+---@field file string  a PNG file, 8 or 16 bits
+---@field wrap? "repeat"|"clamp"  what is beyond 0 .. 1. Default "repeat"
+---@field filter? "bilinear"|"nearest"  between four texels, of a picture made smaller as the footprint calls for; or the texel itself. Default "bilinear"
+---@field transfer? "srgb"|"linear"  how its codes are meant. Default "srgb", but for a picture that says that it is linear
+
+--- A picture. Inside a pattern it is called: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) is a vector of red,
+--- green and blue, with alpha as its field `a`; (0, 0) is the lower left corner, (1, 1) the upper right one, and without a
+--- footprint the picture is taken as it is. As the value of a material's field it lies there by the shape's uv.
+---@class glint.texture: glint.texture_fields
+---@field width integer  pixels
+---@field height integer  pixels
+local texture = {}
+
+--- The colour at {uv = {u, v}}, by the frame's kernel.
+---@param at table
+---@return glint.vector
+function texture:evaluate(at) end
+
+---@param fields glint.texture_fields
+---@return glint.texture
+function glint.texture(fields) end
+
+-- ---- Operations ----
+
+-- Of numbers, with the same bits on every machine; inside a pattern of symbols, with the same bits again. Those of
+-- numbers take vectors, too, component by component; a number with a vector counts for each component. The results of
+-- less and its like are 1 and 0; as a condition every number but 0 is true.
+
+---@param a glint.values
+---@param b glint.values
+---@return number
+function glint.dot(a, b) end
+
+---@param a glint.values
+---@param b glint.values
+---@return glint.triple
+function glint.cross(a, b) end
+
+---@param a glint.values
+---@return number
+function glint.length(a) end
+
+---@param a glint.values
+---@return glint.triple
+function glint.unit(a) end
+
+--- d - 2 (n.d) n.
+---@param d glint.values
+---@param n glint.values
+---@return glint.triple
+function glint.reflect(d, n) end
+
+--- Of three numbers or symbols, or of one value for all of them.
+---@param x glint.values
+---@param y? number
+---@param z? number
+---@return glint.triple
+function glint.vector(x, y, z) end
+
+--- a + b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.add(a, b) end
+
+--- a - b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.sub(a, b) end
+
+--- a b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.mul(a, b) end
+
+--- a / b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.div(a, b) end
+
+--- -a.
+---@param a glint.values
+---@return any
+function glint.neg(a) end
+
+---@param a glint.values
+---@return any
+function glint.abs(a) end
+
+---@param a glint.values
+---@return any
+function glint.sqrt(a) end
+
+--- a < b ? a : b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.min(a, b) end
+
+--- a > b ? a : b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.max(a, b) end
+
+---@param a glint.values
+---@return any
+function glint.floor(a) end
+
+---@param a glint.values
+---@return any
+function glint.ceil(a) end
+
+--- To the nearest whole number, halves away from 0.
+---@param a glint.values
+---@return any
+function glint.round(a) end
+
+--- a - floor(a).
+---@param a glint.values
+---@return any
+function glint.fract(a) end
+
+--- a % b of Lua on floats.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.mod(a, b) end
+
+--- 1, 0 or -1.
+---@param a glint.values
+---@return any
+function glint.sign(a) end
+
+--- a b + c.
+---@param a glint.values
+---@param b glint.values
+---@param c glint.values
+---@return any
+function glint.muladd(a, b, c) end
+
+--- a - b c.
+---@param a glint.values
+---@param b glint.values
+---@param c glint.values
+---@return any
+function glint.submul(a, b, c) end
+
+--- a b - c.
+---@param a glint.values
+---@param b glint.values
+---@param c glint.values
+---@return any
+function glint.mulsub(a, b, c) end
+
+--- a + t (b - a).
+---@param a glint.values
+---@param b glint.values
+---@param t glint.values
+---@return any
+function glint.mix(a, b, t) end
+
+--- a < b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.less(a, b) end
+
+--- a <= b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.lesseq(a, b) end
+
+--- a == b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.equal(a, b) end
+
+--- Both; a word of Lua, so that it is written glint["and"](a, b).
+---@param a glint.values
+---@param b glint.values
+---@return any
+glint["and"] = function(a, b) end
+
+--- Either.
+---@param a glint.values
+---@param b glint.values
+---@return any
+glint["or"] = function(a, b) end
+
+--- 1 of 0, else 0.
+---@param a glint.values
+---@return any
+glint["not"] = function(a) end
+
+--- a where c is true, else b. Both are computed.
+---@param c glint.values
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.select(c, a, b) end
+
+--- x < edge ? 0 : 1.
+---@param edge glint.values
+---@param x glint.values
+---@return any
+function glint.step(edge, x) end
+
+--- From 0 at a to 1 at b, t t (3 - 2 t).
+---@param a glint.values
+---@param b glint.values
+---@param x glint.values
+---@return any
+function glint.smoothstep(a, b, x) end
+
+--- Not below a, not above b.
+---@param x glint.values
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.clamp(x, a, b) end
+
+--- Of radians.
+---@param a glint.values
+---@return any
+function glint.sin(a) end
+
+--- Of radians.
+---@param a glint.values
+---@return any
+function glint.cos(a) end
+
+--- 2 ^ a.
+---@param a glint.values
+---@return any
+function glint.exp2(a) end
+
+---@param a glint.values
+---@return any
+function glint.log2(a) end
+
+--- a ^ b.
+---@param a glint.values
+---@param b glint.values
+---@return any
+function glint.pow(a, b) end
+
+--- Radians, -pi .. pi.
+---@param y glint.values
+---@param x glint.values
+---@return any
+function glint.atan2(y, x) end
+
+--- Radians, 0 .. pi.
+---@param a glint.values
+---@return any
+function glint.acos(a) end
+
+--- cosine ^ shininess as the built-in models have it, 0 where the cosine is not above 0.
+---@param cosine glint.values
+---@param shininess glint.values
+---@return any
+function glint.highlight(cosine, shininess) end
+
+--- Gradient noise: smooth, -1 .. 1, 0 at whole numbers. Of a vector, or of x, y and z.
+---@param p glint.values
+---@return number
+function glint.noise(p, y, z) end
+
+--- Three of them, unlike.
+---@param p glint.values
+---@return glint.triple
+function glint.noise3(p, y, z) end
+
+--- Distances to the nearest and to the next of points of which each unit cube has one.
+---@param p glint.values
+---@return number first
+---@return number second
+function glint.cell(p, y, z) end
+
+--- A number of [0, 1) that has nothing to do with that of other places.
+---@param p glint.values
+---@return number
+function glint.hash(p, y, z) end
+
+--- (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size.
+---@param p glint.values
+---@return number
+function glint.parity(p, y, z) end
+
+--- The parity of a place: 0 or 1. With a footprint, a number or a vector, the mean over a box of that width around p; a
+--- component that is a whole number lies in its surface and has no mean.
+---@param p glint.values
+---@param footprint? glint.values
+---@return number
+function glint.checker(p, footprint) end
+
+--- The parity of floor(x), with a footprint its mean over that width.
+---@param x number
+---@param footprint? number
+---@return number
+function glint.stripe(x, footprint) end
+
+--- Bricks of one by one unit in x and y, every other row moved by half a brick: 1 on a brick, 0 on the mortar along its left
+--- and lower sides. With a footprint, the mean over that width.
+---@param p glint.values
+---@param mortar? number  its width. Default 0.1
+---@param footprint? number
+---@return number
+function glint.brick(p, mortar, footprint) end
+
+-- ---- Numbers alone ----
 
 ---@param radians number
 ---@return number
@@ -674,10 +1107,5 @@ function glint.exp(x) end
 ---@param x number
 ---@return number
 function glint.log(x) end
-
----@param x number
----@param y number
----@return number
-function glint.pow(x, y) end
 
 return glint

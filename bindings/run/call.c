@@ -219,6 +219,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
     run->call_count++;
     if (run->deferred && !glintL_call_settle(run))
         return raise_failure(L, run);
+    glintL_trace_scene(L, scene);
     if (run->mode == GLINTL_MODE_EXPLAIN && run->count == run->explain_frame) {
         glint_error error;
         if (glint_plan_create(scene, &render.desc, &run->explain_plan, &error))

@@ -13,7 +13,13 @@ void glintL_push_position(lua_State *L)
 {
     lua_Debug where;
     for (int level = 0; lua_getstack(L, level, &where); level++) {
-        lua_getinfo(L, "Sl", &where);
+        lua_getinfo(L, "Slf", &where);
+        const char *place = glintL_traced_place(L, lua_tocfunction(L, -1));
+        lua_pop(L, 1);
+        if (place) { // the line is gone with a tail call
+            lua_pushstring(L, place);
+            return;
+        }
         if (where.currentline > 0) {
             lua_pushfstring(L, "%s:%d: ", where.short_src, where.currentline);
             return;
@@ -153,6 +159,8 @@ void glintL_read_three(lua_State *L, int index, const char *path, const char *ex
         memcpy(out, vector, sizeof read);
         return;
     }
+    if (glintL_to_numbers(L, index, out))
+        return;
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, expected);
     index = lua_absindex(L, index);

@@ -78,6 +78,18 @@ static void push_value(lua_State *L, const glintL_class *class, const glintL_fie
         push_object_field(L, class, field, &desc);
 }
 
+// The pattern in the place of a field's value.
+static bool push_source(lua_State *L, const glintL_class *class, const glintL_field *field, const void *object)
+{
+    description desc;
+    if (!field->program_offset)
+        return false;
+    if (glintL_push_kept(L, 1, field->name))
+        return true;
+    class->get(object, &desc);
+    return field->follows && !desc.bytes[field->set_offset] && glintL_push_kept(L, 1, field->follows);
+}
+
 static int close_object(lua_State *L);
 
 static int read_member(lua_State *L)
@@ -106,7 +118,9 @@ static int read_member(lua_State *L)
         return 1;
     }
     int part = component(variant, name);
-    if (field) {
+    if (field && push_source(L, class, field, object)) {
+        return 1;
+    } else if (field) {
         push_value(L, class, field, object);
     } else if (part >= 0) {
         push_value(L, class, glintL_find_field(variant->fields, variant->place), object);
@@ -175,6 +189,7 @@ static int write_member(lua_State *L)
     const glintL_field *field = NULL;
     description desc;
     glint_error error;
+    glintL_refuse_within_trace(L, variant->name);
     if (part < 0)
         field = writable_field(L, class, variant, name);
     class->get(object, &desc);
@@ -189,6 +204,8 @@ static int write_member(lua_State *L)
     glintL_check_status(L, variant->name, &error, class->set(object, &desc, &error));
     if (field && field->kind == GLINTL_OBJECT)
         glintL_keep(L, 1, field->name, 3);
+    if (field && field->program_offset)
+        glintL_keep_source(L, 1, field, 3);
     if (field && class->accepted)
         class->accepted(L, field, &desc);
     return 0;
@@ -202,6 +219,8 @@ static int close_object(lua_State *L)
     glintL_box *box = luaL_testudata(L, 1, class->type);
     if (!box)
         return glintL_refuse(L, 1, "", class->type + sizeof "glint." - 1);
+    if (!lua_toboolean(L, lua_upvalueindex(2))) // not by the collector
+        glintL_keep_closed(L, 1);
     void *object = box->object;
     box->object = NULL; // first: nothing can come between
     if (object)
@@ -265,9 +284,11 @@ void glintL_open_class(lua_State *L, const glintL_class *class)
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);
+    lua_pushboolean(L, true);
+    lua_pushcclosure(L, close_object, 2);
+    lua_setfield(L, -2, "__gc");
+    lua_pushlightuserdata(L, (void *)(uintptr_t) class);
     lua_pushcclosure(L, close_object, 1);
-    lua_pushvalue(L, -1);
-    lua_setfield(L, -3, "__gc");
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "__close");
     lua_pushlightuserdata(L, (void *)(uintptr_t) class);

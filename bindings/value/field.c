@@ -210,6 +210,15 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     bool set = true;
     snprintf(full, sizeof full, "%s%s%s", path, *path ? "." : "", field->name);
     index = lua_absindex(L, index);
+    if (field->program_offset) {
+        glint_program *const none = NULL;
+        memcpy(base + field->program_offset, &none, sizeof none);
+        if (glintL_is_source(L, index, field->kind == GLINTL_ENUM)) {
+            if (field->set_offset)
+                memcpy(base + field->set_offset, &set, sizeof set);
+            return;
+        }
+    }
     if (field->set_offset && !field->required && lua_isnil(L, index)) {
         set = false;
         memcpy(base + field->set_offset, &set, sizeof set);
@@ -251,6 +260,10 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         break;
     case GLINTL_NESTED:
         read_nested(L, index, full, field, desc);
+        break;
+    case GLINTL_PROGRAM:
+        if (!lua_isnil(L, index))
+            glintL_refuse(L, index, full, "pattern");
         break;
     case GLINTL_OTHER:
         break;
@@ -363,6 +376,7 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
     case GLINTL_NESTED:
         push_nested(L, field, desc);
         break;
+    case GLINTL_PROGRAM: // what the userdata keeps is read before
     case GLINTL_OTHER:
         lua_pushnil(L);
         break;

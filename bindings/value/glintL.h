@@ -25,6 +25,7 @@ typedef enum glintL_kind {
     GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
     GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
     GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
+    GLINTL_PROGRAM, ///< a pattern or nil; see program_offset
     GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
@@ -38,6 +39,10 @@ typedef struct glintL_field {
     bool required; ///< in the constructor's table
     const struct glintL_field *nested; ///< GLINTL_NESTED
     void (*begin_nested)(void *desc); ///< GLINTL_NESTED: writes the defaults of its fields
+    /// Of a glint_program * that stands in the number's place where the field has a pattern (an enum: a shader); read as
+    /// NULL, and set when a frame is planned. The object's userdata keeps the pattern under the field's name. 0: none
+    size_t program_offset;
+    const char *follows; ///< the field whose pattern it has while it is not set, or NULL
 } glintL_field;
 
 /// Pushes "<file>:<line>: " of the Lua code that called; "" where there is none.
@@ -88,6 +93,43 @@ void glintL_push_transform(lua_State *L, const glint_transform *t);
 /// NULL when the value at index is not one.
 const glint_transform *glintL_to_transform(lua_State *L, int index);
 
+// ---- bindings/pattern: patterns and shaders ----
+
+#define GLINTL_PATTERN "glint.pattern"
+#define GLINTL_SHADER "glint.shader"
+#define GLINTL_TEXTURE "glint.texture"
+
+/// Whether a field can have the value's program: of a shader's field, a shader; of others, a pattern or a texture.
+bool glintL_is_source(lua_State *L, int index, bool is_shader);
+/// Whether the value takes part in a program: a symbol, or a triple of numbers or symbols.
+bool glintL_is_traced(lua_State *L, int index);
+/// The three numbers of a triple; false: it is none, or has symbols.
+bool glintL_to_numbers(lua_State *L, int index, double out[3]);
+/// The operator of the values at 1 and 2 where one of them is traced; pushes the result.
+int glintL_operator(lua_State *L, glint_op op);
+/// Methods of vectors and triples, and glint.dot and so on.
+int glintL_dot(lua_State *L);
+int glintL_cross(lua_State *L);
+int glintL_length(lua_State *L);
+int glintL_unit(lua_State *L);
+int glintL_reflect(lua_State *L);
+/// Where the function begins that is traced: "scene.lua:12: ". NULL: `reached`, met on the way up from an error, is not
+/// the C function that calls it.
+const char *glintL_traced_place(lua_State *L, lua_CFunction reached);
+/// Raises while a pattern's function runs: `what` would change the scene meanwhile.
+void glintL_refuse_within_trace(lua_State *L, const char *what);
+/// Keeps the patterns among the fields of the constructor's table at `table` with the object whose userdata is at `index`.
+void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields);
+/// The same for one field, whose value is at `value`.
+void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value);
+/// The userdata at `index` is about to be closed by the script: its patterns stay with the object.
+void glintL_keep_closed(lua_State *L, int index);
+/// Calls the functions of the patterns of all materials in the scene, and gives the materials their programs.
+void glintL_trace_scene(lua_State *L, const glint_scene *scene);
+/// Calls those of one material, whose userdata is at `index`.
+void glintL_trace_material(lua_State *L, int index);
+void glintL_open_patterns(lua_State *L);
+
 // ---- object.c: boxes ----
 
 #define GLINTL_MATERIAL "glint.material"
@@ -119,6 +161,8 @@ void glintL_push_remembered(lua_State *L, const void *object);
 void glintL_push_object(lua_State *L, const char *type, void *object);
 /// Keeps the value at `value` alive as long as the userdata at `index`, under `key` (the name of a field).
 void glintL_keep(lua_State *L, int index, const char *key, int value);
+/// Pushes what is kept under `key`; false, and nothing pushed, when there is nothing.
+bool glintL_push_kept(lua_State *L, int index, const char *key);
 /// Tells the collector that the userdata just made stands for so many bytes it cannot see, so that a loop that drops
 /// images does not fill the memory. May run the collector.
 void glintL_charge(lua_State *L, size_t bytes);

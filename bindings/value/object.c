@@ -118,6 +118,19 @@ void glintL_keep(lua_State *L, int index, const char *key, int value)
     lua_pop(L, 1);
 }
 
+bool glintL_push_kept(lua_State *L, int index, const char *key)
+{
+    luaL_checkstack(L, 3, "object");
+    if (lua_getiuservalue(L, index, 1) == LUA_TTABLE) {
+        lua_getfield(L, -1, key);
+        lua_remove(L, -2);
+    }
+    const bool found = !lua_isnil(L, -1);
+    if (!found)
+        lua_pop(L, 1);
+    return found;
+}
+
 void glintL_charge(lua_State *L, size_t bytes)
 {
     size_t kib = bytes / 1024;

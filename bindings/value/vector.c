@@ -34,9 +34,14 @@ static void read_operand(lua_State *L, int index, bool allow_number, double out[
         glintL_read_three(L, index, "vector", allow_number ? "vector or number" : "vector", out);
 }
 
+// Such a sum or product is one of patterns, see bindings/pattern.
+static bool has_traced(lua_State *L) { return glintL_is_traced(L, 1) || glintL_is_traced(L, 2); }
+
 static int add(lua_State *L)
 {
     double a[3], b[3];
+    if (has_traced(L))
+        return glintL_operator(L, GLINT_OP_ADD);
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
     glintL_push_vector(L, (const double[3]) { a[0] + b[0], a[1] + b[1], a[2] + b[2] });
@@ -46,6 +51,8 @@ static int add(lua_State *L)
 static int subtract(lua_State *L)
 {
     double a[3], b[3];
+    if (has_traced(L))
+        return glintL_operator(L, GLINT_OP_SUB);
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
     glintL_push_vector(L, (const double[3]) { a[0] - b[0], a[1] - b[1], a[2] - b[2] });
@@ -55,6 +62,8 @@ static int subtract(lua_State *L)
 static int multiply(lua_State *L)
 {
     double a[3], b[3];
+    if (has_traced(L))
+        return glintL_operator(L, GLINT_OP_MUL);
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
     glintL_push_vector(L, (const double[3]) { a[0] * b[0], a[1] * b[1], a[2] * b[2] });
@@ -64,6 +73,8 @@ static int multiply(lua_State *L)
 static int divide(lua_State *L)
 {
     double a[3], b[3];
+    if (has_traced(L))
+        return glintL_operator(L, GLINT_OP_DIV);
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
     glintL_push_vector(L, (const double[3]) { a[0] / b[0], a[1] / b[1], a[2] / b[2] });
@@ -98,6 +109,16 @@ static int unpack(lua_State *L)
     return 3;
 }
 
+static const luaL_Reg METHODS[] = {
+    { "unpack", unpack },
+    { "dot", glintL_dot },
+    { "cross", glintL_cross },
+    { "length", glintL_length },
+    { "unit", glintL_unit },
+    { "reflect", glintL_reflect },
+    { NULL, NULL },
+};
+
 static int to_string(lua_State *L)
 {
     char text[96];
@@ -105,6 +126,19 @@ static int to_string(lua_State *L)
     snprintf(text, sizeof text, "{%.14g, %.14g, %.14g}", v[0], v[1], v[2]);
     lua_pushstring(L, text);
     return 1;
+}
+
+static int read_method(lua_State *L, const char *name)
+{
+    const char *near = NULL;
+    for (const luaL_Reg *method = METHODS; method->name; method++) {
+        near = glintL_nearer(name, near, method->name);
+        if (strcmp(name, method->name) == 0) {
+            lua_pushcfunction(L, method->func);
+            return 1;
+        }
+    }
+    return glintL_no_such_field(L, "vector", name, near);
 }
 
 static int read_field(lua_State *L)
@@ -125,10 +159,8 @@ static int read_field(lua_State *L)
     const char *letter = *name && !name[1] ? strchr(letters, *name) : NULL;
     if (letter)
         lua_pushnumber(L, v[(letter - letters) % 3]);
-    else if (strcmp(name, "unpack") == 0)
-        lua_pushcfunction(L, unpack);
     else
-        return glintL_no_such_field(L, "vector", name, glintL_nearer(name, NULL, "unpack"));
+        return read_method(L, name);
     return 1;
 }
 
@@ -156,7 +188,6 @@ void glintL_open_vector(lua_State *L)
         { "__newindex", write_field },
         { NULL, NULL },
     };
-    static const luaL_Reg methods[] = { { "unpack", unpack }, { NULL, NULL } };
     static const glintL_field fields[] = {
         { .name = "x" }, { .name = "y" }, { .name = "z" },  { .name = "r" },
         { .name = "g" }, { .name = "b" }, { .name = NULL },
@@ -167,5 +198,5 @@ void glintL_open_vector(lua_State *L)
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
     lua_pop(L, 1);
-    glintL_list_variant(L, &variant, methods);
+    glintL_list_variant(L, &variant, METHODS);
 }

@@ -12,6 +12,7 @@ local function read_meta(path)
     local name, parents = line:match "^%-%-%-@class ([%w_.]+):?%s*(.*)$"
     local field = line:match "^%-%-%-@field ([%w_]+)%??%s+%S"
     local variable = line:match "^local ([%w_]+) = {}$"
+    local word = line:match '^glint%["(%w+)"%] = function%(' -- a word of Lua
     local owner, separator, member = line:match "^function ([%w_]+)([.:])([%w_]+)%("
     if name then
       current = { fields = {}, methods = {}, parents = {} }
@@ -24,6 +25,8 @@ local function read_meta(path)
       current.fields[field] = number
     elseif variable then
       owners[variable] = current
+    elseif word then
+      functions[word] = number
     elseif owner == "glint" and separator == "." then
       functions[member] = number
     elseif owner then

@@ -1,0 +1,227 @@
+// Materials whose fields hold patterns. The userdata of a material keeps them; the material itself gets their programs
+// each time that a frame is planned.
+#include "bindings/pattern/pattern.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char PATTERNED; // its address is the registry's key of the userdata that keep patterns, as weak keys
+static const char CLOSED; // and of those that a script has closed, of materials that may still be in a scene
+
+void glintL_refuse_within_trace(lua_State *L, const char *what)
+{
+    if (glintL_current_trace(L))
+        glintL_error(L, "%s: the function of a pattern changes no objects; it may be called any number of times", what);
+}
+
+// ---- Keeping ----
+
+static void note_patterned(lua_State *L, int index)
+{
+    glintL_push_table(L, &PATTERNED);
+    if (!lua_getmetatable(L, -1)) {
+        lua_createtable(L, 0, 1);
+        lua_pushliteral(L, "k");
+        lua_setfield(L, -2, "__mode");
+        lua_pushvalue(L, -1);
+        lua_setmetatable(L, -3);
+    }
+    lua_pushvalue(L, index);
+    lua_pushboolean(L, true);
+    lua_rawset(L, -4);
+    lua_pop(L, 2);
+}
+
+void glintL_keep_source(lua_State *L, int index, const glintL_field *field, int value)
+{
+    const bool is_source = glintL_is_source(L, value, field->kind == GLINTL_ENUM);
+    luaL_checkstack(L, 8, "pattern");
+    index = lua_absindex(L, index);
+    if (!is_source && !glintL_push_kept(L, index, field->name))
+        return; // the common case: there was none, and there is none
+    if (!is_source) {
+        lua_pushnil(L);
+        glintL_keep(L, index, field->name, -1);
+        lua_pop(L, 2);
+        return;
+    }
+    glintL_keep(L, index, field->name, value);
+    note_patterned(L, index);
+}
+
+void glintL_keep_sources(lua_State *L, int index, int table, const glintL_field *fields)
+{
+    for (const glintL_field *field = fields; field->name; field++) {
+        if (!field->program_offset)
+            continue;
+        lua_pushstring(L, field->name);
+        lua_rawget(L, table);
+        glintL_keep_source(L, index, field, -1);
+        lua_pop(L, 1);
+    }
+}
+
+void glintL_keep_closed(lua_State *L, int index)
+{
+    const glintL_box *box = lua_touserdata(L, index);
+    luaL_checkstack(L, 8, "pattern");
+    index = lua_absindex(L, index);
+    glintL_push_table(L, &PATTERNED);
+    lua_pushvalue(L, index);
+    const bool is_patterned = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    if (!is_patterned || !box->object)
+        return;
+    glintL_push_table(L, &CLOSED);
+    glintL_box *twin = glintL_new_box(L, GLINTL_MATERIAL);
+    lua_getiuservalue(L, index, 1);
+    lua_setiuservalue(L, -2, 1);
+    note_patterned(L, lua_gettop(L));
+    if (box->object)
+        twin->object = glint_material_retain(box->object);
+    lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+    lua_pop(L, 1);
+}
+
+// ---- Tracing ----
+
+// Pushes what the pattern on top gave in this frame; a pattern of several fields is called once. `frame` is the index of the
+// table of those that were.
+static void push_traced(lua_State *L, int frame)
+{
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, frame) != LUA_TNIL)
+        return;
+    lua_pop(L, 1);
+    glintL_make_program(L, lua_gettop(L));
+    lua_pushvalue(L, -2);
+    lua_pushvalue(L, -2);
+    lua_rawset(L, frame);
+}
+
+// Gives the material whose userdata is at `index` the programs of its patterns.
+static void trace_material(lua_State *L, int index, int frame)
+{
+    const int top = lua_gettop(L);
+    const glintL_class *class = glintL_class_of(L, GLINTL_MATERIAL);
+    const glintL_field *fields = class->variant(NULL)->fields;
+    union {
+        max_align_t align;
+        char bytes[GLINTL_DESC_SIZE];
+    } desc;
+    glint_error error;
+    for (const glintL_field *field = fields; field->name; field++)
+        if (field->program_offset && glintL_push_kept(L, index, field->name))
+            push_traced(L, frame);
+    lua_settop(L, top);
+    void *material = glintL_test_object(L, index, GLINTL_MATERIAL);
+    if (!material) // a function closed it
+        return;
+    class->get(material, &desc);
+    for (const glintL_field *field = fields; field->name; field++) {
+        glint_program *program = NULL;
+        if (!field->program_offset || !glintL_push_kept(L, index, field->name))
+            continue;
+        lua_rawget(L, frame); // of a pattern that was assigned meanwhile there is none
+        const glintL_traced *traced = lua_touserdata(L, -1);
+        if (traced)
+            program = traced->program;
+        memcpy(desc.bytes + field->program_offset, &program, sizeof program);
+    }
+    glintL_check_status(L, "material", &error, class->set(material, &desc, &error));
+    lua_settop(L, top);
+}
+
+void glintL_trace_material(lua_State *L, int index)
+{
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 16, "pattern");
+    lua_newtable(L);
+    trace_material(L, index, lua_gettop(L));
+    lua_pop(L, 1);
+}
+
+// ---- The materials of a scene ----
+
+typedef struct entry {
+    const glint_material *material;
+    lua_Integer place; // of its userdata in a list
+    size_t met; // its turn among those of the scene, from 1; 0: it is in another
+} entry;
+
+typedef struct entries {
+    size_t count, met;
+    entry items[];
+} entries;
+
+static int by_address(const void *a, const void *b)
+{
+    const uintptr_t left = (uintptr_t)((const entry *)a)->material, right = (uintptr_t)((const entry *)b)->material;
+    return (left > right) - (left < right);
+}
+
+static int by_turn(const void *a, const void *b)
+{
+    const size_t left = ((const entry *)a)->met, right = ((const entry *)b)->met;
+    return (left > right) - (left < right);
+}
+
+static void meet(entries *all, const glint_shape *shape)
+{
+    glint_material *const *list;
+    const size_t count = glint_shape_materials(shape, &list);
+    for (size_t i = 0; i < count; i++) {
+        const entry key = { .material = list[i] };
+        entry *found = bsearch(&key, all->items, all->count, sizeof key, by_address);
+        if (found && found->met == 0)
+            found->met = ++all->met;
+    }
+    for (size_t i = 0; i < glint_group_count(shape); i++)
+        meet(all, glint_group_child(shape, i));
+}
+
+// Pushes a list of the userdata that keep patterns, and the entries of their materials.
+static entries *push_entries(lua_State *L)
+{
+    size_t count = 0;
+    lua_newtable(L);
+    const int list = lua_gettop(L);
+    glintL_push_table(L, &PATTERNED);
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
+        lua_pushvalue(L, -2);
+        lua_rawseti(L, list, (lua_Integer)++count);
+    }
+    lua_pop(L, 1);
+    entries *all = lua_newuserdatauv(L, sizeof *all + count * sizeof *all->items, 0);
+    *all = (entries) { 0, 0 };
+    for (size_t i = 1; i <= count; i++) {
+        lua_rawgeti(L, list, (lua_Integer)i);
+        const glint_material *material = glintL_test_object(L, -1, GLINTL_MATERIAL);
+        if (material)
+            all->items[all->count++] = (entry) { material, (lua_Integer)i, 0 };
+        lua_pop(L, 1);
+    }
+    return all;
+}
+
+void glintL_trace_scene(lua_State *L, const glint_scene *scene)
+{
+    const int top = lua_gettop(L);
+    luaL_checkstack(L, 24, "pattern");
+    entries *all = push_entries(L);
+    if (all->count > 0) {
+        qsort(all->items, all->count, sizeof *all->items, by_address);
+        for (size_t i = 0; i < glint_scene_shape_count(scene); i++)
+            meet(all, glint_scene_shape_at(scene, i));
+        qsort(all->items, all->count, sizeof *all->items, by_turn);
+    }
+    lua_newtable(L); // what the patterns gave
+    for (size_t i = 0; i < all->count; i++) {
+        if (all->items[i].met == 0)
+            continue;
+        lua_rawgeti(L, top + 1, all->items[i].place);
+        trace_material(L, top + 4, top + 3);
+        lua_settop(L, top + 3);
+    }
+    lua_settop(L, top);
+}

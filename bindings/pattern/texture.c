@@ -1,0 +1,204 @@
+// glint.texture: a picture, called with u and v inside a pattern, or given to a field as it is.
+#include "bindings/pattern/pattern.h"
+#include "bindings/run/run.h"
+
+#include <string.h>
+
+typedef struct arguments {
+    char file[4096];
+    glint_texture_desc desc;
+    unsigned transfer;
+} arguments;
+
+#define AT(member) offsetof(arguments, member)
+
+static const char *const WRAPS[] = { "repeat", "clamp", NULL };
+static const char *const FILTERS[] = { "bilinear", "nearest", NULL };
+static const char *const TRANSFERS[] = { "srgb", "linear", NULL };
+
+static const glintL_field FIELDS[] = {
+    { .name = "file", .kind = GLINTL_OTHER },
+    { .name = "wrap", .kind = GLINTL_ENUM, .offset = AT(desc.wrap), .names = WRAPS },
+    { .name = "filter", .kind = GLINTL_ENUM, .offset = AT(desc.filter), .names = FILTERS },
+    { .name = "transfer", .kind = GLINTL_ENUM, .offset = AT(transfer), .names = TRANSFERS },
+    { .name = NULL },
+};
+
+static const glintL_field SIZES[] = { { .name = "width" }, { .name = "height" }, { .name = NULL } };
+
+static void read_file(lua_State *L, char out[4096])
+{
+    size_t length;
+    lua_pushliteral(L, "file");
+    if (lua_rawget(L, 1) != LUA_TSTRING)
+        glintL_refuse(L, -1, "texture.file", "name of a PNG file");
+    const char *file = lua_tolstring(L, -1, &length);
+    if (length >= 4096 || memchr(file, '\0', length))
+        glintL_error(L, "texture.file: a shorter file name without zero bytes expected");
+    memcpy(out, file, length + 1);
+    lua_pop(L, 1);
+    const glintL_run *run = glintL_get_run(L);
+    if (run->request.is_untrusted) // which would learn from the answers what files there are
+        glintL_error(L, "texture.file: an untrusted script reads no files");
+    if (run->reporter.reads)
+        run->reporter.reads(run->reporter.context, out);
+}
+
+// What the texture's fields read as, in a table that is its user value 1.
+static void keep_fields(lua_State *L, const arguments *a, const glint_texture *texture)
+{
+    lua_createtable(L, 0, 6);
+    lua_pushstring(L, a->file);
+    lua_setfield(L, -2, "file");
+    for (const glintL_field *f = FIELDS + 1; f->name; f++) {
+        glintL_push_field(L, f, a);
+        lua_setfield(L, -2, f->name);
+    }
+    lua_pushinteger(L, glint_texture_width(texture));
+    lua_setfield(L, -2, "width");
+    lua_pushinteger(L, glint_texture_height(texture));
+    lua_setfield(L, -2, "height");
+    lua_setiuservalue(L, -2, 1);
+}
+
+static int new_texture(lua_State *L)
+{
+    arguments a = { .desc = glint_texture_desc_default() };
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_read_table(L, 1, "texture", FIELDS, &a, false);
+    read_file(L, a.file);
+    a.desc.path = a.file;
+    a.desc.linear = a.transfer == 1;
+    glintL_pattern *pattern = glintL_push_pattern(L, GLINT_PROGRAM_PATTERN, GLINTL_TEXTURE);
+    glintL_check_status(L, "", &error, glint_texture_create(&a.desc, &pattern->texture, &error));
+    keep_fields(L, &a, pattern->texture);
+    glintL_charge(L,
+                  (size_t)glint_texture_width(pattern->texture) * (size_t)glint_texture_height(pattern->texture) * 8);
+    return 1;
+}
+
+static int close_texture(lua_State *L)
+{
+    glintL_pattern *pattern = lua_touserdata(L, 1);
+    glint_texture_release(pattern->texture);
+    pattern->texture = NULL;
+    return 0;
+}
+
+// ---- photo(u, v, footprint) ----
+
+// Looks up in a builder; numbers give numbers.
+static glint_status apply(glint_builder *builder, const glint_texture *texture, const glintL_term in[3],
+                          glintL_term out[4], glint_error *error)
+{
+    glint_value values[3], color[4];
+    glint_status status = GLINT_OK;
+    for (int i = 0; i < 3 && !status; i++) {
+        values[i] = in[i].value;
+        if (!in[i].is_symbol)
+            status = glint_builder_number(builder, in[i].number, &values[i], error);
+    }
+    if (!status)
+        status = glint_builder_texel(builder, texture, values[0], values[1], values[2], color, error);
+    for (int i = 0; i < 4 && !status; i++) {
+        out[i] = (glintL_term) { .value = color[i] };
+        out[i].is_symbol = !glint_builder_is_number(builder, color[i], &out[i].number);
+    }
+    return status;
+}
+
+// With plain numbers alone there may be no builder at hand: one is made for the call.
+static void apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
+{
+    const glintL_trace *trace = glintL_current_trace(L);
+    glint_builder *builder = trace ? trace->builder : NULL;
+    glint_error error;
+    if (builder) {
+        glintL_check_status(L, "texture", &error, apply(builder, texture, in, out, &error));
+        return;
+    }
+    glint_status status = glint_builder_create(GLINT_PROGRAM_PATTERN, &builder, &error);
+    if (!status)
+        status = apply(builder, texture, in, out, &error);
+    glint_builder_destroy(builder);
+    glintL_check_status(L, "texture", &error, status);
+}
+
+static int look_up(lua_State *L)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, 1);
+    glintL_operand place;
+    glintL_term in[3] = { [2] = glintL_number_term(0) }, out[4];
+    glintL_read_operand(L, 2, "texture: u", &place);
+    int next = 3;
+    in[0] = place.at[0];
+    in[1] = place.at[1];
+    if (!place.is_vector)
+        in[1] = glintL_read_term(L, next++, "texture: v");
+    if (!lua_isnoneornil(L, next))
+        in[2] = glintL_read_term(L, next, "texture: footprint");
+    if (lua_gettop(L) > next)
+        return glintL_error(L, "texture: u, v and a footprint, or s.uv and a footprint expected, got more");
+    apply_texture(L, pattern->texture, in, out);
+    glintL_push_triple(L, out);
+    lua_pushliteral(L, "a");
+    glintL_push_term(L, out[3]);
+    lua_rawset(L, -3);
+    return 1;
+}
+
+static int read_member(lua_State *L)
+{
+    const char *near = NULL;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return glintL_bad_key(L, "texture", 2);
+    const char *name = lua_tostring(L, 2);
+    if (strcmp(name, "evaluate") == 0) {
+        lua_pushcfunction(L, glintL_pattern_evaluate);
+        return 1;
+    }
+    lua_getiuservalue(L, 1, 1);
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, -2) != LUA_TNIL)
+        return 1;
+    near = glintL_nearer(name, glintL_nearest(name, FIELDS), "width");
+    return glintL_no_such_field(L, "texture", name, glintL_nearer(name, near, "height"));
+}
+
+static int write_member(lua_State *L)
+{
+    return glintL_error(L, "texture.%s: a texture does not change; make another one", luaL_tolstring(L, 2, NULL));
+}
+
+static int to_string(lua_State *L)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, 1);
+    lua_getiuservalue(L, 1, 1);
+    lua_getfield(L, -1, "file");
+    lua_pushfstring(L, "texture '%s', %d x %d", lua_tostring(L, -1), glint_texture_width(pattern->texture),
+                    glint_texture_height(pattern->texture));
+    return 1;
+}
+
+void glintL_open_texture(lua_State *L)
+{
+    static const luaL_Reg meta[] = {
+        { "__index", read_member },  { "__newindex", write_member }, { "__call", look_up },
+        { "__tostring", to_string }, { "__gc", close_texture },      { NULL, NULL },
+    };
+    static const luaL_Reg methods[] = { { "evaluate", glintL_pattern_evaluate }, { NULL, NULL } };
+    glintL_field fields[sizeof FIELDS / sizeof *FIELDS + 2];
+    const glintL_variant variant = { .name = "texture", .fields = fields };
+    const size_t own = sizeof FIELDS / sizeof *FIELDS - 1;
+    memcpy(fields, FIELDS, own * sizeof *fields);
+    memcpy(fields + own, SIZES, sizeof SIZES);
+    luaL_newmetatable(L, GLINTL_TEXTURE);
+    luaL_setfuncs(L, meta, 0);
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_pop(L, 1);
+    glintL_list_variant(L, &variant, methods);
+    lua_pushcfunction(L, new_texture);
+    lua_setfield(L, -2, "texture");
+}

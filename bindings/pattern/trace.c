@@ -1,0 +1,249 @@
+// A function of a script called with symbols, and what it gives as a program.
+#include "bindings/pattern/pattern.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define TRACED "glint.traced"
+#define SESSION "glint.session"
+
+// A call as Lua holds it, so that an error leaves no builder behind.
+typedef struct session {
+    glintL_trace trace;
+    size_t count; // of what the function gave: 1 or 3 of a pattern, 3 or 6 of a shader
+    glintL_term terms[6];
+} session;
+
+static void close_builder(session *s)
+{
+    glint_builder_destroy(s->trace.builder);
+    s->trace.builder = NULL;
+}
+
+static int close_session(lua_State *L)
+{
+    close_builder(lua_touserdata(L, 1));
+    return 0;
+}
+
+static int close_traced(lua_State *L)
+{
+    glintL_traced *traced = lua_touserdata(L, 1);
+    glint_program_release(traced->program);
+    traced->program = NULL;
+    return 0;
+}
+
+// ---- Messages ----
+
+const char *glintL_traced_place(lua_State *L, lua_CFunction reached)
+{
+    const glintL_trace *trace = reached == glintL_call_function ? glintL_current_trace(L) : NULL;
+    return trace ? trace->place : NULL;
+}
+
+// Whether a message begins as "file:12: " does.
+static bool has_place(const char *text)
+{
+    for (const char *colon = strchr(text, ':'); colon; colon = strchr(colon + 1, ':')) {
+        const size_t digits = strspn(colon + 1, "0123456789");
+        if (digits > 0 && colon[1 + digits] == ':')
+            return true;
+    }
+    return false;
+}
+
+// Lua's own messages about symbols, with what to write instead.
+static int explain(lua_State *L)
+{
+    const glintL_trace *trace = glintL_current_trace(L);
+    const char *text = lua_tostring(L, 1), *cure = NULL;
+    if (lua_type(L, 1) != LUA_TSTRING)
+        return 1;
+    if (strstr(text, "'for' ") && strstr(text, "number"))
+        cure = "a loop runs over numbers, not over values of the point";
+    else if (strstr(text, "got " GLINTL_SYMBOL))
+        cure = "a symbol has no number yet; write glint's own function, glint.sin(x) for math.sin(x)";
+    if (!cure || !trace)
+        return 1;
+    luaL_checkstack(L, 4, "message");
+    lua_pushfstring(L, "%s%s: %s", has_place(text) ? "" : trace->place, text, cure);
+    return 1;
+}
+
+// ---- The call ----
+
+static void refuse_result(lua_State *L, const glintL_trace *trace, int index)
+{
+    const char *hint = lua_isnoneornil(L, index) ? ": is a return missing?" : "";
+    const char *got = lua_istable(L, index) ? "a table that is no vector" : glintL_push_spelling(L, index);
+    lua_pushfstring(L, "%s%s: a number, a symbol or a vector of three expected from the function, got %s%s",
+                    trace->place, trace->is_shader ? "shader" : "pattern", got, hint);
+    lua_error(L);
+}
+
+// Reads what the function gave, from 2 upwards.
+static void read_results(lua_State *L, session *s)
+{
+    const int count = lua_gettop(L) - 1, most = s->trace.is_shader ? 2 : 1;
+    if (count > most)
+        refuse_result(L, &s->trace, most + 2);
+    s->count = 0;
+    for (int i = 0; i < (count > 1 ? count : 1); i++) {
+        glintL_operand operand;
+        if (i > 0 && lua_isnil(L, i + 2))
+            break;
+        if (!glintL_to_operand(L, i + 2, true, &operand))
+            refuse_result(L, &s->trace, i + 2);
+        for (int c = 0; c < (operand.is_vector || s->trace.is_shader ? 3 : 1); c++)
+            s->terms[s->count++] = operand.at[c];
+    }
+}
+
+// 1: the session, 2: the function. Upwards of this C function the script's Lua code ends, for positions in messages.
+int glintL_call_function(lua_State *L)
+{
+    session *s = lua_touserdata(L, 1);
+    if (!s->trace.is_shader)
+        glintL_push_point(L);
+    glintL_push_surroundings(L);
+    lua_call(L, lua_gettop(L) - 2, LUA_MULTRET);
+    read_results(L, s);
+    return 0;
+}
+
+static void set_place(lua_State *L, int function, glintL_trace *trace)
+{
+    lua_Debug info;
+    lua_pushvalue(L, function);
+    lua_getinfo(L, ">S", &info);
+    snprintf(trace->place, sizeof trace->place, "%s:%d: ", info.short_src, info.linedefined);
+}
+
+// Calls the function of the pattern at `index`; the session is a userdata at `held`.
+static void call(lua_State *L, int index, int held)
+{
+    session *s = lua_touserdata(L, held);
+    const int top = lua_gettop(L);
+    luaL_checkstack(L, 12, "pattern");
+    lua_pushcfunction(L, explain);
+    lua_pushcfunction(L, glintL_call_function);
+    lua_pushvalue(L, held);
+    lua_getiuservalue(L, index, 1);
+    set_place(L, -1, &s->trace);
+    glintL_enter_trace(L, &s->trace);
+    const int status = lua_pcall(L, 2, 0, top + 1);
+    glintL_leave_trace(L, &s->trace);
+    if (status)
+        lua_error(L);
+    lua_settop(L, top);
+}
+
+static session *push_session(lua_State *L, glint_program_kind kind)
+{
+    session *s = lua_newuserdatauv(L, sizeof *s, 0);
+    *s = (session) { .trace = { .is_shader = kind == GLINT_PROGRAM_SHADER } };
+    luaL_setmetatable(L, SESSION);
+    return s;
+}
+
+size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, index);
+    const int top = lua_gettop(L);
+    session *s = push_session(L, pattern->kind);
+    s->trace.point = inputs;
+    call(L, index, top + 1);
+    for (size_t i = 0; i < s->count; i++)
+        outputs[i] = s->terms[i].number;
+    const size_t count = s->count;
+    lua_settop(L, top);
+    return count;
+}
+
+// ---- The program ----
+
+static glint_status finish(session *s, glint_program **out, glint_error *error)
+{
+    glint_value values[6];
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < s->count && !status; i++) {
+        values[i] = s->terms[i].value;
+        if (!s->terms[i].is_symbol)
+            status = glint_builder_number(s->trace.builder, s->terms[i].number, &values[i], error);
+    }
+    return status ? status : glint_builder_finish(s->trace.builder, values, s->count, out, error);
+}
+
+// The picture itself, by the shape's uv.
+static glint_status finish_texture(glint_builder *builder, const glint_texture *texture, glint_program **out,
+                                   glint_error *error)
+{
+    static const glint_input inputs[] = { GLINT_INPUT_UV_U, GLINT_INPUT_UV_V, GLINT_INPUT_UV_FOOTPRINT };
+    glint_value in[3], color[4];
+    glint_status status = GLINT_OK;
+    for (int i = 0; i < 3 && !status; i++)
+        status = glint_builder_input(builder, inputs[i], &in[i], error);
+    if (!status)
+        status = glint_builder_texel(builder, texture, in[0], in[1], in[2], color, error);
+    return status ? status : glint_builder_finish(builder, color, 3, out, error);
+}
+
+// New structures are compared with plain Lua once; the table of those that were is the pattern's user value 2.
+static void compare_once(lua_State *L, int index, const glintL_traced *traced)
+{
+    uint64_t key[2];
+    glint_program_structure(traced->program, key);
+    lua_getiuservalue(L, index, 2);
+    lua_pushlstring(L, (const char *)key, sizeof key);
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, -3) == LUA_TNIL) {
+        glintL_compare_points(L, index, traced);
+        lua_pushvalue(L, -2);
+        lua_pushboolean(L, true);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 3);
+}
+
+glintL_traced *glintL_make_program(lua_State *L, int index)
+{
+    const glintL_pattern *pattern = lua_touserdata(L, index);
+    glint_status status;
+    glint_error error;
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 12, "pattern");
+    glintL_traced *traced = lua_newuserdatauv(L, sizeof *traced, 0);
+    const int top = lua_gettop(L);
+    *traced = (glintL_traced) { NULL, false };
+    luaL_setmetatable(L, TRACED);
+    session *s = push_session(L, pattern->kind);
+    glintL_check_status(L, "", &error, glint_builder_create(pattern->kind, &s->trace.builder, &error));
+    if (pattern->texture) {
+        status = finish_texture(s->trace.builder, pattern->texture, &traced->program, &error);
+    } else {
+        call(L, index, top + 1);
+        status = finish(s, &traced->program, &error);
+    }
+    if (status) {
+        lua_pushfstring(L, "%s%s: %s", s->trace.place, s->trace.is_shader ? "shader" : "pattern", error.message);
+        lua_error(L);
+    }
+    traced->has_power = s->trace.has_power;
+    close_builder(s);
+    if (!pattern->texture)
+        compare_once(L, index, traced);
+    lua_settop(L, top);
+    return traced;
+}
+
+void glintL_open_trace(lua_State *L)
+{
+    luaL_newmetatable(L, TRACED);
+    lua_pushcfunction(L, close_traced);
+    lua_setfield(L, -2, "__gc");
+    luaL_newmetatable(L, SESSION);
+    lua_pushcfunction(L, close_session);
+    lua_setfield(L, -2, "__gc");
+    lua_pop(L, 2);
+}

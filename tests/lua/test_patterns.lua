@@ -1,0 +1,357 @@
+-- Patterns and shaders: functions that are traced to programs, against the same functions run by plain Lua.
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+local glint = require "glint"
+local V = glint.vector
+
+local function bits(x) return x ~= x and "nan" or string.pack("<d", x) end
+
+local function any(list) return list[math.random(#list)] end
+
+-- ---- Random functions ----
+
+local UNARY = { "abs", "sqrt", "floor", "ceil", "round", "fract", "sign", "not", "sin", "cos", "exp2", "log2", "acos" }
+local BINARY = { "add", "sub", "mul", "div", "mod", "min", "max", "less", "lesseq", "equal", "and", "or", "step", "pow", "atan2", "highlight" }
+local TERNARY = { "muladd", "submul", "mulsub", "mix", "select", "smoothstep", "clamp" }
+local OPERATORS = { "+", "-", "*", "/", "%", "//" }
+local LEAVES = { "p.x", "p.y", "p.z", "s.n.x", "s.v.z", "s.uv.u", "s.uv.v", "s.footprint", "s.world.y", "upvalue" }
+local NUMBERS = { "0.0", "1.0", "-1.0", "0.5", "2.0", "3.25", "-7.1", "1e-3", "1e7", "0.1" }
+
+local scalar, vector
+
+function scalar(depth)
+  local kind = depth > 0 and math.random(11) or math.random(2)
+  local function next_scalar() return scalar(depth - 1) end
+  if kind == 1 then return any(NUMBERS)
+  elseif kind == 2 then return any(LEAVES)
+  elseif kind <= 4 then return ("(%s %s %s)"):format(next_scalar(), any(OPERATORS), next_scalar())
+  elseif kind == 5 then return ("(- %s)"):format(next_scalar())
+  elseif kind == 6 then return ("(%s) ^ 2"):format(next_scalar())
+  elseif kind == 7 then return ("glint['%s'](%s)"):format(any(UNARY), next_scalar())
+  elseif kind == 8 then return ("glint['%s'](%s, %s)"):format(any(BINARY), next_scalar(), next_scalar())
+  elseif kind == 9 then return ("glint.%s(%s, %s, %s)"):format(any(TERNARY), next_scalar(), next_scalar(), next_scalar())
+  elseif kind == 10 then
+    return (any { "glint.noise(%s)", "glint.hash(%s)", "glint.parity(%s)", "glint.checker(%s, 0.3)", "glint.brick(%s, 0.1, 0.01)",
+      "%s.y", "%s:length()", "(glint.cell(%s))", "(select(2, glint.cell(%s)))" }):format(vector(depth - 1))
+  end
+  return ("%s:dot(%s)"):format(vector(depth - 1), vector(depth - 1))
+end
+
+function vector(depth)
+  local kind = depth > 0 and math.random(8) or 1
+  if kind == 1 then return any { "p", "s.n", "s.world", "V(1.0, 2.0, 3.0)" }
+  elseif kind == 2 then return ("V(%s, %s, %s)"):format(scalar(depth - 1), scalar(depth - 1), scalar(depth - 1))
+  elseif kind == 3 then return ("(%s %s %s)"):format(vector(depth - 1), any(OPERATORS), scalar(depth - 1))
+  elseif kind == 4 then return ("(%s %s %s)"):format(scalar(depth - 1), any(OPERATORS), vector(depth - 1))
+  elseif kind == 5 then return ("glint.mix(%s, { 0.25, 1.5, %s }, %s)"):format(vector(depth - 1), scalar(depth - 1), scalar(depth - 1))
+  elseif kind == 6 then return ("glint.noise3(%s)"):format(vector(depth - 1))
+  elseif kind == 7 then return ("%s:cross(%s)"):format(vector(depth - 1), vector(depth - 1))
+  end
+  return ("%s:unit()"):format(vector(depth - 1))
+end
+
+local function make_function()
+  local text = math.random() < 0.5 and scalar(5) or vector(5)
+  return assert(load("local p, s = ...; return " .. text, text, "t", { glint = glint, V = V, upvalue = 0.75, select = select })), text
+end
+
+local function random_vector(size)
+  return V(size * (2 * math.random() - 1), size * (2 * math.random() - 1), size * (2 * math.random() - 1))
+end
+
+local SIZES = { 1, 20, 1e3, 1e7 }
+
+local function random_point()
+  local size = any(SIZES)
+  local p = math.random() < 0.2 and V(math.random(-9, 9) + 0.0, 0.0, math.random(-9, 9) + 0.0) or random_vector(size)
+  return { p = p, world = random_vector(size), n = random_vector(1):unit(), v = random_vector(1):unit(),
+    uv = V(math.random(), math.random(), 0), footprint = math.random() / 10 }
+end
+
+-- As a vector, whatever the function gives.
+local function parts(value)
+  if type(value) == "number" then return { value, value, value } end
+  return { value.x, value.y, value.z }
+end
+
+local function compare(f, text)
+  local pattern = glint.pattern(function(p, s) return f(p, s) end)
+  local point = random_point()
+  local good, got = pcall(pattern.evaluate, pattern, point)
+  if not good then return check(false, "%s: %s", text, got) end
+  local want = parts(f(point.p, point))
+  for i = 1, 3 do
+    if bits(got[i]) ~= bits(want[i]) then
+      return check(false, "%s\n  at %s, s.world %s: plain Lua %.17g, the program %.17g", text, point.p, point.world, want[i], got[i])
+    end
+  end
+  check(true)
+  return got
+end
+
+-- Under another instruction set the same functions give the same text here.
+if arg[1] == "digest" then
+  math.randomseed(7)
+  local sums = {}
+  for _ = 1, 500 do
+    local f, text = make_function()
+    local got = compare(f, text)
+    if got then sums[#sums + 1] = bits(got.x) .. bits(got.y) .. bits(got.z) end
+  end
+  for _, sum in ipairs(sums) do
+    io.write((sum:gsub(".", function(c) return ("%02x"):format(c:byte()) end)), "\n")
+  end
+  os.exit(tally.failed == 0)
+end
+
+local tests = {}
+
+function tests.random_functions_have_the_bits_of_plain_lua()
+  math.randomseed(14)
+  for _ = 1, 10000 do
+    local f, text = make_function()
+    compare(f, text)
+  end
+end
+
+function tests.instruction_sets_agree()
+  local results, names = {}, { "ref", "sse2", "avx2", "avx512" }
+  for _, name in ipairs(names) do
+    local pipe = assert(io.popen(("GLINT_ISA=%s %s %s digest 2>&1"):format(name, arg[-1] or "lua5.4", arg[0])))
+    local text = pipe:read "a"
+    pipe:close()
+    if not text:find("GLINT_ISA", 1, true) then
+      results[#results + 1] = name
+      results[name] = text
+      check(#text > 500 * 9, "%s: %s", name, text:sub(1, 300))
+      check(text == results.ref, "%s and ref give the same bits", name)
+    end
+  end
+  check(#results >= 2 or not results.sse2, "some instruction sets were compared")
+end
+
+-- ---- Operations on numbers and vectors ----
+
+function tests.operations_take_plain_numbers()
+  check(glint.floor(2.5) == 2 and glint.ceil(2.5) == 3 and glint.round(-2.5) == -3 and glint.fract(2.25) == 0.25)
+  check(glint.mod(-7, 3) == 2 and glint.mod(5.5, -2) == 5.5 % -2 and glint.sign(-3) == -1 and glint.abs(-0.0) == 0)
+  check(glint.mix(2, 4, 0.25) == 2.5 and glint.clamp(7, 0, 1) == 1 and glint.smoothstep(0, 1, 0.5) == 0.5)
+  check(glint.select(glint.less(1, 2), 5, 6) == 5 and glint.select(0, 5, 6) == 6 and glint.step(1, 0.5) == 0)
+  check(glint["and"](1, 0) == 0 and glint["or"](1, 0) == 1 and glint["not"](0) == 1)
+  check(glint.muladd(2, 3, 4) == 10 and glint.submul(10, 2, 3) == 4 and glint.mulsub(2, 3, 4) == 2)
+  check(math.abs(glint.sin(0.5) - math.sin(0.5)) < 1e-8 and math.abs(glint.atan2(1, -1) - 3 * math.pi / 4) < 1e-8)
+  check(glint.pow(2, 10) == 1024 and math.abs(glint.log2(8) - 3) < 1e-8 and math.abs(glint.acos(0) - math.pi / 2) < 1e-8)
+  check(glint.noise(1, 2, 3) == 0 and glint.noise({ 1, 2, 3 }) == 0 and glint.noise { x = 0.5, y = 0.25, z = 0.125 } ~= 0)
+  check(glint.noise3(V(0.3, 0.4, 0.5)).x ~= glint.noise3(V(0.3, 0.4, 0.5)).y)
+  local first, second = glint.cell(V(0.3, 0.4, 0.5))
+  check(first >= 0 and second >= first)
+  check(glint.hash(1, 2, 3) ~= glint.hash(1, 2, 4) and glint.hash(1, 2, 3) == glint.hash { 1, 2, 3 })
+end
+
+function tests.operations_take_vectors()
+  local v = glint.mix({ 1, 2, 3 }, V(3, 2, 1), 0.5)
+  check(v.x == 2 and v.y == 2 and v.z == 2)
+  check(glint.max(V(1, 5, 3), 2) == V(2, 5, 3))
+  check(glint.select(1, 0.9, { 0.1, 0.1, 0.2 }) == V(0.9, 0.9, 0.9))
+  check(glint.mix("black", "white", 0.5) == V(0.5, 0.5, 0.5))
+  local a, b = V(1, 2, 3), { 4, 5, 6 }
+  check(a:dot(b) == 32 and glint.dot(a, b) == 32 and a:cross(b) == V(-3, 6, -3))
+  check(V(3, 0, 4):length() == 5 and V(0, 0, 2):unit() == V(0, 0, 1))
+  check(glint.reflect({ 1, -1, 0 }, { 0, 1, 0 }) == V(1, 1, 0))
+  check(a + 1 == V(2, 3, 4) and 2 * a == V(2, 4, 6) and a * b == V(4, 10, 18) and -a == V(-1, -2, -3))
+  check(b - a == V(3, 3, 3) and a % 2 == V(1, 0, 1) and a // 2 == V(0, 1, 1) and a ^ 2 == V(1, 4, 9))
+  check(a.r == 1 and a.g == 2 and a.b == 3 and a.u == 1 and a.v == 2 and a[1] == 1 and a[3] == 3 and a[4] == nil and #a == 3)
+  check(select("#", a:unpack()) == 3 and tostring(V(1, 2.5, 3)) == "{1.0, 2.5, 3.0}")
+  local center = glint.sphere { center = { 1, 2, 3 }, radius = 1 }.center
+  check(center + a == V(2, 4, 6) and a * center == V(1, 4, 9) and center:dot(a) == 14 and center:unit():dot(center:unit()) > 0.99)
+  local ball = glint.sphere { center = a, radius = 1 }
+  check(ball.center.y == 2, "a vector of numbers is taken where {x, y, z} is")
+end
+
+function tests.checker_is_the_parity_of_floors()
+  math.randomseed(3)
+  for _ = 1, 1000 do
+    local p = random_vector(any(SIZES))
+    check(glint.checker(p) == (math.floor(p.x) + math.floor(p.y) + math.floor(p.z)) % 2)
+    check(glint.stripe(p.x) == math.floor(p.x) % 2)
+  end
+end
+
+-- Against sums over the box. The z of p lies in the plane of the surface, whose both sides are not seen.
+function tests.footprints_are_box_integrals()
+  math.randomseed(5)
+  for _ = 1, 100 do
+    local x, y, w = 10 * math.random() - 5, 10 * math.random() - 5, 3 * math.random() + 0.01
+    local n, stripe, brick_x, brick_y = 400, 0, 0, 0
+    local odd = math.floor(y) % 2
+    for i = 1, n do
+      local xi, yi = x + w * ((i - 0.5) / n - 0.5), y + w * ((i - 0.5) / n - 0.5)
+      stripe = stripe + math.floor(xi) % 2 / n
+      brick_x = brick_x + ((xi + odd / 2 - 0.1) % 1 < 0.9 and 1 or 0) / n
+      brick_y = brick_y + ((yi - 0.1) % 1 < 0.9 and 1 or 0) / n
+    end
+    local stripe_y = 0
+    for i = 1, n do stripe_y = stripe_y + math.floor(y + w * ((i - 0.5) / n - 0.5)) % 2 / n end
+    local checker = (1 - (1 - 2 * stripe) * (1 - 2 * stripe_y)) / 2
+    tally.near(glint.stripe(x, w), stripe, 0.02, "stripe")
+    tally.near(glint.checker(V(x, y, 0), w), checker, 0.02, "checker")
+    tally.near(glint.brick(V(x, y, 0), 0.1, w), brick_x * brick_y, 0.02, "brick")
+  end
+  check(glint.checker(V(0.5, 1.5, 0), 0) == 1 and glint.stripe(1.5, 0) == 1, "no footprint: as it is")
+  local far = V(1e7 + 0.5, 0, 0.5)
+  tally.near(glint.checker(far, 0.125), glint.checker(far), 0, "far from the origin")
+end
+
+-- ---- The traced function ----
+
+function tests.a_pattern_of_numbers_is_a_constant()
+  local pattern = glint.pattern(function() return 0.8 end)
+  check(#pattern == 0 and pattern:evaluate { p = { 1, 2, 3 } }.x == 0.8)
+  check(#glint.pattern(function() return glint.mix(0.5, { 1, 2, 3 }, glint.noise(0.5, 0.1, 0.2)) end) == 0)
+end
+
+function tests.upvalues_are_seen_again()
+  local factor = 2
+  local pattern = glint.pattern(function(p) return factor * p.x end)
+  check(pattern:evaluate { p = { 3, 0, 0 } }.x == 6)
+  factor = 5
+  check(pattern:evaluate { p = { 3, 0, 0 } }.x == 15)
+end
+
+function tests.what_is_the_same_is_computed_once()
+  check(#glint.pattern(function(p) return glint.sqrt(p.x) + glint.sqrt(p.x) end) == 2)
+  local text = tostring(glint.pattern(function(p) return glint.noise(p * 3) end))
+  check(text:find "^pattern of %d+ instructions?\n" and text:find "noise", "%s", text)
+end
+
+function tests.patterns_can_be_called_within_others()
+  local inner = glint.pattern(function(p) return p.x + 1 end)
+  local outer = glint.pattern(function(p, s) return 2 * inner(p * 10, s) end)
+  check(outer:evaluate { p = { 1, 0, 0 } }.x == 22 and inner(V(4, 0, 0)) == 5)
+end
+
+function tests.shaders_have_the_light()
+  local shader = glint.shader(function(s)
+    return s.kd * s.light * s.n:dot(s.l), s.ks * glint.highlight(glint.reflect(-s.l, s.n):dot(s.v), s.shininess)
+  end)
+  local got = shader:evaluate { n = { 0, 0, 1 }, l = { 0, 0.6, 0.8 }, v = { 0, -0.6, 0.8 }, light = { 2, 1, 0 }, kd = 0.5, ks = { 1, 0, 1 }, shininess = 8 }
+  check(got.diffuse.r == 0.5 * 2 * 0.8 and got.diffuse.g == 0.5 * 0.8 and got.diffuse.b == 0)
+  check(got.specular.r > 0.99 and got.specular.g == 0)
+  local toon = glint.shader(function(s) return s.kd * s.light * glint.select(glint.less(0.4, s.n:dot(s.l)), 1, 0.3) end)
+  check(toon:evaluate { kd = 1, l = { 0, 0.6, 0.8 } }.diffuse.x == 1 and toon:evaluate { kd = 1, l = { 0, 1, 0 } }.diffuse.x == 0.3)
+end
+
+-- ---- Errors ----
+
+local HERE = "test_patterns.lua"
+
+-- The message names this file and the function's line (by `line`, its offset from the line of `make`), and has `want`.
+local function raises(want, make, call)
+  local line = debug.getinfo(make, "S").linedefined
+  local last = debug.getinfo(make, "S").lastlinedefined
+  local good, message = pcall(call or function() return #glint.pattern(make) end)
+  message = tostring(message)
+  local at = tonumber(message:match(HERE:gsub("%.", "%%.") .. ":(%d+): "))
+  check(not good and message:find(want, 1, true), "'%s' expected, got %s", want, message)
+  check(at and at >= line and at <= last, "line %d .. %d expected, got %s", line, last, message)
+end
+
+function tests.errors_tell_the_place_and_the_cure()
+  raises("glint.select(glint.less(a, b), x, y)", function(p) if p.x < 0 then return 1 end return 0 end)
+  raises("glint.select(glint.less(a, b), x, y)", function(p) return p.x > p.y and 1 or 0 end)
+  raises("glint.select(glint.lesseq(a, b), x, y)", function(p) return 3 >= p.x and 1 or 0 end)
+  raises("glint.select(glint.equal(a, b), x, y)", function(p) return p.x == p.y and 1 or 0 end)
+  raises("glint.select(glint.equal(a.x, b.x), x, y)", function(p, s) return p == s.n and 1 or 0 end)
+  raises("makes no text", function(p) return p.x .. "" end)
+  raises("makes no text", function(p) return "a" .. p end)
+  raises("glint.length(v)", function(p) return #p.x end)
+  raises("write glint's own function", function(p) local x = math.sin(p.x) return x end)
+  raises("write glint's own function", function(p) return math.sin(p.x) end)
+  raises("write glint's own function", function(p) return math.floor(p.x) + 1 end)
+  raises("vector.w: no such field", function(p) return p.w end)
+  raises("vector.lenght: no such field; did you mean 'length'?", function(p) return p:lenght() end)
+  raises("s.norml: no such field", function(_, s) return s.norml end)
+  raises("s.light: a pattern has no light", function(_, s) return s.light end)
+  raises("is a variable or a field not set?", function(p) return p.x + rawget(p, "q") end)
+  raises("is a variable or a field not set?", function(p) return glint.mix(p.x, nil, 1) end)
+  raises("symbol.x: a symbol is one number", function(p) return p.x.x end)
+  raises("it is one number and no function", function(p) return p.x(3) end)
+  raises("it is no integer", function(p) return p.x & 1 end)
+  raises("a loop runs over numbers", function(p) local t = 0 for i = 1, p.x do t = t + i end return t end)
+  raises("a + b: number, symbol or vector expected, got string \"1\"", function(p) return p.x + "1" end)
+  raises("noise: a vector, or x, y and z expected", function(p) return glint.noise(p.x) end)
+  raises("mix: 3 arguments expected, got 2", function(p) return glint.mix(p.x, 1) end)
+  raises("is a return missing?", function(p) local _ = p.x end)
+  raises("or \"#rrggbb\" expected, got string \"hello\"", function() return "hello" end)
+  raises("expected from the function, got a table that is no vector", function(p) return { p.x, 2 } end)
+  raises("expected from the function, got true", function(p) return p.x, true end)
+  raises("log of a symbol: write", function(p) return glint.log(p.x) end)
+  raises("a pattern changes no objects", function(p)
+    local m = glint.material {}
+    m.diffuse = 1
+    return p.x
+  end)
+end
+
+function tests.programs_are_limited()
+  raises("4096", function(p)
+    local sum = p.x
+    for i = 1, 5000 do sum = sum + p.y * i end
+    return sum
+  end)
+end
+
+function tests.symbols_do_not_outlive_their_call()
+  local kept
+  local first = glint.pattern(function(p) kept = kept or p.x return 1 end)
+  check(#first == 0)
+  local second = glint.pattern(function(p) return p.x + kept end)
+  local good, message = pcall(function() return #second end)
+  check(not good and tostring(message):find "a symbol of another call", "%s", message)
+  check(not pcall(function() return kept + 1 end))
+end
+
+-- ---- The 64 points ----
+
+local function is_found(f)
+  local line = debug.getinfo(f, "S").linedefined
+  local good, message = pcall(function() return #glint.pattern(f) end)
+  check(not good and tostring(message):find "Lua says [-%d.e+]+, the trace [-%d.e+]+ at %(.*%): an `if`, `and` or `or`", "%s", message)
+  check(tostring(message):find(HERE .. ":" .. line .. ": ", 1, true), "line %d: %s", line, message)
+end
+
+function tests.the_64_points_find_branches()
+  is_found(function(p) if p.x // 1 % 2 == 0 then return 1 end return 0 end)
+  is_found(function(p) return glint.less(p.x, 0) == 1 and p.y or p.z end)
+  is_found(function(p) return glint.checker(p) ~= 0 and 0.9 or 0.1 end)
+  is_found(function(p) return p.x + math.random() end)
+  is_found(function() return math.random() end)
+  is_found(function(p) return type(p.x) == "number" and p.x or p.y end)
+  local calls = 0
+  is_found(function(p) calls = calls + 1 return p.x + calls end)
+end
+
+function tests.the_64_points_are_looked_at_once_a_structure()
+  local calls, factor, extra = 0, 2, false
+  local pattern = glint.pattern(function(p)
+    calls = calls + 1
+    return extra and p.x * factor + 1 or p.x * factor
+  end)
+  check(#pattern == 1 and calls == 65, "%d calls", calls)
+  factor = 3
+  check(#pattern == 1 and calls == 66, "another number: %d calls", calls)
+  extra = true
+  check(#pattern > 0 and calls == 66 + 65, "another operation: %d calls", calls)
+end
+
+function tests.powers_are_let_pass()
+  for _, e in ipairs { 3, 4, 0.5, -1, -2, 1.7, 5, 20 } do
+    local pattern = glint.pattern(function(p) return glint.abs(p.x) ^ e + p.y ^ 3 end)
+    local got = pattern:evaluate { p = { 1.5, 2, 0 } }.x
+    tally.near(got, 1.5 ^ e + 8, 1e-6 * 1.5 ^ e, "power " .. e)
+  end
+end
+
+tests.run = nil
+tally.run(tests)
+tally.finish()
