@@ -276,6 +276,19 @@ typedef enum glint_model {
 /// B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007).
 typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BECKMANN } glint_distribution;
 
+/// Programs that a material has in place of its numbers; NULL: the number. A material retains them. What a pattern gives
+/// that is NaN or below 0 is taken as 0, above 2^100 as that, and counted: see glint_frame_stats. A program whose outputs are
+/// numbers is these numbers: they are what glint_material_get gives.
+typedef struct glint_material_programs {
+    glint_program *diffuse, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number for a grey;
+        ///< `ambient` follows that of `diffuse` until it is set
+    glint_program *shininess, *roughness; ///< patterns of one number; above 1, `roughness` is 1
+    glint_program *bump; ///< pattern of one number, the height over the surface in world units: light, mirrors and glass see
+        ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the
+        ///< surface's own n, too, is there light
+    glint_program *shader; ///< in place of `model`: the diffuse term of each light, and the specular one if it has six outputs
+} glint_material_programs;
+
 /// The fields of a material. Reflectances are shares of light in linear RGB.
 typedef struct glint_material_desc {
     glint_model model; ///< default phong
@@ -303,6 +316,7 @@ typedef struct glint_material_desc {
     glint_distribution distribution; ///< default GGX
     bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
     double f0[3]; ///< what is reflected head-on, 0 .. 1; coloured for metals
+    glint_material_programs program;
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;
 
@@ -688,6 +702,7 @@ typedef enum glint_pass {
     GLINT_PASS_ALPHA, ///< one channel: the share of the samples that hit something, 0 .. 1
     GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
+    GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; of the first sample
     GLINT_PASS_COUNT ///< how many there are
 } glint_pass;
 
@@ -842,6 +857,7 @@ typedef struct glint_work {
     uint64_t powers; ///< highlights raised to their exponent
     uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
+    uint64_t patterns; ///< points for which the programs of a material were run
     uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
 } glint_work;
 

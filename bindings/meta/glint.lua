@@ -554,6 +554,7 @@ function glint.scene(fields) end
 ---| "object_id"  # 1 .. in order of definition, one number; 0 where nothing is hit
 ---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
+---| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
 ---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
 
 --- What a frame and its file are to be. What the command line says beats it.

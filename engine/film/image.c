@@ -18,6 +18,7 @@ static const struct {
     [GLINT_PASS_DEPTH] = { "depth", 1 },         [GLINT_PASS_NORMAL] = { "normal", 3 },
     [GLINT_PASS_OBJECT_ID] = { "object_id", 1 }, [GLINT_PASS_ALPHA] = { "alpha", 1 },
     [GLINT_PASS_OUTLINE] = { "outline", 1 },     [GLINT_PASS_REFINED] = { "refined", 1 },
+    [GLINT_PASS_ALBEDO] = { "albedo", 3 },
 };
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }

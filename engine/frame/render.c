@@ -173,6 +173,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
         sum.work.sites += part->work.sites;
         sum.work.lights_seen += part->work.lights_seen;
         sum.work.overlaps += part->work.overlaps;
+        sum.work.patterns += part->work.patterns;
         sum.mirror += part->mirror;
         sum.refraction += part->refraction;
         sum.indirect += part->indirect;

@@ -387,6 +387,7 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->prim_part);
     free(geometry->repeats);
     free(geometry->parts);
+    free(geometry->maps);
     free(geometry->normals);
     free(geometry->solids);
     free(geometry->unbounded);

@@ -28,6 +28,7 @@ typedef struct glint_index {
 typedef struct glint_part {
     glint_shape *shape; ///< the scene's
     uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
+    const glint_transform *map; ///< of it and of its groups, one of the geometry's; NULL: the identity
 } glint_part;
 
 struct glint_geometry {
@@ -38,6 +39,7 @@ struct glint_geometry {
     uint32_t *prim_part; ///< which part each is of, by id
     bool *repeats; ///< which are bit-equal to one before, by id; until the index is made
     glint_part *parts; ///< in order of definition
+    glint_transform *maps; ///< of those that have one
     uint32_t part_count;
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
     glint_shading_points *shading_points; ///< of triangles whose light is worked out at sites

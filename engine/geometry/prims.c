@@ -181,7 +181,8 @@ typedef struct filler {
     uint32_t object_count;
     size_t prims, parts, smooth, shared, shading_points, solids,
         materials; ///< how many there are; materials: most of any shape
-    size_t visits;
+    size_t maps; ///< of parts, at most
+    size_t visits, map_count;
     uint32_t normal_count, shared_count, solid_count;
     glint_error *error;
 } filler;
@@ -345,7 +346,11 @@ static glint_status add_prims(filler *f, glint_shape *shape, const placing *plac
             return status;
     }
     const uint32_t part = geometry->part_count++;
-    geometry->parts[part] = (glint_part) { shape, geometry->table.prim_count, f->object_count };
+    geometry->parts[part] = (glint_part) { shape, geometry->table.prim_count, f->object_count, NULL };
+    if (place->map) {
+        geometry->maps[f->map_count] = *place->map;
+        geometry->parts[part].map = &geometry->maps[f->map_count++];
+    }
     for (size_t i = 0; i < shape->count; i++)
         add_prim(f, shape, i, part, place);
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
@@ -392,6 +397,7 @@ static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped
     for (size_t i = 0; i < shape->children.count && !status; i++)
         status = count_shape(f, shape->children.items[i], mapped);
     f->parts += !group;
+    f->maps += !group && mapped; // at most
     f->prims += shape->count;
     f->smooth += is_smooth(shape) ? shape->count : 0;
     f->shared += is_shared(shape) ? shape->count : 0;
@@ -421,9 +427,10 @@ static bool allocate(filler *f)
     geometry->prims = glint_alloc(f->prims, sizeof *geometry->prims);
     geometry->prim_part = glint_alloc(f->prims, sizeof *geometry->prim_part);
     geometry->parts = glint_alloc(f->parts, sizeof *geometry->parts);
+    geometry->maps = f->maps ? glint_alloc(f->maps, sizeof *geometry->maps) : NULL;
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
-    return f->numbers && geometry->prims && geometry->prim_part && geometry->parts &&
+    return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
            (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && allocate_shading_points(f);
 }
 

@@ -28,8 +28,12 @@ static void bounce_material_init(glint_bounce_material *out, const glint_materia
     bounded(out->mirror, mirror_of(desc));
     bounded(out->transmission, desc->transmission);
     bounded(out->absorption, desc->absorption);
-    out->mirrors = brightest_of(out->mirror) > 0;
-    out->transmits = brightest_of(out->transmission) > 0;
+    for (int c = 0; c < 3; c++) { // what bounds them is what bounds what programs give
+        out->mirror[c] = desc->program.mirror ? GLINT_REFLECTANCE_MAX : out->mirror[c];
+        out->transmission[c] = desc->program.transmission ? GLINT_REFLECTANCE_MAX : out->transmission[c];
+    }
+    out->mirrors = glint_material_mirrors(desc);
+    out->transmits = glint_material_transmits(desc);
 }
 
 /// A bound of what a material sends on of the light its rays bring, where they are not totally reflected.
@@ -47,18 +51,35 @@ static double gain_anywhere(const glint_bounce_material *m)
     return m->transmits && !m->fresnel ? fmax(gain(m), 1) : gain(m);
 }
 
+/// A bound of what a program gives: 1 where there is none, and a number of the table stands for itself.
+static double most_of(const glint_plan *plan, uint32_t i, glint_field field)
+{
+    return plan->patterns && plan->patterns->of[i].made >> field & 1 ? GLINT_REFLECTANCE_MAX : 1;
+}
+
+/// A bound of the diffuse reflectance.
+static double most_diffuse(const glint_plan *plan, uint32_t i)
+{
+    return most_of(plan, i, GLINT_FIELD_DIFFUSE) * brightest_of(glint_plan_diffuse(plan, i));
+}
+
 /// A bound of the light that surfaces of a material themselves give to any ray.
 static double surface_light(const glint_plan *plan, uint32_t i)
 {
     const glint_shade_material *m = &plan->materials[i];
+    const double diffuse = most_diffuse(plan, i), specular = most_of(plan, i, GLINT_FIELD_SPECULAR);
     double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
+    if (plan->patterns && plan->patterns->of[i].made >> GLINT_FIELD_DIFFUSE & 1)
+        sum += diffuse * brightest_of(plan->ambient);
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *light = &plan->lights[k];
         const double c0 = light->coefficients[0];
         const bool radiant = light->light_samples && light->light_samples->emission >= GLINT_EMIT_RADIANT_FRONT;
         const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
-        const double far = brightest_of(m->diffuse) * brightest_of(light->diffuse) +
-                           brightest_of(m->specular) * brightest_of(light->specular);
+        double far = diffuse * brightest_of(light->diffuse) +
+                     specular * brightest_of(m->specular) * brightest_of(light->specular);
+        if (plan->patterns && plan->patterns->of[i].program[GLINT_FIELD_SHADER])
+            far = GLINT_REFLECTANCE_MAX;
         if (far > 0)
             sum += near * far;
     }
@@ -102,7 +123,7 @@ static void bound_light(glint_plan *plan)
     double most = 0, depth = plan->desc.max_depth + plan->indirect.bounces;
     for (uint32_t i = 0; i < plan->material_count; i++)
         most = fmax(most, (plan->bouncing ? gain_anywhere(&plan->bouncing[i]) : 0) +
-                              (plan->indirect.samples ? brightest_of(plan->materials[i].diffuse) : 0));
+                              (plan->indirect.samples ? most_diffuse(plan, i) : 0));
     plan->brightest = brightest_surface(plan) * geometric(most, depth);
     if (plan->bouncing && !plan->indirect.samples && most <= 1)
         plan->brightest = fmin(plan->brightest, brightest_chain(plan, depth));
@@ -127,7 +148,7 @@ glint_status glint_plan_bounce(glint_plan *plan, glint_error *error)
     bool any = false;
     for (size_t i = 0; i < list->count; i++) {
         const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
-        any = any || brightest_of(mirror_of(desc)) > 0 || brightest_of(desc->transmission) > 0;
+        any = any || glint_material_mirrors(desc) || glint_material_transmits(desc);
     }
     if (!any) {
         if (plan->indirect.samples)

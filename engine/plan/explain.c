@@ -122,8 +122,8 @@ typedef bool material_test(const glint_material_desc *desc);
 
 static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 
-static bool is_mirror(const glint_material_desc *d) { return d->has_mirror ? any(d->mirror) : d->fresnel; }
-static bool is_transparent(const glint_material_desc *d) { return any(d->transmission); }
+static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d); }
+static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
 static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
 
 static bool shines_as(const glint_material_desc *d, glint_model model)
@@ -166,6 +166,32 @@ static void materials(explainer *e, const char *effect, material_test *test)
     }
     end(e);
     glint_list_free(&seen);
+}
+
+/// Each program of a material, with its length.
+static void patterns(explainer *e)
+{
+    static const char *const names[GLINT_FIELD_COUNT] = { "diffuse",   "ambient",      "specular",
+                                                          "mirror",    "transmission", "shininess",
+                                                          "roughness", "bump",         "model" };
+    const glint_plan_patterns *all = e->plan->patterns;
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++)
+        for (uint32_t i = 0; i < all->material_count; i++) {
+            const glint_program *program = all->of[i].program[field];
+            char effect[sizeof e->plan->lines->effect], caller[2 * GLINT_NAME_SIZE], owner[GLINT_NAME_SIZE];
+            if (!program)
+                continue;
+            snprintf(effect, sizeof effect, "pattern: %s", names[field]);
+            snprintf(owner, sizeof owner, "#%u", i + 1);
+            const glint_material *material = e->plan->geometry->materials.items[i];
+            size_t used = material->desc.name[0]
+                              ? (size_t)snprintf(caller, sizeof caller, "material '%s'", material->desc.name)
+                              : (size_t)snprintf(caller, sizeof caller, "material %s", owner);
+            snprintf(caller + used, sizeof caller - used, ", %zu instruction%s, %zu row%s",
+                     glint_program_length(program), glint_program_length(program) == 1 ? "" : "s",
+                     glint_program_rows(program), glint_program_rows(program) == 1 ? "" : "s");
+            add_line(e, effect, caller);
+        }
 }
 
 typedef bool shape_test(const glint_shape *shape);
@@ -258,6 +284,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
         shapes(e, "solid by an affine map", is_solid);
         shapes(e, "open cylinder or cone", is_uncapped);
     }
+    if (plan->patterns)
+        patterns(e);
     if (plan->highlights) {
         materials(e, "Phong highlight", is_phong);
         materials(e, "normalised Phong highlight", is_even_phong);
@@ -297,6 +325,7 @@ static void list_stages(glint_plan *plan)
         "nearest object and distance of each ray",
         "which rays see a light before any object",
         "point, normal and material of each hit",
+        "programs of materials at each point that shows them",
         "cosine of the angle each point is seen at, for microfacets",
         "direction, distance and highlight angle of each light",
         "half vector and Fresnel factor of each light, for microfacets",

@@ -8,16 +8,25 @@
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
 
-static bool is_matt(const glint_shade_material *m)
+static bool is_matt(const glint_plan *plan, uint32_t i)
 {
-    return m->diffuse[0] > 0 || m->diffuse[1] > 0 || m->diffuse[2] > 0;
+    const double *kd = glint_plan_diffuse(plan, i);
+    return kd[0] > 0 || kd[1] > 0 || kd[2] > 0;
 }
 
-/// Parts a material's ambient light.
-static void part_ambient(glint_shade_material *material, const double ambient[3], double rest[3])
+/// Parts a material's ambient light. Where a program gives the diffuse reflectance, so do the stages pattern and indirect.
+static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
 {
+    glint_shade_material *material = &plan->materials[i];
+    const double *diffuse = glint_plan_diffuse(plan, i), *ambient = plan->ambient;
+    if (plan->patterns && plan->patterns->of[i].made >> GLINT_FIELD_DIFFUSE & 1) {
+        material->planes &= ~(uint32_t)GLINT_PLANE_AMBIENT_IS_DIFFUSE;
+        material->planes |= plan->patterns->of[i].made >> GLINT_FIELD_AMBIENT & 1 ? GLINT_PLANE_AMBIENT : 0u;
+        rest[0] = rest[1] = rest[2] = 0;
+        return;
+    }
     for (int c = 0; c < 3; c++) {
-        const double all = material->ambient[c], replaced = fmin(all, material->diffuse[c] * ambient[c]);
+        const double all = material->ambient[c], replaced = fmin(all, diffuse[c] * ambient[c]);
         material->ambient[c] = all - replaced;
         rest[c] = replaced;
     }
@@ -42,7 +51,7 @@ glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *
     glint_plan_indirect *indirect = &plan->indirect;
     bool matt = false;
     for (uint32_t i = 0; i < plan->material_count; i++)
-        matt = matt || is_matt(&plan->materials[i]);
+        matt = matt || is_matt(plan, i);
     if (!scene->has_indirect || scene->indirect_bounces == 0 || !matt || plan->geometry->table.prim_count == 0)
         return GLINT_OK;
     indirect->rest = glint_alloc(plan->material_count, sizeof *indirect->rest);
@@ -51,6 +60,6 @@ glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *
     indirect->samples = (uint32_t)scene->indirect_samples;
     indirect->bounces = (uint32_t)scene->indirect_bounces;
     for (uint32_t i = 0; i < plan->material_count; i++)
-        part_ambient(&plan->materials[i], plan->ambient, indirect->rest[i]);
+        part_ambient(plan, i, indirect->rest[i]);
     return find_lights(plan, error);
 }

@@ -14,6 +14,8 @@ typedef enum input {
     INPUT_PLACES, ///< where the surfaces are
     INPUT_VISIBLE_LIGHT_PLACES, ///< where lights are seen
     INPUT_LOOKS, ///< which material each has, and its sides
+    INPUT_PATTERNS, ///< programs that give numbers of materials, and where the shapes' own spaces are
+    INPUT_BUMPS, ///< programs that turn normals
     INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
     INPUT_LIGHT_PLACES, ///< kind, position, fall-off
     INPUT_SHADOWS, ///< which lights cast them
@@ -36,8 +38,9 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAST] = READS(PLACES),
     [GLINT_STAGE_VISIBLE_LIGHT] = READS(VISIBLE_LIGHT_PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
-    [GLINT_STAGE_VIEW] = 0,
-    [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS),
+    [GLINT_STAGE_PATTERN] = READS(PATTERNS),
+    [GLINT_STAGE_VIEW] = READS(BUMPS),
+    [GLINT_STAGE_LIGHT] = READS(LIGHT_PLACES) | READS(HIGHLIGHTS) | READS(BUMPS),
     [GLINT_STAGE_FACET] = 0,
     [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
     [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
@@ -110,23 +113,32 @@ static glint_key highlights_key(const glint_plan *plan, glint_key key)
     return key;
 }
 
-static glint_key material_key(const glint_shade_material *m, glint_key key)
+/// Of materials with programs: those of `fields`, a bit each, and where the shapes are that show them.
+static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key key)
 {
+    for (uint32_t i = 0; plan->patterns && i < plan->material_count; i++)
+        key = glint_pattern_key(plan->patterns, i, fields, key);
+    return key;
+}
+
+static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
+{
+    const glint_shade_material *m = &plan->materials[i];
     const double exponent[] = { m->shininess, m->highlight, m->lobe, m->alpha };
     ADD(key, m->diffuse);
     ADD(key, m->specular);
     ADD(key, m->ambient);
     ADD(key, m->grazing);
     ADD(key, exponent);
-    return key;
+    return plan->patterns ? glint_pattern_key(plan->patterns, i, UINT32_MAX, key) : key;
 }
 
 /// What of a material is read where it has no highlight.
-static glint_key matte_key(const glint_shade_material *m, glint_key key)
+static glint_key matte_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
-    ADD(key, m->diffuse);
-    ADD(key, m->ambient);
-    return key;
+    ADD(key, plan->materials[i].diffuse);
+    ADD(key, plan->materials[i].ambient);
+    return plan->patterns ? glint_pattern_key(plan->patterns, i, UINT32_MAX, key) : key;
 }
 
 static glint_key transparent_shadow_key(const glint_bounce_material *m, glint_key key)
@@ -181,6 +193,10 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, plan->where);
     if (which & READS(LOOKS))
         ADD(key, geometry->look);
+    if (which & READS(PATTERNS))
+        key = programs_key(plan, (1u << GLINT_FIELD_PLANES) - 1, key);
+    if (which & READS(BUMPS))
+        key = programs_key(plan, 1u << GLINT_FIELD_BUMP, key);
     if (which & READS(HIGHLIGHTS))
         key = highlights_key(plan, key);
     for (uint32_t i = 0; i < plan->visible_light_count && which & READS(VISIBLE_LIGHT_PLACES); i++)
@@ -194,7 +210,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
             key = light_color_key(&plan->lights[i], key);
     }
     for (uint32_t i = 0; i < plan->material_count && which & READS(MATERIALS); i++)
-        key = material_key(&plan->materials[i], key);
+        key = material_key(plan, i, key);
     for (uint32_t i = 0; i < plan->material_count && which & READS(TINTS) && plan->tints; i++)
         key = transparent_shadow_key(&plan->bouncing[i], key);
     if (which & READS(INDIRECT) && plan->runs[GLINT_STAGE_INDIRECT])
@@ -225,10 +241,11 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
 static glint_key vertex_key(const glint_plan *plan)
 {
     const glint_plan_camera *c = &plan->camera;
-    const double frame[] = { plan->desc.precision, plan->highlights ? 1 + c->orthographic : 0 };
+    const bool seen = plan->highlights || glint_patterns_see(plan->patterns);
+    const double frame[] = { plan->desc.precision, seen ? 1 + c->orthographic : 0 };
     glint_key key = { 0 };
     ADD(key, frame);
-    if (plan->highlights)
+    if (seen)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
@@ -255,8 +272,8 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
     if (!plan->material_keys || !plan->matte_keys)
         return glint_fail_nomem(error);
     for (uint32_t i = 0; i < plan->material_count; i++) {
-        plan->material_keys[i] = material_key(&plan->materials[i], none);
-        plan->matte_keys[i] = matte_key(&plan->materials[i], none);
+        plan->material_keys[i] = material_key(plan, i, none);
+        plan->matte_keys[i] = matte_key(plan, i, none);
     }
     plan->all_materials_key =
         add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
@@ -269,8 +286,11 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error)
 {
     glint_key key = { 0 };
-    for (int id = 0; id < GLINT_STAGE_COUNT; id++)
-        plan->keys[id] = key = add_inputs(plan, stages[id], key);
+    for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
+        plan->keys[id] = add_inputs(plan, stages[id], key);
+        if (id != GLINT_STAGE_PATTERN) // the next stages do not read it; those that do read the materials
+            key = plan->keys[id];
+    }
     plan->vertex_key = vertex_key(plan);
     return part_keys(plan, error);
 }

@@ -5,10 +5,10 @@
 
 #include <stdlib.h>
 
-const char *const glint_stage_names[GLINT_STAGE_COUNT] = { "camera",   "cast",   "visible_lights", "surface", "view",
-                                                           "light",    "facet",  "occlude",        "vertex",  "shade",
-                                                           "indirect", "bounce", "depth_cue",      "refine",  "resolve",
-                                                           "tone",     "outline" };
+const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
+    "camera", "cast",  "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude",
+    "vertex", "shade", "indirect",       "bounce",  "depth_cue", "refine", "resolve", "tone",  "outline"
+};
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
 {
@@ -64,10 +64,11 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 }
 
 /// Stages that never walk the index, but for the cast.
-static const uint32_t without_index =
-    1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
-    1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX |
-    1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
+static const uint32_t without_index = 1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST |
+                                      1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
+                                      1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT |
+                                      1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE |
+                                      1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
 
 /// Whether triangles are to be scanned.
 static void choose_visibility(glint_plan *plan)
@@ -111,6 +112,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
+    plan->runs[GLINT_STAGE_PATTERN] = surfaces && plan->patterns;
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
@@ -127,6 +129,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
 {
     glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
+    if (!status)
+        status = glint_plan_find_patterns(plan, scene->desc.has_indirect && scene->desc.indirect_bounces > 0, error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
     if (!status)
@@ -186,6 +190,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->visible_lights);
     free(plan->visible_light_edges);
     free(plan->materials);
+    glint_plan_patterns_free(plan->patterns);
     free(plan->bouncing);
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);

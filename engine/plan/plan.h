@@ -15,6 +15,7 @@
 
 #include "engine/geometry/geometry.h"
 #include "engine/geometry/media.h"
+#include "engine/plan/patterns.h"
 
 /// In the order a frame runs them.
 typedef enum glint_stage_id {
@@ -22,6 +23,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_CAST,
     GLINT_STAGE_VISIBLE_LIGHT,
     GLINT_STAGE_SURFACE,
+    GLINT_STAGE_PATTERN,
     GLINT_STAGE_VIEW,
     GLINT_STAGE_LIGHT,
     GLINT_STAGE_FACET,
@@ -114,6 +116,7 @@ struct glint_plan {
     glint_geometry *geometry;
     glint_shade_material *materials; ///< in the geometry's order
     uint32_t material_count;
+    glint_plan_patterns *patterns; ///< what programs give of materials; NULL: no material has any
     bool highlights; ///< some material and some light make one: of the next two kinds
     bool powers, facets; ///< Phong's and Blinn-Phong's; of microfacets
     glint_plan_light *lights;
@@ -167,6 +170,12 @@ static inline bool glint_plan_has_term(const glint_plan *plan, glint_term term)
 {
     return term < GLINT_TERM_LOCAL ||
            plan->runs[term == GLINT_TERM_INDIRECT ? GLINT_STAGE_INDIRECT : GLINT_STAGE_BOUNCE];
+}
+
+/// The diffuse reflectance of a material, as far as it is a number; where a program gives it, 1 or what it would be without.
+static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t material)
+{
+    return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
 }
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.

@@ -49,20 +49,55 @@ static void facets_init(glint_shade_material *out, const glint_material_desc *de
     }
 }
 
+/// What of a resolved description programs give: planes, and 1 for what they are multiplied by.
+static void take_planes(glint_shade_material *out, glint_material_desc *d, bool ambient_follows)
+{
+    const glint_material_programs *programs = &d->program;
+    if (programs->diffuse)
+        out->planes |= GLINT_PLANE_DIFFUSE | (ambient_follows ? GLINT_PLANE_AMBIENT_IS_DIFFUSE : 0u);
+    if (programs->specular)
+        out->planes |= GLINT_PLANE_SPECULAR;
+    for (int c = 0; c < 3; c++) {
+        d->diffuse[c] = programs->diffuse ? 1 : d->diffuse[c];
+        d->specular[c] = programs->specular ? 1 : d->specular[c];
+    }
+}
+
+/// Phong and Blinn-Phong whose exponent a program gives; with it goes what makes it even.
+static void take_exponents(glint_shade_material *out, const glint_material_desc *d)
+{
+    out->planes |= GLINT_PLANE_SHININESS;
+    out->least = 0;
+    for (int c = 0; c < 3 && d->normalized; c++)
+        out->specular[c] = 1;
+    out->planes |= d->normalized ? GLINT_PLANE_SPECULAR : 0u;
+}
+
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3])
 {
     glint_material_desc d = *desc;
     glint_material_desc_resolve(&d);
     *out = (glint_shade_material) { 0 };
-    bounded(out->diffuse, d.diffuse, 1);
-    for (int c = 0; c < 3; c++)
+    take_planes(out, &d, !desc->has_ambient);
+    for (int c = 0; c < 3 && !(out->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE); c++)
         out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
-    if (!glint_material_is_shiny(&d))
+    if (d.program.shader) {
+        out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE; // the rest is the shader's
         return;
+    }
+    bounded(out->diffuse, d.diffuse, 1);
+    if (!glint_material_is_shiny(&d)) {
+        out->planes &= ~(uint32_t)GLINT_PLANE_SPECULAR;
+        return;
+    }
     if (d.model == GLINT_MODEL_COOK_TORRANCE)
         facets_init(out, &d);
     else
         power_init(out, &d);
+    if (d.program.roughness && d.model == GLINT_MODEL_COOK_TORRANCE)
+        out->planes |= GLINT_PLANE_ALPHA;
+    if (d.program.shininess && d.model != GLINT_MODEL_COOK_TORRANCE)
+        take_exponents(out, &d);
 }
 
 /// Whether its shadows are by caps.
@@ -256,7 +291,7 @@ static bool allows_caps(const glint_plan *plan)
     const glint_list *list = &plan->geometry->materials;
     bool opaque = true;
     for (size_t i = 0; i < list->count; i++)
-        opaque = opaque && is_black(((const glint_material *)list->items[i])->desc.transmission);
+        opaque = opaque && !glint_material_transmits(&((const glint_material *)list->items[i])->desc);
     return opaque && !table->triangles && !table->solids;
 }
 

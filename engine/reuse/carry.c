@@ -180,6 +180,7 @@ static void carry_hits(const carry *c, glint_cached_tile *tile)
     if (glint_key_equal(tile->boxed, was[GLINT_STAGE_SURFACE]))
         tile->box.only = moved(c, tile->box.only);
     renew(&tile->cast, was[GLINT_STAGE_CAST], is[GLINT_STAGE_CAST]);
+    renew(&tile->pattern, was[GLINT_STAGE_PATTERN], is[GLINT_STAGE_PATTERN]);
     renew(&tile->view, was[GLINT_STAGE_VIEW], is[GLINT_STAGE_VIEW]);
     renew(&tile->seen, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
     renew(&tile->boxed, was[GLINT_STAGE_SURFACE], is[GLINT_STAGE_SURFACE]);
@@ -231,6 +232,7 @@ static void carry_all(const carry *c)
     for (size_t i = 0; i < reuse->tile_count; i++)
         carry_tile(c, i, (uint32_t)(i % across), (uint32_t)(i / across));
     reuse->cast = c->plan->keys[GLINT_STAGE_CAST]; // what stays where it is may be kept from now on
+    renew(&reuse->pattern, c->before->keys[GLINT_STAGE_PATTERN], c->plan->keys[GLINT_STAGE_PATTERN]);
     renew(&reuse->view, c->before->keys[GLINT_STAGE_VIEW], c->plan->keys[GLINT_STAGE_VIEW]);
     for (uint32_t i = 0; i < reuse->light_count; i++)
         renew(&reuse->light[i], c->before->lights[i].key, c->plan->lights[i].key);

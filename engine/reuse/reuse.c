@@ -31,7 +31,7 @@ void glint_reuse_clear(glint_reuse *reuse)
     reuse->tiles = NULL;
     reuse->tile_count = reuse->used = reuse->free_bytes = 0;
     reuse->light_count = 0;
-    reuse->cast = reuse->view = (glint_key) { 0 };
+    reuse->cast = reuse->pattern = reuse->view = (glint_key) { 0 };
     memset(reuse->light, 0, sizeof reuse->light);
 }
 
@@ -50,6 +50,7 @@ static void make_slots(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     reuse->samples = (uint32_t)plan->desc.samples;
     reuse->real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     reuse->plain = plan->geometry->index->plain;
+    reuse->plane_count = plan->patterns ? plan->patterns->plane_count : 0;
     const size_t bytes = tile_count * (sizeof *reuse->tiles + light_count * sizeof *reuse->tiles->lights);
     if (bytes > reuse->budget - reuse->pictures || !(reuse->tiles = calloc(tile_count, sizeof *reuse->tiles)))
         return;
@@ -73,12 +74,15 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
     const size_t real_size = plan->desc.precision == GLINT_FLOAT ? sizeof(float) : sizeof(double);
     if (reuse->tile_count != tile_count || reuse->width != plan->desc.width || reuse->height != plan->desc.height ||
         reuse->samples != plan->desc.samples || reuse->real_size != real_size || reuse->light_count != lights ||
-        reuse->plain != plan->geometry->index->plain) {
+        reuse->plain != plan->geometry->index->plain ||
+        reuse->plane_count != (plan->patterns ? plan->patterns->plane_count : 0)) {
         glint_reuse_clear(reuse);
         make_slots(reuse, plan, tile_count, lights);
     }
     reuse->keep_cast = glint_key_equal(reuse->cast, plan->keys[GLINT_STAGE_CAST]);
     reuse->cast = plan->keys[GLINT_STAGE_CAST];
+    reuse->keep_pattern = plan->patterns && glint_key_equal(reuse->pattern, plan->keys[GLINT_STAGE_PATTERN]);
+    reuse->pattern = plan->keys[GLINT_STAGE_PATTERN];
     reuse->keep_view = glint_key_equal(reuse->view, plan->keys[GLINT_STAGE_VIEW]);
     reuse->view = plan->keys[GLINT_STAGE_VIEW];
     for (uint32_t i = 0; i < lights; i++) {
@@ -107,7 +111,7 @@ static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, cons
 {
     const glint_shade_material *material = &plan->materials[index];
     if ((material->highlight != GLINT_HIGHLIGHT_PHONG && material->highlight != GLINT_HIGHLIGHT_BLINN) ||
-        plan->light_count > reuse->light_count)
+        plan->light_count > reuse->light_count || material->planes)
         return true;
     for (uint32_t i = 0; i < reuse->light_count; i++)
         if (tile->lights[i].reaches && !(material->shininess * tile->lights[i].brightest < GLINT_EXP2_LOWEST))
@@ -231,6 +235,14 @@ bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, boo
     if (light->open && caps && !light->visible)
         light->visible = hold(reuse, samples * sizeof *light->visible);
     return light->open != NULL && (light->visible || !caps);
+}
+
+bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile)
+{
+    if (!tile->planes)
+        tile->planes =
+            hold(reuse, (size_t)reuse->samples * reuse->plane_count * GLINT_TILE_SAMPLES * sizeof *tile->planes);
+    return tile->planes != NULL;
 }
 
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile)

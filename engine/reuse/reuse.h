@@ -44,6 +44,8 @@ typedef struct glint_cached_tile {
     uint16_t *hits;
     glint_key view;
     float *facing; ///< its own block
+    glint_key pattern;
+    float *planes; ///< its own block: of each sample the plan's planes, one after the other
     glint_cached_light *lights;
     // what the tile's pixels show, as far as known
     glint_key seen; ///< the surfaces' key when that was found; all zero: never
@@ -72,19 +74,19 @@ typedef struct glint_reuse {
     void *chunk; ///< owned: the last piece of memory that blocks were cut from; it begins with the one before
     char *free; ///< what is left of it
     size_t free_bytes;
-    uint32_t width, height, samples; ///< the layout of what is kept
+    uint32_t width, height, samples, plane_count; ///< the layout of what is kept
     size_t real_size;
     bool plain; ///< order of the primitives, whose places are kept
     glint_cached_tile *tiles;
     size_t tile_count;
     uint32_t light_count; ///< slots in each tile
-    glint_key cast, view, light[GLINT_CACHED_LIGHTS]; ///< of the last frame
+    glint_key cast, pattern, view, light[GLINT_CACHED_LIGHTS]; ///< of the last frame
     glint_key where; ///< of the places of the last frame's surfaces, and
     glint_cached_place *places; ///< these, by id; owned; NULL: there were too many
     uint32_t place_count;
     double scale; ///< of the geometry's table
     // which results this frame has in common with the last, and therefore keeps
-    bool keep_cast, keep_view, keep_light[GLINT_CACHED_LIGHTS];
+    bool keep_cast, keep_pattern, keep_view, keep_light[GLINT_CACHED_LIGHTS];
 } glint_reuse;
 
 /// budget  bytes; 0: a quarter of the machine's memory.
@@ -114,6 +116,7 @@ glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile
 bool glint_reuse_hold_cast(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_light(glint_reuse *reuse, glint_cached_light *light);
 bool glint_reuse_hold_occlude(glint_reuse *reuse, glint_cached_light *light, bool caps);
+bool glint_reuse_hold_planes(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_view(glint_reuse *reuse, glint_cached_tile *tile);
 bool glint_reuse_hold_facet(glint_reuse *reuse, glint_cached_light *light);
 

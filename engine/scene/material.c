@@ -52,25 +52,123 @@ static glint_status check(const glint_material_desc *desc, glint_error *error)
     return status;
 }
 
+// ---- Programs ----
+
+/// A field that takes a program: where it is, and where its numbers are.
+typedef struct program_field {
+    const char *name;
+    size_t program, number; ///< offsets; number 0: none
+    size_t count; ///< of numbers
+    size_t set; ///< of the flag that they are given; 0: none
+} program_field;
+
+#define AT(member) offsetof(glint_material_desc, member)
+
+static const program_field program_fields[] = {
+    { "diffuse", AT(program.diffuse), AT(diffuse), 3, 0 },
+    { "specular", AT(program.specular), AT(specular), 3, AT(has_specular) },
+    { "mirror", AT(program.mirror), AT(mirror), 3, AT(has_mirror) },
+    { "transmission", AT(program.transmission), AT(transmission), 3, 0 },
+    { "shininess", AT(program.shininess), AT(shininess), 1, 0 },
+    { "roughness", AT(program.roughness), AT(roughness), 1, 0 },
+    { "bump", AT(program.bump), 0, 1, 0 },
+    { "model", AT(program.shader), 0, 0, 0 },
+};
+
+static glint_program **program_at(const glint_material_programs *programs, const program_field *field)
+{
+    const size_t at = field->program - AT(program);
+    return (glint_program **)(void *)((char *)(uintptr_t)programs + at);
+}
+
+#define EACH_FIELD(f) \
+    for (const program_field *f = program_fields; f < program_fields + sizeof program_fields / sizeof *f; f++)
+
+static void hold_programs(const glint_material_programs *programs)
+{
+    EACH_FIELD(f)
+    if (*program_at(programs, f))
+        glint_program_retain(*program_at(programs, f));
+}
+
+static void release_programs(const glint_material_programs *programs)
+{
+    EACH_FIELD(f)
+    glint_program_release(*program_at(programs, f));
+}
+
+static glint_status check_program(const program_field *field, const glint_program *program, glint_error *error)
+{
+    const bool shader = glint_program_kind_of(program) == GLINT_PROGRAM_SHADER, wanted = field->count == 0;
+    const size_t count = glint_program_output_count(program);
+    if (field->program == AT(program.bump) || field->program == AT(program.shader))
+        return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: programs are not run there yet", field->name);
+    if (shader != wanted)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: a %s expected, got a %s", field->name,
+                          wanted ? "shader" : "pattern", wanted ? "pattern" : "shader");
+    if (field->count == 1 && count != 1)
+        return glint_fail(error, GLINT_ERR_INVALID, "%s: a pattern of one number expected, got one of %zu", field->name,
+                          count);
+    return GLINT_OK;
+}
+
+/// A pattern of numbers alone is these numbers.
+static void fold_program(const program_field *field, glint_material_desc *desc)
+{
+    double value[GLINT_PROGRAM_OUTPUTS_MAX];
+    glint_program **program = program_at(&desc->program, field);
+    double *number = (double *)(void *)((char *)desc + field->number);
+    const bool grey = glint_program_output_count(*program) == 1;
+    if (field->count == 0 || !glint_program_constant(*program, value))
+        return;
+    for (size_t i = 0; field->number && i < field->count; i++)
+        number[i] = value[grey ? 0 : i];
+    if (field->set)
+        *((bool *)desc + field->set) = true;
+    *program = NULL;
+}
+
+/// Checks a description, and puts numbers where its programs are nothing else.
+static glint_status take(const glint_material_desc *desc, glint_material_desc *out, glint_error *error)
+{
+    *out = *desc;
+    EACH_FIELD(f)
+    {
+        const glint_program *program = *program_at(&desc->program, f);
+        glint_status status = program ? check_program(f, program, error) : GLINT_OK;
+        if (status)
+            return status;
+        if (program)
+            fold_program(f, out);
+    }
+    return check(out, error);
+}
+
 glint_status glint_material_create(const glint_material_desc *desc, glint_material **out, glint_error *error)
 {
-    glint_status status = check(desc, error);
+    glint_material_desc taken;
+    glint_status status = take(desc, &taken, error);
     if (status)
         return status;
     glint_material *material = malloc(sizeof *material);
     if (!material)
         return glint_fail_nomem(error);
-    *material = (glint_material) { .references = 1, .desc = *desc };
+    hold_programs(&taken.program);
+    *material = (glint_material) { .references = 1, .desc = taken };
     *out = material;
     return GLINT_OK;
 }
 
 glint_status glint_material_set(glint_material *material, const glint_material_desc *desc, glint_error *error)
 {
-    glint_status status = check(desc, error);
-    if (!status)
-        material->desc = *desc;
-    return status;
+    glint_material_desc taken;
+    glint_status status = take(desc, &taken, error);
+    if (status)
+        return status;
+    hold_programs(&taken.program);
+    release_programs(&material->desc.program);
+    material->desc = taken;
+    return GLINT_OK;
 }
 
 const glint_material_desc *glint_material_get(const glint_material *material) { return &material->desc; }
@@ -84,8 +182,10 @@ glint_material *glint_material_retain(glint_material *material)
 
 void glint_material_release(glint_material *material)
 {
-    if (material && --material->references == 0)
-        free(material);
+    if (!material || --material->references > 0)
+        return;
+    release_programs(&material->desc.program);
+    free(material);
 }
 
 void glint_material_desc_resolve(glint_material_desc *desc)
@@ -104,11 +204,23 @@ void glint_material_desc_resolve(glint_material_desc *desc)
     desc->has_ambient = desc->has_specular = desc->has_f0 = desc->has_mirror = true;
 }
 
+static bool is_any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
+
 bool glint_material_is_shiny(const glint_material_desc *desc)
 {
     glint_material_desc d = *desc;
     glint_material_desc_resolve(&d);
-    return d.model != GLINT_MODEL_LAMBERT && (d.specular[0] > 0 || d.specular[1] > 0 || d.specular[2] > 0);
+    return !d.program.shader && d.model != GLINT_MODEL_LAMBERT && (d.program.specular || is_any(d.specular));
+}
+
+bool glint_material_transmits(const glint_material_desc *desc)
+{
+    return desc->program.transmission || is_any(desc->transmission);
+}
+
+bool glint_material_mirrors(const glint_material_desc *desc)
+{
+    return desc->program.mirror || (desc->has_mirror ? is_any(desc->mirror) : desc->fresnel);
 }
 
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size)

@@ -95,8 +95,11 @@ glint_status glint_check_shading(glint_shading shading, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);
-/// Whether it has a specular term that is not black.
+/// Whether it has a specular term that is not black, as far as its numbers say.
 bool glint_material_is_shiny(const glint_material_desc *desc);
+/// Whether light goes through, somewhere; whether it has a mirror.
+bool glint_material_transmits(const glint_material_desc *desc);
+bool glint_material_mirrors(const glint_material_desc *desc);
 void glint_describe_material(const glint_material_desc *desc, const char *owner, char *out, size_t size);
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size);
 

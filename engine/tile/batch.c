@@ -6,7 +6,7 @@
 
 // ---- Before and after ----
 
-void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame)
+void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame, glint_walk walk)
 {
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
@@ -22,6 +22,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
         .t = tile->hit.t, .prim = tile->hit.prim, .hits = tile->hit.mask, .sampled = tile->hit.mask
     };
     tile->own_lights = 0;
+    glint_pattern_point(to->pattern, tile, walk);
     for (uint32_t i = 0; i < GLINT_LIGHT_CHUNK; i++)
         glint_tile_use_own_light(tile, i);
     if (frame->plan->facets)
@@ -38,6 +39,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.runs[GLINT_STAGE_VERTEX] += batch->tile.counts.runs[GLINT_STAGE_VERTEX];
     to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
     to->counts.work.overlaps += batch->tile.counts.work.overlaps;
+    to->counts.work.patterns += batch->tile.counts.work.patterns;
 }
 
 // ---- What the rays find ----
@@ -156,6 +158,8 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
             memset(tile->film.sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->film.sum[k][c]);
     if (any && plan->runs[GLINT_STAGE_VIEW])
         glint_tile_view(tile, frame);
+    if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan))
+        glint_tile_pattern(tile, frame);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
         for (uint32_t i = 0; i < count;)
@@ -260,7 +264,8 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
                        glint_batch_ray *mirror, glint_batch_ray *through)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const glint_bounce_material *m = &frame->plan->bouncing[tile->surface.material[i]];
+    glint_bounce_material room;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const bool back = glint_has_lane(tile->hit.back, i), total = glint_has_lane(batch->total, i);
     const double mirrored = m->fresnel ? glint_real_at(batch->reflectance, precision, i) : 1;
     double rest[3];

@@ -4,7 +4,7 @@
 #ifndef GLINT_BATCH_H
 #define GLINT_BATCH_H
 
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #define GLINT_WEIGHT_MAX 1e150 ///< products with what a surface gives stay finite
 
@@ -32,7 +32,7 @@ typedef struct glint_batch {
 } glint_batch;
 
 /// Before the first batch of a sample of `to`.
-void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame);
+void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame, glint_walk walk);
 /// Puts the active rays into the arrays; the other lanes do nothing.
 void glint_batch_load(glint_batch *batch, glint_precision precision);
 /// Finds what the rays hit, and weakens them by what they went through. Returns whether anything is hit.

@@ -190,7 +190,7 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->bounce;
-    glint_batch_begin(&bounce->batch, tile, frame);
+    glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;

@@ -1,6 +1,6 @@
 /// What a tile leaves for later frames: where its results are kept, what it shows, and the keys of both.
 #include "engine/base/alloc.h"
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #include <math.h>
 
@@ -115,6 +115,8 @@ void glint_tile_sign_cached(glint_tile *tile, const glint_tile_frame *frame)
         if (reuse->keep_light[i] && plan->lights[i].shadows && has_occlude(&cached->lights[i], &plan->lights[i]))
             cached->lights[i].occlude = plan->lights[i].key;
     }
+    if (plan->runs[GLINT_STAGE_PATTERN])
+        glint_tile_sign_pattern(tile, frame);
     if (plan->runs[GLINT_STAGE_FACET])
         glint_tile_sign_facets(tile, frame);
 }

@@ -117,6 +117,7 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
 {
     const glint_plan *plan = frame->plan;
     uint32_t most = 0;
+    double room[3];
     for (uint32_t g = 0; g < seen->group_count; g++) {
         indirect->matt[g] = 0;
         for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
@@ -124,7 +125,7 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
             const glint_batch_ray *ray = from ? &from->ray[i] : NULL;
             const double weight = ray ? largest(ray->weight) : 1;
             const double samples = plan->indirect.samples;
-            if (largest(plan->materials[seen->surface.material[i]].diffuse) == 0)
+            if (largest(glint_tile_diffuse(seen, plan, i, room)) == 0)
                 continue;
             indirect->paths[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
             indirect->matt[g] |= (uint16_t)(left & -left);
@@ -188,13 +189,14 @@ static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame 
         for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const double share = 1.0 / indirect->paths[i];
+            double room[3];
             glint_batch_ray *ray = &batch->ray[i];
             *ray = glint_batch_start_ray(from ? from : batch, seen, frame, i);
             if (!from)
                 ray->term = GLINT_TERM_INDIRECT;
             ray->least = largest(ray->weight) * share * frame->plan->indirect.least;
-            leave(indirect, seen, frame->plan->desc.precision,
-                  frame->plan->materials[seen->surface.material[i]].diffuse, share, i, ray);
+            leave(indirect, seen, frame->plan->desc.precision, glint_tile_diffuse(seen, frame->plan, i, room), share, i,
+                  ray);
         }
     return true;
 }
@@ -227,8 +229,8 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
 {
     glint_batch *batch = &indirect->batch;
     const glint_batch_ray *ray = &batch->ray[i];
-    const double *diffuse = frame->plan->materials[batch->tile.surface.material[i]].diffuse;
-    double share[3] = { 0 }, least = 0;
+    double share[3] = { 0 }, least = 0, room[3];
+    const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
     glint_batch_ray split[2];
     if (ray->scatters < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
@@ -295,8 +297,9 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            leave(indirect, tile, frame->plan->desc.precision,
-                  frame->plan->materials[tile->surface.material[i]].diffuse, 1, i, &batch->ray[i]);
+            double room[3];
+            leave(indirect, tile, frame->plan->desc.precision, glint_tile_diffuse(tile, frame->plan, i, room), 1, i,
+                  &batch->ray[i]);
         }
     return true;
 }
@@ -310,7 +313,7 @@ static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile
         const glint_batch_ray *ray = &batch->ray[i];
         const bool last = glint_has_lane(batch->tile.at.hits, i) && ray->scatters == plan->indirect.bounces;
         for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++) {
-            const double rest = last ? plan->indirect.rest[batch->tile.surface.material[i]][c] : 0;
+            const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, i, c) : 0;
             to->film.sum[ray->term][c][ray->pixel] += ray->weight[c] * (glint_batch_found(batch, c, i) + rest);
         }
     }
@@ -362,7 +365,7 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
     const uint32_t paths = find_points(indirect, tile, frame, seen, from);
-    glint_batch_begin(batch, tile, frame);
+    glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;

@@ -1,6 +1,6 @@
 /// What a tile's working memory has beside the tile itself: allocated for the first frame that needs it, kept for those after it.
 #include "engine/base/alloc.h"
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #include <stdlib.h>
 
@@ -26,6 +26,10 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
+    glint_pattern_destroy(tile->pattern); // its size is the plan's
+    tile->pattern = NULL;
+    if (plan->patterns)
+        good = (tile->pattern = glint_pattern_create(plan)) && good;
     if (plan->visible_light_count && !tile->visible_light)
         tile->visible_light = glint_visible_light_create();
     return good && (!plan->visible_light_count || glint_visible_light_fits(tile->visible_light, plan));
@@ -43,6 +47,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_depth_cue_destroy(tile->depth_cue);
     glint_indirect_destroy(tile->indirect);
     glint_samples_destroy(tile->samples);
+    glint_pattern_destroy(tile->pattern);
     free(tile->facets);
     free(tile);
 }

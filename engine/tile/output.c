@@ -1,4 +1,4 @@
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 
@@ -44,7 +44,8 @@ double glint_tile_direction(const glint_tile *tile, glint_precision precision, i
 
 bool glint_tile_wants_geometry(const glint_plan *plan)
 {
-    return plan->desc.passes & (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID);
+    return plan->desc.passes &
+           (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID | 1u << GLINT_PASS_ALBEDO);
 }
 
 static bool sees_light(const glint_tile *tile, const glint_plan *plan, uint32_t i)
@@ -97,6 +98,19 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
     store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
 
+static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float albedo[3][GLINT_TILE_SAMPLES];
+    double room[3];
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        const bool hit = glint_has_lane(tile->at.hits, i);
+        const double *kd = hit ? glint_tile_diffuse(tile, frame->plan, i, room) : NULL;
+        for (int c = 0; c < 3; c++)
+            albedo[c][i] = hit ? (float)kd[c] : 0;
+    }
+    store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
+}
+
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
 {
     const uint32_t passes = frame->plan->desc.passes;
@@ -106,6 +120,8 @@ void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *f
         store_normal(tile, frame);
     if (passes >> GLINT_PASS_OBJECT_ID & 1)
         store_object_id(tile, frame);
+    if (passes >> GLINT_PASS_ALBEDO & 1)
+        store_albedo(tile, frame);
 }
 
 // ---- Coverage -----------------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 /// of a tile together, whose sums never leave the registers.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,7 @@ static glint_shade_light shade_light(const glint_tile *tile, const glint_plan_li
 }
 
 glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
-                                       uint32_t count, glint_shade_light *lights)
+                                       uint32_t count, glint_shade_light *lights, glint_shade_planes *planes)
 {
     const glint_plan *plan = frame->plan;
     glint_shade_args args = { .group_count = tile->group_count,
@@ -37,6 +37,7 @@ glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_
                               .material = tile->surface.material,
                               .only = tile->at.only ? &frame->geometry.prims[*tile->at.only].material : NULL,
                               .materials = plan->materials,
+                              .planes = glint_tile_shade_planes(tile, plan, planes),
                               .facing = tile->at.facing,
                               .highlights = plan->highlights,
                               .first = from == 0,
@@ -66,7 +67,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     const glint_plan *plan = frame->plan;
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
-    glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights);
+    glint_shade_planes planes;
+    glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights, &planes);
     if (plan->dims && count > 0)
         glint_tile_find_dim(tile, frame);
     for (uint32_t i = 0; i < count && plan->dims; i++) { // no light is summed
@@ -108,6 +110,7 @@ struct glint_samples {
     uint16_t hits[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS];
     glint_shade_light lights[GLINT_LIGHT_CHUNK];
     glint_shade_args shade[GLINT_LIGHT_CHUNK];
+    glint_shade_planes planes[GLINT_LIGHT_CHUNK];
 };
 
 struct glint_samples *glint_samples_create(void) { return glint_alloc(1, sizeof(struct glint_samples)); }
@@ -119,7 +122,8 @@ void glint_tile_remember_sample(glint_tile *tile, const glint_tile_frame *frame,
     struct glint_samples *samples = tile->samples;
     const uint32_t k = tile->sample;
     glint_shade_args *shade = &samples->shade[k];
-    *shade = glint_tile_shade_args(tile, frame, 0, light_count, &samples->lights[tile->own_lights]);
+    *shade =
+        glint_tile_shade_args(tile, frame, 0, light_count, &samples->lights[tile->own_lights], &samples->planes[k]);
     memcpy(samples->hits[k], tile->at.hits, tile->group_count * sizeof *samples->hits[k]);
     shade->hits = samples->hits[k];
     memcpy(samples->material[k], tile->surface.material,

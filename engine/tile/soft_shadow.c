@@ -1,5 +1,5 @@
 /// Sums the samples of an area light where they are found, without storing each.
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #include <string.h>
 
@@ -11,7 +11,7 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot];
     if (!light->light_samples || light->hard || plan->facets || plan->tints || plan->dims || frame->count_work ||
-        frame->time_stages)
+        frame->time_stages || glint_tile_fields_shown(tile, plan) >> GLINT_FIELD_SHININESS & 1)
         return false;
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->at.light[i].cosine != glint_tile_own_light(tile, i)->cosine ||

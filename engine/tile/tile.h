@@ -68,6 +68,7 @@ typedef struct glint_tile_sample {
             ///< log2_specular, and each has the `lit` and `open` of all
     } light[GLINT_LIGHT_CHUNK];
     float *facing;
+    float *planes; ///< what programs gave, see plan/patterns.h; NULL in frames without
 } glint_tile_sample;
 
 /// The rays of the current sample. Arrays of real are as long as doubles need, here and below.
@@ -139,6 +140,9 @@ typedef struct glint_tile {
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
+    struct glint_pattern *pattern; ///< memory of tile/pattern.c; NULL in frames without programs
+    double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
+    uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
 } glint_tile;
 
 static inline bool glint_has_lane(const uint16_t *mask, uint32_t i)
@@ -223,9 +227,10 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
 /// read. Returns whether it is, and marks the slots. The points are found.
 bool glint_tile_sum_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t slot,
                           uint32_t count);
-/// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in.
+/// The arguments of shade but the outputs, for `count` lights of the plan from `from` on, which are filled in, as are the
+/// planes where there are any.
 glint_shade_args glint_tile_shade_args(const glint_tile *tile, const glint_tile_frame *frame, uint32_t from,
-                                       uint32_t count, glint_shade_light *lights);
+                                       uint32_t count, glint_shade_light *lights, glint_shade_planes *planes);
 /// Where the requested parts of the picture go.
 void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film[GLINT_TERM_COUNT][3],
                            float *beauty[3]);

@@ -29,6 +29,7 @@ struct glint_transparent_shadow {
     uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
     double color[3][GLINT_TILE_SAMPLES];
     glint_media media[GLINT_TILE_SAMPLES];
+    float *planes; ///< of what programs give; NULL: the plan has none for transmission
     bool crossed[GLINT_TILE_SAMPLES];
 };
 
@@ -192,6 +193,27 @@ static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile
     stages->surface(&surfaces);
 }
 
+/// What programs give of the transmission of the surfaces that are met.
+static void find_transmission(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile,
+                              const glint_tile_frame *frame)
+{
+    glint_pattern_points points = { .group_count = tile->group_count,
+                                    .hits = transparent_shadow->hits,
+                                    .back = transparent_shadow->back,
+                                    .prim = transparent_shadow->prim,
+                                    .material = transparent_shadow->material,
+                                    .t = transparent_shadow->t,
+                                    .tile = tile,
+                                    .planes = transparent_shadow->planes,
+                                    .fields = 1u << GLINT_FIELD_TRANSMISSION };
+    for (int c = 0; c < 3; c++) {
+        points.point[c] = transparent_shadow->point[c];
+        points.normal[c] = transparent_shadow->normal[c];
+        points.direction[c] = transparent_shadow->direction[c];
+    }
+    glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
+}
+
 /// Takes the colour of one surface, and of the distance up to it. Returns whether any light is left.
 static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t i,
                   double length)
@@ -200,8 +222,11 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
     const bool back = transparent_shadow->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
     const uint32_t medium = glint_media_before(&transparent_shadow->media[i], material, back);
     bool any = false;
+    double room[3];
+    const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
+                                                plan->bouncing[material].transmission, room);
     for (int c = 0; c < 3; c++) {
-        transparent_shadow->color[c][i] *= plan->bouncing[material].transmission[c] * left_of(plan, medium, c, length);
+        transparent_shadow->color[c][i] *= transmission[c] * left_of(plan, medium, c, length);
         any = any || transparent_shadow->color[c][i] > 0;
     }
     glint_media_cross(&transparent_shadow->media[i], material, back);
@@ -225,6 +250,8 @@ static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile
     const glint_precision precision = frame->plan->desc.precision;
     unsigned any = 0;
     cast(transparent_shadow, tile, frame);
+    if (transparent_shadow->planes)
+        find_transmission(transparent_shadow, tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         unsigned on = 0;
         for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
@@ -254,11 +281,13 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
                   const glint_plan_light *light, uint32_t slot)
 {
     glint_shade_light lights[3];
+    glint_shade_planes planes;
     glint_shade_args args = { .group_count = tile->group_count,
                               .active = tile->active,
                               .hits = tile->at.hits,
                               .material = tile->surface.material,
                               .materials = frame->plan->materials,
+                              .planes = glint_tile_shade_planes(tile, frame->plan, &planes),
                               .facing = tile->at.facing,
                               .highlights = frame->plan->highlights,
                               .lights = lights,
@@ -283,6 +312,9 @@ void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *fra
     struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
     const glint_plan_light *light = &frame->plan->lights[index];
     begin(transparent_shadow, tile, frame, light, slot);
+    transparent_shadow->planes = frame->plan->patterns && frame->plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
+                                     ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
+                                     : NULL;
     for (int k = 0; k < CROSSINGS_MAX && step(transparent_shadow, tile, frame, light); k++)
         if (glint_tile_cancelled(frame))
             return;

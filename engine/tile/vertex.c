@@ -232,7 +232,7 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
 {
     struct glint_vertex *vertex = to->vertex;
     glint_tile *tile = &vertex->batch.tile;
-    glint_batch_begin(&vertex->batch, to, frame);
+    glint_batch_begin(&vertex->batch, to, frame, GLINT_WALK_SITES);
     tile->sample = 0;
     tile->owner = vertex->no_owner;
     for (int c = 0; c < 3; c++)

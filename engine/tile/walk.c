@@ -1,5 +1,5 @@
 /// The walk of a tile: which stages run, in what order, and where their results go.
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 
 #include <string.h>
 
@@ -46,6 +46,7 @@ static bool any_hit(const glint_tile *tile)
 typedef struct walk {
     uint32_t sample;
     bool rays, points; ///< made already
+    bool patterns; ///< known, or nothing in sight has any
     bool lit; ///< points and the only light's work are made, and no normals
 } walk;
 
@@ -63,6 +64,23 @@ static void need_points(glint_tile *tile, const glint_tile_frame *frame, walk *w
     need_rays(tile, frame, w);
     glint_tile_find_surfaces(tile, frame);
     w->points = true;
+}
+
+/// What programs give of the materials in sight, which are named.
+static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk *w)
+{
+    if (w->patterns || !frame->plan->runs[GLINT_STAGE_PATTERN])
+        return;
+    w->patterns = true;
+    if (glint_tile_pattern_memory(tile, frame, w->sample)) {
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
+        return;
+    }
+    if (!glint_tile_fields_shown(tile, frame->plan))
+        return;
+    if (!w->lit)
+        need_points(tile, frame, w);
+    glint_tile_pattern(tile, frame);
 }
 
 /// Returns whether anything is hit.
@@ -101,6 +119,8 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
         if (any)
             need_points(tile, frame, w);
+        if (any && plan->desc.passes >> GLINT_PASS_ALBEDO & 1)
+            find_patterns(tile, frame, w);
         glint_tile_store_geometry(tile, frame);
     }
     return any;
@@ -139,8 +159,9 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && plan->light_count == 1 && !plan->lights[0].light_samples &&
-           !plan->lights[0].is_spot && !frame->geometry.triangles && !frame->geometry.solids;
+    return !w->points && !frame->time_stages && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
+           !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
+           !frame->geometry.solids;
 }
 
 /// What one light does to this sample: `count` rows of the plan from `first + slot` on.
@@ -244,6 +265,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     tile->boxed = k ? tile->boxed : 0;
     tile->own_lights = frame->plan->together ? k * frame->plan->light_count : 0;
     glint_tile_aim(tile, frame, k);
+    tile->own_planes = frame->plan->together ? k : 0;
+    glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
     const bool any = find_hits(tile, frame, &w);
     if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
         find_depth_cue(tile, frame, &w, any);
@@ -260,6 +283,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, true);
             glint_tile_name_materials(tile, frame);
         }
+        if (any)
+            find_patterns(tile, frame, &w);
         if (lit && frame->plan->dims) // which points are inside what absorbs
             need_points(tile, frame, &w);
         if (frame->plan->together)

@@ -1,4 +1,4 @@
-// shade_planes: materials whose numbers differ from sample to sample, and are read from planes. Contract: stages.h, shade.
+// planes: materials whose numbers differ from sample to sample, and are read from planes. Contract: stages.h, shade.
 
 /// The product of a plane and a light's colour, as share_color makes it.
 static inline vf plane_color(const float *plane, double light)

@@ -1,0 +1,256 @@
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/plan/plan.h"
+#include "engine/program/program.h"
+
+#include <stdlib.h>
+
+/// As of a material's numbers; see shading.c.
+#define STRENGTH_MAX 1e150
+
+// ---- A material's programs ----
+
+static const glint_program *program_of(const glint_material_programs *programs, int field)
+{
+    switch (field) {
+    case GLINT_FIELD_DIFFUSE:
+        return programs->diffuse;
+    case GLINT_FIELD_SPECULAR:
+        return programs->specular;
+    case GLINT_FIELD_MIRROR:
+        return programs->mirror;
+    case GLINT_FIELD_TRANSMISSION:
+        return programs->transmission;
+    case GLINT_FIELD_SHININESS:
+        return programs->shininess;
+    case GLINT_FIELD_ROUGHNESS:
+        return programs->roughness;
+    case GLINT_FIELD_BUMP:
+        return programs->bump;
+    case GLINT_FIELD_SHADER:
+        return programs->shader;
+    default:
+        return NULL;
+    }
+}
+
+/// Whether a field's number is read at all, by the material's model.
+static bool is_read(const glint_material_desc *desc, int field)
+{
+    const bool facets = desc->model == GLINT_MODEL_COOK_TORRANCE, shader = desc->program.shader;
+    const bool shiny = shader || glint_material_is_shiny(desc);
+    switch (field) {
+    case GLINT_FIELD_SPECULAR:
+        return shiny;
+    case GLINT_FIELD_SHININESS:
+        return shiny && (shader || !facets);
+    case GLINT_FIELD_ROUGHNESS:
+        return shiny && !shader && facets;
+    default:
+        return true;
+    }
+}
+
+/// The fields that have planes.
+static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
+{
+    const glint_material_desc *desc = &pattern->desc;
+    uint32_t made = 0;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+        made |= pattern->program[field] ? 1u << field : 0;
+    if (made >> GLINT_FIELD_SHININESS & 1 && desc->normalized && !pattern->program[GLINT_FIELD_SHADER])
+        made |= 1u << GLINT_FIELD_SPECULAR; // whose factor depends on the exponent
+    if (made >> GLINT_FIELD_DIFFUSE & 1 && indirect && !pattern->ambient_follows)
+        made |= 1u << GLINT_FIELD_AMBIENT;
+    return made;
+}
+
+/// The numbers of the description that are read beside its programs: by what follows from these, and by shaders.
+static glint_key numbers_key(const glint_plan_pattern *pattern)
+{
+    const glint_material_desc *desc = &pattern->desc;
+    const double kind[] = { desc->model, desc->matched, desc->normalized, pattern->ambient_follows, pattern->made };
+    glint_key key = glint_key_add((glint_key) { 0 }, kind, sizeof kind);
+    if (pattern->program[GLINT_FIELD_SHADER] || pattern->made >> GLINT_FIELD_SHININESS & 1)
+        key = glint_key_add(key, desc->specular, sizeof desc->specular);
+    if (pattern->program[GLINT_FIELD_SHADER]) {
+        key = glint_key_add(key, desc->diffuse, sizeof desc->diffuse);
+        key = glint_key_add(key, &desc->shininess, sizeof desc->shininess);
+    }
+    return pattern->made >> GLINT_FIELD_AMBIENT & 1 ? glint_key_add(key, desc->ambient, sizeof desc->ambient) : key;
+}
+
+static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *pattern, const glint_material_desc *desc,
+                         bool indirect)
+{
+    pattern->desc = *desc;
+    glint_material_desc_resolve(&pattern->desc);
+    pattern->ambient_follows = !desc->has_ambient;
+    for (int c = 0; c < 3; c++)
+        pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], STRENGTH_MAX);
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
+        const glint_program *program = program_of(&desc->program, field);
+        if (!program || !is_read(desc, field))
+            continue;
+        pattern->program[field] = glint_program_retain((glint_program *)program);
+        pattern->any = true;
+        if (program->code.row_count > patterns->row_count)
+            patterns->row_count = program->code.row_count;
+        if (field < GLINT_FIELD_PLANES)
+            pattern->reads |= program->inputs;
+    }
+    pattern->made = made_by(pattern, indirect);
+    if (pattern->any)
+        pattern->numbers = numbers_key(pattern);
+    patterns->reads |= pattern->reads;
+    patterns->bumps = patterns->bumps || pattern->program[GLINT_FIELD_BUMP];
+    patterns->shaders = patterns->shaders || pattern->program[GLINT_FIELD_SHADER];
+    patterns->any = patterns->any || pattern->made;
+}
+
+/// Gives planes to the fields that some material has.
+static void lay_out(glint_plan_patterns *patterns, uint32_t material_count)
+{
+    uint32_t made = 0;
+    for (uint32_t i = 0; i < material_count; i++)
+        made |= patterns->of[i].made;
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        patterns->plane[field] = made >> field & 1 ? (int)patterns->plane_count : -1;
+        patterns->plane_count += made >> field & 1 ? (uint32_t)glint_field_channels(field) : 0;
+    }
+}
+
+// ---- Where shapes are ----
+
+/// The axis that a vector is along; -1: none.
+static int axis_of(const double v[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (v[(c + 1) % 3] == 0 && v[(c + 2) % 3] == 0)
+            return c;
+    return -1;
+}
+
+static void invert(glint_pattern_place *place, const glint_transform *map)
+{
+    double cofactors[3][3], scaled[3][3], largest = 0;
+    glint_transform_linear(map, place->forward);
+    for (int c = 0; c < 3; c++)
+        largest = fmax(largest, vec_max_abs(place->forward[c]));
+    const double scale = power_of_two_scale(largest);
+    for (int c = 0; c < 3; c++)
+        vec_scale(scaled[c], place->forward[c], scale);
+    const double determinant = glint_linear_cofactors(scaled, cofactors);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            place->inverse[i][j] = cofactors[j][i] / determinant * scale;
+        place->inverse[i][3] = -((place->inverse[i][0] * map->m[0][3] + place->inverse[i][1] * map->m[1][3]) +
+                                 place->inverse[i][2] * map->m[2][3]);
+    }
+    place->mapped = true;
+}
+
+static void place_init(glint_pattern_place *place, const glint_part *part)
+{
+    const glint_shape_desc *desc = &part->shape->desc;
+    const bool flat = desc->kind == GLINT_SHAPE_PLANE || desc->kind == GLINT_SHAPE_DISK;
+    *place = (glint_pattern_place) { .kind = desc->kind, .axis = flat ? axis_of(desc->normal) : -1 };
+    if (part->map)
+        invert(place, part->map);
+    if (place->axis >= 0)
+        place->face = (desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center)[place->axis];
+    vec_copy(place->lower, desc->min);
+    vec_copy(place->upper, desc->max);
+}
+
+static glint_key place_key(const glint_pattern_place *place, uint32_t part, glint_key key)
+{
+    const double kind[] = { part, place->kind, place->mapped, place->axis, place->face };
+    key = glint_key_add(key, kind, sizeof kind);
+    key = glint_key_add(key, place->inverse, sizeof place->inverse);
+    key = glint_key_add(key, place->forward, sizeof place->forward);
+    key = glint_key_add(key, place->lower, sizeof place->lower);
+    return glint_key_add(key, place->upper, sizeof place->upper);
+}
+
+/// The places of the shapes whose materials have programs.
+static glint_status find_places(glint_plan_patterns *patterns, const glint_geometry *geometry, glint_error *error)
+{
+    patterns->places = glint_alloc(geometry->part_count, sizeof *patterns->places);
+    if (!patterns->places)
+        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < geometry->part_count; i++) {
+        const glint_part *part = &geometry->parts[i];
+        bool begun = false;
+        for (size_t k = 0; k < part->shape->material_count; k++) {
+            glint_plan_pattern *own = &patterns->of[glint_list_find(&geometry->materials, part->shape->materials[k])];
+            if (!own->any)
+                continue;
+            if (!begun)
+                place_init(&patterns->places[i], part);
+            begun = true;
+            own->places = place_key(&patterns->places[i], i, own->places);
+        }
+    }
+    return GLINT_OK;
+}
+
+// ---- All of a plan ----
+
+static bool has_any(const glint_material_desc *desc)
+{
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++)
+        if (program_of(&desc->program, field))
+            return true;
+    return false;
+}
+
+glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_error *error)
+{
+    const glint_list *list = &plan->geometry->materials;
+    bool any = false;
+    for (size_t i = 0; i < list->count && !any; i++)
+        any = has_any(&((const glint_material *)list->items[i])->desc);
+    if (!any)
+        return GLINT_OK;
+    glint_plan_patterns *patterns = plan->patterns = glint_alloc(1, sizeof *patterns);
+    if (!patterns || !(patterns->of = glint_alloc(list->count, sizeof *patterns->of)))
+        return glint_fail_nomem(error);
+    patterns->material_count = (uint32_t)list->count;
+    for (size_t i = 0; i < list->count; i++)
+        add_material(patterns, &patterns->of[i], &((const glint_material *)list->items[i])->desc, indirect);
+    lay_out(patterns, patterns->material_count);
+    return find_places(patterns, plan->geometry, error);
+}
+
+void glint_plan_patterns_free(glint_plan_patterns *patterns)
+{
+    for (uint32_t i = 0; patterns && patterns->of && i < patterns->material_count; i++)
+        for (int field = 0; field < GLINT_FIELD_COUNT; field++)
+            glint_program_release((glint_program *)patterns->of[i].program[field]);
+    if (patterns)
+        free(patterns->places), free(patterns->of);
+    free(patterns);
+}
+
+glint_key glint_pattern_key(const glint_plan_patterns *patterns, uint32_t material, uint32_t fields, glint_key key)
+{
+    for (uint32_t field = 0; patterns && field < GLINT_FIELD_COUNT; field++) {
+        const glint_program *program = patterns->of[material].program[field];
+        if (!program || !(fields >> field & 1))
+            continue;
+        const glint_key parts[] = { program->structure, program->numbers };
+        key = glint_key_add(key, &field, sizeof field);
+        key = glint_key_add(key, parts, sizeof parts);
+        key = glint_key_add(key, &patterns->of[material].places, sizeof patterns->of[material].places);
+        key = glint_key_add(key, &patterns->of[material].numbers, sizeof patterns->of[material].numbers);
+    }
+    return key;
+}
+
+bool glint_patterns_see(const glint_plan_patterns *patterns)
+{
+    const uint32_t eye = 1u << GLINT_INPUT_V_X | 1u << GLINT_INPUT_V_Y | 1u << GLINT_INPUT_V_Z;
+    return patterns && (patterns->reads & eye || patterns->shaders);
+}

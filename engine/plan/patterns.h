@@ -1,0 +1,74 @@
+/// What materials take from programs in place of their numbers, as the tiles run them. Internal.
+#ifndef GLINT_PATTERNS_H
+#define GLINT_PATTERNS_H
+
+#include "engine/base/hash.h"
+#include "engine/glint.h"
+#include "engine/stages/stages.h"
+
+/// What a program of a material gives; the first have planes, a float a sample, three where it is a colour.
+typedef enum glint_field {
+    GLINT_FIELD_DIFFUSE,
+    GLINT_FIELD_AMBIENT, ///< where it is neither a number nor the diffuse reflectance: see glint_plan_find_indirect
+    GLINT_FIELD_SPECULAR,
+    GLINT_FIELD_MIRROR,
+    GLINT_FIELD_TRANSMISSION,
+    GLINT_FIELD_SHININESS,
+    GLINT_FIELD_ROUGHNESS,
+    GLINT_FIELD_PLANES, ///< how many have planes
+    GLINT_FIELD_BUMP = GLINT_FIELD_PLANES,
+    GLINT_FIELD_SHADER,
+    GLINT_FIELD_COUNT
+} glint_field;
+
+#define GLINT_PLANES_MAX 17 ///< of all fields
+
+/// How many planes a field has.
+static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
+
+/// A material's programs.
+typedef struct glint_plan_pattern {
+    const glint_program *program[GLINT_FIELD_COUNT]; ///< owned references; NULL: a number, or nothing
+    glint_material_desc desc; ///< resolved; its own programs mean nothing
+    uint32_t made; ///< fields that have planes, a bit each: of programs, and what follows from these
+    uint32_t reads; ///< inputs of the programs that are run at surfaces, a bit each
+    bool any; ///< it has programs
+    bool ambient_follows; ///< ambient is diffuse
+    glint_key numbers; ///< of the description, that are read beside the programs
+    glint_key places; ///< of the shapes that show it
+} glint_plan_pattern;
+
+/// A shape's own space, and what is known of its surface there.
+typedef struct glint_pattern_place {
+    bool mapped; ///< false: world space
+    double inverse[3][4]; ///< own point = inverse world point
+    double forward[3][3]; ///< own normal = transpose(forward) world normal, but for its length
+    glint_shape_kind kind;
+    int axis; ///< plane and disk: the axis that its normal is; -1: none
+    double face; ///< of these: the coordinate of all of its points
+    double lower[3], upper[3]; ///< box
+} glint_pattern_place;
+
+typedef struct glint_plan_patterns {
+    glint_plan_pattern *of; ///< beside the plan's materials
+    glint_pattern_place *places; ///< of each part of the geometry
+    int plane[GLINT_FIELD_PLANES]; ///< the first plane of a field; -1: no material has it
+    uint32_t plane_count;
+    uint32_t row_count; ///< the most that a program needs
+    uint32_t reads; ///< of all materials
+    uint32_t material_count;
+    bool any; ///< some material has planes
+    bool bumps, shaders;
+} glint_plan_patterns;
+
+struct glint_plan;
+
+/// Fills plan->patterns where some material has programs, before shading. indirect: there may be indirect light.
+glint_status glint_plan_find_patterns(struct glint_plan *plan, bool indirect, glint_error *error);
+void glint_plan_patterns_free(glint_plan_patterns *patterns); ///< NULL: nothing
+/// Continues a key with a material's programs: those of `fields`, a bit each.
+glint_key glint_pattern_key(const glint_plan_patterns *patterns, uint32_t material, uint32_t fields, glint_key key);
+/// Whether any program reads where the eye is; NULL: there is none.
+bool glint_patterns_see(const glint_plan_patterns *patterns);
+
+#endif

@@ -1,0 +1,324 @@
+/// Programs of materials, run for the points that show them: up to eight groups at a time, each with its own lanes.
+#include "engine/tile/pattern.h"
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/program/program.h"
+#include "engine/tile/pattern_inputs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// The lanes of a group that show one material.
+typedef struct glint_pattern_lanes {
+    uint32_t material;
+    uint16_t group, lanes;
+} glint_pattern_lanes;
+
+struct glint_pattern {
+    glint_pattern_inputs inputs;
+    double *rows; ///< scratch of the kernel
+    float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
+    double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
+    size_t planes_each; ///< floats of a sample's planes
+    glint_pattern_lanes lanes[GLINT_TILE_SAMPLES];
+};
+
+struct glint_pattern *glint_pattern_create(const glint_plan *plan)
+{
+    struct glint_pattern *pattern = glint_alloc(1, sizeof *pattern);
+    if (!pattern)
+        return NULL;
+    const glint_plan_patterns *patterns = plan->patterns;
+    pattern->planes_each = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES;
+    pattern->rows = glint_alloc((size_t)patterns->row_count * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
+    bool good = pattern->rows != NULL;
+    for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
+        const size_t samples = walk == GLINT_WALK_EYE && plan->together ? (size_t)plan->desc.samples : 1;
+        pattern->planes[walk] = glint_alloc(samples * pattern->planes_each, sizeof *pattern->planes[walk]);
+        pattern->normals[walk] = patterns->bumps ? glint_alloc(3 * GLINT_TILE_SAMPLES, sizeof(double)) : NULL;
+        good = good && pattern->planes[walk] && (pattern->normals[walk] || !patterns->bumps);
+    }
+    if (good)
+        return pattern;
+    glint_pattern_destroy(pattern);
+    return NULL;
+}
+
+void glint_pattern_destroy(struct glint_pattern *pattern)
+{
+    for (int walk = 0; pattern && walk < GLINT_WALK_COUNT; walk++) {
+        free(pattern->planes[walk]);
+        free(pattern->normals[walk]);
+    }
+    if (pattern)
+        free(pattern->rows);
+    free(pattern);
+}
+
+void glint_pattern_point(struct glint_pattern *pattern, glint_tile *tile, glint_walk walk)
+{
+    tile->pattern = pattern;
+    tile->at.planes = NULL;
+    for (int c = 0; c < 3; c++)
+        tile->unbumped[c] = NULL;
+    if (!pattern)
+        return;
+    const size_t sample = walk == GLINT_WALK_EYE ? tile->own_planes : 0;
+    tile->at.planes = pattern->planes[walk] + sample * pattern->planes_each;
+    for (int c = 0; c < 3 && pattern->normals[walk]; c++)
+        tile->unbumped[c] = pattern->normals[walk] + (size_t)c * GLINT_TILE_SAMPLES;
+}
+
+float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk) { return pattern->planes[walk]; }
+
+// ---- Which lanes ----
+
+/// The lanes of a group with the material of the first of `lanes`.
+static unsigned alike(const uint32_t *material, unsigned lanes)
+{
+    const uint32_t first = material[__builtin_ctz(lanes)];
+    unsigned same = 0;
+    for (unsigned i = 0; i < GLINT_GROUP; i++)
+        same |= (unsigned)(material[i] == first) << i;
+    return same & lanes;
+}
+
+/// Lists the lanes of all materials with programs. Returns how many entries there are.
+static uint32_t find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                           const glint_pattern_points *points, bool (*wants)(const glint_plan_pattern *, uint32_t))
+{
+    uint32_t count = 0;
+    for (uint32_t g = 0; g < points->group_count; g++) {
+        const uint32_t *material = points->material + (size_t)g * GLINT_GROUP;
+        for (unsigned left = points->hits[g], lanes; left; left &= ~lanes) {
+            lanes = alike(material, left);
+            const uint32_t m = material[__builtin_ctz(left)];
+            if (wants(&patterns->of[m], points->fields))
+                pattern->lanes[count++] = (glint_pattern_lanes) { m, (uint16_t)g, (uint16_t)lanes };
+        }
+    }
+    return count;
+}
+
+// ---- What follows from what programs give ----
+
+static float *plane_at(const glint_pattern_points *points, const glint_plan *plan, int field, int channel)
+{
+    return (float *)(uintptr_t)glint_plane_of(points->planes, plan, field, channel);
+}
+
+/// What makes Phong's and Blinn-Phong's highlights even.
+static double even_factor(const glint_material_desc *desc, double s)
+{
+    if (desc->model != GLINT_MODEL_BLINN_PHONG)
+        return (s + 2) / 2;
+    return (s + 2) * (s + 4) / (8 * (glint_pow(2, -s / 2) + s));
+}
+
+static void finish_exponent(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                            uint32_t i)
+{
+    float *shininess = plane_at(points, plan, GLINT_FIELD_SHININESS, 0);
+    if (own->program[GLINT_FIELD_SHADER])
+        return;
+    if (own->desc.model == GLINT_MODEL_BLINN_PHONG && own->desc.matched)
+        shininess[i] *= 4;
+    for (int c = 0; c < 3 && own->desc.normalized; c++) {
+        float *specular = &plane_at(points, plan, GLINT_FIELD_SPECULAR, c)[i];
+        const double ks = own->program[GLINT_FIELD_SPECULAR] ? (double)*specular : own->desc.specular[c];
+        *specular = (float)fmin(ks * even_factor(&own->desc, (double)shininess[i]), GLINT_REFLECTANCE_MAX);
+    }
+}
+
+/// What is left of a number of ambient light where indirect light stands for as much of it as the diffuse reflectance.
+static void finish_ambient(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                           uint32_t i)
+{
+    for (int c = 0; c < 3; c++)
+        plane_at(points, plan, GLINT_FIELD_AMBIENT, c)[i] =
+            (float)fmax(own->desc.ambient[c] - (double)plane_at(points, plan, GLINT_FIELD_DIFFUSE, c)[i], 0);
+}
+
+static void finish_roughness(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                             uint32_t i)
+{
+    float *roughness = &plane_at(points, plan, GLINT_FIELD_ROUGHNESS, 0)[i];
+    const double r = fmin((double)*roughness, 1);
+    (void)own;
+    *roughness = (float)fmax(r * r, 1e-18);
+}
+
+static void finish(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
+                   const glint_pattern_lanes *entries, uint32_t count, int field)
+{
+    static void (*const finishers[GLINT_FIELD_PLANES])(const glint_plan_pattern *, const glint_pattern_points *,
+                                                       const glint_plan *, uint32_t) = {
+        [GLINT_FIELD_AMBIENT] = finish_ambient,
+        [GLINT_FIELD_SHININESS] = finish_exponent,
+        [GLINT_FIELD_ROUGHNESS] = finish_roughness,
+    };
+    for (uint32_t k = 0; k < count && finishers[field]; k++)
+        for (unsigned left = entries[k].lanes; left; left &= left - 1)
+            finishers[field](own, points, plan, entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+}
+
+// ---- The programs ----
+
+/// One program, into planes: a colour's where its channels are 3.
+static void run_program(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program *program,
+                        glint_program_args *args, int channels)
+{
+    glint_program_code code = program->code;
+    for (; code.output_count < (uint32_t)channels; code.output_count++)
+        code.outputs[code.output_count] = code.outputs[0];
+    args->code = &code;
+    args->rows = pattern->rows;
+    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+        args->input[input] = pattern->inputs.row[input];
+    frame->stages->program(args);
+}
+
+/// The programs of one material, for some groups that show it.
+static void run_material(struct glint_pattern *pattern, const glint_tile_frame *frame,
+                         const glint_pattern_points *points, const glint_plan_pattern *own,
+                         const glint_pattern_lanes *entries, uint32_t count, glint_tile_counts *counts)
+{
+    uint32_t groups[GLINT_PROGRAM_GROUPS];
+    uint16_t wanted[GLINT_PROGRAM_GROUPS], odd[GLINT_PROGRAM_GROUPS];
+    for (uint32_t k = 0; k < count; k++) {
+        groups[k] = entries[k].group;
+        wanted[k] = entries[k].lanes;
+        counts->work.patterns += (uint64_t)__builtin_popcount(entries[k].lanes);
+        glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries[k].group, entries[k].lanes, k);
+    }
+    glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups, .odd = odd };
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        if (!(own->made & points->fields & 1u << field))
+            continue;
+        for (int c = 0; c < glint_field_channels(field) && own->program[field]; c++)
+            args.plane[c] = plane_at(points, frame->plan, field, c);
+        if (own->program[field])
+            run_program(pattern, frame, own->program[field], &args, glint_field_channels(field));
+        finish(own, points, frame->plan, entries, count, field);
+    }
+}
+
+static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return own->made & fields; }
+
+void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+                       glint_tile_counts *counts)
+{
+    const uint32_t count = find_lanes(pattern, frame->plan->patterns, points, has_planes);
+    for (uint32_t first = 0; first < count; first++) {
+        glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
+        uint32_t taken = 0;
+        if (!pattern->lanes[first].lanes)
+            continue;
+        const glint_plan_pattern *own = &frame->plan->patterns->of[pattern->lanes[first].material];
+        for (uint32_t k = first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
+            if (!pattern->lanes[k].lanes || pattern->lanes[k].material != pattern->lanes[first].material)
+                continue;
+            entries[taken++] = pattern->lanes[k];
+            pattern->lanes[k].lanes = 0;
+        }
+        run_material(pattern, frame, points, own, entries, taken, counts);
+    }
+}
+
+bool glint_pattern_needs_normals(const glint_plan *plan)
+{
+    const uint32_t normals = 1u << GLINT_INPUT_N_X | 1u << GLINT_INPUT_N_Y | 1u << GLINT_INPUT_N_Z;
+    const glint_plan_patterns *patterns = plan->patterns;
+    return patterns && (patterns->bumps || patterns->shaders || patterns->reads & normals);
+}
+
+uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
+{
+    uint32_t fields = 0, last = GLINT_MISS;
+    for (uint32_t i = 0; plan->patterns && i < tile->group_count * GLINT_GROUP; i++) {
+        if (!glint_has_lane(tile->at.hits, i) || tile->surface.material[i] == last)
+            continue;
+        last = tile->surface.material[i];
+        fields |= plan->patterns->of[last].made;
+    }
+    return fields;
+}
+
+bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
+{
+    glint_cached_tile *cached = tile->cached;
+    const bool known = cached && glint_key_equal(cached->pattern, frame->plan->keys[GLINT_STAGE_PATTERN]);
+    if (known || (cached && frame->reuse->keep_pattern &&
+                  (k ? cached->planes != NULL : glint_reuse_hold_planes(frame->reuse, cached))))
+        tile->at.planes = cached->planes + (size_t)k * frame->plan->patterns->plane_count * GLINT_TILE_SAMPLES;
+    return known;
+}
+
+void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
+{
+    if (frame->reuse->keep_pattern && tile->cached->planes)
+        tile->cached->pattern = frame->plan->keys[GLINT_STAGE_PATTERN];
+}
+
+void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_pattern_points points = { .group_count = tile->group_count,
+                                    .hits = tile->at.hits,
+                                    .back = tile->hit.back,
+                                    .prim = tile->at.prim,
+                                    .material = tile->surface.material,
+                                    .t = tile->at.t,
+                                    .tile = tile,
+                                    .planes = tile->at.planes,
+                                    .fields = (1u << GLINT_FIELD_PLANES) - 1,
+                                    .sample = tile->sample };
+    for (int c = 0; c < 3; c++) {
+        points.point[c] = tile->surface.point[c];
+        points.normal[c] = tile->unbumped[c] ? tile->unbumped[c] : tile->surface.normal[c];
+    }
+    glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
+}
+
+const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,
+                                                  glint_shade_planes *planes)
+{
+    if (!plan->patterns || !plan->patterns->any)
+        return NULL;
+    for (int c = 0; c < 3; c++) {
+        planes->diffuse[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, c);
+        planes->ambient[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c);
+        planes->specular[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SPECULAR, c);
+    }
+    planes->shininess = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SHININESS, 0);
+    planes->alpha = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_ROUGHNESS, 0);
+    vec_copy(planes->ambient_light, plan->ambient);
+    return planes;
+}
+
+const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                 glint_bounce_material *room)
+{
+    const uint32_t material = tile->surface.material[i];
+    const glint_bounce_material *m = &plan->bouncing[material];
+    const uint32_t colors = 1u << GLINT_FIELD_MIRROR | 1u << GLINT_FIELD_TRANSMISSION;
+    double color[3];
+    if (!plan->patterns || !(plan->patterns->of[material].made & colors))
+        return m;
+    *room = *m;
+    vec_copy(room->mirror, glint_color_at(tile->at.planes, plan, GLINT_FIELD_MIRROR, material, i, m->mirror, color));
+    vec_copy(room->transmission,
+             glint_color_at(tile->at.planes, plan, GLINT_FIELD_TRANSMISSION, material, i, m->transmission, color));
+    return room;
+}
+
+double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
+{
+    const uint32_t material = tile->surface.material[i];
+    const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;
+    double room[3];
+    if (!own || !(own->made >> GLINT_FIELD_DIFFUSE & 1))
+        return plan->indirect.rest[material][c];
+    const double kd = glint_tile_diffuse(tile, plan, i, room)[c];
+    return (own->ambient_follows ? kd : fmin(kd, own->desc.ambient[c])) * plan->ambient[c];
+}

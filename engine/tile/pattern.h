@@ -1,0 +1,93 @@
+/// The stages pattern and shader of a tile: the programs of materials. Internal.
+#ifndef GLINT_TILE_PATTERN_H
+#define GLINT_TILE_PATTERN_H
+
+#include "engine/tile/tile.h"
+
+/// Whose planes: tiles whose walks are begun while another's results are still needed.
+typedef enum glint_walk {
+    GLINT_WALK_EYE,
+    GLINT_WALK_BOUNCE,
+    GLINT_WALK_INDIRECT,
+    GLINT_WALK_SITES, ///< faces and vertices
+    GLINT_WALK_SHADOW, ///< surfaces between a point and a light
+    GLINT_WALK_COUNT
+} glint_walk;
+
+/// Points on surfaces, as a tile has them.
+typedef struct glint_pattern_points {
+    uint32_t group_count;
+    const uint16_t *hits, *back;
+    const uint32_t *prim, *material;
+    const void *point[3], *normal[3]; ///< real; the normal geometric, or of smooth meshes theirs
+    const void *t;
+    const glint_tile *tile; ///< whose rays found them
+    const void *direction[3]; ///< real: other rays, which show no pixel; NULL: those of the tile
+    float *planes; ///< out
+    uint32_t fields; ///< that are wanted, a bit each
+    uint32_t sample; ///< of the pixels
+} glint_pattern_points;
+
+/// Makes room for the plan's programs. NULL: no memory.
+struct glint_pattern *glint_pattern_create(const glint_plan *plan);
+void glint_pattern_destroy(struct glint_pattern *pattern); ///< NULL: nothing
+/// Points a tile at the planes of a walk. Nothing happens in frames without programs.
+void glint_pattern_point(struct glint_pattern *pattern, glint_tile *tile, glint_walk walk);
+
+float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk);
+/// Whether a plan's programs read normals, or turn them.
+bool glint_pattern_needs_normals(const glint_plan *plan);
+/// The fields that programs give of the materials in sight, which are named; a bit each.
+uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan);
+/// Points the planes of sample k to where they are kept, or go. Returns whether they are there already.
+bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, uint32_t k);
+/// Writes down what the kept planes hold now.
+void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame);
+
+/// Runs the programs of the materials that are hit, into the tile's planes, and counts the stage. The points are found, and
+/// where programs read them, the normals.
+void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
+/// The same for other points.
+void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+                       glint_tile_counts *counts);
+
+/// Turns the normals of surfaces with a bump, which have been found; what they were is kept beside them.
+void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame);
+
+/// A plane of a field's channel; NULL: no material has it.
+static inline const float *glint_plane_of(const float *planes, const glint_plan *plan, int field, int channel)
+{
+    const int first = plan->patterns->plane[field];
+    return first < 0 ? NULL : planes + (size_t)(first + channel) * GLINT_TILE_SAMPLES;
+}
+
+/// A colour of material `m` at sample i: `number`, unless a program gives it; `room`: for what it gives.
+static inline const double *glint_color_at(const float *planes, const glint_plan *plan, glint_field field, uint32_t m,
+                                           uint32_t i, const double *number, double room[3])
+{
+    if (!plan->patterns || !(plan->patterns->of[m].made >> field & 1))
+        return number;
+    for (int c = 0; c < 3; c++)
+        room[c] = (double)glint_plane_of(planes, plan, field, c)[i];
+    return room;
+}
+
+/// The diffuse reflectance of a tile's sample.
+static inline const double *glint_tile_diffuse(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                               double room[3])
+{
+    const uint32_t m = tile->surface.material[i];
+    return glint_color_at(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, m, i, glint_plan_diffuse(plan, m), room);
+}
+
+/// What the surface of a tile's sample sends on; `room`: for what programs give of it.
+const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                                                 glint_bounce_material *room);
+/// The ambient light of a tile's sample that indirect light stands for, in channel c.
+double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);
+
+/// What shade reads of a tile's planes. Returns NULL where no material has any.
+const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,
+                                                  glint_shade_planes *planes);
+
+#endif

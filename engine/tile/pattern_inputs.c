@@ -1,0 +1,183 @@
+#include "engine/tile/pattern_inputs.h"
+#include "engine/base/math.h"
+#include "engine/base/vec.h"
+#include "engine/tile/batch.h"
+
+#define BITS(first, count) (((1u << (count)) - 1) << (first))
+#define READS_P BITS(GLINT_INPUT_P_X, 3)
+#define READS_WORLD BITS(GLINT_INPUT_WORLD_X, 3)
+#define READS_N BITS(GLINT_INPUT_N_X, 3)
+#define READS_V BITS(GLINT_INPUT_V_X, 3)
+#define READS_UV (BITS(GLINT_INPUT_UV_U, 2) | BITS(GLINT_INPUT_UV_FOOTPRINT, 1))
+#define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | BITS(GLINT_INPUT_UV_FOOTPRINT, 1))
+
+/// A call's group: where it is in the tile, and where in the rows.
+typedef struct gathering {
+    glint_pattern_inputs *inputs;
+    const glint_tile_frame *frame;
+    const glint_pattern_points *points;
+    size_t at, to;
+} gathering;
+
+static double *row(const gathering *g, int input) { return g->inputs->row[input] + g->to; }
+
+/// Sixteen numbers of an array of real.
+static void load_group(const gathering *g, const void *array, double out[GLINT_GROUP])
+{
+    if (g->frame->plan->desc.precision == GLINT_DOUBLE) {
+        memcpy(out, (const double *)array + g->at, GLINT_GROUP * sizeof *out);
+        return;
+    }
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] = (double)((const float *)array)[g->at + (size_t)i];
+}
+
+// ---- Normals ----
+
+/// The geometric normal of a triangle that is shaded smoothly, turned to the viewer.
+static void face_normal(const glint_prim *prim, double scale, bool back, double out[3])
+{
+    double f[3], h[3], n[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(h, prim->corner[2], prim->corner[0]);
+    vec_scale(f, f, scale);
+    vec_scale(h, h, scale);
+    vec_cross(n, f, h);
+    const double length = sqrt(vec_dot(n, n));
+    for (int c = 0; c < 3; c++)
+        out[c] = (back ? -n[c] : n[c]) / length;
+}
+
+static bool is_smooth(const glint_prim *prim) { return prim->kind == GLINT_PRIM_TRIANGLE && prim->item != GLINT_MISS; }
+
+static void gather_normals(const gathering *g, unsigned lanes)
+{
+    const glint_pattern_points *points = g->points;
+    for (int c = 0; c < 3; c++)
+        load_group(g, points->normal[c], row(g, GLINT_INPUT_N_X + c));
+    if (!g->frame->geometry.corner_normals)
+        return;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+        const glint_prim *prim = &g->frame->geometry.prims[points->prim[g->at + lane]];
+        double n[3];
+        if (!is_smooth(prim))
+            continue;
+        face_normal(prim, g->frame->geometry.scale, glint_has_lane(points->back, (uint32_t)g->at + lane), n);
+        for (int c = 0; c < 3; c++)
+            row(g, GLINT_INPUT_N_X + c)[lane] = n[c];
+    }
+}
+
+// ---- The point in the shape's own space ----
+
+/// Lanes whose primitives are of one part with the first, and its place.
+static const glint_pattern_place *next_place(const gathering *g, unsigned left, unsigned *lanes)
+{
+    const glint_geometry *geometry = g->frame->plan->geometry;
+    const glint_prim *prims = g->frame->geometry.prims;
+    const uint32_t *prim = g->points->prim + g->at;
+    const uint32_t first = prim[__builtin_ctz(left)], part = geometry->prim_part[prims[first].id];
+    *lanes = 0;
+    for (unsigned rest = left; rest; rest &= rest - 1) {
+        const uint32_t id = prim[__builtin_ctz(rest)];
+        if (id == first || geometry->prim_part[prims[id].id] == part)
+            *lanes |= rest & -rest;
+    }
+    return &g->frame->plan->patterns->places[part];
+}
+
+/// Which face of a box a lane is on, by the normal in its own space: axis, and whether it is the upper one.
+static int face_of(const gathering *g, const glint_pattern_place *place, uint32_t lane, bool *upper)
+{
+    const size_t i = g->at + lane;
+    double n[3], own[3];
+    int axis = 0;
+    for (int c = 0; c < 3; c++)
+        n[c] = glint_real_at(g->points->normal[c], g->frame->plan->desc.precision, (uint32_t)i);
+    for (int c = 0; c < 3; c++) {
+        own[c] = place->mapped
+                     ? (place->forward[0][c] * n[0] + place->forward[1][c] * n[1]) + place->forward[2][c] * n[2]
+                     : n[c];
+        axis = fabs(own[c]) > fabs(own[axis]) ? c : axis;
+    }
+    *upper = (own[axis] > 0) != glint_has_lane(g->points->back, (uint32_t)i);
+    return axis;
+}
+
+/// Of faces along an axis the coordinate is the face's own, to the last bit: what rounding moved a point by off it must not
+/// decide on which side of a whole number a pattern sees it.
+static void put_exact(const gathering *g, const glint_pattern_place *place, unsigned lanes)
+{
+    if (place->kind == GLINT_SHAPE_BOX) {
+        for (; lanes; lanes &= lanes - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+            bool upper;
+            const int axis = face_of(g, place, lane, &upper);
+            row(g, GLINT_INPUT_P_X + axis)[lane] = upper ? place->upper[axis] : place->lower[axis];
+        }
+        return;
+    }
+    for (; lanes && place->axis >= 0; lanes &= lanes - 1)
+        row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
+}
+
+static void gather_points(const gathering *g, unsigned lanes)
+{
+    double world[3][GLINT_GROUP];
+    bool begun = false;
+    for (int c = 0; c < 3; c++)
+        load_group(g, g->points->point[c], world[c]);
+    for (unsigned left = lanes, here; left; left &= ~here) {
+        const glint_pattern_place *place = next_place(g, left, &here);
+        for (int c = 0; c < 3; c++) {
+            const double *m = place->inverse[c];
+            double own[GLINT_GROUP], *to = row(g, GLINT_INPUT_P_X + c);
+            for (int i = 0; i < GLINT_GROUP; i++)
+                own[i] = place->mapped ? ((m[0] * world[0][i] + m[1] * world[1][i]) + m[2] * world[2][i]) + m[3]
+                                       : world[c][i];
+            for (int i = 0; i < GLINT_GROUP; i++)
+                to[i] = !begun || here >> i & 1 ? own[i] : to[i];
+        }
+        begun = true;
+        put_exact(g, place, here);
+    }
+}
+
+// ---- The viewer ----
+
+/// From the eye to a point, not unit.
+static void ray_at(const gathering *g, uint32_t i, double out[3])
+{
+    const glint_precision precision = g->frame->plan->desc.precision;
+    for (int c = 0; c < 3; c++)
+        out[c] = g->points->direction[c] ? glint_real_at(g->points->direction[c], precision, i)
+                                         : glint_tile_direction(g->points->tile, precision, c, i);
+}
+
+static void gather_views(const gathering *g, unsigned lanes)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
+        double d[3];
+        ray_at(g, (uint32_t)g->at + lane, d);
+        const double length = sqrt(vec_dot(d, d));
+        for (int c = 0; c < 3; c++)
+            row(g, GLINT_INPUT_V_X + c)[lane] = -d[c] / length;
+    }
+}
+
+void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
+                          const glint_pattern_points *points, uint32_t reads, uint32_t group, unsigned lanes,
+                          uint32_t k)
+{
+    const gathering g = { inputs, frame, points, (size_t)group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
+    if (reads & (READS_P | READS_UV))
+        gather_points(&g, lanes);
+    for (int c = 0; c < 3 && reads & READS_WORLD; c++)
+        load_group(&g, points->point[c], row(&g, GLINT_INPUT_WORLD_X + c));
+    if (reads & READS_N)
+        gather_normals(&g, lanes);
+    if (reads & READS_V)
+        gather_views(&g, lanes);
+}

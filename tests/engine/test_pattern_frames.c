@@ -1,0 +1,365 @@
+/// Frames whose materials have programs, against the same functions in plain C at the points that the contracts give.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/base/vec.h"
+#include "engine/film/image.h"
+#include "engine/plan/plan.h"
+#include "engine/stages/stages.h"
+
+static glint_error error;
+
+#define OK(call) \
+    do { \
+        if ((call) != GLINT_OK) \
+            fail_msg("%s: %s", #call, error.message); \
+    } while (0)
+
+// ---- Programs ------------------------------------------------------------------------------------------------------
+
+static glint_builder *builder;
+
+static void begin_program(glint_program_kind kind) { OK(glint_builder_create(kind, &builder, &error)); }
+
+static glint_value num(double x)
+{
+    glint_value out;
+    OK(glint_builder_number(builder, x, &out, &error));
+    return out;
+}
+
+static glint_value in(glint_input input)
+{
+    glint_value out;
+    OK(glint_builder_input(builder, input, &out, &error));
+    return out;
+}
+
+static glint_value op(glint_op which, glint_value a, glint_value b, glint_value c)
+{
+    const glint_value operands[GLINT_OPERANDS_MAX] = { a, b, c };
+    glint_value out[GLINT_RESULTS_MAX];
+    OK(glint_builder_op(builder, which, operands, out, &error));
+    return out[0];
+}
+
+static glint_value mul(glint_value a, glint_value b) { return op(GLINT_OP_MUL, a, b, 0); }
+
+static glint_program *end_program(const glint_value *outputs, size_t count)
+{
+    glint_program *program;
+    OK(glint_builder_finish(builder, outputs, count, &program, &error));
+    glint_builder_destroy(builder);
+    return program;
+}
+
+/// parity(scale p) ? a : b, of colours.
+static glint_program *checker(double scale, const double a[3], const double b[3])
+{
+    glint_value out[3];
+    begin_program(GLINT_PROGRAM_PATTERN);
+    const glint_value k = num(scale);
+    const glint_value odd =
+        op(GLINT_OP_PARITY, mul(in(GLINT_INPUT_P_X), k), mul(in(GLINT_INPUT_P_Y), k), mul(in(GLINT_INPUT_P_Z), k));
+    for (int c = 0; c < 3; c++)
+        out[c] = op(GLINT_OP_SELECT, odd, num(a[c]), num(b[c]));
+    return end_program(out, 3);
+}
+
+static bool is_odd(const double p[3], double scale)
+{
+    return fmod((floor(p[0] * scale) + floor(p[1] * scale)) + floor(p[2] * scale), 2) != 0;
+}
+
+// ---- Scenes --------------------------------------------------------------------------------------------------------
+
+typedef struct world {
+    glint_scene *scene;
+    glint_render_desc render;
+} world;
+
+static world new_world(const double eye[3], const double at[3], int width, int height)
+{
+    world w = { .render = glint_render_desc_default() };
+    glint_camera_desc camera = glint_camera_desc_default();
+    glint_camera *made;
+    memcpy(camera.eye, eye, sizeof camera.eye);
+    memcpy(camera.at, at, sizeof camera.at);
+    OK(glint_camera_create(&camera, &made, &error));
+    OK(glint_scene_create(&w.scene, &error));
+    glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.camera = made;
+    OK(glint_scene_set(w.scene, &desc, &error));
+    glint_camera_release(made);
+    w.render.width = width;
+    w.render.height = height;
+    w.render.passes = 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_ALBEDO;
+    return w;
+}
+
+static glint_material *new_material(const glint_material_desc *desc)
+{
+    glint_material *material;
+    OK(glint_material_create(desc, &material, &error));
+    return material;
+}
+
+static void add_shape(world *w, glint_shape_desc *desc, glint_material *material)
+{
+    glint_shape *shape;
+    desc->material = material;
+    OK(glint_shape_create(desc, &shape, &error));
+    OK(glint_scene_add_shape(w->scene, shape, &error));
+    glint_shape_release(shape);
+}
+
+static glint_image *render(const world *w, const char *isa, int threads)
+{
+    glint_renderer_desc desc = { .isa = isa, .threads = threads, .no_reuse = true };
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    OK(glint_renderer_create(&desc, &renderer, &error));
+    OK(glint_plan_create(w->scene, &w->render, &plan, &error));
+    OK(glint_render(renderer, plan, &image, NULL, &error));
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+static void release_world(world *w) { glint_scene_release(w->scene); }
+
+static const double white[3] = { 0.9, 0.9, 0.9 }, blue[3] = { 0.1, 0.1, 0.2 };
+
+/// A floor at y = 0 with a checker, as a renderer would show a million pixels of it.
+static void test_floor(void **state)
+{
+    (void)state;
+    const double eye[3] = { 1.3, 3.7, 9.1 }, at[3] = { 0.2, 0, 0.1 };
+    world w = new_world(eye, at, 1000, 1000);
+    glint_material_desc desc = glint_material_desc_default();
+    desc.program.diffuse = checker(1, white, blue);
+    glint_material *material = new_material(&desc);
+    glint_program_release(desc.program.diffuse);
+    glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    add_shape(&w, &floor, material);
+    glint_material_release(material);
+    glint_image *image = render(&w, NULL, 0);
+    glint_plan *plan;
+    OK(glint_plan_create(w.scene, &w.render, &plan, &error));
+    const glint_plan_camera *c = &plan->camera;
+    long wrong = 0, hits = 0, odd = 0;
+    for (int y = 0; y < 1000; y++)
+        for (int x = 0; x < 1000; x++) {
+            const double sx = 2 * (x + 0.5) - 1000, sy = 1000 - 2 * (y + 0.5);
+            double d[3], p[3];
+            float albedo[3];
+            for (int k = 0; k < 3; k++)
+                d[k] = (c->forward[k] + sx * c->right[k]) + sy * c->up[k];
+            const double t = -c->eye[1] / d[1];
+            OK(glint_image_pixel(image, GLINT_PASS_ALBEDO, x, y, albedo, &error));
+            if (!(t > 0))
+                continue;
+            for (int k = 0; k < 3; k++)
+                p[k] = k == 1 ? 0 : c->eye[k] + t * d[k];
+            const bool is = is_odd(p, 1);
+            wrong += albedo[0] != (float)(is ? white : blue)[0] || albedo[2] != (float)(is ? white : blue)[2];
+            odd += is;
+            hits++;
+        }
+    assert_int_equal(wrong, 0);
+    assert_true(hits > 500000 && odd > hits / 4 && odd < 3 * hits / 4);
+    glint_plan_destroy(plan);
+    glint_image_release(image);
+    release_world(&w);
+}
+
+// ---- Properties: every way to one picture gives the same bits ---------------------------------------------------------
+
+static uint64_t seed;
+
+static double uniform(double low, double high)
+{
+    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return low + (high - low) * ((double)(seed >> 33) * 0x1p-31);
+}
+
+static uint32_t draw(uint32_t below) { return (uint32_t)uniform(0, below) % below; }
+
+/// A program of one or three numbers, of the point, the normal and the view, some of them odd.
+static glint_program *random_program(size_t count, double low, double high)
+{
+    glint_value out[3];
+    begin_program(GLINT_PROGRAM_PATTERN);
+    for (size_t i = 0; i < count; i++) {
+        const glint_input inputs[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y, GLINT_INPUT_P_Z,
+                                       GLINT_INPUT_WORLD_Y, GLINT_INPUT_N_X, GLINT_INPUT_V_Z };
+        const glint_value x = mul(in(inputs[draw(6)]), num(uniform(1, 5))), y = in(inputs[draw(6)]);
+        const glint_value wave = op(GLINT_OP_SIN, op(GLINT_OP_ADD, x, y, 0), 0, 0);
+        out[i] = op(GLINT_OP_MULADD, wave, num((high - low) / 2), num((high + low) / 2));
+        if (draw(6) == 0) // below 0, and NaN
+            out[i] = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, wave, num(-0.9), 0), op(GLINT_OP_SQRT, wave, 0, 0),
+                        op(GLINT_OP_SUB, out[i], num(low + 0.1), 0));
+    }
+    return end_program(out, count);
+}
+
+static glint_material *random_material(bool bouncing)
+{
+    glint_material_desc desc = glint_material_desc_default();
+    desc.model = (glint_model)draw(4);
+    desc.normalized = draw(3) == 0;
+    desc.matched = draw(3) == 0;
+    desc.distribution = (glint_distribution)draw(2);
+    desc.has_ambient = draw(3) == 0;
+    for (int c = 0; c < 3; c++) {
+        desc.specular[c] = draw(2) ? uniform(0, 1) : 0;
+        desc.diffuse[c] = uniform(0, 1);
+        desc.ambient[c] = uniform(0, 0.5);
+    }
+    if (draw(4))
+        desc.program.diffuse = random_program(draw(2) ? 3 : 1, 0, 1);
+    if (draw(2))
+        desc.program.specular = random_program(draw(2) ? 3 : 1, 0, 1);
+    if (draw(2))
+        desc.program.shininess = random_program(1, 2, 100);
+    if (draw(2))
+        desc.program.roughness = random_program(1, 0.05, 0.9);
+    if (bouncing && draw(2))
+        desc.program.mirror = random_program(draw(2) ? 3 : 1, 0, 0.6);
+    if (bouncing && draw(3) == 0)
+        desc.program.transmission = random_program(draw(2) ? 3 : 1, 0, 0.6);
+    glint_material *material = new_material(&desc);
+    glint_program *const programs[] = { desc.program.diffuse,   desc.program.specular, desc.program.shininess,
+                                        desc.program.roughness, desc.program.mirror,   desc.program.transmission };
+    for (int i = 0; i < 6; i++)
+        glint_program_release(programs[i]);
+    return material;
+}
+
+static void random_shape(world *w, glint_material *material)
+{
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX,  GLINT_SHAPE_CYLINDER,
+                                              GLINT_SHAPE_CONE,   GLINT_SHAPE_DISK, GLINT_SHAPE_SPHERE };
+    glint_shape_desc desc = glint_shape_desc_default(kinds[draw(6)]);
+    const double axis[3] = { uniform(-1, 1), 1, uniform(-1, 1) }, by[3] = { uniform(0.5, 1.5), uniform(0.5, 1.5), -1 };
+    const double to[3] = { uniform(-3, 3), uniform(0, 2), uniform(-3, 3) };
+    desc.transform = glint_transform_translate(to);
+    if (draw(2)) {
+        const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), size = glint_transform_scale(by);
+        const glint_transform both = glint_transform_product(&turn, &size);
+        desc.transform = glint_transform_product(&desc.transform, &both);
+    }
+    desc.two_sided = draw(3) > 0;
+    add_shape(w, &desc, material);
+}
+
+static void random_mesh(world *w, glint_material *material)
+{
+    glint_mesh_desc desc = glint_mesh_desc_default();
+    glint_shape *shape;
+    const double center[3] = { uniform(-2, 2), 1, uniform(-2, 2) };
+    desc.has_shading = true;
+    desc.shading = (glint_shading)draw(4);
+    desc.material = material;
+    OK(glint_sphere_mesh_create(center, 1, 12, &desc, &shape, &error));
+    OK(glint_scene_add_shape(w->scene, shape, &error));
+    glint_shape_release(shape);
+}
+
+static void random_light(world *w)
+{
+    const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL, GLINT_LIGHT_SPOT, GLINT_LIGHT_DISK,
+                                       GLINT_LIGHT_SPHERE };
+    glint_light_desc desc = glint_light_desc_default(kinds[draw(5)]);
+    glint_light *light;
+    for (int c = 0; c < 3; c++) {
+        desc.position[c] = uniform(-4, 4) + (c == 1 ? 6 : 0);
+        desc.direction[c] = c == 1 ? -1 : uniform(-1, 1);
+        desc.color[c] = uniform(0.2, 1);
+    }
+    if (desc.kind == GLINT_LIGHT_SPHERE && draw(2))
+        desc.shadow = GLINT_SHADOW_CAPS;
+    desc.outer_rad = 1.2;
+    desc.samples = 1 + draw(6);
+    OK(glint_light_create(&desc, &light, &error));
+    OK(glint_scene_add_light(w->scene, light, &error));
+    glint_light_release(light);
+}
+
+static world random_world(void)
+{
+    const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
+    world w = new_world(eye, at, 80, 60);
+    const bool bouncing = draw(3) == 0, meshes = draw(3) == 0;
+    glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    glint_material *materials[4];
+    for (int i = 0; i < 4; i++)
+        materials[i] = random_material(bouncing);
+    add_shape(&w, &floor, materials[0]);
+    for (int i = 0; i < 5; i++)
+        random_shape(&w, materials[draw(4)]);
+    if (meshes)
+        random_mesh(&w, materials[draw(4)]);
+    for (uint32_t i = 0; i < 1 + draw(3); i++)
+        random_light(&w);
+    for (int i = 0; i < 4; i++)
+        glint_material_release(materials[i]);
+    glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.ambient[0] = desc.ambient[1] = desc.ambient[2] = 0.1;
+    desc.background[2] = 0.3;
+    desc.has_indirect = draw(5) == 0;
+    desc.indirect_samples = 2;
+    desc.indirect_bounces = 2;
+    OK(glint_scene_set(w.scene, &desc, &error));
+    w.render.samples = draw(2) ? 1 : draw(2) ? 4 : 20;
+    w.render.adaptive = draw(4) ? 0 : 0.1;
+    w.render.precision = draw(4) ? GLINT_DOUBLE : GLINT_FLOAT;
+    w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
+    return w;
+}
+
+static void check_same(const glint_image *a, const glint_image *b, const char *what, int round)
+{
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < glint_pass_channels((glint_pass)pass); c++) {
+            const float *x = a->plane[pass][c], *y = b->plane[pass][c];
+            for (int i = 0; x && i < a->width * a->height; i++)
+                if (memcmp(&x[i], &y[i], sizeof *x) != 0)
+                    fail_msg("round %d, %s: pass %s differs at %d, %d: %.9g, %.9g", round, what,
+                             glint_pass_name((glint_pass)pass), i % a->width, i / a->width, (double)x[i], (double)y[i]);
+        }
+}
+
+static void test_same_bits(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 40; round++) {
+        seed = 77 + (uint64_t)round;
+        world w = random_world();
+        glint_image *reference = render(&w, "ref", 1);
+        for (const glint_stages *const *set = glint_stages_built; *set; set++) {
+            if (!glint_stages_usable(*set) || *set == &glint_stages_ref)
+                continue;
+            glint_image *image = render(&w, (*set)->name, 2);
+            check_same(reference, image, (*set)->name, round);
+            glint_image_release(image);
+        }
+        glint_image_release(reference);
+        release_world(&w);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_floor), cmocka_unit_test(test_same_bits) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
