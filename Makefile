@@ -98,7 +98,7 @@ $(BUILD)/engine/compare/flip.o: ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
-CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/watch/*.lua scripts/lib/gr.lua scripts/lib/gr/*.lua))
+CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/%,$(wildcard bindings/*/*.lua)) scripts/lib/gr.lua scripts/lib/gr/*.lua))
 $(CARRIED): $(BUILD)/%.h: %
 	@mkdir -p $(@D)
 	@{ echo '// The bytes of $<.'; od -An -v -tu1 $< | sed 's/[0-9][0-9]*/&,/g'; } > $@

@@ -251,12 +251,11 @@ static void present(cost_study *study)
 {
     char message[GLINTL_MESSAGE_SIZE];
     cost_judge(study);
-    if (study->options->json)
-        cost_print_json(study, study->output->data);
-    else
-        cost_print_table(study, study->output->data);
-    if (study->options->report && !cost_report_write(study, study->options->report, message))
-        glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "--report: %s", message);
+    if (!cost_print(study, study->output->data, message))
+        glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "%s", message);
+    const int code = study->options->report ? cost_report_write(study, study->options->report, message) : 0;
+    if (code)
+        glintL_run_fail(study->run, code, 0, "--report: %s", message);
 }
 
 // The names of the knobs are checked here, whether the scene responds later.

@@ -17,6 +17,7 @@
 #define GLINT_COST_H
 
 #include "bindings/command/cli.h"
+#include "bindings/run/carried.h"
 
 #define COST_KNOBS_MAX 16
 #define COST_VALUES_MAX 12
@@ -293,17 +294,18 @@ bool cost_add_combinations(cost_study *study);
 /// Fills in what compares rows with each other, and the advice.
 void cost_judge(cost_study *study);
 
-// ---- cost/table.c, cost/json.c, cost/report.c, cost/plot.c ----
+// ---- cost/present.c, cost/report.c ----
 
-void cost_print_table(const cost_study *study, FILE *out);
-void cost_print_json(const cost_study *study, FILE *out);
+/// Pushes what the study has found as a table, for the modules in Lua; `study` is a cost_study. May raise.
+void cost_push_study(lua_State *L, const void *study);
+/// Makes a text of it: "table", "events", "plot" (of which there is none when no error is known) or "page".
+bool cost_make(const cost_study *study, const char *what, void (*push)(lua_State *L, const void *study),
+               glintL_made_text *out, char message[GLINTL_MESSAGE_SIZE]);
+/// Prints the table, or lines for programs. False: the message is written.
+bool cost_print(const cost_study *study, FILE *out, char message[GLINTL_MESSAGE_SIZE]);
 /// Makes sure that the folder is there and can be written to. False: the message is written.
 bool cost_report_check(const char *folder, char message[GLINTL_MESSAGE_SIZE]);
-bool cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE]);
-/// The plot of time against error, an SVG element that is a file of its own, too; nothing when no error is known.
-void cost_plot(const cost_study *study, FILE *out);
-bool cost_has_plot(const cost_study *study); ///< an error is known: there is something to draw
-void cost_machine(const cost_study *study, char out[256]); ///< "AMD EPYC, 2 threads, avx512, gcc 12.2.0"
-void cost_html_text(FILE *out, const char *text);
+/// Returns the exit code; the message says what is wrong.
+int cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE]);
 
 #endif

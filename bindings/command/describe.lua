@@ -1,0 +1,62 @@
+-- What glint describe prints: the comment that a script begins with, and its parameters, for people or for programs.
+local the = ...
+local json = the.json
+
+-- The comment at the top of the file, without its dashes.
+local function comment_of(path)
+  local file <close> = io.open(path)
+  local out, is_block = {}, false
+  for line in file and file:lines() or function() end do
+    line = line:gsub("\r+$", "")
+    local opens = #out == 0 and line:sub(1, 4) == "--[["
+    if is_block or opens then
+      is_block = true
+      line = opens and line:sub(5) or line
+      local last = line:match "^(.-)%]%]"
+      out[#out + 1] = last or line
+      if last then break end
+    elseif line:sub(1, 2) == "--" then
+      out[#out + 1] = line:match "^%-%- ?(.*)"
+    elseif #out > 0 or line:sub(1, 1) ~= "#" then -- which is for the shell
+      break
+    end
+  end
+  return table.concat(out, "\n"):match "^(.-)\n*$"
+end
+
+local function choices_of(spec, spell, between)
+  local out = {}
+  for i, choice in ipairs(spec.choices) do out[i] = spell(choice) end
+  return table.concat(out, between)
+end
+
+-- The parameters as a JSON list.
+function the.params(params)
+  local list = {}
+  for i, spec in ipairs(params) do
+    local out = {}
+    for _, name in ipairs { "name", "type", "default", "value", "min", "max", "doc" } do
+      if spec[name] ~= nil then out[#out + 1] = json(name) .. ":" .. json(spec[name]) end
+    end
+    if spec.choices then out[#out + 1] = '"choices":[' .. choices_of(spec, json, ",") .. "]" end
+    list[i] = "{" .. table.concat(out, ",") .. "}"
+  end
+  return "[" .. table.concat(list, ",") .. "]"
+end
+
+function the.event(what)
+  return '{"event":"description","script":' .. json(what.script) .. ',"doc":' .. json(comment_of(what.path))
+    .. ',"params":' .. the.params(what.params) .. "}\n"
+end
+
+function the.people(what)
+  local comment = comment_of(what.path)
+  local out = { comment ~= "" and comment .. "\n\n" or "",
+    #what.params > 0 and "Parameters, set by --set name=value:\n" or what.script .. " has no parameters.\n" }
+  for _, spec in ipairs(what.params) do
+    local range = (spec.min or spec.max) and ("  %s .. %s"):format(spec.min or "", spec.max or "") or ""
+    out[#out + 1] = ("  %-22s%s%s%s\n"):format(spec.name .. "=" .. tostring(spec.value), range,
+      spec.choices and "  " .. choices_of(spec, tostring, "|") or "", spec.doc and "  " .. spec.doc or "")
+  end
+  return table.concat(out)
+end

@@ -1,0 +1,98 @@
+-- The page of glint cost: page.html with its @NAMES@ filled in. It needs no network; the plot is in it, and the pictures.
+local the = ...
+local format = string.format
+
+local function all_rays(case)
+  local rays = case.rays
+  return 0.0 + rays.primary + rays.shadow + rays.mirror + rays.refraction + rays.indirect
+end
+the.all_rays = all_rays
+
+local function cell(value, how, shown)
+  if not value or value ~= value or math.abs(value) == math.huge then return "<td data-v=''>&ndash;</td>" end
+  return format("<td data-v='%.9g'>", value) .. format(how, shown or value) .. "</td>"
+end
+
+local function remarks_of(row)
+  return (row.front and ", on the front" or "") .. (row.default and ", the script's own" or "")
+    .. (not row.own and not row.partial and row.difference == 0 and ", no difference in time" or "")
+    .. (row.error and not row.resolved and ", error not resolved" or "")
+    .. ((row.partial or row.case.left_out) and ", partial" or "")
+end
+
+-- What the page says when the row's point is reached.
+local function text_of(row)
+  local time, error = row.case.time, row.error
+  local text = format("%s: %.4g ms (%.4g to %.4g), %.3g times the fastest",
+    the.html(row.own and "the script's own setting" or row.name), time.median, time.q1, time.q3, row.x_fastest)
+  if error then
+    text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than a code", error.rmse,
+      error.flip, 100 * error.over1)
+  end
+  return text .. the.html(remarks_of(row))
+end
+
+local function errors_of(row)
+  local case, e = row.case, row.error or {}
+  local work = case.work or {}
+  return cell(e.rmse, "%.2g") .. cell(e.relmse, "%.2g") .. cell(e.max_code, "%.3g")
+    .. cell(e.over1, "%.2g %%", 100 * (e.over1 or 0)) .. cell(e.over8, "%.2g %%", 100 * (e.over8 or 0))
+    .. cell(e.flip, "%.2g") .. cell(row.error and case.wrong_object, "%.0f") .. cell(row.error and case.wrong_shadow, "%.0f")
+    .. cell(all_rays(case), "%.0f") .. cell(work.tests, "%.0f") .. cell(work.light_samples, "%.0f") .. cell(work.powers, "%.0f")
+end
+
+local function row_of(row)
+  local time, remarks = row.case.time, remarks_of(row)
+  return format("<tr id='row-%d' data-text='%s'><td data-v='%03d'><span class='%s'>%s</span></td>", row.index, text_of(row),
+      row.index, row.default and "own" or row.front and "best" or "", the.html(row.name))
+    .. cell(time.median, "%.4g") .. format("<td data-v='%.9g'>%.4g &ndash; %.4g</td>", time.q3 - time.q1, time.q1, time.q3)
+    .. cell(row.x_fastest, "%.3g") .. errors_of(row)
+    .. format("<td class='remark' data-v='%s'>%s</td></tr>\n", the.html(remarks), the.html(remarks:sub(3)))
+end
+
+-- The pictures are in the page itself, or, where they would make it too heavy, in files beside it.
+local function picture(study, name, what, bytes)
+  local source = study.is_light and "data:image/png;base64," .. the.base64(bytes) or name .. ".png"
+  return format("<img loading='lazy' width='%.0f' height='%.0f' alt='%s' src='", study.width, study.height, what) .. source .. "'>"
+end
+
+local function pictures_of(study)
+  if not study.reference or #study.pictures == 0 then return "" end
+  local out = { "<h2>The pictures, and their errors times 16</h2>\n<div class='pictures'>\n" }
+  for _, shown in ipairs(study.pictures) do
+    out[#out + 1] = "<figure><div class='pair'>" .. picture(study, shown.file, "the picture", shown.picture)
+      .. picture(study, shown.file .. "_error", "its error times 16", shown.difference)
+      .. "</div><figcaption class='small'>" .. the.html(shown.title) .. "</figcaption></figure>\n"
+  end
+  return table.concat(out) .. "</div>\n"
+end
+
+local function lead_of(study)
+  return format("Frame %d, %.0f &times; %.0f pixels, %.0f sample%s a pixel, each setting timed %d times in random order",
+      study.frame, study.width, study.height, study.samples, study.samples == 1 and "" or "s", study.runs)
+    .. (study.complete and " on " or " (interrupted: part of the study only) on ") .. the.html(study.machine) .. "."
+end
+
+local function reference_of(study)
+  local reference = study.reference
+  if not reference then return "No reference was rendered, so no error is known." end
+  return format("Errors are against the mean of two pictures of %.0f samples a pixel, decided in double, of seeds %.0f and "
+    .. "%.0f%s. By their difference that mean is itself %.2g RMSE from the truth; an error under ten times that is "
+    .. "marked as not resolved.", reference.samples, reference.seeds[1], reference.seeds[2], study.truth, reference.rmse)
+end
+
+local function left_out_of(study)
+  if #study.left_out == 0 then return "" end
+  local out = {}
+  for i, line in ipairs(study.left_out) do out[i] = "<li>" .. the.html(line) .. "</li>\n" end
+  return "<h2>Left out</h2>\n<ul>\n" .. table.concat(out) .. "</ul>\n"
+end
+
+function the.page(study)
+  local rows = {}
+  for i, row in ipairs(study.rows) do rows[i] = row_of(row) end
+  local parts = { SCRIPT = the.html(study.script), LEAD = lead_of(study), REFERENCE = reference_of(study),
+    PLOT = the.plot(study) or "", ROWS = table.concat(rows), LEFT_OUT = left_out_of(study),
+    PICTURES = pictures_of(study), ADVICE = the.html(study.advice) }
+  return (study.page:gsub("@(%u[%u_]*)@", parts))
+end
