@@ -81,10 +81,195 @@ static void test_listing(void **state)
     glint_builder_destroy(b);
 }
 
+
+/// The listing of a program of one output.
+static void check_listing(glint_builder *b, glint_value out, const char *want)
+{
+    glint_program *p = finish(b, &out, 1);
+    char *listing = glint_program_listing(p);
+    assert_string_equal(listing, want);
+    free(listing);
+    glint_program_release(p);
+}
+
+static void test_pairs(void **state)
+{
+    (void)state;
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    const glint_value x = read_input(b, GLINT_INPUT_P_X), y = read_input(b, GLINT_INPUT_P_Y);
+    const glint_value z = read_input(b, GLINT_INPUT_P_Z), product = op2(b, GLINT_OP_MUL, x, y);
+    check_listing(b, op2(b, GLINT_OP_ADD, z, product), "r0 = muladd p.x p.y p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_SUB, product, z), "r0 = mulsub p.x p.y p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_SUB, z, product), "r0 = submul p.z p.x p.y\nreturn r0\n");
+    const glint_value way = op2(b, GLINT_OP_SUB, y, x), share = op2(b, GLINT_OP_MUL, way, z);
+    check_listing(b, op2(b, GLINT_OP_ADD, x, share), "r0 = mix p.x p.y p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_ADD, z, share), "r0 = sub p.y p.x\nr0 = muladd r0 p.z p.z\nreturn r0\n");
+    const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is needed by itself, too
+    glint_program *p = finish(b, outputs, 3);
+    assert_int_equal(glint_program_length(p), 2);
+    glint_program_release(p);
+    glint_builder_destroy(b);
+}
+
+static void test_numbers(void **state)
+{
+    (void)state;
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    const glint_value x = read_input(b, GLINT_INPUT_P_X), tenth = number(b, 0.1), fifth = number(b, 0.2);
+    const glint_value sum = op2(b, GLINT_OP_ADD, tenth, fifth);
+    double got, color[3];
+    assert_true(glint_builder_is_number(b, sum, &got) && got == 0.1 + 0.2);
+    assert_int_equal(op2(b, GLINT_OP_MUL, x, number(b, 1)), x);
+    assert_int_equal(op2(b, GLINT_OP_SUB, x, number(b, 0)), x);
+    assert_int_not_equal(op2(b, GLINT_OP_ADD, x, number(b, 0)), x); // which makes 0 of -0
+    assert_int_equal(op3(b, GLINT_OP_SELECT, number(b, 2), tenth, x), tenth);
+    assert_int_not_equal(number(b, 0.0), number(b, -0.0));
+    const glint_value outputs[] = { tenth, sum, op2(b, GLINT_OP_SIN, fifth, 0) };
+    glint_program *p = finish(b, outputs, 3);
+    assert_true(glint_program_constant(p, color) && color[0] == 0.1 && color[1] == 0.1 + 0.2);
+    assert_true(fabs(color[2] - sin(0.2)) < 1e-16);
+    assert_int_equal(glint_program_length(p), 0);
+    glint_program_release(p);
+    p = finish(b, &x, 1);
+    assert_false(glint_program_constant(p, color));
+    glint_program_release(p);
+    glint_builder_destroy(b);
+}
+
+/// sin(x + i) for many i, then their sum.
+static glint_value sum_of_sines(glint_builder *b, int count, glint_value *sine)
+{
+    const glint_value x = read_input(b, GLINT_INPUT_P_X);
+    for (int i = 0; i < count; i++)
+        sine[i] = op2(b, GLINT_OP_SIN, op2(b, GLINT_OP_ADD, x, number(b, i)), 0);
+    glint_value sum = sine[0];
+    for (int i = 1; i < count; i++)
+        sum = op2(b, GLINT_OP_ADD, sum, sine[i]);
+    return sum;
+}
+
+static void expect_failure(glint_status status, const char *part)
+{
+    assert_int_equal(status, GLINT_ERR_INVALID);
+    if (!strstr(error.message, part))
+        fail_msg("'%s' has no '%s'", error.message, part);
+}
+
+/// Written all before they are added up, they need rows for all; the order by need wants two. Where all are needed after the
+/// sum, no order helps.
+static void test_rows(void **state)
+{
+    (void)state;
+    glint_value sine[300];
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    const glint_value sum = sum_of_sines(b, 300, sine);
+    glint_program *p = finish(b, &sum, 1);
+    assert_in_range(glint_program_rows(p), 1, 3);
+    assert_int_equal(glint_program_length(p), 899);
+    glint_program_release(p);
+    glint_value twice = sum;
+    for (int i = 0; i < 300; i++)
+        twice = op2(b, GLINT_OP_DIV, twice, op2(b, GLINT_OP_MAX, sine[i], sum));
+    expect_failure(glint_builder_finish(b, &twice, 1, &p, &error), "256 intermediate values");
+    glint_builder_destroy(b);
+}
+
+static void test_limits(void **state)
+{
+    (void)state;
+    glint_program *p;
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    glint_value v = read_input(b, GLINT_INPUT_P_X), out;
+    for (int i = 0; i < GLINT_PROGRAM_LENGTH_MAX; i++)
+        v = op2(b, GLINT_OP_SQRT, v, 0);
+    p = finish(b, &v, 1);
+    assert_int_equal(glint_program_length(p), GLINT_PROGRAM_LENGTH_MAX);
+    glint_program_release(p);
+    v = op2(b, GLINT_OP_SQRT, v, 0);
+    expect_failure(glint_builder_finish(b, &v, 1, &p, &error), "at most 4096 instructions expected, got 4097");
+    glint_status status = GLINT_OK;
+    for (int i = 0; i < 100000 && !status; i++)
+        status = glint_builder_number(b, i, &out, &error);
+    expect_failure(status, "at most 65536 values");
+    glint_builder_destroy(b);
+}
+
+static void test_errors(void **state)
+{
+    (void)state;
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN), *s = new_builder(GLINT_PROGRAM_SHADER);
+    glint_program *p;
+    const glint_value x = read_input(b, GLINT_INPUT_P_X), wrong[] = { x, 77 }, many[] = { x, x, x, x, x, x };
+    glint_value out = 12345;
+    expect_failure(glint_builder_op(b, GLINT_OP_ADD, wrong, &out, &error), "add: operand 2 is no value of this builder");
+    expect_failure(glint_builder_op(b, (glint_op)-1, wrong, &out, &error), "op: ");
+    expect_failure(glint_builder_op(b, GLINT_OP_TEXEL, wrong, &out, &error), "op: ");
+    expect_failure(glint_builder_input(b, GLINT_INPUT_LIGHT_R, &out, &error), "a pattern has no light.r");
+    expect_failure(glint_builder_input(s, GLINT_INPUT_COUNT, &out, &error), "input: ");
+    assert_int_equal(out, 12345);
+    assert_int_equal(glint_builder_input(s, GLINT_INPUT_LIGHT_R, &out, &error), GLINT_OK);
+    expect_failure(glint_builder_finish(b, many, 2, &p, &error), "1 or 3 outputs of a pattern expected, got 2");
+    expect_failure(glint_builder_finish(s, many, 1, &p, &error), "3 or 6 outputs of a shader expected, got 1");
+    expect_failure(glint_builder_finish(b, &wrong[1], 1, &p, &error), "outputs: number 1");
+    expect_failure(glint_builder_create((glint_program_kind)2, &b, &error), "kind: ");
+    assert_null(glint_op_info_of(GLINT_OP_COUNT));
+    assert_null(glint_input_name(GLINT_INPUT_COUNT));
+    for (int op = 0; op < GLINT_OP_COUNT; op++)
+        assert_true(glint_op_info_of((glint_op)op)->operands >= 1 && glint_op_info_of((glint_op)op)->results >= 1);
+    glint_builder_destroy(b);
+    glint_builder_destroy(s);
+    glint_builder_destroy(NULL);
+    glint_program_release(NULL);
+}
+
+/// x op k.
+static glint_program *little_program(glint_op op, double k)
+{
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    const glint_value out = op2(b, op, read_input(b, GLINT_INPUT_P_X), number(b, k));
+    glint_program *p = finish(b, &out, 1);
+    glint_builder_destroy(b);
+    return p;
+}
+
+static void test_keys(void **state)
+{
+    (void)state;
+    glint_program *p[] = { little_program(GLINT_OP_ADD, 2), little_program(GLINT_OP_ADD, 2),
+                           little_program(GLINT_OP_ADD, 3), little_program(GLINT_OP_MUL, 2) };
+    assert_true(glint_key_equal(p[0]->structure, p[1]->structure) && glint_key_equal(p[0]->numbers, p[1]->numbers));
+    assert_true(glint_key_equal(p[0]->structure, p[2]->structure) && !glint_key_equal(p[0]->numbers, p[2]->numbers));
+    assert_true(!glint_key_equal(p[0]->structure, p[3]->structure) && glint_key_equal(p[0]->numbers, p[3]->numbers));
+    for (int i = 0; i < 4; i++)
+        glint_program_release(p[i]);
+}
+
+/// Of the three results of noise3 the second alone; and a row that is read to its end in another's place.
+static void test_results(void **state)
+{
+    (void)state;
+    glint_builder *b = new_builder(GLINT_PROGRAM_PATTERN);
+    glint_value operands[3], out[3];
+    for (int k = 0; k < 3; k++)
+        operands[k] = op2(b, GLINT_OP_MUL, read_input(b, (glint_input)k), number(b, 3));
+    assert_int_equal(glint_builder_op(b, GLINT_OP_NOISE3, operands, out, &error), GLINT_OK);
+    glint_program *p = finish(b, &out[1], 1);
+    assert_int_equal(glint_program_rows(p), 3);
+    double inputs[GLINT_INPUT_COUNT] = { 0.3, 0.7, -1.2 }, got, folded[GLINT_RESULTS_MAX];
+    double scaled[GLINT_OPERANDS_MAX] = { 3 * inputs[0], 3 * inputs[1], 3 * inputs[2] };
+    assert_int_equal(glint_program_evaluate(p, inputs, &got, &error), GLINT_OK);
+    glint_fold(GLINT_OP_NOISE3, NULL, scaled, folded);
+    assert_true(got == folded[1] && folded[0] != folded[1] && folded[1] != folded[2]);
+    glint_program_release(p);
+    glint_builder_destroy(b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_listing),
+        cmocka_unit_test(test_listing), cmocka_unit_test(test_pairs),  cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_rows),    cmocka_unit_test(test_limits), cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_keys),    cmocka_unit_test(test_results),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
