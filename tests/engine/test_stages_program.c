@@ -1,8 +1,13 @@
 /// The stage `program`: every operation and thousands of random programs on every instruction set against the scalar
 /// reference, and programs as the builder makes them against the same without anything folded, shared or fused.
+#include "tests/engine/png_case.h"
 #include "tests/engine/program_case.h"
 
+#include <unistd.h>
+
 #define CASES 4000
+
+static uint32_t damaged[2]; ///< programs that were refused, that were run
 
 /// One operation on numbers of every kind.
 static void operation_case(glint_op op, bool odd)
@@ -109,11 +114,94 @@ static void test_random_programs(void **state)
     run_cases(CASES, 42000, random_program);
 }
 
+/// Code with a few bytes of another in it: the check lets through what can be run, and what it lets through is run.
+static void damaged_program(int precision, bool odd)
+{
+    (void)precision;
+    const recipe r = random_recipe(odd);
+    glint_program *program = recipe_build(&r, false);
+    const size_t bytes = program->code.length * sizeof(glint_instruction);
+    glint_instruction *copy = input(KIND_U16, (uint32_t)(bytes / 2 + 1));
+    glint_program_args args = program_inputs(program, 1, odd);
+    glint_program_code code = program->code;
+    memcpy(copy, code.instructions, bytes);
+    code.instructions = copy;
+    for (uint32_t i = 0; i < 1 + below(3) && bytes; i++) {
+        uint16_t *word = (uint16_t *)copy + below((uint32_t)(bytes / 2));
+        const uint32_t any[] = { below(64), below(8), GLINT_ROW_INPUT + below(32), GLINT_ROW_NUMBER + below(16), below(65536) };
+        *word = (uint16_t)any[below(5)];
+    }
+    if (one_in(8))
+        code.outputs[0] = (uint16_t)(one_in(2) ? below(600) : below(16));
+    if (one_in(8))
+        code.row_count = below(8);
+    args.code = &code;
+    args.wanted = masks(1);
+    const bool runs = !glint_code_check(&code, program->number_count, program->texture_count, program->inputs, NULL);
+    FOR_EACH_TESTED
+    {
+        args.result[0] = output("result", KIND_DOUBLE, GLINT_GROUP);
+        if (runs)
+            running->program(&args);
+        compare_outputs("damaged program");
+    }
+    damaged[runs]++;
+    glint_program_release(program);
+}
+
+static void test_damaged_programs(void **state)
+{
+    (void)state;
+    run_cases(CASES, 43000, damaged_program);
+    assert_true(damaged[0] > CASES / 4 && damaged[1] > CASES / 10);
+}
+
+/// A picture of odd sides, of any texels.
+static void load_texture(glint_wrap wrap, glint_filter filter)
+{
+    char path[64];
+    uint16_t samples[37 * 21 * 4];
+    glint_error error;
+    glint_texture_desc desc = glint_texture_desc_default();
+    snprintf(path, sizeof path, "/tmp/glint_program_%ld.png", (long)getpid());
+    for (size_t i = 0; i < COUNT_OF(samples); i++)
+        samples[i] = (uint16_t)random_bits();
+    write_png(path, 37, 21, PNG_COLOR_TYPE_RGB_ALPHA, 16, 0, samples);
+    desc.path = path;
+    desc.wrap = wrap;
+    desc.filter = filter;
+    if (glint_texture_create(&desc, &recipe_texture, &error))
+        fail_msg("%s", error.message);
+    remove(path);
+}
+
+static void texel_operations(int precision, bool odd)
+{
+    (void)precision;
+    operation_case(GLINT_OP_TEXEL, odd);
+    end_case();
+    operation_case(GLINT_OP_TEXEL_SLOPE, odd);
+}
+
+static void test_texels(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        load_texture((glint_wrap)(kind & 1), (glint_filter)(kind >> 1));
+        run_cases(200, 44000, texel_operations);
+        run_cases(200, 45000, random_program);
+        glint_texture_release(recipe_texture);
+        recipe_texture = NULL;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_random_programs),
+        cmocka_unit_test(test_damaged_programs),
+        cmocka_unit_test(test_texels),
     };
     find_tested();
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -224,7 +224,7 @@ static void run_instruction(const glint_instruction *at, const glint_program_cod
         for (unsigned k = 0; k < 3; k++)
             out[k] = op_noise(in[0], in[1], in[2], k + 1, NULL);
         break;
-    case GLINT_OP_NOISE_SLOPE: op_noise(in[0], in[1], in[2], (uint32_t)in[3], out); break;
+    case GLINT_OP_NOISE_SLOPE: op_noise(in[0], in[1], in[2], word_of(in[3]), out); break;
     case GLINT_OP_CELL: op_cell(in, out, NULL); break;
     case GLINT_OP_CELL_SLOPE: op_cell(in, NULL, out); break;
     case GLINT_OP_TEXEL: op_texel(code->textures[at->texture], in, out, NULL); break;
