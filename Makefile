@@ -251,8 +251,8 @@ NATIVE   = $(shell $(CC) -march=native -dM -E - </dev/null 2>/dev/null)
 EMBREE   = $(shell echo '\#include <embree3/rtcore.h>' | $(CC) -E - >/dev/null 2>&1 && echo embree)
 PACKETS  = $(if $(and $(findstring __AVX512BW__,$(NATIVE)),$(findstring __AVX512DQ__,$(NATIVE))),hand $(EMBREE))
 
-$(BUILD)/tests/bench/glint_side: $(call bench_c,glint_main glint_scene glint_frame glint_job options scenes)
-$(BUILD)/tests/bench/hand:       $(call bench_c,hand packet picture options scenes)
+$(BUILD)/tests/bench/glint_side: $(call bench_c,glint_main glint_scene glint_frame glint_job glint_program options scenes)
+$(BUILD)/tests/bench/hand:       $(call bench_c,hand hand_program packet picture options scenes)
 $(BUILD)/tests/bench/embree:     $(call bench_c,embree packet picture options scenes)
 $(BUILD)/tests/bench/peers:      $(call bench_c,peers options scenes)
 

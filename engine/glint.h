@@ -214,7 +214,7 @@ glint_status glint_builder_finish(glint_builder *builder, const glint_value *out
 
 glint_program *glint_program_retain(glint_program *program);
 void glint_program_release(glint_program *program);
-/// By the kernel a frame uses, with the bits a frame gets before it rounds to float.
+/// By the kernel a frame uses, with the bits of a frame before its rounding to float.
 ///
 /// inputs   those that the program does not read may be anything.
 /// outputs  written: as many as the program has.

@@ -83,12 +83,6 @@ static const char *const inputs[GLINT_INPUT_COUNT] = {
     [GLINT_INPUT_SHININESS] = "shininess",
 };
 
-const glint_op_info *glint_op_info_of(glint_op op)
-{
-    return (unsigned)op < GLINT_OP_COUNT ? &operations[op] : NULL;
-}
+const glint_op_info *glint_op_info_of(glint_op op) { return (unsigned)op < GLINT_OP_COUNT ? &operations[op] : NULL; }
 
-const char *glint_input_name(glint_input input)
-{
-    return (unsigned)input < GLINT_INPUT_COUNT ? inputs[input] : NULL;
-}
+const char *glint_input_name(glint_input input) { return (unsigned)input < GLINT_INPUT_COUNT ? inputs[input] : NULL; }

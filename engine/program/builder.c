@@ -146,7 +146,9 @@ void glint_fold(glint_op op, const glint_texture *texture, const double *operand
     const uint16_t first_lane = 1;
     double numbers[GLINT_OPERANDS_MAX][GLINT_NUMBER_LANES] = { { 0 } }, rows[GLINT_RESULTS_MAX * GLINT_PROGRAM_LANES];
     double lanes[GLINT_RESULTS_MAX][GLINT_GROUP];
-    glint_instruction at = { .op = (uint16_t)op, .operands = (uint8_t)info->operands, .results = (uint8_t)info->results };
+    glint_instruction at = { .op = (uint16_t)op,
+                             .operands = (uint8_t)info->operands,
+                             .results = (uint8_t)info->results };
     glint_program_code code = { .instructions = &at,
                                 .length = 1,
                                 .row_count = info->results,

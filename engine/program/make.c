@@ -1,4 +1,5 @@
-/// From a builder's values to a program: what no output needs is dropped, pairs of operations become one, rows are given out.
+/// From a builder's values to a program: what no output needs is dropped, pairs of operations become one, rows are
+/// allocated.
 #include "engine/program/builder.h"
 
 #include "engine/base/alloc.h"
@@ -363,7 +364,8 @@ glint_status glint_program_make(const glint_builder *builder, const glint_value 
         program->kind = builder->kind;
         program->references = 1;
     }
-    status = begin(&m, builder) && program ? make(&m, builder, outputs, count, program, error) : glint_fail_nomem(error);
+    status =
+        begin(&m, builder) && program ? make(&m, builder, outputs, count, program, error) : glint_fail_nomem(error);
     destroy(&m);
     if (status)
         glint_program_release(program);

@@ -100,7 +100,8 @@ glint_status glint_code_check(const glint_program_code *code, uint32_t number_co
     known k = { .rows = code->row_count, .numbers = number_count, .inputs = inputs };
     glint_status status = GLINT_OK;
     if (code->length > GLINT_PROGRAM_LENGTH_MAX || code->row_count > GLINT_PROGRAM_ROWS_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID, "program: at most %d instructions and %d rows expected, got %u and %u",
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "program: at most %d instructions and %d rows expected, got %u and %u",
                           GLINT_PROGRAM_LENGTH_MAX, GLINT_PROGRAM_ROWS_MAX, code->length, code->row_count);
     if (code->output_count < 1 || code->output_count > GLINT_PROGRAM_OUTPUTS_MAX)
         return glint_fail(error, GLINT_ERR_INVALID, "program: 1 .. %d outputs expected, got %u",

@@ -1,5 +1,6 @@
-/// The derivatives of a program, in reverse: from the output back to the inputs, each value passes on what it was given to
-/// the operands that it was made of, times its derivative by them (A. Griewank and A. Walther, "Evaluating Derivatives").
+/// The derivatives of a program, in reverse: from the output back to the inputs, each value passes on what it was given
+/// to the operands that it was made of, times its derivative by them (A. Griewank and A. Walther, "Evaluating
+/// Derivatives", SIAM 2008).
 #include "engine/program/builder.h"
 
 #include "engine/base/status.h"

@@ -72,7 +72,8 @@ static bool fill_first(glint_texture *texture, const glint_png *png, bool linear
     const size_t count = (size_t)png->width * (size_t)png->height, channels = (size_t)png->channels;
     const bool gray = channels < 3, alpha = channels == 2 || channels == 4;
     const float most = png->bits == 16 ? 65535 : 255;
-    float *table = decoding(png, linear), *to = table ? add_level(texture, (uint32_t)png->width, (uint32_t)png->height) : NULL;
+    float *table = decoding(png, linear),
+          *to = table ? add_level(texture, (uint32_t)png->width, (uint32_t)png->height) : NULL;
     for (size_t i = 0; i < count && to; i++, to += 4) {
         unsigned code[4] = { 0 };
         for (size_t c = 0; c < channels; c++)
@@ -174,7 +175,8 @@ glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture 
     glint_texture *texture = calloc(1, sizeof *texture);
     if (texture) {
         texture->references = 1;
-        texture->table = (glint_texture_table) { .levels = texture->levels, .wrap = desc->wrap, .filter = desc->filter };
+        texture->table =
+            (glint_texture_table) { .levels = texture->levels, .wrap = desc->wrap, .filter = desc->filter };
     }
     if (texture && fill(texture, &png, linear)) {
         texture->key = key_of(texture);

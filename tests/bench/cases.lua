@@ -60,6 +60,9 @@ local measurements = {
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
+  { "g.program", "glint", "program" },
+  { "h.program", "hand", "program" },
+
   { "g.ref", "glint", "stages isa=ref", runs = 3 },
   { "g.sse2", "glint", "stages isa=sse2" },
   { "g.avx2", "glint", "stages isa=avx2" },
@@ -141,6 +144,13 @@ local rows = {
   { "many", "500,000 triangles, render", "g.mesh:render", "e.mesh:render", bar = 1 },
   { "many", "500,000 triangles, index build", "g.mesh.build:build", "e.mesh:build" },
   { "many", "500,000 triangles, scene to first ray", "g.mesh.build:ready", nil },
+
+  { "A point of a pattern or a shader, by the kernel alone" },
+  { "programs", "Phong as a program", "g.program:phong", "h.program:phong", bar = 2 },
+  { "programs", "checker", "g.program:checker", nil },
+  { "programs", "three octaves of noise", "g.program:octaves", nil },
+  { "programs", "marble", "g.program:marble", nil },
+  { "programs", "cells", "g.program:cells", nil },
 
   { "One frame as PNG" },
   { "encode", "encode fast / zlib level 1", "g.encode:fast", "h.encode:zlib" },

@@ -6,6 +6,7 @@
 ///   glint_side reuse change=light|sphere|shininess       ms of a frame anew, and of one from what was kept
 ///   glint_side job change=light|sphere|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
 ///   glint_side encode out=FOLDER
+///   glint_side program                                   ns a point of patterns and a shader, by the kernel alone
 ///   glint_side picture out=FILE [scene=...]
 ///   glint_side isa                                       the best this machine has
 ///   glint_side compare out=A with=B                      how many pixels differ by more than two 8-bit codes
@@ -53,9 +54,11 @@ typedef struct mode {
 } mode;
 
 static const mode modes[] = {
-    { "frame", side_run_frame, false }, { "build", side_run_build, false }, { "stages", side_run_stages, false },
-    { "reuse", side_run_reuse, false }, { "job", side_run_job, true },      { "encode", side_run_encode, true },
-    { "compare", run_compare, true },   { "picture", run_picture, true },   { "isa", run_isa, false },
+    { "frame", side_run_frame, false },     { "build", side_run_build, false },
+    { "stages", side_run_stages, false },   { "reuse", side_run_reuse, false },
+    { "job", side_run_job, true },          { "encode", side_run_encode, true },
+    { "program", side_run_program, false }, { "compare", run_compare, true },
+    { "picture", run_picture, true },       { "isa", run_isa, false },
 };
 
 int main(int argc, char **argv)

@@ -35,5 +35,7 @@ void side_run_stages(const bench_options *options);
 void side_run_reuse(const bench_options *options);
 void side_run_encode(const bench_options *options);
 void side_run_job(const bench_options *options);
+/// The kernel of programs alone, which no public function runs.
+void side_run_program(const bench_options *options);
 
 #endif

@@ -7,6 +7,7 @@
 ///   hand frame [scene=workshop] [threads=N] [samples=N] [shadows=0] [area=1]    ms to linear light, and to codes
 ///   hand job change=light|shininess out=FOLDER [threads=N]                      seconds for 60 PNGs
 ///   hand encode                                                                 ms and kB of one PNG
+///   hand program                                                                ns a point of Phong's shader
 ///   hand picture out=FILE
 #include <pthread.h>
 #include <stdatomic.h>
@@ -14,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/bench/hand_program.h"
 #include "tests/bench/packet_light.h"
 #include "tests/bench/picture.h"
 
@@ -221,11 +223,13 @@ int main(int argc, char **argv)
         run_encode(&scene);
     } else if (strcmp(options.mode, "job") == 0 && options.out) {
         run_job(&scene);
+    } else if (strcmp(options.mode, "program") == 0) {
+        hand_run_program();
     } else if (strcmp(options.mode, "picture") == 0 && options.out) {
         time_codes(&scene);
         write_shown(options.out);
     } else {
-        bench_fail(options.mode, "frame, encode, job out=FOLDER or picture out=FILE expected");
+        bench_fail(options.mode, "frame, encode, program, job out=FOLDER or picture out=FILE expected");
     }
     picture_writer_destroy(writer);
     packet_scene_free(&scene);

@@ -35,15 +35,17 @@ for file in bash-completion/completions/glint zsh/site-functions/_glint fish/ven
     check "$file" grep -q reuse-memory "$prefix/share/$file"
 done
 
-# The C example, from a copy outside the checkout.
-cp scripts/c_example.c "$work/"
+# The C examples, from copies outside the checkout.
+cp scripts/c_example.c scripts/c_pattern.c "$work/"
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 check "pkg-config knows it" pkg-config --exists --print-errors "glint = $("$prefix/bin/glint" --version | cut -d ' ' -f 2)"
 compile() { # in the folder of the example
-    cd "$work" && ${CC:-cc} -std=c11 -Wall -Wextra -Werror c_example.c $(pkg-config --cflags --libs glint) -o c_example
+    cd "$work" && ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$1.c" $(pkg-config --cflags --libs glint) -o "$1"
 }
-check "the C example compiles" eval '(compile)'
+check "the C example compiles" eval '(compile c_example)'
 check "and runs" eval '(cd "$work" && ./c_example)'
+check "the C example of patterns compiles" eval '(compile c_pattern)'
+check "and runs" eval '(cd "$work" && ./c_pattern)'
 cat >"$work/same.lua" <<'END'
 local glint = require "glint"
 local function paint(r, g, b, ks) return glint.material { diffuse = { r, g, b }, specular = ks, shininess = 64 } end

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/// `color`: PNG_COLOR_TYPE_*. Samples of 16 bits are in native order, a row after the other, the top first. gamma 0: nothing is
-/// said of it. Aborts on failure.
+/// `color`: PNG_COLOR_TYPE_*. Samples of 16 bits are in native order, row by row from the top. gamma 0: no gAMA chunk.
+/// Aborts on failure.
 static inline void write_png(const char *path, int width, int height, int color, int bits, double gamma,
                              const void *samples)
 {

@@ -81,7 +81,6 @@ static void test_listing(void **state)
     glint_builder_destroy(b);
 }
 
-
 /// The listing of a program of one output.
 static void check_listing(glint_builder *b, glint_value out, const char *want)
 {
@@ -155,8 +154,8 @@ static void expect_failure(glint_status status, const char *part)
         fail_msg("'%s' has no '%s'", error.message, part);
 }
 
-/// Written all before they are added up, they need rows for all; the order by need wants two. Where all are needed after the
-/// sum, no order helps.
+/// Written all before they are added up, they need rows for all; ordered by need, two. Where all are needed after the sum,
+/// no order helps.
 static void test_rows(void **state)
 {
     (void)state;
@@ -201,7 +200,8 @@ static void test_errors(void **state)
     glint_program *p;
     const glint_value x = read_input(b, GLINT_INPUT_P_X), wrong[] = { x, 77 }, many[] = { x, x, x, x, x, x };
     glint_value out = 12345;
-    expect_failure(glint_builder_op(b, GLINT_OP_ADD, wrong, &out, &error), "add: operand 2 is no value of this builder");
+    expect_failure(glint_builder_op(b, GLINT_OP_ADD, wrong, &out, &error),
+                   "add: operand 2 is no value of this builder");
     expect_failure(glint_builder_op(b, (glint_op)-1, wrong, &out, &error), "op: ");
     expect_failure(glint_builder_op(b, GLINT_OP_TEXEL, wrong, &out, &error), "op: ");
     expect_failure(glint_builder_input(b, GLINT_INPUT_LIGHT_R, &out, &error), "a pattern has no light.r");
@@ -267,8 +267,8 @@ static void test_results(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_listing), cmocka_unit_test(test_pairs),  cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_rows),    cmocka_unit_test(test_limits), cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_listing), cmocka_unit_test(test_pairs),   cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_rows),    cmocka_unit_test(test_limits),  cmocka_unit_test(test_errors),
         cmocka_unit_test(test_keys),    cmocka_unit_test(test_results),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -131,6 +131,22 @@ static void test_special_values(void **state)
         }
 }
 
+/// x^s as shading has it: seven digits, and 0 below 2^-40, which changes no code of 16 bits.
+static void test_highlight(void **state)
+{
+    (void)state;
+    random_state = 51500;
+    for (int i = 0; i < 100000; i++) {
+        const double x = one_in(2) ? between(0, 1) : 1 - ldexp(between(0, 1), -(int)below(30));
+        const double s = ldexp(between(1, 2), (int)below(14)), want = pow(x, s), got = ours(GLINT_OP_HIGHLIGHT, x, s);
+        assert_true(want < 0x1p-40 ? got <= 0x1.0001p-40 : fabs(got - want) <= 6e-6 * want);
+    }
+    assert_true(ours(GLINT_OP_HIGHLIGHT, 1, 1e300) == 1 && ours(GLINT_OP_HIGHLIGHT, 7, 3) == 1);
+    assert_true(ours(GLINT_OP_HIGHLIGHT, 0.5, 0) == 1 && ours(GLINT_OP_HIGHLIGHT, 0.5, -3) == 1);
+    assert_true(ours(GLINT_OP_HIGHLIGHT, 0, 0) == 0 && ours(GLINT_OP_HIGHLIGHT, -1, 2) == 0);
+    assert_true(ours(GLINT_OP_HIGHLIGHT, NAN, 2) == 0 && ours(GLINT_OP_HIGHLIGHT, 0.5, NAN) == 1);
+}
+
 // ---- Derivatives --------------------------------------------------------------------------------------------------
 
 enum { BITS = 113 };
@@ -399,6 +415,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_stated_errors),        cmocka_unit_test(test_special_values),
+        cmocka_unit_test(test_highlight),
         cmocka_unit_test(test_slopes_of_operations), cmocka_unit_test(test_slopes_of_programs),
         cmocka_unit_test(test_noise_slopes),         cmocka_unit_test(test_cell_slopes),
     };

@@ -161,8 +161,8 @@ static void test_gradients(void **state)
         assert_true(fabs(sum[k]) < 800);
 }
 
-/// A distance grows no faster than one moves, and the next point is no nearer than the nearest: this holds where no point is
-/// overlooked, and fails at the borders of what was looked at where one is.
+/// A distance grows no faster than one moves, and the next point is no nearer than the nearest: this holds where no point
+/// is overlooked, and fails at the borders of what was searched where one is.
 static void test_cells(void **state)
 {
     (void)state;
@@ -203,9 +203,14 @@ static void test_parity(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_noise_range),  cmocka_unit_test(test_noise_scale), cmocka_unit_test(test_noise_continuity),
-        cmocka_unit_test(test_noise_unlike), cmocka_unit_test(test_hash),        cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_cells),        cmocka_unit_test(test_parity),
+        cmocka_unit_test(test_noise_range),
+        cmocka_unit_test(test_noise_scale),
+        cmocka_unit_test(test_noise_continuity),
+        cmocka_unit_test(test_noise_unlike),
+        cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_parity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -128,7 +128,8 @@ static void damaged_program(int precision, bool odd)
     code.instructions = copy;
     for (uint32_t i = 0; i < 1 + below(3) && bytes; i++) {
         uint16_t *word = (uint16_t *)copy + below((uint32_t)(bytes / 2));
-        const uint32_t any[] = { below(64), below(8), GLINT_ROW_INPUT + below(32), GLINT_ROW_NUMBER + below(16), below(65536) };
+        const uint32_t any[] = { below(64), below(8), GLINT_ROW_INPUT + below(32), GLINT_ROW_NUMBER + below(16),
+                                 below(65536) };
         *word = (uint16_t)any[below(5)];
     }
     if (one_in(8))

@@ -46,7 +46,8 @@ static void texel(const glint_texture *texture, double u, double v, double footp
     glint_builder_destroy(b);
 }
 
-static void expect(const glint_texture *texture, double u, double v, double red, double green, double blue, double alpha)
+static void expect(const glint_texture *texture, double u, double v, double red, double green, double blue,
+                   double alpha)
 {
     const double want[4] = { red, green, blue, alpha };
     double got[4];

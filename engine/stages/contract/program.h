@@ -1,4 +1,5 @@
-/// The contract of the stage `program`: the instructions of a pattern or a shader, for up to 128 points. Begin with stages.h.
+/// The contract of the stage `program`: the instructions of a pattern or a shader, for up to 128 points. Begin with
+/// stages.h.
 #ifndef GLINT_CONTRACT_PROGRAM_H
 #define GLINT_CONTRACT_PROGRAM_H
 
@@ -6,19 +7,18 @@
 
 #define GLINT_PROGRAM_GROUPS 8 ///< groups at a time
 #define GLINT_PROGRAM_LANES 128 ///< a row: one double a lane, 1 KB
-#define GLINT_NUMBER_LANES 8 ///< how often a number stands in memory: the widest vector
+#define GLINT_NUMBER_LANES 16 ///< how often a number stands in memory: a group
 
 // Where an operand is, and where a result goes.
 #define GLINT_ROW_INPUT 256u ///< + glint_input; below it: the rows of a program's own
 #define GLINT_ROW_NUMBER 512u ///< + index into the numbers
-#define GLINT_ROW_END (GLINT_ROW_NUMBER + 4u * GLINT_PROGRAM_LENGTH_MAX + GLINT_PROGRAM_OUTPUTS_MAX)
 
 typedef struct glint_instruction { ///< no padding: its bytes are hashed
     uint16_t op; ///< glint_op
     uint16_t texture; ///< index into the textures; 0 where the operation has none
     uint8_t operands, results; ///< how many the operation has
     uint16_t in[GLINT_OPERANDS_MAX]; ///< beyond the operation's operands 0
-    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, results that are not read included; beyond its results 0
+    uint16_t out[GLINT_RESULTS_MAX]; ///< rows of the program's own, also of results that are not read; beyond them 0
 } glint_instruction;
 
 /// A picture at one size. Texels are red, green, blue, alpha, linear, row by row from the top.
@@ -52,9 +52,10 @@ typedef struct glint_program_args {
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
     const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
     double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as they are; NULL: not wanted
-    float *plane[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as reflectances: v > 0 ? min(v, 2^100) : 0 in double, then
-                                             ///< rounded to float; NULL: not wanted
-    uint16_t *odd; ///< out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100; NULL: not wanted
+    /// out: the outputs as reflectances, v > 0 ? min(v, 2^100) : 0 in double, then rounded to float; NULL: not wanted
+    float *plane[GLINT_PROGRAM_OUTPUTS_MAX];
+    /// out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100; NULL: not wanted
+    uint16_t *odd;
 } glint_program_args;
 
 #define GLINT_REFLECTANCE_MAX 0x1p100

@@ -1,32 +1,38 @@
-// What the kernels of operations have in common: one reads whole rows and writes whole rows, a vector after the other, and of
-// each vector reads all operands before it writes a result, which may be in an operand's place.
+// What the kernels of operations have in common: each reads and writes whole rows, one vector after the other, and of a
+// vector reads all operands before it writes a result, which may be in an operand's place.
 
 typedef struct op_call {
     const double *in[GLINT_OPERANDS_MAX];
-    size_t step[GLINT_OPERANDS_MAX]; ///< lane & step: where in an operand; 0 of a number, which stands there for one vector
+    size_t step[GLINT_OPERANDS_MAX]; ///< lane & step: where in an operand; 0 of a number, as it is one group long
     double *out[GLINT_RESULTS_MAX];
     size_t lanes;
     const glint_texture_table *texture;
 } op_call;
 
-static inline vd op_in(const op_call *call, int k, size_t lane)
-{
-    return d_load(call->in[k] + (lane & call->step[k]));
-}
+static inline vd op_in(const op_call *call, int k, size_t lane) { return d_load(call->in[k] + (lane & call->step[k])); }
 
-// One result from operands a, from a and b, from a, b and c.
+// One result from operands a; a and b; a, b and c. The compiler unrolls the inner loop.
 #define OP_KERNEL(name, operands, expression) \
     static void op_##name(const op_call *call) \
     { \
         const op_call at = *call; \
-        for (size_t i = 0; i < at.lanes; i += VD) { \
-            operands; \
-            d_store(at.out[0] + i, expression); \
+        for (size_t group = 0; group < at.lanes; group += GLINT_GROUP) { \
+            operands(OP_GROUP); \
+            for (int i = 0; i < GLINT_GROUP; i += VD) { \
+                operands(OP_VECTOR); \
+                d_store(at.out[0] + group + i, expression); \
+            } \
         } \
     }
-#define OP_A const vd a = op_in(&at, 0, i)
-#define OP_AB OP_A, b = op_in(&at, 1, i)
-#define OP_ABC OP_AB, c = op_in(&at, 2, i)
+#define OP_GROUP(k, name) const double *from_##name = at.in[k] + (group & at.step[k])
+#define OP_VECTOR(k, name) const vd name = d_load(from_##name + i)
+#define OP_A(each) each(0, a)
+#define OP_AB(each) \
+    OP_A(each); \
+    each(1, b)
+#define OP_ABC(each) \
+    OP_AB(each); \
+    each(2, c)
 
 /// 1 where the mask is set, else 0.
 static inline vd d_truth(dm mask) { return d_select(mask, d_set(1), d_set(0)); }

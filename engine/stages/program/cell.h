@@ -1,5 +1,5 @@
-// Cells: each unit cube has one point, and what counts are the two nearest. They are among the 125 cubes around: the own
-// one, the 26 beside it, and the 98 beyond, of which most are too far. Contract: contract/program.h.
+// Cells: each unit cube has one point, and what counts are the two nearest. They are in the 125 cubes around: the own
+// one, the 26 next to it, and the 98 beyond, of which most are too far. Contract: contract/program.h.
 
 #define CELL_SIDE 5
 

@@ -1,7 +1,7 @@
 /// Numbers of the operations of programs: the polynomials of their elementary functions, and the hash.
 ///
-/// Taylor's series where it says so, otherwise Chebyshev interpolation in exact arithmetic, rounded to double; the relative
-/// error of each polynomial on its interval is below 1e-16.
+/// Taylor's series where it says so, otherwise Chebyshev interpolation in exact arithmetic, rounded to double; the
+/// relative error of each polynomial on its interval is below 1e-16.
 #ifndef GLINT_PROGRAM_COEFFICIENTS_H
 #define GLINT_PROGRAM_COEFFICIENTS_H
 

@@ -13,7 +13,8 @@ static double scalar_fmod(double a, double b) { return fmod(a, b); }
 static inline vd d_fmod(vd a, vd b)
 {
     const vd size = d_abs(b), quotient = d_abs(a / b), n = d_floor(quotient);
-    const dm easy = dm_and(d_lt(quotient, d_set(0x1p52)), dm_and(d_le(d_set(0x1p-500), size), d_le(size, d_set(0x1p500))));
+    const dm easy =
+        dm_and(d_lt(quotient, d_set(0x1p52)), dm_and(d_le(d_set(0x1p-500), size), d_le(size, d_set(0x1p500))));
     vd error, rest = d_two_prod(n, size, &error);
     rest = (d_abs(a) - rest) - error;
     rest = d_copysign(d_select(d_lt(rest, d_set(0)), rest + size, rest), a);

@@ -39,7 +39,7 @@ OP_KERNEL(parity, OP_ABC, d_odd((d_odd(d_floor(a)) + d_odd(d_floor(b))) + d_odd(
 
 /// Where a point is among the corners of its cube.
 typedef struct noise_place {
-    vq word[3][2]; ///< of the hash: the lower and the upper side along each axis
+    vq word[2][4]; ///< of the hash: for the four edges along z, x fastest; for the two sides along z
     vd from[3][2]; ///< from either to the point
     vd fade[3];
 } noise_place;
@@ -47,28 +47,42 @@ typedef struct noise_place {
 INNER void noise_locate(const vd p[3], noise_place *at)
 {
     static const uint32_t factor[3] = { GLINT_HASH_X, GLINT_HASH_Y, GLINT_HASH_Z };
+    vq word[3][2];
     for (int k = 0; k < 3; k++) {
         const vd whole = d_floor(p[k]), t = p[k] - whole;
-        const vq word = q_word(whole);
-        at->word[k][0] = q_times(word, factor[k]);
-        at->word[k][1] = q_times(q_add(word, q_set(1)), factor[k]);
+        const vq first = q_word(whole);
+        word[k][0] = q_times(first, factor[k]);
+        word[k][1] = q_times(q_add(first, q_set(1)), factor[k]);
         at->from[k][0] = t;
         at->from[k][1] = t - d_set(1);
         at->fade[k] = t * t * t * (t * (t * d_set(6) - d_set(15)) + d_set(10));
     }
+    for (int c = 0; c < 4; c++)
+        at->word[0][c] = q_add(word[0][c & 1], word[1][c >> 1]);
+    for (int c = 0; c < 2; c++)
+        at->word[1][c] = word[2][c];
 }
 
 INNER vd d_between(vd t, vd a, vd b) { return a + t * (b - a); }
 
-INNER vq noise_corner(const noise_place *at, int c, vq seed)
+/// The hash of a corner's gradient, in bits 28 .. 31.
+INNER vq noise_gradient(const noise_place *at, int c, vq seed)
 {
-    return q_add(q_add(q_add(at->word[0][c & 1], at->word[1][c >> 1 & 1]), at->word[2][c >> 2]), seed);
+    const vq sum = q_add(at->word[0][c & 3], q_add(at->word[1][c >> 2], seed));
+    return q_times(q_hash(sum), GLINT_HASH_B);
 }
 
-/// -x where the bit of h is set.
-INNER vd d_turned(vd x, vq h, int bit) { return d_of_bits(q_xor(d_bits(x), q_shl(q_shr(h, bit), 63))); }
+/// -x where the first, or second, bit of a gradient's hash is set.
+INNER vd d_turned_by_first(vd x, vq h)
+{
+    return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 35), q_set((uint64_t)1 << 63))));
+}
+INNER vd d_turned_by_second(vd x, vq h)
+{
+    return d_of_bits(q_xor(d_bits(x), q_and(q_shl(h, 34), q_set((uint64_t)1 << 63))));
+}
 
-/// Which two axes a gradient is of, by bits 0 .. 3 of its hash.
+/// Which two axes a gradient is of.
 typedef struct noise_axes {
     dm y_first; ///< the first axis is y, else x
     dm y_second, x_second; ///< the second is y or x, else z
@@ -76,9 +90,9 @@ typedef struct noise_axes {
 
 INNER noise_axes noise_axes_of(vq h)
 {
-    const dm upper = q_test(h, 8), middle = q_test(h, 4);
-    const dm either = dm_or(upper, middle), all = dm_from_bits(D_ALL);
-    return (noise_axes) { upper, dm_andnot(all, either), dm_andnot(dm_and(upper, middle), q_test(h, 1)) };
+    const dm upper = q_test(h, 8u << 28), middle = q_test(h, 4u << 28), all = dm_from_bits(D_ALL);
+    return (noise_axes) { upper, dm_andnot(all, dm_or(upper, middle)),
+                          dm_andnot(dm_and(upper, middle), q_test(h, 1u << 28)) };
 }
 
 /// The gradient of a corner times the way from there to the point.
@@ -87,7 +101,7 @@ INNER vd noise_ramp(const noise_place *at, int c, vq h, const noise_axes *axes)
     const vd x = at->from[0][c & 1], y = at->from[1][c >> 1 & 1], z = at->from[2][c >> 2];
     const vd first = d_select(axes->y_first, y, x);
     const vd second = d_select(axes->y_second, y, d_select(axes->x_second, x, z));
-    return d_turned(first, h, 0) + d_turned(second, h, 1);
+    return d_turned_by_first(first, h) + d_turned_by_second(second, h);
 }
 
 INNER vd noise_between(const noise_place *at, const vd corner[8])
@@ -96,11 +110,6 @@ INNER vd noise_between(const noise_place *at, const vd corner[8])
     const vd near = d_between(f[1], d_between(f[0], corner[0], corner[1]), d_between(f[0], corner[2], corner[3]));
     const vd far = d_between(f[1], d_between(f[0], corner[4], corner[5]), d_between(f[0], corner[6], corner[7]));
     return d_between(f[2], near, far);
-}
-
-INNER vq noise_gradient(const noise_place *at, int c, vq seed)
-{
-    return q_shr(q_times(q_hash(noise_corner(at, c, seed)), GLINT_HASH_B), 28);
 }
 
 INNER vd noise_of(const noise_place *at, vq seed)
@@ -150,7 +159,7 @@ INNER vd noise_across(const noise_place *at, const vd corner[8], int axis)
 /// The part of a gradient along an axis: -1, 0 or 1.
 INNER vd noise_along(vq h, const noise_axes *axes, int axis)
 {
-    const vd zero = d_set(0), first = d_turned(d_set(1), h, 0), second = d_turned(d_set(1), h, 1);
+    const vd zero = d_set(0), first = d_turned_by_first(d_set(1), h), second = d_turned_by_second(d_set(1), h);
     if (axis == 0)
         return d_select(axes->y_first, d_select(axes->x_second, second, zero), first);
     if (axis == 1)

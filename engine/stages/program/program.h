@@ -70,45 +70,55 @@ static inline void find_operand(const glint_program_args *args, uint32_t row, co
     }
 }
 
-/// A group of one output. Returns the lanes that are no reflectance.
-static unsigned store_group(const op_call *from, size_t lane, unsigned wanted, double *result, float *plane)
+/// A number as a reflectance; NaN gives 0.
+static inline vd reflectance(vd v) { return d_min(d_max(v, d_set(0)), d_set(GLINT_REFLECTANCE_MAX)); }
+
+/// A group of one output as reflectances, where wanted.
+INNER void store_plane(const double *from, unsigned wanted, float *plane)
 {
-    const vd zero = d_set(0), most = d_set(GLINT_REFLECTANCE_MAX);
-    unsigned odd = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vd narrow[VF / VD];
-        for (int k = 0; k < VF / VD; k++) {
-            const int at = i + k * VD;
-            const vd v = op_in(from, 0, lane + (size_t)at);
-            if (result)
-                d_store(result + at, d_select(dm_from_bits(wanted >> at & D_ALL), v, d_load(result + at)));
-            odd |= (D_ALL & ~dm_bits(dm_and(d_le(zero, v), d_le(v, most)))) << at;
-            narrow[k] = d_select(d_lt(zero, v), d_min(v, most), zero);
-        }
-        if (plane)
-            f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), f_join(narrow[0], narrow[1]),
-                                        f_load(plane + i)));
+        const vf v = f_join(reflectance(d_load(from + i)), reflectance(d_load(from + i + VD)));
+        if (wanted == 0xffff)
+            f_store(plane + i, v);
+        else
+            f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), v, f_load(plane + i)));
     }
-    return odd & wanted;
 }
 
-static void store_outputs(const glint_program_args *args)
+static void store_result(const double *from, unsigned wanted, double *result)
 {
-    for (uint32_t g = 0; args->odd && g < args->group_count; g++)
-        args->odd[g] = 0;
-    for (uint32_t k = 0; k < args->code->output_count; k++) {
-        op_call from;
-        if (!args->result[k] && !args->plane[k])
-            continue;
-        find_operand(args, args->code->outputs[k], &from.in[0], &from.step[0]);
-        for (uint32_t g = 0; g < args->group_count; g++) {
-            const size_t to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
-            const unsigned odd = store_group(&from, (size_t)g * GLINT_GROUP, args->wanted[g],
-                                             args->result[k] ? args->result[k] + to : NULL,
-                                             args->plane[k] ? args->plane[k] + to : NULL);
-            if (args->odd && args->plane[k])
-                args->odd[g] |= (uint16_t)odd;
-        }
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        d_store(result + i, d_select(dm_from_bits(wanted >> i & D_ALL), d_load(from + i), d_load(result + i)));
+}
+
+/// The lanes of a group that are no reflectance.
+static unsigned odd_lanes(const double *from)
+{
+    unsigned even = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        const vd v = d_load(from + i);
+        even |= dm_bits(dm_and(d_le(d_set(0), v), d_le(v, d_set(GLINT_REFLECTANCE_MAX)))) << i;
+    }
+    return ~even;
+}
+
+static void store_output(const glint_program_args *args, uint32_t k)
+{
+    const double *row;
+    size_t step;
+    find_operand(args, args->code->outputs[k], &row, &step);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        const size_t to = (size_t)(args->groups ? args->groups[g] : g) * GLINT_GROUP;
+        const double *from = row + ((size_t)g * GLINT_GROUP & step);
+        const unsigned wanted = args->wanted[g];
+        if (args->result[k])
+            store_result(from, wanted, args->result[k] + to);
+        if (args->plane[k] && wanted == 0xffff)
+            store_plane(from, 0xffff, args->plane[k] + to);
+        else if (args->plane[k])
+            store_plane(from, wanted, args->plane[k] + to);
+        if (args->plane[k] && args->odd)
+            args->odd[g] |= (uint16_t)(odd_lanes(from) & wanted);
     }
 }
 
@@ -125,5 +135,9 @@ static void program(const glint_program_args *args)
             call.texture = code->textures[at->texture];
         op_kernels[at->op](&call);
     }
-    store_outputs(args);
+    for (uint32_t g = 0; args->odd && g < args->group_count; g++)
+        args->odd[g] = 0;
+    for (uint32_t k = 0; k < code->output_count; k++)
+        if (args->result[k] || args->plane[k])
+            store_output(args, k);
 }

@@ -1,4 +1,4 @@
-// Texels: where in which level a lane reads is worked out for all lanes at once, what stands there is read lane by lane.
+// Texels: where in which level a lane reads is found for all lanes at once, the texels are read lane by lane.
 // Contract: contract/program.h.
 
 /// Of one level: what four texels are read and how they are weighed.

@@ -104,8 +104,8 @@ static double op_noise(double x, double y, double z, uint32_t seed, double *slop
         double along[8];
         for (int c = 0; c < 8; c++)
             along[c] = g[c][axis];
-        slope[axis] = GLINT_NOISE_SCALE *
-                      (between_corners(along, f) + fade_slope(t[axis]) * across_corners(ramp, f, axis));
+        slope[axis] =
+            GLINT_NOISE_SCALE * (between_corners(along, f) + fade_slope(t[axis]) * across_corners(ramp, f, axis));
     }
     return GLINT_NOISE_SCALE * between_corners(ramp, f);
 }
@@ -121,8 +121,8 @@ static void to_feature(const uint32_t cube[3], const double x[3], double d[3])
         d[k] = x[k] + (double)(uint32_t)product(h, factor[k]) * 0x1p-32;
 }
 
-/// The two nearest of the points of all cubes that may have them; of equal distances the first, from the point's own cube
-/// outwards.
+/// The two nearest of the points of all cubes that may have them; of equal distances the first, from the point's own
+/// cube outwards.
 static void op_cell(const double p[3], double *distance, double *slope)
 {
     double d2[2] = { INFINITY, INFINITY }, to[2][3] = { { NAN, NAN, NAN }, { NAN, NAN, NAN } };

@@ -1,0 +1,85 @@
+/// Phong by hand, as a shader's program has it: doubles, eight a vector, S by the polynomials of wide.h in float. Everything
+/// stays in registers from the first load to the store.
+#include <string.h>
+
+#include "tests/bench/hand_program.h"
+#include "tests/bench/options.h"
+#include "tests/bench/program_points.h"
+#include "tests/bench/wide.h"
+
+typedef __m512d vd;
+
+static inline vd load(const program_points *p, int input, int at) { return _mm512_load_pd(p->input[input] + at); }
+
+static inline vd dot_of(const program_points *p, int a, const vd b[3], int at)
+{
+    return load(p, a, at) * b[0] + load(p, a + 1, at) * b[1] + load(p, a + 2, at) * b[2];
+}
+
+/// r.v, and n.l.
+static inline vd reflected(const program_points *p, int at, vd *cosine)
+{
+    const vd n[3] = { load(p, GLINT_INPUT_N_X, at), load(p, GLINT_INPUT_N_Y, at), load(p, GLINT_INPUT_N_Z, at) };
+    vd r[3];
+    *cosine = dot_of(p, GLINT_INPUT_L_X, n, at);
+    for (int c = 0; c < 3; c++)
+        r[c] = (*cosine + *cosine) * n[c] - load(p, GLINT_INPUT_L_X + c, at);
+    return dot_of(p, GLINT_INPUT_V_X, r, at);
+}
+
+static inline vf narrow(vd low, vd high)
+{
+    return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)), _mm512_cvtpd_ps(high), 1);
+}
+
+static inline vd widened(vf x, int half)
+{
+    return _mm512_cvtps_pd(half ? _mm512_extractf32x8_ps(x, 1) : _mm512_castps512_ps256(x));
+}
+
+static inline void store(float *to, const vd v[2])
+{
+    const vd zero = _mm512_setzero_pd(), most = _mm512_set1_pd(0x1p100);
+    _mm512_store_ps(
+        to, narrow(_mm512_min_pd(_mm512_max_pd(v[0], zero), most), _mm512_min_pd(_mm512_max_pd(v[1], zero), most)));
+}
+
+static void phong(program_points *p)
+{
+    for (int i = 0; i < PROGRAM_POINTS; i += 16) {
+        vd cosine[2], angle[2];
+        for (int half = 0; half < 2; half++)
+            angle[half] = reflected(p, i + 8 * half, &cosine[half]);
+        const vf x = narrow(angle[0], angle[1]);
+        const vf s = narrow(load(p, GLINT_INPUT_SHININESS, i), load(p, GLINT_INPUT_SHININESS, i + 8));
+        const vm shines = less(all(0), x);
+        const vf highlight = pick(shines, exp2_of(s * log2_of(pick(shines, x, all(1)))), all(0));
+        for (int c = 0; c < 3; c++) {
+            vd diffuse[2], specular[2];
+            for (int half = 0; half < 2; half++) {
+                const vd light = load(p, GLINT_INPUT_LIGHT_R + c, i + 8 * half);
+                diffuse[half] = load(p, GLINT_INPUT_KD_R + c, i + 8 * half) * light * cosine[half];
+                specular[half] = load(p, GLINT_INPUT_KS_R + c, i + 8 * half) * light * widened(highlight, half);
+            }
+            store(p->plane[c] + i, diffuse);
+            store(p->plane[3 + c] + i, specular);
+        }
+    }
+}
+
+static double time_points(void *state)
+{
+    const double start = bench_now_ms();
+    for (int i = 0; i < PROGRAM_REPEATS; i++) {
+        phong(state);
+        __asm__ volatile("" ::: "memory"); // each time anew
+    }
+    return bench_now_ms() - start;
+}
+
+void hand_run_program(void)
+{
+    static program_points points;
+    program_points_fill(&points);
+    bench_say("phong", "ns", bench_median(time_points, &points) * 1e6 / ((double)PROGRAM_REPEATS * PROGRAM_POINTS));
+}

@@ -1,0 +1,28 @@
+/// The points that programs are timed with: what a pattern or shader reads of 128 of them, and where results go.
+#ifndef GLINT_BENCH_PROGRAM_POINTS_H
+#define GLINT_BENCH_PROGRAM_POINTS_H
+
+#include <stdint.h>
+
+#include "engine/glint.h"
+
+enum { PROGRAM_POINTS = 128, PROGRAM_REPEATS = 2000 };
+
+typedef struct program_points {
+    _Alignas(64) double input[GLINT_INPUT_COUNT][PROGRAM_POINTS];
+    _Alignas(64) float plane[6][PROGRAM_POINTS];
+} program_points;
+
+/// Places in -10 .. 10; everything else in 0 .. 1, so that about half of the highlights show; shininess below 64.
+static inline void program_points_fill(program_points *points)
+{
+    uint64_t state = 1;
+    for (int i = 0; i < GLINT_INPUT_COUNT; i++)
+        for (int k = 0; k < PROGRAM_POINTS; k++) {
+            state = state * 6364136223846793005u + 1442695040888963407u;
+            const double share = (double)(state >> 11) * 0x1p-53;
+            points->input[i][k] = i < 3 ? 20 * share - 10 : i == GLINT_INPUT_SHININESS ? 64 * share : 0.8 * share;
+        }
+}
+
+#endif
