@@ -74,8 +74,9 @@ static double surface_light(const glint_plan *plan, uint32_t i)
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *light = &plan->lights[k];
         const double c0 = light->coefficients[0];
-        const bool radiant = light->light_samples && light->light_samples->emission >= GLINT_EMIT_RADIANT_FRONT;
-        const double near = !light->attenuated ? 1 : c0 > 0 && !radiant ? 1 / c0 : HUGE_VAL;
+        const uint32_t emission = light->light_samples ? light->light_samples->emission : GLINT_EMIT_ALL;
+        const bool known = c0 > 0 && (emission < GLINT_EMIT_RADIANT_FRONT || emission == GLINT_EMIT_CONE);
+        const double near = !light->attenuated ? 1 : known ? (emission == GLINT_EMIT_CONE ? 2 : 1) / c0 : HUGE_VAL;
         double far = diffuse * brightest_of(light->diffuse) +
                      specular * brightest_of(m->specular) * brightest_of(light->specular);
         if (plan->patterns && plan->patterns->of[i].program[GLINT_FIELD_SHADER])

@@ -193,6 +193,9 @@ static void light_init(const glint_plan *plan, glint_plan_light *out, const glin
         out->coefficients[0] = 0;
         out->coefficients[2] = 1;
         strength = desc->radiance * (PI * (desc->radius * desc->radius));
+    } else if (desc->has_radiance && desc->kind == GLINT_LIGHT_SPHERE) { // weighed by its solid angle over pi
+        out->attenuated = true;
+        strength = PI * desc->radiance / desc->samples;
     } else if (desc->has_radiance) { // the kernels' cos' / distance^2 is in the light's units: of its own size
         const double size = glint_light_sample_size(desc);
         out->attenuated = true;

@@ -255,15 +255,20 @@ static uint32_t emission_of(const glint_light_desc *desc)
         return one_sided ? GLINT_EMIT_FRONT : GLINT_EMIT_ALL;
     if (one_sided)
         return GLINT_EMIT_RADIANT_FRONT;
-    return flat ? GLINT_EMIT_RADIANT_BOTH : GLINT_EMIT_RADIANT_BALL;
+    return flat ? GLINT_EMIT_RADIANT_BOTH : GLINT_EMIT_CONE;
 }
 
-/// Box and ball around all samples.
+/// Box and ball around all samples: of a cone's, which lie where the points see them, around the light.
 static void enclose(const glint_light_desc *desc, glint_light_sample *light_samples, size_t count)
 {
     double lower[3] = { DBL_MAX, DBL_MAX, DBL_MAX }, upper[3] = { -DBL_MAX, -DBL_MAX, -DBL_MAX };
     double center[3], radius = 0;
-    for (size_t i = 0; i < count; i++)
+    const bool cone = emission_of(desc) == GLINT_EMIT_CONE;
+    for (int k = 0; k < 3 && cone; k++) {
+        lower[k] = desc->position[k] - desc->radius;
+        upper[k] = desc->position[k] + desc->radius;
+    }
+    for (size_t i = 0; i < count && !cone; i++)
         for (int k = 0; k < 3; k++)
             for (int lane = 0; lane < GLINT_GROUP; lane++) {
                 lower[k] = fmin(lower[k], light_samples[i].position[k][lane]);
@@ -295,10 +300,31 @@ void glint_light_sample_whole(const glint_light_desc *desc, glint_light_sample *
     }
 }
 
+/// Sample i of N in the unit square. In a cone pairs stand on either side of the axis, their shares mirrored in the middle
+/// of their stratum: what changes evenly across the cone, as cosines do, is summed without an error.
+static void square_point(uint32_t i, uint32_t samples, bool cone, const double shift[2], double square[2])
+{
+    const bool paired = cone && samples % 2 == 0;
+    const uint32_t k = paired ? i / 2 : i, strata = paired ? samples / 2 : samples;
+    const bool other = paired && i % 2;
+    square[0] = (k + (other ? 1 - shift[0] : shift[0])) / strata;
+    square[1] = k * GOLDEN + shift[1] + (other ? 0.5 : 0);
+    square[1] -= floor(square[1]);
+}
+
+/// What a cone's sample is without the point that sees it.
+static void cone_point(const double square[2], double place[3])
+{
+    place[0] = square[0];
+    place[1] = glint_cos(2 * PI * square[1]);
+    place[2] = glint_sin(2 * PI * square[1]);
+}
+
 void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_light_sample *out)
 {
     const uint32_t samples = (uint32_t)desc->samples;
     const int bits = glint_sequence_bits(GLINT_GROUP * turns);
+    const bool cone = emission_of(desc) == GLINT_EMIT_CONE;
     surface s;
     surface_init(&s, desc);
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
@@ -306,9 +332,12 @@ void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, doubl
             double shift[2];
             glint_sequence_point(lane_order(lane) * turns + turn, bits, seed, shift);
             for (uint32_t i = 0; i < samples; i++) {
-                double position[3], normal[3], square[2] = { (i + shift[0]) / samples, i * GOLDEN + shift[1] };
-                square[1] -= floor(square[1]);
-                surface_point(&s, square, position, normal);
+                double position[3], normal[3] = { 0 }, square[2];
+                square_point(i, samples, cone, shift, square);
+                if (cone)
+                    cone_point(square, position);
+                else
+                    surface_point(&s, square, position, normal);
                 glint_light_sample *light_sample = &out[(size_t)i * turns + turn];
                 for (int k = 0; k < 3; k++) {
                     light_sample->position[k][lane] = position[k];

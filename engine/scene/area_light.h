@@ -28,7 +28,8 @@ uint32_t glint_light_sample_turns(const glint_light_desc *desc, double pixel_sam
 /// Sample s of N takes the point ((s + a) / N, frac(s g + b)) of the unit square, g the golden ratio: a lattice that is
 /// even for any N. (a, b) is another for each of the 16 pixels of a block and for each turn, a (0,2) sequence, so that
 /// means over blocks and over samples of a pixel are of an even set too. The square is laid on the surface so that areas
-/// stay in proportion.
+/// stay in proportion; of a sphere by radiance on the cone in which a point sees it, so that solid angles do, and with
+/// an even N in pairs: ((k + a) / (N/2), frac(k g + b)) and ((k + 1 - a) / (N/2), that + 1/2).
 void glint_light_sample_fill(const glint_light_desc *desc, uint32_t turns, double seed, glint_light_sample *out);
 
 #endif

@@ -360,6 +360,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
     }
     for (int c = 0; c < 3; c++) {
         args.point[c] = tile->surface.point[c];
+        args.normal[c] = tile->surface.normal[c];
         args.direction[c] = tile->viewed[c] ? tile->viewed[c] : tile->rays.direction[c];
     }
     return args;

@@ -6,6 +6,7 @@
 /// point stays dark.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
+#include "engine/stages/light/cone_sample.h"
 #include "engine/tile/batch.h"
 
 #include <stdlib.h>
@@ -15,6 +16,7 @@
 struct glint_transparent_shadow {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double target[3][GLINT_TILE_SAMPLES]; ///< of each ray: the light's position; directional: the direction
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
@@ -80,20 +82,40 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
     return false;
 }
 
+/// Finds where sample i's ray goes to, from its first point.
+static void find_target(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                        const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
+    double point[3], normal[3];
+    for (int c = 0; c < 3; c++)
+        transparent_shadow->target[c][i] =
+            light_sample ? light_sample->position[c][i % GLINT_GROUP] : light->position[c];
+    if (!light_sample || light_sample->emission != GLINT_EMIT_CONE)
+        return;
+    for (int c = 0; c < 3; c++) {
+        point[c] = glint_real_at(tile->surface.point[c], precision, i);
+        normal[c] = glint_real_at(tile->surface.normal[c], precision, i);
+    }
+    const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
+    const glint_cone_sample sample = glint_cone_at(light_sample, light->scale, slack, point, normal, i % GLINT_GROUP);
+    for (int c = 0; c < 3; c++)
+        transparent_shadow->target[c][i] = sample.place[c];
+}
+
 /// Starts sample i's ray at a point of primitive `prim`.
-static void aim(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
-                const glint_tile_frame *frame, const glint_plan_light *light, const double (*point)[GLINT_TILE_SAMPLES],
-                uint32_t i, uint32_t prim, bool inward)
+static void aim(struct glint_transparent_shadow *transparent_shadow, const glint_tile_frame *frame,
+                const glint_plan_light *light, const double (*point)[GLINT_TILE_SAMPLES], uint32_t i, uint32_t prim,
+                bool inward)
 {
     const glint_precision precision = frame->plan->desc.precision;
     const uint16_t bit = (uint16_t)(1u << i % GLINT_GROUP);
-    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
     uint16_t *inwards = &transparent_shadow->inward[i / GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
-        const double position = light_sample ? light_sample->position[c][i % GLINT_GROUP] : light->position[c];
-        const double from = glint_real_at(point[c], precision, i);
+        const double from = glint_real_at(point[c], precision, i), to = transparent_shadow->target[c][i];
         glint_real_put(transparent_shadow->origin[c], precision, i, from);
-        glint_real_put(transparent_shadow->direction[c], precision, i, light->directional ? position : position - from);
+        glint_real_put(transparent_shadow->direction[c], precision, i, light->directional ? to : to - from);
     }
     transparent_shadow->leaving[i] = prim;
     *inwards = (uint16_t)(inward ? *inwards | bit : *inwards & ~bit);
@@ -118,7 +140,8 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
         for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             transparent_shadow->media[i] = media_at(tile, frame->plan, i);
-            aim(transparent_shadow, tile, frame, light, tile->surface.point, i, tile->at.prim[i],
+            find_target(transparent_shadow, tile, frame, light, i);
+            aim(transparent_shadow, frame, light, tile->surface.point, i, tile->at.prim[i],
                 tile->hit.back[g] & left & -left);
         }
     }
@@ -153,7 +176,8 @@ static void dim(struct glint_transparent_shadow *transparent_shadow, const glint
         for (unsigned left = tile->at.light[slot].open[g] & transparent_shadow->dim[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             transparent_shadow->media[i] = media_at(tile, frame->plan, i);
-            aim(transparent_shadow, tile, frame, light, tile->surface.point, i, tile->at.prim[i], false);
+            find_target(transparent_shadow, tile, frame, light, i);
+            aim(transparent_shadow, frame, light, tile->surface.point, i, tile->at.prim[i], false);
             arrive(transparent_shadow, frame, light, i);
         }
 }
@@ -264,9 +288,8 @@ static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                     arrive(transparent_shadow, frame, light, i);
             } else if (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
                        cross(transparent_shadow, frame->plan, i, length_of(transparent_shadow, precision, i))) {
-                aim(transparent_shadow, tile, frame, light,
-                    (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],
-                    !(transparent_shadow->back[g] & bit));
+                aim(transparent_shadow, frame, light, (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i,
+                    transparent_shadow->prim[i], !(transparent_shadow->back[g] & bit));
                 on |= bit;
             }
         }

@@ -91,12 +91,23 @@ static void make_spot(glint_light_args *args, glint_spot *spot)
     args->attenuated = true;
 }
 
+/// Where in the cone each lane has its sample; now and then at its middle or edge.
+static void make_cone(glint_light_sample *light_sample)
+{
+    for (int lane = 0; lane < GLINT_GROUP; lane++) {
+        const double angle = between(0, 6.3);
+        light_sample->position[0][lane] = one_in(20) ? 0 : one_in(20) ? 1 : between(0, 1);
+        light_sample->position[1][lane] = cos(angle);
+        light_sample->position[2][lane] = sin(angle);
+    }
+}
+
 /// Samples of an area light about the place of the light, which may be anywhere and of any size.
 static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double radius)
 {
     args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
     args->directional = false;
-    const uint32_t emission = below(GLINT_EMIT_RADIANT_BALL + 1);
+    const uint32_t emission = below(GLINT_EMIT_CONE + 1);
     args->attenuated = args->attenuated || emission >= GLINT_EMIT_RADIANT_FRONT;
     for (uint32_t s = 0; s < args->sample_count; s++) {
         lamps[s] = (glint_light_sample) { .emission = emission, .radius = radius };
@@ -109,6 +120,8 @@ static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double
                 lamps[s].normal[c][lane] = out[c];
             }
         }
+        if (emission == GLINT_EMIT_CONE)
+            make_cone(&lamps[s]);
         args->light_sample[s] = &lamps[s];
     }
 }

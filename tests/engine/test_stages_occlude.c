@@ -13,6 +13,7 @@ typedef struct shadow_case {
     uint16_t *back;
     void *slack;
     bool soft; ///< an area light
+    bool cone; ///< whose samples are each point's own
 } shadow_case;
 
 // ---- Lights and points -------------------------------------------------------------------------------------------
@@ -41,29 +42,45 @@ static double place_light(shadow_case *c)
 
 static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
 
+/// Of sample s and a lane: a place on the light, or where it is in the cones.
+static void place_sample(const shadow_case *c, const double axis[3], double radius, uint32_t s, int lane)
+{
+    double out[3];
+    if (axis)
+        random_across(axis, out);
+    else
+        random_unit(out);
+    for (int k = 0; k < 3; k++)
+        lamps[s].position[k][lane] = c->args.position[k] + radius * out[k];
+    if (!c->cone)
+        return;
+    const double angle = between(0, 6.3);
+    lamps[s].position[0][lane] = one_in(20) ? below(2) : between(0, 1);
+    lamps[s].position[1][lane] = cos(angle);
+    lamps[s].position[2][lane] = sin(angle);
+}
+
 /// Makes an area light of the light: a ball, or a patch of a plane, of any size.
 static void place_lamps(shadow_case *c, double distance)
 {
-    const double radius = one_in(8) ? 0 : distance * power_of_ten(-6, 0.5);
-    const bool flat = one_in(2);
-    double axis[3], out[3], lower[3], upper[3];
+    c->cone = case_seed % 3 == 0;
+    const double radius = !c->cone && one_in(8) ? 0 : distance * power_of_ten(-6, 0.5);
+    const bool flat = !c->cone && one_in(2);
+    double axis[3], lower[3], upper[3];
     random_unit(axis);
     c->soft = true;
     c->args.directional = false;
     c->args.sample_count = 1 + below(GLINT_LIGHT_CHUNK);
-    for (int k = 0; k < 3; k++)
-        lower[k] = upper[k] = c->args.position[k];
+    for (int k = 0; k < 3; k++) {
+        lower[k] = c->args.position[k] - (c->cone ? radius : 0);
+        upper[k] = c->args.position[k] + (c->cone ? radius : 0);
+    }
     for (uint32_t s = 0; s < c->args.sample_count; s++)
         for (int lane = 0; lane < GLINT_GROUP; lane++) {
-            if (flat)
-                random_across(axis, out);
-            else
-                random_unit(out);
-            for (int k = 0; k < 3; k++) {
-                const double x = c->args.position[k] + radius * out[k];
-                lamps[s].position[k][lane] = x;
-                lower[k] = fmin(lower[k], x);
-                upper[k] = fmax(upper[k], x);
+            place_sample(c, flat ? axis : NULL, radius, s, lane);
+            for (int k = 0; k < 3 && !c->cone; k++) {
+                lower[k] = fmin(lower[k], lamps[s].position[k][lane]);
+                upper[k] = fmax(upper[k], lamps[s].position[k][lane]);
             }
         }
     for (uint32_t s = 0; s < c->args.sample_count; s++) {
@@ -71,6 +88,7 @@ static void place_lamps(shadow_case *c, double distance)
         memcpy(lamps[s].upper, upper, sizeof upper);
         memcpy(lamps[s].center, c->args.position, sizeof lamps[s].center);
         lamps[s].radius = radius;
+        lamps[s].emission = c->cone ? GLINT_EMIT_CONE : GLINT_EMIT_ALL;
         c->args.light_sample[s] = &lamps[s];
     }
 }
@@ -169,11 +187,13 @@ static void start_shadows(shadow_case *c, int precision, bool odd)
     c->plan.solids = precision == GLINT_DOUBLE && !odd && one_in(3);
     input3(c->args.point, real_kind(precision), n);
     input3(c->args.direction, real_kind(precision), n);
+    input3(c->args.normal, real_kind(precision), n);
     c->args.slack = c->slack = input(real_kind(precision), n);
     for (uint32_t i = 0; i < n; i++) {
         double way[3];
         random_unit(way);
         put3(c->args.direction, precision, i, way);
+        put3(c->args.normal, precision, i, (const double[3]) { way[1], -way[2], way[0] });
         put(c->slack, precision, i, 0);
     }
     const double distance = place_light(c);
@@ -326,10 +346,10 @@ static const glint_point_box *hit_box(const shadow_case *c, const uint16_t *hits
 
 static void soft_light_all(const shadow_case *c, bool odd)
 {
-    static const uint32_t emissions[] = { GLINT_EMIT_ALL,         GLINT_EMIT_ALL,           GLINT_EMIT_ALL,
-                                          GLINT_EMIT_FRONT,       GLINT_EMIT_RADIANT_FRONT, GLINT_EMIT_RADIANT_BOTH,
-                                          GLINT_EMIT_RADIANT_BALL };
-    const uint32_t groups = c->args.group_count, emission = emissions[below(COUNT_OF(emissions))];
+    static const uint32_t emissions[] = { GLINT_EMIT_ALL,   GLINT_EMIT_ALL,           GLINT_EMIT_ALL,
+                                          GLINT_EMIT_FRONT, GLINT_EMIT_RADIANT_FRONT, GLINT_EMIT_RADIANT_BOTH };
+    const uint32_t groups = c->args.group_count;
+    const uint32_t emission = c->cone ? GLINT_EMIT_CONE : emissions[below(COUNT_OF(emissions))];
     glint_shade_material materials[6];
     glint_light_args light = { .group_count = groups,
                                .hits = masks(groups),
@@ -359,6 +379,8 @@ static void soft_light_all(const shadow_case *c, bool odd)
         ((uint16_t *)light.dark)[g] &= (uint16_t)(random_bits() & light.hits[g]);
     memcpy(light.point, c->args.point, sizeof light.point);
     look_at_points(c, &light, odd);
+    for (int k = 0; k < 3 && c->cone; k++)
+        light.normal[k] = c->args.normal[k];
     occlude.box = one_in(2) ? hit_box(c, light.hits, &box) : NULL;
     const bool shadows = !one_in(9);
     FOR_EACH_TESTED

@@ -1,5 +1,5 @@
 /// The named cases of lights that have a surface: no radius, a point within them, so small that float loses them, what they
-/// give to a point in closed form and how fast it is approached, and where their shadows begin and end.
+/// give to a point in closed form and how fast it is approached, how noisy a ball is, and where their shadows begin and end.
 #include "tests/hard/oracle/oracle_light.h"
 #include "tests/hard/oracle/point.h"
 
@@ -136,12 +136,14 @@ static void closed_form(glint_light_kind kind, const char *name, double h, doubl
             *got[p] = point_lit(&light, NULL, 0, 1e-6 * h, want, (glint_precision)p, &off[p], NULL);
             if (n == 16)
                 first[p] = off[p];
-            right &= hard_check(off[p] <= 2 * first[p] / sqrt(n / 16.0), "%s: error of %d samples %g, of 16 %g", name,
-                                n, off[p], first[p]) &
-                     hard_check(n < 1024 || off[p] <= first[p] / 8, "%s: error of 1024 samples %g, of 16 %g", name,
-                                off[p], first[p]) &
-                     hard_check(fabs(*got[p] - want) <= 2.5 * off[p] + 1e-6 * want, "%s: mean %g, truth %g", name,
-                                *got[p], want);
+            const double rounding =
+                1e-6 * want; // all that there is of a ball whose every part is as bright as its share
+            right &= hard_check(off[p] <= fmax(2 * first[p] / sqrt(n / 16.0), rounding),
+                                "%s: error of %d samples %g, of 16 %g", name, n, off[p], first[p]) &
+                     hard_check(n < 1024 || off[p] <= fmax(first[p] / 8, rounding),
+                                "%s: error of 1024 samples %g, of 16 %g", name, off[p], first[p]) &
+                     hard_check(fabs(*got[p] - want) <= 2.5 * off[p] + rounding, "%s: mean %g, truth %g", name, *got[p],
+                                want);
         }
         snprintf(what, sizeof what, "%s, radius %g at %g, %d samples: error %.1e", name, r, h, n, off[0]);
         hard_row("L11", what, &shown, right);
@@ -160,6 +162,68 @@ static void closed_forms(void)
         closed_form(i % 2 ? GLINT_LIGHT_DISK : GLINT_LIGHT_SPHERE, "random", h, r, 0);
     }
     hard_table = table;
+}
+
+// ---- Noise ----
+
+/// The root mean square error, over the truth, of 16 samples of a ball's whole surface, half of which no point sees: the
+/// textbook's columns. The ball of radius 1 is `away`, `tilt` off the floor's normal.
+static double surface_noise(double away, double tilt)
+{
+    const double place[2] = { away * sin(tilt), away * cos(tilt) }, want = M_PI / (away * away) * cos(tilt);
+    double square = 0;
+    for (int trial = 0; trial < 20000; trial++) {
+        double sum = 0;
+        for (int i = 0; i < 16; i++) {
+            double n[3];
+            random_direction(n);
+            const double l[3] = { place[0] + n[0], place[1] + n[1], n[2] };
+            const double l2 = (l[0] * l[0] + l[1] * l[1]) + l[2] * l[2];
+            const double facing = -((n[0] * l[0] + n[1] * l[1]) + n[2] * l[2]);
+            if (facing > 0 && l[1] > 0)
+                sum += 4 * M_PI / 16 * facing * l[1] / (l2 * l2);
+        }
+        square += (sum / want - 1) * (sum / want - 1);
+    }
+    return sqrt(square / 20000);
+}
+
+/// The noise of a pixel by 16 samples of a ball of radius 1, `away` radii off in a direction `degrees` off the normal; `most`
+/// of it is allowed, and its mean over the block of pixels is the closed form.
+static void check_noise(double away, double degrees, double most)
+{
+    const double tilt = degrees * M_PI / 180, want = M_PI / (away * away) * cos(tilt);
+    glint_light_desc light = radiant(GLINT_LIGHT_SPHERE, away * cos(tilt), 1, 16);
+    hard_values shown = { 0, 0, 0, surface_noise(away, tilt), HARD_BLANK };
+    double *const got[2] = { &shown.in_double, &shown.in_float };
+    bool right = true;
+    char what[96];
+    light.position[0] = away * sin(tilt);
+    light.radiance = 1e4; // so that no pixel of a far one rounds to 0
+    for (int p = 0; p < 2; p++) {
+        double off;
+        const double mean = point_lit(&light, NULL, 0, 1e-6, 1e4 * want, (glint_precision)p, &off, NULL) / (1e4 * want);
+        *got[p] = off / (1e4 * want);
+        right &= hard_check(*got[p] <= most, "%g radii, %g degrees: noise %g", away, degrees, *got[p]) &
+                 hard_check(fabs(mean - 1) <= 0.1 * most + 1e-6, "%g radii, %g degrees: mean %.9g of the truth", away,
+                            degrees, mean);
+    }
+    snprintf(what, sizeof what, "noise of 16 samples, ball %g radii away, %g degrees off the normal", away, degrees);
+    hard_row("cone", what, &shown, right);
+}
+
+/// Of what is below a ball's cone, all of which the floor sees.
+static void noise(void)
+{
+    hard_test("cone", "noise of a ball by radiance");
+    for (int i = 0; i < 7; i++) {
+        static const double far[] = { 1.0001, 1.05, 1.33, 3, 100, 1e4, 1e9 };
+        check_noise(far[i], 0, 1e-6);
+        if (far[i] >= 1.33)
+            check_noise(far[i], 30, 0.01);
+        if (far[i] >= 3)
+            check_noise(far[i], 60, 0.01);
+    }
 }
 
 // ---- Shadows ----
@@ -238,6 +302,7 @@ int main(int argc, char **argv)
     within();
     tiny();
     closed_forms();
+    noise();
     shadows();
     return hard_end();
 }

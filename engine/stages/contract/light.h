@@ -31,17 +31,33 @@ typedef enum glint_emission {
     GLINT_EMIT_FRONT, ///< likewise, to the side of its normal
     GLINT_EMIT_RADIANT_FRONT, ///< with cos' / distance^2, to the side of its normal
     GLINT_EMIT_RADIANT_BOTH, ///< to both sides
-    GLINT_EMIT_RADIANT_BALL ///< to the side of its normal, and everywhere within the ball
+    GLINT_EMIT_CONE ///< of a ball, by radiance: each lane has a sample of its own, in the cone in which it sees the ball
 } glint_emission;
 
 /// One sample of an area light: a place on its surface for each lane, so that the pixels of a 4 x 4 block see sixteen.
 typedef struct glint_light_sample {
-    _Alignas(64) double position[3][GLINT_GROUP];
-    double normal[3][GLINT_GROUP]; ///< unit, of the surface there
-    double center[3], radius; ///< a ball around the whole light, of GLINT_EMIT_RADIANT_BALL the light itself
+    _Alignas(64) double position[3][GLINT_GROUP]; ///< GLINT_EMIT_CONE: where in the cone: a share u of it, 0 .. 1, and
+        ///< cosine and sine of an angle around its axis
+    double normal[3][GLINT_GROUP]; ///< unit, of the surface there; GLINT_EMIT_CONE: none
+    double center[3], radius; ///< a ball around the whole light, of GLINT_EMIT_CONE the light itself
     double lower[3], upper[3]; ///< a box around the whole light
     uint32_t emission;
 } glint_light_sample;
+/// Of a point's distance to the centre: so near to the ball's surface it is on it.
+#define GLINT_CONE_SLACK_DOUBLE 0x1p-40
+#define GLINT_CONE_SLACK_FLOAT 0x1p-18
+// GLINT_EMIT_CONE, for each lane in double whatever real is (C: cone_sample.h), u, cos, sin its own three numbers:
+//   D = (center - point) scale, d = sqrt(length2(D)), r = radius scale, x = (d - r) (d + r), g = x / length2(D)
+//   It is within the ball where g < (dot(normal, D) > 0 ? slack : -slack): a point on the surface sees the half of the ball
+//   that its normal looks at, or nothing.
+//   outside: q = r / d, q2 = q q, h = 1 / (1 + sqrt(max(g, 0))): 1 - the cosine of the cone's edge is q2 h, without the loss of a
+//            difference; m = (u q2) h, s2 = (u h) (2 - m), c = 1 - m, s = q sqrt(s2); axis D / d
+//            t = (d max(g, 0)) / (c + q sqrt(max(1 - s2, 0))): to where that direction meets the ball
+//   within:  q = q2 = h = 1, axis the normal: half of all directions;  b = -dot(D, way), e = max(-x, 0), k = sqrt(b b + e),
+//            t = b > 0 ? e / (b + k) : k - b: to where it leaves the ball
+//   way = (s cos tangent + s sin bitangent) + c axis, in the frame of scatter; far = t (1 / scale);
+//   position = point + way far. All are rounded to real then; but light_side (below) reads the position as it was
+//   weight = 2 (q2 h): the solid angle over pi, so that the mean of weight cosine is irradiance over pi radiance
 
 typedef struct glint_light_args {
     uint32_t group_count;
@@ -75,17 +91,18 @@ typedef struct glint_light_args {
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
-// l = (position - point) scale (directional: l = position); l2 = length2(l); nl = dot(normal, l)
+// l = (position - point) scale (directional: l = position; cone: l = way); l2 = length2(l); nl = dot(normal, l)
 // lit = hit and nl > 0 and not dark and, of spots and lamps, as below
 // cosine:      point light: q = (float)l2, m = (float)nl, min(m / sqrt(q), 1) in float
 //              directional: min((float)nl, 1)
-// attenuation: d = sqrt(l2) / scale, A = 1 / (c0 + (c1 d + c2 (d d))); min((float)A, GLINT_ATTENUATION_MAX)
+// attenuation: d = sqrt(l2) / scale (cone: far), A = 1 / (c0 + (c1 d + c2 (d d))); min((float)A, GLINT_ATTENUATION_MAX)
 //   spot       c = min(-dot(axis, l) / sqrt(l2), 1), x = max(min((c - outer) inverse, 1), 0);  lit where x > 0
 //              w = min((float)A, GLINT_ATTENUATION_MAX) (float)((x x) (3 - 2 x))
 //              exponent not 0: lit where c >= 2^-126;  w = w S,  S as in shade with y = exponent log2(c)
 //   lamp       m = -dot(normal of the sample, l); EMIT_ALL: m is not computed
-//              EMIT_RADIANT_BOTH: m = max(m, -m);  EMIT_RADIANT_BALL: likewise where length2(point - center) < radius radius
+//              EMIT_RADIANT_BOTH: m = max(m, -m)
 //              lit where m > 0;  radiant: min((float)(A (m / (l2 sqrt(l2)))), GLINT_ATTENUATION_MAX)
+//   cone       min((float)(A weight), GLINT_ATTENUATION_MAX)
 // highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
 //   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
 //   Blinn      w = sqrt(l2 a);  h = l a - direction w (component by component);  nh = dot(normal, h);  num = nh nh;
@@ -132,6 +149,7 @@ typedef struct glint_occlude_args {
     const glint_light_sample *light_sample[GLINT_LIGHT_CHUNK];
     const uint16_t *lit[GLINT_LIGHT_CHUNK];
     const void *point[3];
+    const void *normal[3]; ///< read of GLINT_EMIT_CONE
     const uint32_t *prim; ///< on which the points are; GLINT_MISS: on none
     const uint16_t *back;
     bool directional;

@@ -56,21 +56,26 @@ INNER void R(view_lanes)(const glint_light_args *args, size_t at, int i, R(lit_p
 }
 
 /// 1 / (c0 + (c1 d + c2 d^2))
-INNER vr R(fall_off)(const glint_light_args *args, vr l2)
+INNER vr R(fall_off)(const glint_light_args *args, vr distance)
 {
     const vr c0 = r_set(args->coefficients[0]), c1 = r_set(args->coefficients[1]), c2 = r_set(args->coefficients[2]);
-    vr distance = r_sqrt(l2) / r_set(args->scale);
     return r_set(1) / (c0 + (c1 * distance + c2 * (distance * distance)));
 }
 
 /// The real part of one vector of lanes, for sample s. `kind` is a constant.
-INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s, const R(light_sample_lanes) * lanes,
-                          size_t at, int i, unsigned open, R(lit_point) * surface, R(lit_group) * group)
+INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t s,
+                          const R(light_sample_set) * light_samples, size_t at, int i, unsigned open,
+                          R(lit_point) * surface, R(lit_group) * group)
 {
     const vr zero = r_set(0), scale = r_set(args->scale);
     vr l[3], m = zero;
     for (int k = 0; k < 3; k++) {
-        l[k] = kind == LIGHT_LIGHT_SAMPLE ? r_load(lanes->position[k] + i) : r_set(args->position[k]);
+        if (kind == LIGHT_CONE) {
+            l[k] = r_load(light_samples->way[s][k] + i);
+            continue;
+        }
+        l[k] = kind == LIGHT_LIGHT_SAMPLE ? r_load(light_samples->light_sample[s].position[k] + i)
+                                          : r_set(args->position[k]);
         if (!args->directional)
             l[k] = (l[k] - surface->point[k]) * scale;
     }
@@ -81,7 +86,7 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
         ahead = rm_and(
             ahead, R(in_cone)(args->spot, l, l2, group->cone_cosine + i, group->cone_less_1 + i, group->cone_step + i));
     if (aimed)
-        ahead = rm_and(ahead, R(in_front)(args->light_sample[s], lanes, i, l, surface->point, &m));
+        ahead = rm_and(ahead, R(in_front)(args->light_sample[s], &light_samples->light_sample[s], i, l, &m));
     const unsigned lit = rm_bits(ahead) & open >> i & ((1u << VR) - 1);
     group->lit |= lit << i;
     if (!lit)
@@ -89,9 +94,15 @@ INNER void R(light_lanes)(const glint_light_args *args, const int kind, uint32_t
     r_store(group->along + i, nl);
     r_store(group->distance2 + i, l2);
     if (args->attenuated) {
-        vr attenuation = R(fall_off)(args, l2);
+        vr attenuation;
+        if (kind == LIGHT_CONE)
+            attenuation = R(fall_off)(args, r_load(light_samples->far[s] + i));
+        else
+            attenuation = R(fall_off)(args, r_sqrt(l2) / scale);
         if (aimed && args->light_sample[s]->emission != GLINT_EMIT_FRONT)
             attenuation = attenuation * (m / (l2 * r_sqrt(l2)));
+        if (kind == LIGHT_CONE)
+            attenuation = attenuation * r_load(light_samples->weight + i);
         r_store_f(args->attenuation[s] + at + i, attenuation);
     }
     const unsigned phong = surface->phong >> i & lit, blinn = GLINT_WITH_BLINN ? surface->blinn >> i & lit : 0;
@@ -176,7 +187,7 @@ INNER void R(sort_highlights)(const glint_light_args *args, size_t at, unsigned 
 
 /// The real part of a group for each sample, after its surfaces.
 INNER void R(light_group)(const glint_light_args *args, const int kind, const uint32_t samples,
-                          const R(light_sample_lanes) * lanes, R(group_place) place, R(lit_point) * surface,
+                          R(light_sample_set) * light_samples, R(group_place) place, R(lit_point) * surface,
                           R(lit_group) * groups)
 {
     const size_t at = (size_t)place.g * GLINT_GROUP;
@@ -187,24 +198,26 @@ INNER void R(light_group)(const glint_light_args *args, const int kind, const ui
         return;
     surface->directions = R(directions_of)(args->camera, place.x, place.y);
     R(sort_highlights)(args, at, open, surface);
+    if (kind == LIGHT_CONE)
+        R(place_in_cone)(args->light_sample, samples, args->scale, args->point, args->normal, at, light_samples);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         R(load3)(args->point, at + i, surface->point);
         R(load3)(args->normal, at + i, surface->normal);
         surface->aimed = surface->viewed = false;
         for (uint32_t s = 0; s < samples; s++)
-            R(light_lanes)(args, kind, s, &lanes[s], at, i, open, surface, &groups[s]);
+            R(light_lanes)(args, kind, s, light_samples, at, i, open, surface, &groups[s]);
     }
 }
 
 /// All groups. `kind` and `samples` of a light without samples are constants.
 static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
-                                   const R(light_sample_lanes) * lanes, R(lit_group) * groups)
+                                   R(light_sample_set) * light_samples, R(lit_group) * groups)
 {
     R(lit_point) surface = { 0 };
     for (uint32_t s = 0; s < samples; s++)
         groups[s].brightest = f_set(GLINT_NO_SPECULAR);
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
-        R(light_group)(args, kind, samples, lanes, place, &surface, groups);
+        R(light_group)(args, kind, samples, light_samples, place, &surface, groups);
         for (uint32_t s = 0; s < samples; s++) {
             args->lit[s][place.g] = (uint16_t)groups[s].lit;
             if (groups[s].lit)
@@ -220,7 +233,10 @@ static void R(light_area)(const glint_light_args *args)
     R(light_sample_set) light_samples;
     R(lit_group) groups[GLINT_LIGHT_CHUNK] = { { .lit = 0 } };
     R(load_light_samples)(args->light_sample, args->sample_count, &light_samples);
-    R(light_groups)(args, LIGHT_LIGHT_SAMPLE, args->sample_count, light_samples.light_sample, groups);
+    if (R(is_cone)(args->light_sample[0]))
+        R(light_groups)(args, LIGHT_CONE, args->sample_count, &light_samples, groups);
+    else
+        R(light_groups)(args, LIGHT_LIGHT_SAMPLE, args->sample_count, &light_samples, groups);
 }
 
 static void R(light_spot)(const glint_light_args *args)

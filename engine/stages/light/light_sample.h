@@ -3,10 +3,12 @@
 #define LIGHT_PLAIN 0 // kinds of light that the light stage is compiled for
 #define LIGHT_SPOT 1
 #define LIGHT_LIGHT_SAMPLE 2
+#define LIGHT_CONE 3 // lamps that are placed anew for each group
 
 /// A lamp's lanes as the stage computes with them.
 typedef struct R(light_sample_lanes) {
     const real (*position)[GLINT_GROUP], (*normal)[GLINT_GROUP];
+    const double (*place)[GLINT_GROUP]; ///< the positions, not rounded
 } R(light_sample_lanes);
 
 /// The samples of one call.
@@ -15,6 +17,11 @@ typedef struct R(light_sample_set) {
 #if GLINT_REAL == 32
     _Alignas(64) float rounded[GLINT_LIGHT_CHUNK][2][3][GLINT_GROUP]; ///< what these point to
 #endif
+    // of GLINT_EMIT_CONE, for the group at hand:
+    _Alignas(64) double place[GLINT_LIGHT_CHUNK][3][GLINT_GROUP];
+    _Alignas(64) real way[GLINT_LIGHT_CHUNK][3][GLINT_GROUP], far[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< from the points:
+        ///< unit directions, and how far
+    _Alignas(64) real weight[GLINT_GROUP]; ///< the cone's solid angle over pi
 } R(light_sample_set);
 
 static inline void R(load_light_samples)(const glint_light_sample *const light_sample[], uint32_t count,
@@ -32,6 +39,13 @@ static inline void R(load_light_samples)(const glint_light_sample *const light_s
 #else
         out->light_sample[s].position = light_sample[s]->position;
         out->light_sample[s].normal = light_sample[s]->normal;
+#endif
+        out->light_sample[s].place = light_sample[s]->position;
+    }
+    for (uint32_t s = 0; s < count && light_sample[s]->emission == GLINT_EMIT_CONE; s++) {
+        out->light_sample[s].place = (const double(*)[GLINT_GROUP])out->place[s];
+#if GLINT_REAL == 64
+        out->light_sample[s].position = out->light_sample[s].place;
 #endif
     }
 }
@@ -63,18 +77,11 @@ static inline vf R(cone_factor)(const glint_spot *spot, fm lit, vf cosine, vf le
 
 /// The lanes that a sample shines at; *m: the cosine at the lamp, times the distance in the light's units.
 static inline rm R(in_front)(const glint_light_sample *light_sample, const R(light_sample_lanes) * lanes, int i,
-                             const vr l[3], const vr point[3], vr *m)
+                             const vr l[3], vr *m)
 {
     const vr n[3] = { r_load(lanes->normal[0] + i), r_load(lanes->normal[1] + i), r_load(lanes->normal[2] + i) };
     *m = -DOT(n, l);
-    if (light_sample->emission == GLINT_EMIT_RADIANT_BOTH) {
+    if (light_sample->emission == GLINT_EMIT_RADIANT_BOTH)
         *m = r_max(*m, -*m);
-    } else if (light_sample->emission == GLINT_EMIT_RADIANT_BALL) {
-        vr away[3];
-        for (int k = 0; k < 3; k++)
-            away[k] = point[k] - r_set(light_sample->center[k]);
-        const vr radius = r_set(light_sample->radius);
-        *m = r_select(r_lt(DOT(away, away), radius * radius), r_max(*m, -*m), *m);
-    }
     return r_lt(r_set(0), *m);
 }

@@ -23,8 +23,9 @@ typedef struct R(whole_light) {
     float middle[3], radius; ///< of the ball
     double scale; ///< of the index's frame
     R(soft_occluder) occluders[GLINT_OCCLUDERS];
-    bool ready; ///< the rest is made: what samples need
     R(light_sample_set) light_samples;
+    bool cone; ///< they are placed anew for each group, and are for the one at hand
+    bool ready; ///< the rest is made: what samples need
     R(light_sides) sides[GLINT_OCCLUDERS][GLINT_LIGHT_CHUNK];
     unsigned open[GLINT_LIGHT_CHUNK]; ///< of the group at hand
 } R(whole_light);
@@ -183,19 +184,25 @@ static R(soft_group)
     return out;
 }
 
-/// Makes what the samples of one call share, when the first group needs them.
+/// Makes what the samples share, when the first group needs them: of one call, or of the group where they are placed for each.
 static void R(prepare_samples)(const R(shadow_tile) * tile, R(whole_light) * light)
 {
     const glint_occlude_args *args = tile->args;
-    R(load_light_samples)(args->light_sample, args->sample_count, &light->light_samples);
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (int k = 0; k < tile->count; k++) {
             light->sides[k][s] = (R(light_sides)) { 0xffff, 0 };
             if (!light->occluders[k].outside)
-                light->sides[k][s] =
-                    R(sides_of)(args, args->light_sample[s], &args->geometry->prims[tile->occluders[k].id]);
+                light->sides[k][s] = R(sides_of)(args, light->light_samples.light_sample[s].place,
+                                                 &args->geometry->prims[tile->occluders[k].id]);
         }
-    light->ready = true;
+    light->ready = !light->cone;
+}
+
+/// Loads the samples of a call.
+static void R(load_samples)(const glint_light_sample *const light_sample[], uint32_t count, R(whole_light) * light)
+{
+    R(load_light_samples)(light_sample, count, &light->light_samples);
+    light->cone = R(is_cone)(light_sample[0]);
 }
 
 /// Takes out of every sample's open lanes what the tile's occluder k blocks of `near`.
@@ -261,6 +268,7 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
     R(shadow_group) group = { .last_blocker = GLINT_MISS };
     R(whole_light) light;
     R(place_soft_light)(tile, &light);
+    R(load_samples)(args->light_sample, args->sample_count, &light);
     for (uint32_t g = 0; g < args->group_count; g++) {
         R(soft_group) sorted;
         sorted.any_near = sorted.hidden = 0;
@@ -272,6 +280,10 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
             light.open[s] = args->lit[s][g] & ~sorted.hidden;
             *args->rays += (unsigned)__builtin_popcount(light.open[s] & sorted.any_near);
         }
+        if (sorted.any_near && light.cone)
+            R(place_in_cone)
+        (args->light_sample, args->sample_count, args->scale, args->point, args->normal, group.at,
+         &light.light_samples);
         if (sorted.any_near)
             R(block_group)(tile, &sorted, group.at, &light);
         for (uint32_t s = 0; s < args->sample_count; s++)
@@ -283,16 +295,26 @@ static void R(occlude_listed)(const R(shadow_tile) * tile, const uint16_t *lit)
 static void R(occlude_walking)(R(shadow_tile) * tile)
 {
     const glint_occlude_args *args = tile->args;
+    const bool cone = R(is_cone)(args->light_sample[0]);
+    R(light_sample_set) light_samples;
     for (uint32_t s = 0; s < args->sample_count; s++) {
         R(shadow_group) group = { .last_blocker = GLINT_MISS };
-        R(aim_at)(tile, args->light_sample[s]);
+        const double(*place)[GLINT_GROUP] =
+            cone ? (const double(*)[GLINT_GROUP])light_samples.place[0] : args->light_sample[s]->position;
+        if (!cone)
+            R(aim_at)(tile, place);
         for (uint32_t g = 0; g < args->group_count; g++) {
             unsigned open = args->lit[s][g];
             *args->rays += (unsigned)__builtin_popcount(open);
             if (open) {
                 R(begin_group)(g, &group);
-                open = R(test_unbounded)(tile, args->light_sample[s], &group, open);
-                open = R(walk_group)(tile, args->light_sample[s], &group, open);
+                if (cone) {
+                    R(place_in_cone)
+                    (&args->light_sample[s], 1, args->scale, args->point, args->normal, group.at, &light_samples);
+                    R(aim_at)(tile, place);
+                }
+                open = R(test_unbounded)(tile, place, &group, open);
+                open = R(walk_group)(tile, place, &group, open);
             }
             args->open[s][g] = (uint16_t)open;
         }

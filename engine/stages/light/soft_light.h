@@ -2,6 +2,9 @@
 // all of the light is left out, and sums stay in registers. The arithmetic is theirs. Contract: stages.h.
 
 #define SOFT_PARTS (VF / VR) // vectors of real that make one of float
+#define SOFT_PLAIN 0 // kinds of light that the sums are compiled for: neither attenuated nor aimed
+#define SOFT_PLACED 1
+#define SOFT_CONE 2 // each point has samples of its own
 
 /// Sixteen lanes as highlights need them.
 typedef struct R(soft_gloss) {
@@ -21,7 +24,6 @@ typedef struct R(soft_point) {
 /// What all groups of a call share.
 typedef struct R(soft_call) {
     const glint_soft_args *args;
-    R(light_sample_set) light_samples;
     R(shadow_tile) tile;
     R(whole_light) light;
     R(soft_gloss) gloss; ///< of the group at hand
@@ -86,26 +88,29 @@ INNER void R(add_highlights)(const R(soft_call) * call, int i, unsigned lit, vr 
 }
 
 /// Adds sample s to VF lanes from i on; `open`: those that it may reach. Returns the lanes before which it is, open or not.
-INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const bool glossy, uint32_t s, int i,
+INNER unsigned R(add_sample)(const R(soft_call) * call, const int kind, const bool glossy, uint32_t s, int i,
                              unsigned open, R(soft_point) * p)
 {
     const glint_light_args *args = call->args->light;
-    const R(light_sample_lanes) *light_sample = &call->light_samples.light_sample[s];
+    const R(light_sample_lanes) *light_sample = &call->light.light_samples.light_sample[s];
     const vr zero = r_set(0), scale = r_set(args->scale);
-    const bool aimed = !plain && args->light_sample[s]->emission != GLINT_EMIT_ALL;
+    const bool plain = kind == SOFT_PLAIN, cone = kind == SOFT_CONE;
+    const bool aimed = kind == SOFT_PLACED && args->light_sample[s]->emission != GLINT_EMIT_ALL;
     vr l[SOFT_PARTS][3], l2[SOFT_PARTS], nl[SOFT_PARTS], m[SOFT_PARTS];
     rm ahead[SOFT_PARTS];
     for (int j = 0; j < SOFT_PARTS; j++) {
         for (int k = 0; k < 3; k++)
-            l[j][k] = plain ? r_load(call->scaled[s][k] + i + j * VR) - p->point[j][k]
-                            : (r_load(light_sample->position[k] + i + j * VR) - p->point[j][k]) * scale;
+            if (cone)
+                l[j][k] = r_load(call->light.light_samples.way[s][k] + i + j * VR);
+            else
+                l[j][k] = plain ? r_load(call->scaled[s][k] + i + j * VR) - p->point[j][k]
+                                : (r_load(light_sample->position[k] + i + j * VR) - p->point[j][k]) * scale;
         l2[j] = DOT(l[j], l[j]);
         nl[j] = DOT(p->normal[j], l[j]);
         ahead[j] = r_lt(zero, nl[j]);
         m[j] = zero;
         if (aimed)
-            ahead[j] = rm_and(ahead[j],
-                              R(in_front)(args->light_sample[s], light_sample, i + j * VR, l[j], p->point[j], &m[j]));
+            ahead[j] = rm_and(ahead[j], R(in_front)(args->light_sample[s], light_sample, i + j * VR, l[j], &m[j]));
     }
     const unsigned before = R(join_bits)(ahead), lit = before & open;
     if (!lit)
@@ -116,9 +121,14 @@ INNER unsigned R(add_sample)(const R(soft_call) * call, const bool plain, const 
     if (!plain && args->attenuated) {
         vr attenuation[SOFT_PARTS];
         for (int j = 0; j < SOFT_PARTS; j++) {
-            attenuation[j] = R(fall_off)(args, l2[j]);
+            if (cone)
+                attenuation[j] = R(fall_off)(args, r_load(call->light.light_samples.far[s] + i + j * VR));
+            else
+                attenuation[j] = R(fall_off)(args, r_sqrt(l2[j]) / scale);
             if (aimed && args->light_sample[s]->emission != GLINT_EMIT_FRONT)
                 attenuation[j] = attenuation[j] * (m[j] / (l2[j] * r_sqrt(l2[j])));
+            if (cone)
+                attenuation[j] = attenuation[j] * r_load(call->light.light_samples.weight + i + j * VR);
         }
         w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
     }
@@ -154,9 +164,9 @@ static void R(sort_gloss)(const glint_light_args *args, size_t at, unsigned left
     }
 }
 
-/// All samples for VF lanes from i on; their open lanes are in call->light, of which `near` are counted. `plain` and
+/// All samples for VF lanes from i on; their open lanes are in call->light, of which `near` are counted. `kind` and
 /// `glossy` are constants.
-INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const bool glossy, R(group_place) place, int i,
+INNER void R(add_samples)(const R(soft_call) * call, const int kind, const bool glossy, R(group_place) place, int i,
                           unsigned near, R(soft_point) * p)
 {
     const glint_light_args *args = call->args->light;
@@ -167,7 +177,7 @@ INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const boo
     for (int j = 0; j < SOFT_PARTS; j++) {
         R(load3)(args->point, at + (size_t)(i + j * VR), p->point[j]);
         R(load3)(args->normal, at + (size_t)(i + j * VR), p->normal[j]);
-        for (int k = 0; k < 3 && plain; k++)
+        for (int k = 0; k < 3 && kind == SOFT_PLAIN; k++)
             p->point[j][k] = p->point[j][k] * r_set(args->scale);
         if (!glossy)
             continue;
@@ -177,7 +187,7 @@ INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const boo
     }
     for (uint32_t s = 0; s < args->sample_count; s++) {
         const unsigned open = call->light.open[s] >> i & ((1u << VF) - 1);
-        const unsigned before = R(add_sample)(call, plain, glossy, s, i, open, p);
+        const unsigned before = R(add_sample)(call, kind, glossy, s, i, open, p);
         if (near)
             *call->args->occlude->rays += (unsigned)__builtin_popcount(before & near);
     }
@@ -187,17 +197,21 @@ INNER void R(add_samples)(const R(soft_call) * call, const bool plain, const boo
 static void R(add_matt)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
 {
     if (call->plain)
-        R(add_samples)(call, true, false, place, i, near, p);
+        R(add_samples)(call, SOFT_PLAIN, false, place, i, near, p);
+    else if (call->light.cone)
+        R(add_samples)(call, SOFT_CONE, false, place, i, near, p);
     else
-        R(add_samples)(call, false, false, place, i, near, p);
+        R(add_samples)(call, SOFT_PLACED, false, place, i, near, p);
 }
 
 static void R(add_glossy)(const R(soft_call) * call, R(group_place) place, int i, unsigned near, R(soft_point) * p)
 {
     if (call->plain)
-        R(add_samples)(call, true, true, place, i, near, p);
+        R(add_samples)(call, SOFT_PLAIN, true, place, i, near, p);
+    else if (call->light.cone)
+        R(add_samples)(call, SOFT_CONE, true, place, i, near, p);
     else
-        R(add_samples)(call, false, true, place, i, near, p);
+        R(add_samples)(call, SOFT_PLACED, true, place, i, near, p);
 }
 
 /// One group; `open`: the lanes that are not hidden from all of the light, of them `near` those that may be from a part.
@@ -242,6 +256,10 @@ static void R(sum_groups)(R(soft_call) * call, const uint16_t *lit)
         args->reached[place.g] = 0;
         if (!open)
             continue;
+        if (call->light.cone)
+            R(place_in_cone)
+        (args->light->light_sample, args->light->sample_count, args->light->scale, args->light->point,
+         args->light->normal, (size_t)place.g * GLINT_GROUP, &call->light.light_samples);
         for (uint32_t s = 0; s < GLINT_LIGHT_CHUNK; s++)
             call->light.open[s] = open;
         if (sorted.any_near)
@@ -264,7 +282,7 @@ static bool R(scale_light_samples)(R(soft_call) * call)
     for (uint32_t s = 0; s < args->sample_count; s++)
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < GLINT_GROUP; i += VR) {
-                const vr x = r_load(call->light_samples.light_sample[s].position[k] + i), size = r_max(x, -x);
+                const vr x = r_load(call->light.light_samples.light_sample[s].position[k] + i), size = r_max(x, -x);
                 fit = rm_and(fit, rm_or(r_eq(x, r_set(0)), rm_and(r_lt(least, size), r_lt(size, most))));
                 r_store(call->scaled[s][k] + i, x * r_set(args->scale));
             }
@@ -287,7 +305,7 @@ static bool R(soft_light)(const glint_soft_args *args)
         return false;
     if (call.tile.count)
         R(place_soft_light)(&call.tile, &call.light);
-    R(load_light_samples)(light->light_sample, light->sample_count, &call.light_samples);
+    R(load_samples)(light->light_sample, light->sample_count, &call.light);
     call.plain =
         !light->attenuated && light->light_sample[0]->emission == GLINT_EMIT_ALL && R(scale_light_samples)(&call);
     R(sum_groups)(&call, lit);

@@ -67,33 +67,33 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     return (height > 0) - (height < 0);
 }
 
-/// `lamp`: the sample, NULL when the light is none of area.
+/// `place`: of the sample, NULL when the light is none of area.
 static inline R(light_sides)
-    R(sides_of)(const glint_occlude_args *args, const glint_light_sample *light_sample, const glint_prim *prim)
+    R(sides_of)(const glint_occlude_args *args, const double (*place)[GLINT_GROUP], const glint_prim *prim)
 {
     R(light_sides) sides = { 0, 0 };
-    for (int lane = 0; lane < (light_sample ? GLINT_GROUP : 1); lane++) {
+    for (int lane = 0; lane < (place ? GLINT_GROUP : 1); lane++) {
         double position[3];
         for (int k = 0; k < 3; k++)
-            position[k] = light_sample ? light_sample->position[k][lane] : args->position[k];
+            position[k] = place ? place[k][lane] : args->position[k];
         const int side = R(light_side)(args, prim, position);
-        const uint16_t lanes = (uint16_t)(light_sample ? 1u << lane : 0xffffu);
+        const uint16_t lanes = (uint16_t)(place ? 1u << lane : 0xffffu);
         sides.outside |= side > 0 ? lanes : 0;
         sides.inside |= side < 0 ? lanes : 0;
     }
     return sides;
 }
 
-/// Points the tile at its light, or at one sample of it.
-static inline void R(aim_at)(R(shadow_tile) * tile, const glint_light_sample *light_sample)
+/// Points the tile at its light (NULL), or at one sample of it.
+static inline void R(aim_at)(R(shadow_tile) * tile, const double (*place)[GLINT_GROUP])
 {
     const glint_occlude_args *args = tile->args;
     const glint_geometry_table *geometry = args->geometry;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i += VR) {
-            if (light_sample)
+            if (place)
                 for (int j = i; j < i + VR; j++)
-                    tile->position[k][j] = (real)light_sample->position[k][j];
+                    tile->position[k][j] = (real)place[k][j];
             else
                 r_store(tile->position[k] + i, r_set(args->position[k]));
         }
@@ -101,7 +101,7 @@ static inline void R(aim_at)(R(shadow_tile) * tile, const glint_light_sample *li
         return; // only lone segments need where the light is in the index's frame
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < GLINT_GROUP; i++) {
-            const double x = light_sample ? light_sample->position[k][i] : args->position[k];
+            const double x = place ? place[k][i] : args->position[k];
             tile->local_light[k][i] = (float)(args->directional ? x : (x - geometry->reference[k]) * geometry->scale);
         }
 }

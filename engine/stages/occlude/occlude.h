@@ -94,19 +94,19 @@ static inline bool R(light_outside)(const R(shadow_tile) * tile, const glint_pri
 
 /// As sides_of, and quicker where the light is far from the primitive.
 static inline R(light_sides)
-    R(seen_sides)(const R(shadow_tile) * tile, const glint_light_sample *light_sample, const glint_prim *prim)
+    R(seen_sides)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], const glint_prim *prim)
 {
     if (R(light_outside)(tile, prim))
         return (R(light_sides)) { 0xffff, 0 };
-    return R(sides_of)(tile->args, light_sample, prim);
+    return R(sides_of)(tile->args, place, prim);
 }
 
 /// Tests a primitive that a walk came upon. Returns the lanes that are still open.
-static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+static inline unsigned R(test_occluder)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
                                         R(shadow_group) * group, uint32_t id, unsigned open)
 {
     const glint_prim *prim = &tile->args->geometry->prims[id];
-    const R(occluder) occluder = { id, R(seen_sides)(tile, light_sample, prim) };
+    const R(occluder) occluder = { id, R(seen_sides)(tile, place, prim) };
     const unsigned blocked = R(blocked_by)(tile, occluder, group, open);
     if (blocked)
         group->last_blocker = id;
@@ -128,8 +128,8 @@ static inline void R(group_box)(const R(shadow_tile) * tile, R(shadow_group) * g
 }
 
 /// Walks with the shaft of a group, and gives up where it has many nodes to see: *done tells.
-static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
-                              R(shadow_group) * group, unsigned open, bool *done)
+static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+                              unsigned open, bool *done)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     float lower[3], upper[3];
@@ -148,7 +148,7 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_light_sam
         for (unsigned mask = boxes_in_shaft(node, &shaft); mask && open; mask &= mask - 1) {
             const uint32_t child = node->child[__builtin_ctz(mask)];
             if (child & GLINT_NODE_PRIM)
-                open = R(test_occluder)(tile, light_sample, group, child & ~GLINT_NODE_PRIM, open);
+                open = R(test_occluder)(tile, place, group, child & ~GLINT_NODE_PRIM, open);
             else
                 stack[height++] = child;
         }
@@ -158,8 +158,8 @@ static unsigned R(walk_shaft)(const R(shadow_tile) * tile, const glint_light_sam
 }
 
 /// Walks with the segment of one lane. What it comes upon is tested against all lanes that are open.
-static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
-                             R(shadow_group) * group, int lane, unsigned open)
+static unsigned R(walk_lane)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+                             int lane, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     const float far = tile->args->directional ? HUGE_VALF : 1;
@@ -183,7 +183,7 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_light_samp
                 stack[height++] = child;
                 continue;
             }
-            open = R(test_occluder)(tile, light_sample, group, child & ~GLINT_NODE_PRIM, open);
+            open = R(test_occluder)(tile, place, group, child & ~GLINT_NODE_PRIM, open);
             if (!(open >> lane & 1))
                 return open;
         }
@@ -192,29 +192,29 @@ static unsigned R(walk_lane)(const R(shadow_tile) * tile, const glint_light_samp
 }
 
 /// The lanes of `open` that no surface without an end blocks.
-static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
+static inline unsigned R(test_unbounded)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP],
                                          R(shadow_group) * group, unsigned open)
 {
     const glint_geometry_table *geometry = tile->args->geometry;
     for (uint32_t i = 0; i < geometry->unbounded_count && open; i++)
-        open = R(test_occluder)(tile, light_sample, group, geometry->unbounded[i], open);
+        open = R(test_occluder)(tile, place, group, geometry->unbounded[i], open);
     return open;
 }
 
 /// The lanes of `open` that nothing in the index blocks, for a group that walks by itself.
-static unsigned R(walk_group)(const R(shadow_tile) * tile, const glint_light_sample *light_sample,
-                              R(shadow_group) * group, unsigned open)
+static unsigned R(walk_group)(const R(shadow_tile) * tile, const double (*place)[GLINT_GROUP], R(shadow_group) * group,
+                              unsigned open)
 {
     bool done = !tile->args->geometry->nodes;
     R(place_group)(tile, group);
     if (group->last_blocker != GLINT_MISS) // often in the way of the next group too
-        open = R(test_occluder)(tile, light_sample, group, group->last_blocker, open);
+        open = R(test_occluder)(tile, place, group, group->last_blocker, open);
     if (open && !done && group->shafts_failed < GLINT_SHAFTS_TRIED) {
-        open = R(walk_shaft)(tile, light_sample, group, open, &done);
+        open = R(walk_shaft)(tile, place, group, open, &done);
         group->shafts_failed = done ? 0 : group->shafts_failed + 1;
     }
     for (unsigned left = open; left && !done && !is_stopped(tile->args->stop); left &= (left - 1) & open)
-        open = R(walk_lane)(tile, light_sample, group, __builtin_ctz(left), open);
+        open = R(walk_lane)(tile, place, group, __builtin_ctz(left), open);
     return open;
 }
 

@@ -27,8 +27,27 @@ static NAME(vec3) NAME(lane_of)(const double array[3][GLINT_GROUP], uint32_t i)
     return NAME(vec)((REAL)array[0][lane], (REAL)array[1][lane], (REAL)array[2][lane]);
 }
 
+static bool NAME(is_cone)(const glint_light_sample *light_sample)
+{
+    return light_sample && light_sample->emission == GLINT_EMIT_CONE;
+}
+
+/// Sample i's own place in the cone in which it sees the ball.
+static glint_cone_sample NAME(in_own_cone)(const glint_light_sample *light_sample, double scale,
+                                           const void *const point[3], const void *const normal[3], uint32_t i)
+{
+    NAME(vec3) p = NAME(load)(point, i), n = NAME(load)(normal, i);
+    const double at[3] = { p.x, p.y, p.z }, along[3] = { n.x, n.y, n.z };
+    double slack = sizeof(REAL) == sizeof(double) ? GLINT_CONE_SLACK_DOUBLE : GLINT_CONE_SLACK_FLOAT;
+    return glint_cone_at(light_sample, scale, slack, at, along, i % GLINT_GROUP);
+}
+
 static NAME(vec3) NAME(to_light)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
 {
+    if (NAME(is_cone)(light_sample)) {
+        glint_cone_sample sample = NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i);
+        return NAME(rounded)(sample.way);
+    }
     NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(args->position);
     return args->directional ? position
                              : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
@@ -60,17 +79,17 @@ static float NAME(cone)(const glint_spot *spot, NAME(vec3) l)
 }
 
 /// The cosine at the lamp times the distance: positive where the sample shines at the point.
-static REAL NAME(light_sample_cosine)(const glint_light_sample *light_sample, NAME(vec3) l, NAME(vec3) point,
-                                      uint32_t i)
+static REAL NAME(light_sample_cosine)(const glint_light_sample *light_sample, NAME(vec3) l, uint32_t i)
 {
     REAL m = -NAME(dot)(NAME(lane_of)(light_sample->normal, i), l);
-    bool both = light_sample->emission == GLINT_EMIT_RADIANT_BOTH;
-    if (light_sample->emission == GLINT_EMIT_RADIANT_BALL) {
-        NAME(vec3) away = NAME(sub)(point, NAME(rounded)(light_sample->center));
-        REAL radius = (REAL)light_sample->radius;
-        both = NAME(length2)(away) < radius * radius;
-    }
-    return both ? NAME(max)(m, -m) : m;
+    return light_sample->emission == GLINT_EMIT_RADIANT_BOTH ? NAME(max)(m, -m) : m;
+}
+
+/// Whether a sample shines at the point.
+static bool NAME(shines)(const glint_light_sample *light_sample, NAME(vec3) l, uint32_t i)
+{
+    return !light_sample || light_sample->emission == GLINT_EMIT_ALL || NAME(is_cone)(light_sample) ||
+           NAME(light_sample_cosine)(light_sample, l, i) > 0;
 }
 
 static bool NAME(is_lit)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
@@ -81,10 +100,7 @@ static bool NAME(is_lit)(const glint_light_args *args, const glint_light_sample 
     NAME(vec3) l = NAME(to_light)(args, light_sample, i);
     if (args->spot && !light_sample && !NAME(in_cone)(args->spot, l))
         return false;
-    if (light_sample && light_sample->emission != GLINT_EMIT_ALL &&
-        !(NAME(light_sample_cosine)(light_sample, l, NAME(load)(args->point, i), i) > 0))
-        return false;
-    return NAME(dot)(NAME(load)(args->normal, i), l) > 0;
+    return NAME(shines)(light_sample, l, i) && NAME(dot)(NAME(load)(args->normal, i), l) > 0;
 }
 
 static float NAME(attenuation)(const glint_light_args *args, const glint_light_sample *light_sample, NAME(vec3) l,
@@ -92,10 +108,15 @@ static float NAME(attenuation)(const glint_light_args *args, const glint_light_s
 {
     NAME(vec3) k = NAME(rounded)(args->coefficients);
     REAL l2 = NAME(length2)(l);
-    REAL d = NAME(square_root)(l2) / (REAL)args->scale;
+    glint_cone_sample own = { .far = 0 };
+    if (NAME(is_cone)(light_sample))
+        own = NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i);
+    REAL d = NAME(is_cone)(light_sample) ? (REAL)own.far : NAME(square_root)(l2) / (REAL)args->scale;
     REAL a = 1 / (k.x + (k.y * d + k.z * (d * d)));
-    if (light_sample && light_sample->emission >= GLINT_EMIT_RADIANT_FRONT) {
-        REAL m = NAME(light_sample_cosine)(light_sample, l, NAME(load)(args->point, i), i);
+    if (NAME(is_cone)(light_sample)) {
+        a = a * (REAL)own.weight;
+    } else if (light_sample && light_sample->emission >= GLINT_EMIT_RADIANT_FRONT) {
+        REAL m = NAME(light_sample_cosine)(light_sample, l, i);
         a = a * (m / (l2 * NAME(square_root)(l2)));
     }
     float w = min_float((float)a, GLINT_ATTENUATION_MAX);

@@ -2,6 +2,7 @@
 /// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"
+#include "engine/stages/light/cone_sample.h"
 #include "engine/stages/stages.h"
 
 #include <float.h>

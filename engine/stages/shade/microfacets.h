@@ -48,10 +48,11 @@ static inline unsigned R(facet_lanes)(const vr n[3], const vr l[3], const vr d[3
     return rm_bits(r_lt(zero, h2));
 }
 
-/// One group of sample s.
-static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, const R(light_sample_lanes) * lanes,
+/// One group of sample s; lamps: NULL where the light is none of area.
+static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, const R(light_sample_set) * light_samples,
                                   size_t at, R(group_directions) directions)
 {
+    const bool cone = light_samples && R(is_cone)(args->light_sample[0]);
     _Alignas(64) float sine2[GLINT_GROUP], square[GLINT_GROUP];
     unsigned some = 0;
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -60,8 +61,10 @@ static inline void R(facet_group)(const glint_facet_args *args, uint32_t s, cons
         R(load3)(args->point, at + i, point);
         R(load_direction)(directions, args->direction, at, i, d);
         for (int k = 0; k < 3; k++) {
-            l[k] = lanes ? r_load(lanes->position[k] + i) : r_set(args->position[k]);
-            if (!args->directional)
+            l[k] = light_samples ? r_load(light_samples->light_sample[s].position[k] + i) : r_set(args->position[k]);
+            if (cone)
+                l[k] = r_load(light_samples->way[s][k] + i);
+            else if (!args->directional)
                 l[k] = (l[k] - point[k]) * r_set(args->scale);
         }
         some |= R(facet_lanes)(n, l, d, sine2 + i, square + i) << i;
@@ -84,8 +87,15 @@ static void R(facet)(const glint_facet_args *args)
     for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
         const size_t at = (size_t)place.g * GLINT_GROUP;
         const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
-        for (uint32_t s = 0; s < args->sample_count; s++)
-            if (R(has_facets)(args, at, args->lit[s][place.g]))
-                R(facet_group)(args, s, area ? &light_samples.light_sample[s] : NULL, at, directions);
+        bool placed = !R(is_cone)(args->light_sample[0]);
+        for (uint32_t s = 0; s < args->sample_count; s++) {
+            if (!R(has_facets)(args, at, args->lit[s][place.g]))
+                continue;
+            if (!placed)
+                R(place_in_cone)(args->light_sample, args->sample_count, args->scale, args->point, args->normal, at,
+                                 &light_samples);
+            placed = true;
+            R(facet_group)(args, s, area ? &light_samples : NULL, at, directions);
+        }
     }
 }

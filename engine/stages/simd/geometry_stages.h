@@ -17,6 +17,7 @@
 #include "engine/stages/surface/surface.h"
 #include "engine/stages/surface/vertex.h"
 #include "engine/stages/light/light_sample.h"
+#include "engine/stages/light/cone.h"
 #include "engine/stages/light/light.h"
 #include "engine/stages/light/lit_surface.h"
 #include "engine/stages/shade/microfacets.h"

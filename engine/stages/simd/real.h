@@ -112,6 +112,25 @@ static inline vf R(load_narrow)(const real *p)
 #endif
 }
 
+/// VD lanes of real as doubles, and back, rounded.
+static inline vd R(load_exact)(const real *p)
+{
+#if GLINT_REAL == 64
+    return d_load(p);
+#else
+    return d_load_f(p);
+#endif
+}
+
+static inline void R(store_exact)(real *p, vd x)
+{
+#if GLINT_REAL == 64
+    d_store(p, x);
+#else
+    d_store_f(p, x);
+#endif
+}
+
 /// A group of reals as floats.
 static inline void R(narrow)(const real from[GLINT_GROUP], float to[GLINT_GROUP])
 {
