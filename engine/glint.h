@@ -341,7 +341,8 @@ typedef struct glint_reflection {
     double specular[3]; ///< ks S, 0 where n.l <= 0
 } glint_reflection;
 
-/// Evaluates a material at a point. The three vectors point away from it and need not be unit; finite, not zero.
+/// Evaluates a material at a point, by its numbers: where it has programs, what stands beside them. The three vectors point
+/// away from it and need not be unit; finite, not zero.
 glint_status glint_material_evaluate(const glint_material *material, const double normal[3], const double to_light[3],
                                      const double to_eye[3], glint_reflection *out, glint_error *error);
 

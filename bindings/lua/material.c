@@ -12,21 +12,41 @@ static const char *const MODELS[] = { "phong", "blinn_phong", "lambert", "cook_t
 static const char *const DISTRIBUTIONS[] = { "ggx", "beckmann", NULL };
 
 static const glintL_field FIELDS[] = {
-    { .name = "model", .kind = GLINTL_ENUM, .offset = AT(model), .names = MODELS },
-    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .set_offset = AT(has_ambient) },
-    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse) },
-    { .name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular), .set_offset = AT(has_specular) },
-    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess) },
-    { .name = "mirror", .kind = GLINTL_COLOR, .offset = AT(mirror), .set_offset = AT(has_mirror) },
-    { .name = "transmission", .kind = GLINTL_COLOR, .offset = AT(transmission) },
+    { .name = "model",
+      .kind = GLINTL_ENUM,
+      .offset = AT(model),
+      .names = MODELS,
+      .program_offset = AT(program.shader) },
+    { .name = "ambient",
+      .kind = GLINTL_COLOR,
+      .offset = AT(ambient),
+      .set_offset = AT(has_ambient),
+      .follows = "diffuse" },
+    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .program_offset = AT(program.diffuse) },
+    { .name = "specular",
+      .kind = GLINTL_COLOR,
+      .offset = AT(specular),
+      .set_offset = AT(has_specular),
+      .program_offset = AT(program.specular) },
+    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess), .program_offset = AT(program.shininess) },
+    { .name = "mirror",
+      .kind = GLINTL_COLOR,
+      .offset = AT(mirror),
+      .set_offset = AT(has_mirror),
+      .program_offset = AT(program.mirror) },
+    { .name = "transmission",
+      .kind = GLINTL_COLOR,
+      .offset = AT(transmission),
+      .program_offset = AT(program.transmission) },
     { .name = "ior", .kind = GLINTL_NUMBER, .offset = AT(ior) },
     { .name = "fresnel", .kind = GLINTL_BOOLEAN, .offset = AT(fresnel) },
     { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption) },
     { .name = "normalized", .kind = GLINTL_BOOLEAN, .offset = AT(normalized) },
     { .name = "matched", .kind = GLINTL_BOOLEAN, .offset = AT(matched) },
-    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness) },
+    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness) },
     { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
     { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0) },
+    { .name = "bump", .kind = GLINTL_PROGRAM, .program_offset = AT(program.bump) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };
@@ -80,23 +100,22 @@ static void accepted(lua_State *L, const glintL_field *field, const void *desc)
 
 static int evaluate(lua_State *L)
 {
-    typedef struct geometry {
-        double normal[3], to_light[3], to_eye[3];
-    } geometry;
+    typedef glintL_geometry geometry;
     static const glintL_field fields[] = {
         { .name = "normal", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, normal), .required = true },
         { .name = "to_light", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_light), .required = true },
         { .name = "to_eye", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, to_eye), .required = true },
+        { .name = "p", .kind = GLINTL_VECTOR, .offset = offsetof(geometry, p) },
         { .name = NULL },
     };
-    geometry at;
+    geometry at = { .p = { 0 } };
     glint_reflection out;
     glint_error error;
     glintL_check_object(L, 1, GLINTL_MATERIAL);
     glintL_read_table(L, 2, "evaluate", fields, &at, false);
+    glintL_trace_material(L, 1);
     const glint_material *material = glintL_check_object(L, 1, GLINTL_MATERIAL); // again: reading may run finalizers
-    glintL_check_status(L, "evaluate", &error,
-                        glint_material_evaluate(material, at.normal, at.to_light, at.to_eye, &out, &error));
+    glintL_check_status(L, "evaluate", &error, glintL_evaluate_material(material, &at, &out, &error));
     lua_createtable(L, 0, 2);
     glintL_push_vector(L, out.diffuse);
     lua_setfield(L, -2, "diffuse");
@@ -139,6 +158,7 @@ static int new_material(lua_State *L)
     glintL_check_status(L, "material", &error, glint_material_create(&desc, &material, &error));
     box->object = material;
     glintL_remember(L, material);
+    glintL_keep_sources(L, 2, 1, FIELDS);
     accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
     glintL_note_material(L, 2,
                          (desc.model == GLINT_MODEL_PHONG || desc.model == GLINT_MODEL_BLINN_PHONG) &&

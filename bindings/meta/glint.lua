@@ -67,21 +67,22 @@ function vector:reflect(n) end
 -- ---- Materials ----
 
 ---@class glint.material_fields
----@field model? "phong"|"blinn_phong"|"lambert"|"cook_torrance"  how the highlight falls off; "lambert" has none; "cook_torrance" is of microfacets. Default "phong"
+---@field model? "phong"|"blinn_phong"|"lambert"|"cook_torrance"|glint.shader  how the highlight falls off; "lambert" has none; "cook_torrance" is of microfacets. Default "phong"
 ---@field ambient? glint.color  reflectance >= 0 of ambient light. Follows `diffuse` until set; nil: follows again
----@field diffuse? glint.color  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
----@field specular? glint.color  strength >= 0 of the highlight. Default 0; with "cook_torrance" 1, nil: follows again
----@field shininess? number  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
----@field mirror? glint.color  share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: follows again
----@field transmission? glint.color  share >= 0 of the light that a refracted ray brings, at each surface; where it is totally reflected it crosses none, and all of its light goes on. Default 0
+---@field diffuse? glint.color|glint.pattern|glint.texture  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
+---@field specular? glint.color|glint.pattern|glint.texture  strength >= 0 of the highlight. Default 0; with "cook_torrance" 1, nil: follows again
+---@field shininess? number|glint.pattern  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
+---@field mirror? glint.color|glint.pattern|glint.texture  share >= 0 of the light that a mirrored ray brings. Default 0, with `fresnel` 1; nil: follows again
+---@field transmission? glint.color|glint.pattern|glint.texture  share >= 0 of the light that a refracted ray brings, at each surface; where it is totally reflected it crosses none, and all of its light goes on. Default 0
 ---@field ior? number  refractive index inside, > 0; outside is 1 or that of the object around. Default 1.5. Where `f0` follows it, that is ((ior - 1)/(ior + 1))^2
 ---@field fresnel? boolean  true: `mirror` times what a dielectric reflects at that angle, `transmission` times the rest. Default false
 ---@field absorption? glint.color  >= 0 per world unit: exp(-absorption * way) of the light is left inside. Default 0
 ---@field normalized? boolean  of both Phongs: (s + 2)/2 (r.v)^s (n.l) or its like for n.h; reciprocal, gives off no more light than it gets. Default false
 ---@field matched? boolean  of "blinn_phong": the exponent is 4 shininess, which looks most like Phong. Default false
----@field roughness? number  of "cook_torrance", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9. Default 0.3
+---@field roughness? number|glint.pattern  of "cook_torrance", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9. Default 0.3
 ---@field distribution? "ggx"|"beckmann"  of "cook_torrance": the slopes of its facets. Default "ggx"
 ---@field f0? glint.color  of "cook_torrance", 0 .. 1: what it reflects head-on; coloured for metals. Follows `ior` until set; nil: follows again
+---@field bump? glint.pattern  height over the surface, world units: light, mirrors and glass see the normals that it would have. Default nil
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
 ---@class glint.material: glint.material_fields
@@ -91,6 +92,7 @@ local material = {}
 ---@field normal glint.vec3  of the surface, towards the side the eye is on
 ---@field to_light glint.vec3  from the point to the light
 ---@field to_eye glint.vec3  from the point to the eye
+---@field p? glint.vec3  the point, where the material has patterns or a shader; its bump is not seen. Default {0, 0, 0}
 
 ---@class glint.reflection
 ---@field diffuse glint.vector  kd (n.l); 0 where n.l <= 0

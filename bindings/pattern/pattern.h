@@ -10,6 +10,7 @@
 ///   points.c      the same function with plain numbers, against the program
 ///   pattern.c     the objects that glint.pattern and glint.shader make
 ///   texture.c     the objects that glint.texture makes
+///   reflection.c  material:evaluate with patterns and shaders
 ///   patterned.c   materials whose fields hold patterns: traced when a frame is planned
 #ifndef GLINT_PATTERN_H
 #define GLINT_PATTERN_H

@@ -82,12 +82,12 @@ static void push_value(lua_State *L, const glintL_class *class, const glintL_fie
 static bool push_source(lua_State *L, const glintL_class *class, const glintL_field *field, const void *object)
 {
     description desc;
-    if (!field->program_offset)
+    if (field->program_offset)
+        return glintL_push_kept(L, 1, field->name);
+    if (!field->follows)
         return false;
-    if (glintL_push_kept(L, 1, field->name))
-        return true;
     class->get(object, &desc);
-    return field->follows && !desc.bytes[field->set_offset] && glintL_push_kept(L, 1, field->follows);
+    return !desc.bytes[field->set_offset] && glintL_push_kept(L, 1, field->follows);
 }
 
 static int close_object(lua_State *L);

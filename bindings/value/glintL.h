@@ -128,6 +128,15 @@ void glintL_keep_closed(lua_State *L, int index);
 void glintL_trace_scene(lua_State *L, const glint_scene *scene);
 /// Calls those of one material, whose userdata is at `index`.
 void glintL_trace_material(lua_State *L, int index);
+/// Where material:evaluate looks. The vectors need not be unit.
+typedef struct glintL_geometry {
+    double normal[3], to_light[3], to_eye[3];
+    double p[3]; ///< what patterns and shaders read as p and s.world
+} glintL_geometry;
+
+/// glint_material_evaluate, of materials with programs, too: at one point, without bumps.
+glint_status glintL_evaluate_material(const glint_material *material, const glintL_geometry *at, glint_reflection *out,
+                                      glint_error *error);
 void glintL_open_patterns(lua_State *L);
 
 // ---- object.c: boxes ----

@@ -178,6 +178,8 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
     if (status)
         return status;
     double n[3], l[3], v[3];
+    glint_material_desc desc = material->desc;
+    desc.program = (glint_material_programs) { NULL };
     vec_normalize(n, normal);
     vec_normalize(l, to_light);
     vec_normalize(v, to_eye);
@@ -190,7 +192,7 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
         g->normal[c][0] = n[c] * turn;
         g->direction[c][0] = -v[c];
     }
-    evaluate_lane(stages, &material->desc, l, g);
+    evaluate_lane(stages, &desc, l, g);
     for (int c = 0; c < 3; c++) {
         out->diffuse[c] = g->sum[GLINT_TERM_DIFFUSE][c][0];
         out->specular[c] = g->sum[GLINT_TERM_SPECULAR][c][0];

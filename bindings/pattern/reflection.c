@@ -1,0 +1,95 @@
+// material:evaluate of a material that has programs: they are run at one point, and their numbers take the fields' places.
+#include "bindings/pattern/pattern.h"
+
+#include <math.h>
+#include <string.h>
+
+// A number as a frame would take it: NaN and what is below 0 are 0.
+static double reflectance(double x) { return x > 0 ? fmin(x, 0x1p100) : 0; }
+
+static glint_status run(const glint_program *program, const double inputs[GLINT_INPUT_COUNT], double *out, size_t count,
+                        glint_error *error)
+{
+    double numbers[GLINT_PROGRAM_OUTPUTS_MAX] = { 0 };
+    const glint_status status = glint_program_evaluate(program, inputs, numbers, error);
+    const bool is_grey = glint_program_output_count(program) == 1;
+    for (size_t i = 0; i < count && !status; i++)
+        out[i] = reflectance(numbers[is_grey ? 0 : i]);
+    return status;
+}
+
+static glint_status run_patterns(glint_material_desc *desc, const double inputs[GLINT_INPUT_COUNT], glint_error *error)
+{
+    const struct {
+        glint_program **program;
+        double *numbers;
+        size_t count;
+    } fields[] = {
+        { &desc->program.diffuse, desc->diffuse, 3 },      { &desc->program.specular, desc->specular, 3 },
+        { &desc->program.mirror, desc->mirror, 3 },        { &desc->program.transmission, desc->transmission, 3 },
+        { &desc->program.shininess, &desc->shininess, 1 }, { &desc->program.roughness, &desc->roughness, 1 },
+    };
+    glint_status status = GLINT_OK;
+    for (size_t i = 0; i < sizeof fields / sizeof *fields && !status; i++)
+        if (*fields[i].program) {
+            status = run(*fields[i].program, inputs, fields[i].numbers, fields[i].count, error);
+            *fields[i].program = NULL;
+        }
+    desc->roughness = fmin(desc->roughness, 1);
+    desc->program.bump = NULL;
+    return status;
+}
+
+static void unit(const double v[3], double factor, double out[3])
+{
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++)
+        out[i] = v[i] / length * factor;
+}
+
+static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static glint_status run_shader(const glint_material_desc *desc, double inputs[GLINT_INPUT_COUNT], glint_reflection *out,
+                               glint_error *error)
+{
+    double both[6] = { 0 };
+    for (int i = 0; i < 3; i++) {
+        inputs[GLINT_INPUT_LIGHT_R + i] = 1;
+        inputs[GLINT_INPUT_KD_R + i] = desc->diffuse[i];
+        inputs[GLINT_INPUT_KS_R + i] = desc->specular[i];
+    }
+    inputs[GLINT_INPUT_DISTANCE] = HUGE_VAL;
+    inputs[GLINT_INPUT_SHININESS] = desc->shininess;
+    glint_status status = GLINT_OK;
+    if (dot(&inputs[GLINT_INPUT_N_X], &inputs[GLINT_INPUT_L_X]) > 0)
+        status = run(desc->program.shader, inputs, both, 6, error);
+    memcpy(out->diffuse, both, sizeof out->diffuse);
+    memcpy(out->specular, both + 3, sizeof out->specular);
+    return status;
+}
+
+glint_status glintL_evaluate_material(const glint_material *material, const glintL_geometry *at, glint_reflection *out,
+                                      glint_error *error)
+{
+    static const glint_material_programs none;
+    double inputs[GLINT_INPUT_COUNT] = { 0 };
+    glint_material_desc desc = *glint_material_get(material);
+    glint_material *plain = NULL;
+    glint_status status = glint_material_evaluate(material, at->normal, at->to_light, at->to_eye, out, error);
+    if (status || memcmp(&desc.program, &none, sizeof none) == 0)
+        return status;
+    unit(at->normal, dot(at->normal, at->to_eye) < 0 ? -1 : 1, &inputs[GLINT_INPUT_N_X]);
+    unit(at->to_light, 1, &inputs[GLINT_INPUT_L_X]);
+    unit(at->to_eye, 1, &inputs[GLINT_INPUT_V_X]);
+    memcpy(&inputs[GLINT_INPUT_P_X], at->p, sizeof at->p);
+    memcpy(&inputs[GLINT_INPUT_WORLD_X], at->p, sizeof at->p);
+    status = run_patterns(&desc, inputs, error);
+    if (!status && desc.program.shader)
+        return run_shader(&desc, inputs, out, error);
+    if (!status)
+        status = glint_material_create(&desc, &plain, error);
+    if (!status)
+        status = glint_material_evaluate(plain, at->normal, at->to_light, at->to_eye, out, error);
+    glint_material_release(plain);
+    return status;
+}
