@@ -15,6 +15,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
         glintL_open_math,      glintL_open_params,   glintL_open_animation, glintL_open_patterns,
     };
     luaL_checkversion(L);
+    glintL_open_run(L);
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");

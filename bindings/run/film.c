@@ -10,26 +10,6 @@
 
 // ---- Names ----
 
-glintL_film_kind glintL_film_kind_of(const char *path, bool apng)
-{
-    static const struct {
-        const char *ending;
-        glintL_film_kind kind;
-    } kinds[] = { { ".mp4", GLINTL_FILM_MP4 },
-                  { ".webm", GLINTL_FILM_WEBM },
-                  { ".gif", GLINTL_FILM_GIF },
-                  { ".apng", GLINTL_FILM_APNG } };
-    size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        size_t size = strlen(kinds[i].ending);
-        if (length > size && path[length - size - 1] != '/' && strcasecmp(path + length - size, kinds[i].ending) == 0)
-            return kinds[i].kind;
-    }
-    if (apng && length > 4 && path[length - 5] != '/' && strcasecmp(path + length - 4, ".png") == 0)
-        return GLINTL_FILM_APNG;
-    return GLINTL_FILM_NONE;
-}
-
 // "PATH.frames/%04d.png", a '%' of the path doubled; owned by the caller. NULL: out of memory.
 static char *pattern_of(const char *path)
 {

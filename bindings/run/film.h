@@ -6,14 +6,6 @@
 
 // ---- film.c: films of a run ----
 
-typedef enum glintL_film_kind {
-    GLINTL_FILM_NONE, ///< a picture
-    GLINTL_FILM_APNG,
-    GLINTL_FILM_MP4,
-    GLINTL_FILM_WEBM,
-    GLINTL_FILM_GIF
-} glintL_film_kind;
-
 /// A film and its frames. While a run renders it they are kept in the folder PATH.frames, so that nothing is lost when
 /// the run is interrupted or no film can be made; the folder goes when the film is there.
 typedef struct glintL_film {
@@ -25,8 +17,6 @@ typedef struct glintL_film {
     size_t count, room;
 } glintL_film;
 
-/// By the ending; `apng`: a .png is a film, too.
-glintL_film_kind glintL_film_kind_of(const char *path, bool apng);
 /// Makes the film that frames to `path` go into known to the run, unless `path` is no film's. False: the message says
 /// what is wrong.
 bool glintL_film_open(glintL_run *run, const char *path, const glintL_render *render, double fps,

@@ -11,7 +11,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "bindings/run/film.h"
+#include "bindings/run/run.h"
 
 #define DIGITS_MAX 18 // widest place for a number
 
@@ -80,6 +80,26 @@ bool glintL_name_is_pfm(const char *path)
 {
     const char *dot = ending(path);
     return dot && strcasecmp(dot, ".pfm") == 0;
+}
+
+glintL_film_kind glintL_film_kind_of(const char *path, bool apng)
+{
+    static const struct {
+        const char *ending;
+        glintL_film_kind kind;
+    } kinds[] = { { ".mp4", GLINTL_FILM_MP4 },
+                  { ".webm", GLINTL_FILM_WEBM },
+                  { ".gif", GLINTL_FILM_GIF },
+                  { ".apng", GLINTL_FILM_APNG } };
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        size_t size = strlen(kinds[i].ending);
+        if (length > size && path[length - size - 1] != '/' && strcasecmp(path + length - size, kinds[i].ending) == 0)
+            return kinds[i].kind;
+    }
+    if (apng && length > 4 && path[length - 5] != '/' && strcasecmp(path + length - 4, ".png") == 0)
+        return GLINTL_FILM_APNG;
+    return GLINTL_FILM_NONE;
 }
 
 bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])

@@ -9,7 +9,8 @@
 ///   provenance.c      what a file says of itself, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
 ///   sheet.c           contact sheets of files; sheet_axes.c their axes, sheet_page.c as an HTML page, sweep_sheet.c of sweeps
-///   run.c             the run: records in order, failures; jobs.c frames of jobs, job_run.c :run; call.c scene:render
+///   state.c           the run of a Lua state, and its failure; records.c its frames in order
+///   jobs.c            frames of jobs; job_run.c :run; call.c scene:render
 ///   kept_image.c      the picture of a file that was kept
 ///
 /// Nothing here raises a Lua error while it holds something: Lua code is called under lua_pcall only.
@@ -77,6 +78,14 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64]);
 
 // ---- names.c ----
 
+typedef enum glintL_film_kind {
+    GLINTL_FILM_NONE, ///< a picture
+    GLINTL_FILM_APNG,
+    GLINTL_FILM_MP4,
+    GLINTL_FILM_WEBM,
+    GLINTL_FILM_GIF
+} glintL_film_kind;
+
 typedef struct glintL_naming {
     const char *pattern; ///< borrowed; NULL: no file is written
     bool is_plain; ///< '%' and '#' stand for themselves
@@ -89,6 +98,8 @@ bool glintL_name_has_number(const char *pattern);
 /// The file of a frame's pass. False: too long.
 bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
 bool glintL_name_is_pfm(const char *path);
+/// By the ending; `apng`: a .png is a film, too.
+glintL_film_kind glintL_film_kind_of(const char *path, bool apng);
 bool glintL_name_is_special(const char *path); ///< an existing pipe or device
 /// Whether an untrusted script may write a file of this name: a plain one, with no folder and nothing hidden.
 bool glintL_name_is_plain(const char *name, size_t length);
@@ -164,7 +175,7 @@ typedef struct glintL_work {
     glintL_file files[GLINT_PASS_COUNT];
 } glintL_work;
 
-// ---- run.c ----
+// ---- state.c, records.c ----
 
 typedef struct glintL_reporter {
     void *context;
@@ -237,6 +248,8 @@ glintL_run *glintL_run_create(void);
 void glintL_run_destroy(glintL_run *run);
 /// As if nothing had run yet: counts, failure, parameters. Renderer, writer, request and a signal stay.
 void glintL_run_reset(glintL_run *run);
+/// Makes the box that glintL_get_run finds, empty, with `collect` as its finalizer (NULL: none).
+glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect);
 /// Lets `L` use a run that the caller owns and keeps longer than `L`.
 void glintL_attach_run(lua_State *L, glintL_run *run);
 double glintL_now_ms(void);

@@ -264,11 +264,12 @@ typedef struct glintL_render {
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
 } glintL_render;
 
-// ---- run.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
+// ---- state.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----
 
 /// What the command line (or :run{}) requests. Strings are owned by the run.
 typedef struct glintL_run glintL_run;
-glintL_run *glintL_get_run(lua_State *L);
+glintL_run *glintL_get_run(lua_State *L); ///< NULL only before glintL_open_run
+void glintL_open_run(lua_State *L); ///< makes one, which the state owns, where there is none
 /// scene:render{...} of the scene at 1: reads the table at `index` (may be none), numbers the call, skips or renders it, writes its
 /// files. Pushes an image, or nil and "skipped". Returns the number of results.
 int glintL_render_call(lua_State *L, glint_scene *scene, int index);

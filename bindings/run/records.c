@@ -1,10 +1,7 @@
-// The run: its renderer and writer, the records of its frames in order, and its first failure.
-#include <inttypes.h>
-#include <stdarg.h>
+// The run from its beginning to its end: its renderer and writer, and the records of its frames in order.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "bindings/run/film.h"
 
@@ -12,20 +9,6 @@
 // these are the four whose memory a renderer holds on to (render.c).
 #define QUEUE_DEPTH 2
 #define UNTRUSTED_REUSE_MEMORY ((size_t)1 << 30) // of a process with a limit
-
-static const char RUN; // its address is the registry's key of the run
-
-typedef struct run_box {
-    glintL_run *run;
-    bool is_owned;
-} run_box;
-
-double glintL_now_ms(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 glintL_run *glintL_run_create(void)
 {
@@ -101,32 +84,15 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
     run->kept_render = *render;
 }
 
-// ---- The run of a Lua state ----
+// ---- The run of plain Lua, which the state owns ----
 
 static int collect_run(lua_State *L)
 {
-    run_box *box = lua_touserdata(L, 1);
-    if (box->is_owned)
-        glintL_run_destroy(box->run);
-    box->run = NULL;
+    glintL_run **box = lua_touserdata(L, 1);
+    glintL_run_destroy(*box);
+    *box = NULL;
     return 0;
 }
-
-static run_box *new_box(lua_State *L)
-{
-    luaL_checkstack(L, 4, "run");
-    run_box *box = lua_newuserdatauv(L, sizeof *box, 0);
-    box->run = NULL;
-    box->is_owned = false;
-    lua_createtable(L, 0, 1);
-    lua_pushcfunction(L, collect_run);
-    lua_setfield(L, -2, "__gc");
-    lua_setmetatable(L, -2);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &RUN);
-    return box;
-}
-
-void glintL_attach_run(lua_State *L, glintL_run *run) { new_box(L)->run = run; }
 
 // Plain Lua keeps the script's name in arg[0].
 static void read_script_name(lua_State *L, glintL_run *run)
@@ -141,67 +107,18 @@ static void read_script_name(lua_State *L, glintL_run *run)
     lua_pop(L, 1);
 }
 
-glintL_run *glintL_get_run(lua_State *L)
+void glintL_open_run(lua_State *L)
 {
-    luaL_checkstack(L, 6, "run");
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &RUN);
-    run_box *box = lua_touserdata(L, -1);
-    lua_pop(L, 1);
-    if (!box)
-        box = new_box(L);
-    if (!box->run) {
-        box->run = glintL_run_create();
-        if (!box->run)
-            luaL_error(L, "out of memory");
-        box->is_owned = true;
-        read_script_name(L, box->run);
-    }
-    return box->run;
+    if (glintL_get_run(L))
+        return;
+    glintL_run **box = glintL_new_run_box(L, collect_run);
+    *box = glintL_run_create();
+    if (!*box)
+        luaL_error(L, "out of memory");
+    read_script_name(L, *box);
 }
 
-int glintL_message_handler(lua_State *L)
-{
-    if (lua_type(L, 1) == LUA_TSTRING)
-        return 1;
-    // Hooks, which end a script that goes on for ever, may be off here.
-    if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
-        return 1;
-    if (lua_type(L, 1) == LUA_TNUMBER)
-        luaL_tolstring(L, 1, NULL);
-    else
-        lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
-    return 1;
-}
-
-// ---- Failure ----
-
-bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
-{
-    if (run->exit_code)
-        return false;
-    va_list args;
-    va_start(args, format);
-    vsnprintf(run->message, sizeof run->message, format, args);
-    va_end(args);
-    run->exit_code = exit_code;
-    run->failed_index = index;
-    return false;
-}
-
-int glintL_run_exit_code(glint_status status)
-{
-    switch (status) {
-    case GLINT_OK:
-        return GLINTL_EXIT_DONE;
-    case GLINT_ERR_NO_SPACE:
-        return GLINTL_EXIT_LATER;
-    case GLINT_ERR_INVALID:
-    case GLINT_ERR_UNSUPPORTED:
-        return GLINTL_EXIT_USAGE;
-    default:
-        return GLINTL_EXIT_FAILED;
-    }
-}
+// ---- Renderer and writer ----
 
 static glint_status open_renderer(glintL_run *run, glint_error *error)
 {

@@ -1,0 +1,85 @@
+// The run of a Lua state, as all files find it, and its first failure.
+#include <stdarg.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "bindings/run/run.h"
+
+static const char RUN; // its address is the registry's key of the run
+
+double glintL_now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+glintL_run **glintL_new_run_box(lua_State *L, lua_CFunction collect)
+{
+    luaL_checkstack(L, 4, "run");
+    glintL_run **box = lua_newuserdatauv(L, sizeof *box, 0);
+    *box = NULL;
+    if (collect) {
+        lua_createtable(L, 0, 1);
+        lua_pushcfunction(L, collect);
+        lua_setfield(L, -2, "__gc");
+        lua_setmetatable(L, -2);
+    }
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &RUN);
+    return box;
+}
+
+void glintL_attach_run(lua_State *L, glintL_run *run) { *glintL_new_run_box(L, NULL) = run; }
+
+glintL_run *glintL_get_run(lua_State *L)
+{
+    luaL_checkstack(L, 2, "run");
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &RUN);
+    glintL_run **box = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return box ? *box : NULL;
+}
+
+int glintL_message_handler(lua_State *L)
+{
+    if (lua_type(L, 1) == LUA_TSTRING)
+        return 1;
+    // Hooks, which end a script that goes on for ever, may be off here.
+    if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
+        return 1;
+    if (lua_type(L, 1) == LUA_TNUMBER)
+        luaL_tolstring(L, 1, NULL);
+    else
+        lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
+    return 1;
+}
+
+// ---- Failure ----
+
+bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *format, ...)
+{
+    if (run->exit_code)
+        return false;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(run->message, sizeof run->message, format, args);
+    va_end(args);
+    run->exit_code = exit_code;
+    run->failed_index = index;
+    return false;
+}
+
+int glintL_run_exit_code(glint_status status)
+{
+    switch (status) {
+    case GLINT_OK:
+        return GLINTL_EXIT_DONE;
+    case GLINT_ERR_NO_SPACE:
+        return GLINTL_EXIT_LATER;
+    case GLINT_ERR_INVALID:
+    case GLINT_ERR_UNSUPPORTED:
+        return GLINTL_EXIT_USAGE;
+    default:
+        return GLINTL_EXIT_FAILED;
+    }
+}
