@@ -1,4 +1,4 @@
-/// The contract of every stage: what it reads, what it writes, and the exact order of its arithmetic. What holds for all stands
+/// The contract of every stage: what it reads and writes. The exact order of its arithmetic is that of ref/. What holds for all stands
 /// here, each stage in one of contract/tables.h, contract/hits.h, contract/light.h and contract/film.h, in the order of work.
 ///
 /// A stage takes plain arrays in and gives plain arrays out; it has never heard of a scene. Each is written once in

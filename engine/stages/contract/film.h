@@ -24,27 +24,11 @@ typedef struct glint_vertex_args {
     const void *origin[3], *direction[3];
     double *sum[2][3]; ///< in and out: added to where wanted; NULL: there is no such term
 } glint_vertex_args;
-// w_j as in surface, x_j the light of the triangle's sites on the lane's side:
-// sum += at[0] = at[1] = at[2] ? x_0 : (w_0 x_0 + w_1 x_1) + w_2 x_2                                          in double
+// The arithmetic: ref/triangle.h, in double; the weights are those of surface.
 
-// caps: the share left is 1, times that of each primitive, in the table's order; s of the light, a of a sphere:
-//         l = (position - point) scale, r = radius scale, d = sqrt(length2(l)); where not r < d: 1
-//         power_s = (d - r)(d + r); full = sqrt(max(power, 0)) / d, cosine = sqrt(0.5 + 0.5 full), sine = min(r / d, 1) / (2 cosine):
-//         of half the angle that the light is seen at; of a sphere likewise, of -f, radius scale_of_prim and power_a = c = exact_c(f)
-//         sphere: its own, seen from outside: 1; its own or c < 0: within; (c m) m < power_s, m = scale / scale_of_prim: 1 - part,
-//                 else 1: of two balls that do not meet, the one with the shorter tangent is before the other
-//         plane: its own: 1; h = dot(normal, point - center): h > 0: within, h < 0: behind, else 1
-//         within, behind = min(max((r +- depth) / (2 r), 0), 1) in double and world units, depth = dot(normal, position - center),
-//                 of a sphere radius - length(position - center)
-// part:   of one cap in another, G. Oat and P. Sander, "Ambient aperture lighting", I3D 2007, here by halves of all angles
-//         (so that caps of 1e-8 keep their digits): u, v = l / d, -f / |f|; sg, cg = 0.5 length(u - v), 0.5 length(u + v)
-//         x0, x1, x2, x3 = sines of half of s + a + g, a + g - s, s + g - a, s + a - g, by way of a + g and g - a
-//         x3 <= 0: 0; else x2 <= 0: 1; else x1 <= 0: min((sa / ss)^2, 1); else by Gauss and Bonnet, sectors less triangles:
-//         B = 2 angle(sqrt(x1 x3), sqrt(x0 x2)), A = 2 angle(sqrt(x2 x3), sqrt(x0 x1)): the triangle's angles at s and a
-//         E = 2 angle(k sin C, 1 + k cos C), its excess, k = (ss / cs) (sa / ca), C its angle where the edges cross:
-//                 sin C = 2 sqrt(x0 x3) sqrt(x1 x2) / e, cos C = (x0 x3 - x1 x2) / e, e = x0 x3 + x1 x2
-//         min(max((B + (A (2 sa^2) - E) / ss / (2 ss)) / pi, 0), 1)
-// angle(y, x): t = y / (sqrt(x x + y y) + x); twice t = t / (1 + sqrt(1 + t t)); 8 t (1 - t^2/3 + ... - t^22/23)
+// caps: the share left is 1, times that of each primitive, in the table's order. Of two balls that do not meet, the one with the
+// shorter tangent is before the other. The arithmetic: ref/caps.h, by G. Oat and P. Sander, "Ambient aperture lighting", I3D
+// 2007, here by halves of all angles, so that caps of 1e-8 keep their digits; areas by Gauss and Bonnet, sectors less triangles.
 
 // ---- bounce: where rays go on from a surface ----
 
@@ -59,12 +43,7 @@ typedef struct glint_bounce_args {
     uint16_t *total; ///< out: of the wanted lanes, those of total internal reflection, whose `refracted` means nothing
 } glint_bounce_args;
 // Written where wanted. Groups without a wanted lane get total = 0 and nothing else; other lanes hold anything.
-// u = direction / sqrt(length2(direction)) (each component divided), c = min(max(-dot(normal, u), 0), 1), r = ratio
-// reflected = u + (2 c) normal
-// k = 1 - (r r) (1 - c c); s = r == 1 ? c : sqrt(max(k, 0));  total = r != 1 and not k > 0
-// refracted = r u + (r c - s) normal                                                            (Snell)
-// x = r c, y = r s, p = (x - s) / (x + s), q = (c - y) / (c + y)                                (Fresnel)
-// reflectance = r == 1 ? 0 : total ? 1 : 0.5 (p p + q q)
+// The arithmetic: ref/real.h, by Snell and Fresnel.
 
 // ---- scatter: directions around normals, as dense as their cosine ----
 
@@ -77,14 +56,8 @@ typedef struct glint_scatter_args {
     void *direction[3]; ///< out, real, unit but for rounding and 2e-9
 } glint_scatter_args;
 // Groups without a wanted lane are not written; in others, lanes that are not wanted hold anything.
-// u and v are first rounded to real; a = 4 v, q = a rounded to a whole number: (a + w) - w with w = 1.5 2^52 (float: 2^23)
-// f = (a - q) (pi/2), z = f f;  s = f + (f z) (S1 + z (S2 + z (S3 + z S4))),  c = 1 + z (C1 + z (C2 + z (C3 + z (C4 + z C5))))
-// (sin, cos) = q = 1: (c, 0 - s); q = 2: (0 - s, 0 - c); q = 3: (0 - c, s); otherwise (s, c)
-// x = sqrt(u) cos, y = sqrt(u) sin, h = sqrt(max(1 - u, 0))                             (the disk, lifted: cosine-weighted)
-// g = n.z >= 0 ? 1 : -1, p = -1 / (g + n.z), q = (n.x n.y) p              (T. Duff et al., JCGT 6(1), 2017: an orthonormal basis)
-// tangent = (1 + g ((n.x n.x) p), g q, 0 - g n.x), bitangent = (q, g + (n.y n.y) p, 0 - n.y)
-// direction = (x tangent + y bitangent) + h n
-// The coefficients stand in coefficients.h.
+// The arithmetic: ref/scatter.h: the disk, lifted, which is cosine-weighted, in the orthonormal basis of T. Duff et al., JCGT
+// 6(1), 2017.
 
 // ---- shade: the terms of each sample ----
 
@@ -140,29 +113,10 @@ typedef struct glint_shade_args {
     float *beauty[3]; ///< out when sum is NULL
 } glint_shade_args;
 // What a light adds to a term is float; terms are added up in double:
-//   background += background where active and not hit; ambient += materials[m].ambient where hit
-//   for each light (with those joined to it) that has its lit bit set, in order:
-//     w = attenuation (NULL: 1); all of this in float:
-//     diffuse[c]  += (w cosine) (kd[c] diffuse[c]), the product p of the colours made in double: p < FLT_MAX ? (float)p : FLT_MAX
-//     where the material has a highlight, highlights is true and log2_specular > GLINT_NO_SPECULAR:
-//     y = shininess log2_specular, S = y < -40 ? 0 : exp2(y)
-//     specular[c] += (w S) (ks[c] specular[c])
-//     GLINT_LOBE_POWER_COSINE: S = S cosine
-//     where the material is of GLINT_HIGHLIGHT_FACETS, highlights is true and sine2 > GLINT_NO_SPECULAR:
-//     a = alpha, aa = a a, l = cosine, v = facing
-//     GGX        t = sine2 + aa (1 - sine2), u = a / t, b = 1 - aa, d = l sqrt(aa + b (v v)) + v sqrt(aa + b (l l))
-//                S = (u u) ((0.5 l) / max(d, FLT_MIN))
-//     Beckmann   c = max(1 - sine2, 2^-40), y = -((sine2 / c) (1.442695 / aa)), e = y < -126 ? 0 : exp2(y)
-//                d = (l v + v mask(l)) + l mask(v)
-//                S = (((e / c) / c) (1 / aa)) ((0.25 l) / max(d, FLT_MIN))
-//                mask(x): s = a sqrt(max(1 - x x, 0)), q = x / s, q < 1.6: (s ((0.396 q - 1.259) q + 1)) / (2.181 q + 3.535),
-//                otherwise 0
-//     S = min(S, GLINT_ATTENUATION_MAX), f = min(w S, GLINT_ATTENUATION_MAX)
-//     specular[c] += f (ks[c] specular[c]) + (f schlick) (grazing[c] specular[c])
-//     Of a material with planes: shininess and alpha are those of the lane; the products of colours are plane (kd[c] diffuse[c])
-//     with kd[c] of the table, likewise specular and grazing; ambient += plane ambient_light[c]; all in double
-//     joined lights: w cosine and w S (f and f schlick) are added up first, in order, in float from 0, over those with the lit bit set
-// Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
+// background where active and not hit, ambient where hit, then each light in order. The arithmetic: ref/shade.h; GGX and Beckmann
+// with Smith's masking, whose Beckmann form is that of B. Walter et al., EGSR 2007. The samples of joined lights are added up
+// first, in order, in float from 0. Products of colours, and what planes say, are made in double; a highlight is 0 below
+// 2^-40. Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 
 // ---- resolve: the mean of several samples ----
@@ -209,17 +163,10 @@ typedef struct glint_tone_args {
     uint64_t *clipped, *nonfinite; ///< added to: active lanes with a channel > white; with one of beauty that
         ///< is not finite
 } glint_tone_args;
-// x = gain beauty in float; clipped where x > white; x = max(x, 0) (NaN gives 0), x = min(x, top); bits of x below GLINT_TONE_FIRST << 16: code 0;
-// else entry = table[(bits >> 16) - GLINT_TONE_FIRST], code = (entry & 255) + ((bits & 0xffff) >= entry >> 8)
+// The arithmetic: ref/ref.c. Clipped where gain times beauty, in float, is above `white`; NaN counts as 0.
 
 // ---- elementary functions, elementary.h and ref.c ----
-// log2(x), 2^-126 <= x <= 1, real; result float: y = (float)x
-//   y >= GLINT_SQRT1_2: e = 0, f = (float)(x - 1), the difference in real
-//   else y = m 2^e with m in [1, 2); m >= GLINT_SQRT2: m = 0.5 m, e = e + 1; f = m - 1 (exact)
-//   (both constants rounded to float)
-//   p = C9; p = p f + C8 ... p = p f + C0; log2 = (float)e + f p
-// exp2(y), float, -126 <= y <= 0: n = (y + 12582912) - 12582912, f = y - n,
-//   p = D6; p = p f + D5 ... p = p f + D0; exp2 = p 2^n
-// The coefficients stand in coefficients.h.
+// log2 of 2^-126 .. 1, result float; exp2 of -126 .. 0, float: by polynomials in one written order, whose coefficients stand in
+// coefficients.h.
 
 #endif

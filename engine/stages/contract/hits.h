@@ -57,75 +57,20 @@ typedef struct glint_cast_args {
 // cast_bundle reads no directions.
 // The best hit starts as t = +inf, GLINT_MISS. A primitive replaces it where 0 < t < inf and (t < best, or t == best and its
 // id is lower). Index and filter are free to reject what the decision below would miss, and no more.
-// sphere, real:   f = (origin - center) * scale (a bundle's origin is the eye), c = exact_c(f, prim)
-//                 a = length2(direction), b = -dot(f, direction)
-//                 near = b*b < a*r2
-//                 disc = near ? b*b - a*c : a*r2 - length2(cross(f, direction))
-//                        cross(f, d) = (f.y d.z - f.z d.y, f.z d.x - f.x d.z, f.x d.y - f.y d.x)
-//                 s = sqrt(max(disc, 0)), q = b >= 0 ? b + s : b - s
-//                 far_root = c <= 0 and b >= 0
-//                 t = (far_root ? q : c) / (far_root ? a * scale : q * scale)
-//                 a hit where disc >= 0 and t > 0
-// exact_c, double: p_i = f_i f_i with error e_i (two_prod); x = two_sum(p_0, p_1, x_e), y = two_sum(x, p_2, y_e),
-//                 z = two_sum(y, -r2, z_e); c = z + (((x_e + y_e) + z_e) + (((e_0 + e_1) + e_2) - r2_low))
-//          float: c = dot(f, f) - (float)r2
-// plane, real:    h = dot(normal, origin - center); nd = dot(normal, direction)
-//                 t = -h / nd; a hit where nd nd >= 1e-60 length2(direction) (float: 1e-30) and t > 0
-// triangle, real: P_j = (corner_j - origin) * scale of the table, j = 0, 1, 2; edges (e, dz, depth) of these and direction:
-//                 det = (e_0 + e_1) + e_2;  t = depth / ((det dz) * scale)
-//                 a hit where the ray passes and t > 0
-//                 passes: least = min(min(e_0, e_1), e_2), most = max(max(e_0, e_1), e_2); where least > 0 or most < 0; where
-//                 least = 0 or most = 0 only if min X <= 0 <= max X and min Y <= 0 <= max Y as well: an e of 0 may be one whose
-//                 sign is lost, and of a triangle seen edge-on all are
-// edges(P, d):    z = 0; z = 1 where max(d_1, -d_1) > max(d_0, -d_0); z = 2 where max(d_2, -d_2) > that of the larger of
-//                 these; x = (z + 1) mod 3, y = (z + 2) mod 3; dz = d_z
-//                 X_j = P_jx d_z - P_jz d_x, Y_j = P_jy d_z - P_jz d_y: the corners as seen along the ray
-//                 e_0 = X_2 Y_1 - Y_2 X_1, e_1 = X_0 Y_2 - Y_0 X_2, e_2 = X_1 Y_0 - Y_1 X_0
-//                 depth = (e_0 P_0z + e_1 P_1z) + e_2 P_2z
-//                 Neighbours see their common corners at the same X, Y and, since rounding is monotonic, no e has the
-//                 wrong sign for them: no ray goes through a common edge or corner (Woop, Benthin, Wald, JCGT 2(1)
-//                 2013; here without the division, in the scaled plane).
-// solid, real:    f = inverse (origin - center), e = inverse direction (each row's dot product); span(f, e) = in, out
-//                 t = in > 0 ? in : out; a hit where span hits and t > 0
-// span:           ball, cylinder: a = e.x^2 + e.y^2, b = f.x e.x + f.y e.y, c = f.x^2 + f.y^2, x = cross(f, e), w = x.z^2; ball:
-//                 a, b, c are length2(e), dot(f, e), length2(f), w = length2(x); then b = -b, c = c - 1
-//                 disc = b*b < a ? b*b - a*c : a - w; s = sqrt(max(disc, 0)); q = b >= 0 ? b + s : b - s
-//                 far = q / a, other = c / q; in, out = b >= 0 ? (other, far) : (far, other); hits where disc >= 0
-//                 where a = 0: in = -inf, out = inf, hits where c <= 0
-//                 cone: the ray is begun nearest to the apex, at f + m e with m = -dot(f, e) / length2(e), which is added to in
-//                 and out, where it starts anew: 16 < length2(f), or dot(f, e)^2 > 0.875 (length2(f) length2(e)) and not on the
-//                 side: f.z > 0 and |(f.x^2 + f.y^2) - f.z^2| <= point_slack length2(f)
-//                 then a = (e.x^2 + e.y^2) - e.z^2, c = (f.x^2 + f.y^2) - f.z^2, b = f.z e.z - (f.x e.x + f.y e.y)
-//                 disc = (x.x^2 + x.y^2) - x.z^2 with x = cross(f, e); s, q, far, other as above, but where q = 0,
-//                 through the apex, other = far; low, high = min, max of them
-//                 a > 0: in, out = low, high; hits where disc >= 0
-//                 else hits where a < 0 or b and e.z have one sign; end = a = 0 ? c / (2 b) : e.z > 0 ? high : low; in, out = e.z > 0 ? (end, inf) : (-inf, end)
-//                 box: in = -inf, out = inf, hits
-//                 then, cylinder and cone: slab of z, from -1 or (cone) 0; box: slabs of x, y, z, from -1
-//                 slab from low, of axis i: where e_i = 0: hits only where not (f_i < low or f_i > 1), else
-//                 enter = ((e_i > 0 ? low : 1) - f_i) / e_i, leave = ((e_i > 0 ? 1 : low) - f_i) / e_i
-//                 where in < enter: in = enter, by this face; where leave < out: out = leave, by this face
-//                 disk: in = out = -f.z / e.z; x = f.x + in e.x, y likewise; hits where x x + y y <= 1
-//                 and in <= out
-//                 tube, funnel: as cylinder and cone, without the faces: where `in` is by a face, in = out, and where `out` is,
-//                 out = in; both: no hit
+// The arithmetic: ref/cast.h, ref/triangle.h, ref/solid.h. What it is for:
+// sphere: by the distance of the line from the centre where the ray begins afar, as b^2 - a c close by; c is exact, by error-free
+//         sums and products, so that a point on the surface is told from one beside it
+// triangle: edge functions in the plane across the ray's longest axis. Neighbours see their common corners at the same X, Y
+//         and, since rounding is monotonic, no edge function has the wrong sign for them: no ray goes through a common edge or
+//         corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the division, in the scaled plane). Where one is 0 its sign
+//         may be lost, and of a triangle seen edge-on all are 0: the bounds decide
+// solid:  the unit shape in its own frame; of a cone the ray is begun nearest to the apex, where that keeps more digits
 // A ray meets the primitive that it leaves by a rule of its own: not, but for spheres and solids other than disks where the
-// lane is inward (and starts on them or within): these surely, at t = max((b + b) / (a scale), least_way) and max(out, least_way) (tube, funnel: where the span
-// hits, `out` is not by a face and 0 < out, there).
-// A ray that leaves triangle A meets another, B, as above unless it is in the planes of both at once as far as rounding lets us
-// know: it starts in B's plane, or crosses that, at t as above, before it is off A's for certain; or unless it does not pass B,
-// and 0 < t: what it begins off by may have brought it by an edge:
-//                 m_P and M_P of triangle P as m and M in occlude; over_P(x) = dot(m_P, x - corner_0 of P), give or take
-//                 off_P(x) = point_slack dot(M_P, |x - corner_0 of P|); slack as in surface, of A and with the origin as point:
-//                 |over_B(origin)| <= ((|m_B.x| + |m_B.y|) + |m_B.z|) slack + off_B(origin), or
-//                 0 < t <= near_beside extent and t |dot(m_A, direction)| <= ((|m_A.x| + |m_A.y|) + |m_A.z|) slack
-// Then it meets B, at least_way if it starts there and else at t, where a corner of B is over A on the side of
-// dot(m_A, direction), a corner of A over B on that of -dot(m_B, direction), and the ray is at B by `loose`, `move` and `reach` of
-// occlude, with `on`; for its bounds at (t direction) scale in place of 0. A corner c is over P by over_P(c), if that is
-// more than off_P(c) + ((|m_P.x| + |m_P.y|) + |m_P.z|) (point_slack |c|_max). So of two faces that share an edge the other is met
-// where the ray goes between them, and only there.
-// two_sum(a, b): s = a + b, v = s - a, error = (a - (s - v)) + (b - v)
-// two_prod(a, b): p = a b, error = a b - p exactly (FMA, or Dekker with the splitter 2^27 + 1)
+// lane is inward (and starts on them or within): these surely, at GLINT_LEAST_WAY or beyond.
+// A ray that leaves triangle A meets another, B, as any other ray does unless it is in the planes of both at once as far as
+// rounding lets us know, or does not pass B and may have been brought by an edge by what it begins off by. Then it meets B
+// where a corner of B is over A on the ray's side, a corner of A over B on the other, and the ray is at B within rounding. So of
+// two faces that share an edge the other is met where the ray goes between them, and only there.
 
 // ---- scan: the nearest triangle of each ray, from a list of those that a tile may show ----
 
@@ -172,30 +117,12 @@ typedef struct glint_surface_args {
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
 // and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is 0.
-// sphere: f = (origin - center) * scale (the camera's origin is its eye); ts = t scale; r = radius scale
-//         n = f + ts direction (component by component), times 1 / r (a division 1 / r first)
-//         where length2(f) < GLINT_SPHERE_CLOSE: that is n. The error of t at a point that is seen at an angle i goes along the
-//         ray, and grows as 1 / cos i does: n is as long as it should be but for F^2 + 8 roundings, F = |f| / r
-//         else where length2(f) < GLINT_SPHERE_NEAR: n = n (1.5 - 0.5 length2(n))
-//         elsewhere: a = length2(direction), b = -dot(f, direction), w = b / a, l = f + w direction,
-//                 h = sqrt(max(r2 - length2(l), 0) / a), n = b >= 0 and c >= 0 ? l - h direction : l + h direction
-//                 with c = length2(f) - r2;  m = length2(n); n = n / sqrt(m) (each component divided);
-//                 where not m > 0: n = -direction / sqrt(a)
-//         point = center + radius n
-// plane:  n = normal; point = origin + t direction
-// triangle: e as in cast; inverse = 1 / ((e_0 + e_1) + e_2), w_j = e_j inverse; f = corner_1 - corner_0, g = corner_2 - corner_0
-//         point = corner_0 + (w_1 f + w_2 g): within slack of the plane, for any w_1, w_2 within [0, 1 + 2^-50]:
-//         slack = point_slack ((|f|_max + |g|_max) + |point|_max), |v|_max = max(max(|v_0|, |v_1|), |v_2|): f and g are one
-//         rounding off, the products, their sum and the point one each
-//         n, double, then rounded: m = cross(f scale, g scale), n = m / sqrt(length2(m)) (each component divided)
-//         where it has corner normals: s = (w_0 normal_0 + w_1 normal_1) + w_2 normal_2, l = length2(s), s = s / sqrt(l); where
-//         not l > 0: s = n. The geometric n decides what is `back`; s = dot(s, back ? -n : n) < 0 ? -s : s is the normal.
-// solid:  f, e, in, out as in cast; through what `in` is by where t = in, else `out`; k = f + t e
-//         through the curved side: ball: k = g = k / sqrt((k.x^2 + k.y^2) + k.z^2); else r = sqrt(k.x^2 + k.y^2), g = (k.x / r,
-//         k.y / r, cone ? -1 : 0), 0 for x and y where not r > 0; k.x, k.y = g.x h, g.y h with h = cone ? k.z : 1
-//         through a face: g = its outward normal (disk: +z), k's component there = the face's
-//         n = transpose(inverse) g (each column's dot product), over sqrt(length2(n)); point = center + forward k
-// then    back = dot(n, direction) > 0; n = back ? -n : n, after `point` was made with the outward n
+// The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. Of a sphere that is close, the normal is as long as it should be but
+// for F^2 + 8 roundings, F = |origin - center| / radius: the error of t at a point that is seen at an angle i goes along the
+// ray, and grows as 1 / cos i does. From further away it is brought to its length, from afar made of the line's distance from
+// the centre. The slack of a triangle holds for corner weights within [0, 1 + 2^-50]: its edges are one rounding off, the
+// products, their sum and the point one each. The geometric normal decides what is `back`, also of smooth triangles; the point
+// of a solid is brought onto its surface.
 
 #define GLINT_SPHERE_NEAR 0x1p40
 #define GLINT_SPHERE_CLOSE_DOUBLE 0x1p8

@@ -13,8 +13,7 @@ typedef struct glint_view_args {
     const void *normal[3], *direction[3];
     float *facing; ///< out: n.v in 0 .. 1
 } glint_view_args;
-// Groups without a hit are not written. q = (float)length2(direction), m = (float)-dot(normal, direction);
-// facing = min(max(m / sqrt(q), 0), 1) in float
+// Groups without a hit are not written. The arithmetic: ref/microfacets.h.
 
 // ---- light: what one light does at each point, before shadows and colours ----
 
@@ -46,18 +45,9 @@ typedef struct glint_light_sample {
 /// Of a point's distance to the centre: so near to the ball's surface it is on it.
 #define GLINT_CONE_SLACK_DOUBLE 0x1p-40
 #define GLINT_CONE_SLACK_FLOAT 0x1p-18
-// GLINT_EMIT_CONE, for each lane in double whatever real is (C: cone_sample.h), u, cos, sin its own three numbers:
-//   D = (center - point) scale, d = sqrt(length2(D)), r = radius scale, x = (d - r) (d + r), g = x / length2(D)
-//   It is within the ball where g < (dot(normal, D) > 0 ? slack : -slack): a point on the surface sees the half of the ball
-//   that its normal looks at, or nothing.
-//   outside: q = r / d, q2 = q q, h = 1 / (1 + sqrt(max(g, 0))): 1 - the cosine of the cone's edge is q2 h, without the loss of a
-//            difference; m = (u q2) h, s2 = (u h) (2 - m), c = 1 - m, s = q sqrt(s2); axis D / d
-//            t = (d max(g, 0)) / (c + q sqrt(max(1 - s2, 0))): to where that direction meets the ball
-//   within:  q = q2 = h = 1, axis the normal: half of all directions;  b = -dot(D, way), e = max(-x, 0), k = sqrt(b b + e),
-//            t = b > 0 ? e / (b + k) : k - b: to where it leaves the ball
-//   way = (s cos tangent + s sin bitangent) + c axis, in the frame of scatter; far = t (1 / scale);
-//   position = point + way far. All are rounded to real then; but light_side (below) reads the position as it was
-//   weight = 2 (q2 h): the solid angle over pi, so that the mean of weight cosine is irradiance over pi radiance
+// GLINT_EMIT_CONE: cone_sample.h, for each lane in double whatever real is. A point on the surface sees the half of the ball
+// that its normal looks at, or nothing. The position is rounded to real then, but light_side (below) reads it as it was. The
+// weight is the solid angle over pi, so that the mean of weight cosine is irradiance over pi radiance.
 
 typedef struct glint_light_args {
     uint32_t group_count;
@@ -91,25 +81,9 @@ typedef struct glint_light_args {
 #define GLINT_NO_SPECULAR (-1e30f)
 #define GLINT_ATTENUATION_MAX 0x1p100f ///< white by far, and a few of them still add up to a finite number
 // Groups without a hit get lit = 0 and nothing else is written; of groups with lit = 0 only `lit` is written.
-// l = (position - point) scale (directional: l = position; cone: l = way); l2 = length2(l); nl = dot(normal, l)
-// lit = hit and nl > 0 and not dark and, of spots and lamps, as below
-// cosine:      point light: q = (float)l2, m = (float)nl, min(m / sqrt(q), 1) in float
-//              directional: min((float)nl, 1)
-// attenuation: d = sqrt(l2) / scale (cone: far), A = 1 / (c0 + (c1 d + c2 (d d))); min((float)A, GLINT_ATTENUATION_MAX)
-//   spot       c = min(-dot(axis, l) / sqrt(l2), 1), x = max(min((c - outer) inverse, 1), 0);  lit where x > 0
-//              w = min((float)A, GLINT_ATTENUATION_MAX) (float)((x x) (3 - 2 x))
-//              exponent not 0: lit where c >= 2^-126;  w = w S,  S as in shade with y = exponent log2(c)
-//   lamp       m = -dot(normal of the sample, l); EMIT_ALL: m is not computed
-//              EMIT_RADIANT_BOTH: m = max(m, -m)
-//              lit where m > 0;  radiant: min((float)(A (m / (l2 sqrt(l2)))), GLINT_ATTENUATION_MAX)
-//   cone       min((float)(A weight), GLINT_ATTENUATION_MAX)
-// highlight:   a = length2(direction), nv = -dot(normal, direction), lv = -dot(l, direction)
-//   Phong      rv = (2 nl) nv - lv;  x = min((rv rv) / (l2 a), 1);  there is one where rv > 0
-//   Blinn      w = sqrt(l2 a);  h = l a - direction w (component by component);  nh = dot(normal, h);  num = nh nh;
-//              den = length2(h);  x = min(num / den, 1);  there is one where nh > 0 and den > 0
-//   sparing    num = rv rv and den = l2 a of Phong;  there is none where num < least den
-//   log2_specular = 0.5 log2(x), see elementary functions below; x below 2^-126: none
-// In --precision float all of this is float, l2 a included.
+// The arithmetic: ref/light.h; S of a spot as in shade. log2_specular is 0.5 log2 of (r.v)^2 or (n.h)^2: there is none below
+// 2^-126, and, if sparing, none where the material's `least` says that the highlight is 0.
+// In --precision float all of this is float, the products of squared lengths included.
 
 // ---- lit_surface: surface and the light of a plain lamp in one ----
 //
@@ -135,11 +109,7 @@ typedef struct glint_facet_args {
     float *schlick[GLINT_LIGHT_CHUNK]; ///< (1 - v.h)^5; 0 where unlit or without h
 } glint_facet_args;
 // Only groups with a lit lane on a material of GLINT_HIGHLIGHT_FACETS are written, in every lane.
-// l as in light; p = sqrt(length2(l)), r = sqrt(length2(direction)), w = p r
-// h = l r - direction p (component by component), k = cross(normal, h)
-// there is one where lit and 0 < length2(h):  sine2 = (float)min(length2(k) / length2(h), 1)
-//   z = (float)max(min((w - dot(l, direction)) / (2 w), 1), 0), which is (v.h)^2;  m = 1 - sqrt(z) in float
-//   schlick = ((m m) (m m)) m
+// The arithmetic: ref/microfacets.h; Schlick's (v.h)^2 comes by half of the angle between l and v, without making h unit.
 
 // ---- occlude: which points a light reaches ----
 
@@ -173,39 +143,16 @@ typedef struct glint_occlude_args {
         ///< glint_cast_args
 } glint_occlude_args;
 // `position` stands for each lane's own in what follows.
-// light_side of a primitive, double: sphere: the sign of exact_c(f) with f = (position - center) * scale of the sphere, 1
-//         where length2(f) overflows; directional: 1.  plane: the sign of dot(normal, position - center); directional: of
-//         dot(normal, position)
-// A lane is blocked where any primitive other than its own blocks it:
-// sphere: d = (position - point) scale (directional: d = position); f = (point - center) * scale_of_prim, c = exact_c(f);
-//         a = length2(d), b = -dot(f, d)
-//         light_side < 0: blocked = c > 0
-//         else c < 0:     blocked = light_side > 0
-//         else            disc as in cast; blocked = b > 0 and disc >= 0 and (directional or b scale < a scale_of_prim)
-// plane:  h = dot(normal, point - center); blocked = light_side and h have strictly opposite signs
-// The own sphere: blocked where `back` and its light_side > 0. The own plane never blocks.
-// triangle: f, g as in surface times scale of the table, m = cross(f, g) (both real); light = dot(m, position - corner_0)
-//         (directional: dot(m, position))
-//   The own: blocked = back ? light > 0 : light < 0.
-//   Another: q = point - corner_0, h = dot(m, q); (e, dz) = edges of P_j = (corner_j - point) * scale and d
-//         M_x = |f_y g_z| + |f_z g_y|, M_y = |f_z g_x| + |f_x g_z|, M_z = |f_x g_y| + |f_y g_x|
-//         bound = ((|m_x| + |m_y|) + |m_z|) slack + point_slack ((M_x |q_x| + M_y |q_y|) + M_z |q_z|)
-//         on = slack > 0 and |h| <= bound: as far as rounding lets us know the point lies in this plane too
-//         not on: blocked = h and light have strictly opposite signs, the segment passes as in cast and the sum of e is not 0
-//         on:     a segment from there leaves the plane at once and can meet the triangle at its own beginning alone. It is
-//                 blocked where the triangle reaches to the point and parts it from the light as seen by the viewer's ray:
-//                 r = max of all |P_jk|, loose = 2 (slack scale) + point_slack r, move = |dz| loose
-//                 reach = move ((((((|X_0| + |Y_0|) + |X_1|) + |Y_1|) + |X_2|) + |Y_2|) + 2 move): what e may be off by
-//                 away = dot(m, direction of the viewer's ray)
-//                 blocked = (away < 0 and light < 0 or away > 0 and light > 0) and (all e >= -reach or all e <= reach), and of
-//                 min X and min Y none > move, of max X and max Y none < -move, and for each k min P_jk <= loose and
-//                 max P_jk >= -loose
-// solid:  d as of spheres, in and out of the ray from `point` along d: blocked = hits and (0 < in and in scale < 1 or
-//         0 < out and out scale < 1); directional: < inf, without scale
-//         light_side, double: k = inverse (position - center): -1 where k is inside of all bounds of the form, else 1; directional: 1
-//   The own: a disk never blocks; tube and funnel: blocked where `back` and the span hits, `out` is not by a face, 0 < out and
-//         out scale < 1 (directional: < inf); others, being convex: blocked where `back` and light_side > 0.
-//   Of triangles: a flat mesh throws no shadow on itself, points on its edges included, and no light enters a closed mesh by an edge.
+// light_side of a primitive, double: > 0 where the light is outside of a sphere or a solid, < 0 where it is inside; of a
+// plane the sign of its height over it.
+// A lane is blocked where any primitive other than its own blocks it: where 0 < t < 1 on the segment from the point to the
+// light. The arithmetic: ref/occlude.h, ref/triangle.h, ref/solid.h. What a point's own primitive does:
+//   sphere  blocks where `back` and the light is outside; plane: never
+//   triangle  by the side of its plane that the light is on. A flat mesh throws no shadow on itself, points on its edges
+//           included, and no light enters a closed mesh by an edge: a point that is, as far as rounding lets us know, in
+//           another triangle's plane too is blocked by that where the triangle reaches to the point and parts it from the
+//           light as seen along the viewer's ray
+//   solid   a disk never; tube and funnel by their other side; others, being convex, where `back` and the light is outside
 
 // ---- soft_light: light, occlude and the sums of shade for the samples of an area light in one ----
 

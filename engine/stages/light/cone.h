@@ -6,7 +6,7 @@
 typedef struct R(cone) {
     vd point[3], away[3]; ///< away: to the ball's centre, in the light's units
     vd axis[3], tangent[3], bitangent[3];
-    vd distance, length2, sine, sine2, part; ///< of away; q, q2 and h of the contract
+    vd distance, length2, sine, sine2, part; ///< of away; q, q2 and h of cone_sample.h
     vd before, beyond; ///< squared length of a tangent from outside; of the half chord's from inside
     dm within;
 } R(cone);
