@@ -196,6 +196,27 @@ check-farm: all ## scripts/farm with GNU parallel, and on a Slurm that SLURM_CLU
 	@tests/deps.sh farm
 	@$(RUNNER) tests/command/farm.sh
 
+ARM64          := build-arm64
+ARM64_SYSROOT  := $(ARM64)/sysroot
+ARM64_LIBRARY  := $(CURDIR)/$(ARM64_SYSROOT)/usr/lib/aarch64-linux-gnu
+ARM64_TESTS    := $(patsubst %,$(ARM64)/tests/engine/test_%,stages_bounce stages_cast stages_light stages_occlude stages_scatter \
+                    stages_shade caps leaf soft tone)
+ARM64_EMULATOR := qemu-aarch64 -L $(CURDIR)/$(ARM64_SYSROOT)
+
+.PHONY: check-arm64 check-arm64-run
+check-arm64: ## goldens, the kernels' tests and a job's hashes on arm64, under qemu; installs compiler and qemu through apt
+	@tests/deps.sh build test arm64
+	@tests/arm64/sysroot.sh $(ARM64_SYSROOT)
+	@$(MAKE) --no-print-directory all
+	@PKG_CONFIG_LIBDIR=$(ARM64_LIBRARY)/pkgconfig PKG_CONFIG_SYSROOT_DIR=$(CURDIR)/$(ARM64_SYSROOT) $(MAKE) --no-print-directory \
+	    BUILD=$(ARM64) CC="$(ARM64_CC) --sysroot=$(CURDIR)/$(ARM64_SYSROOT)" $(ARM64)/glint $(ARM64)/glint.so $(ARM64_TESTS)
+	@$(MAKE) --no-print-directory check-arm64-run
+
+ARM64_CC ?= aarch64-linux-gnu-gcc
+
+check-arm64-run:
+	@ARM64=$(ARM64) GLINT_CASE_STEP=23 EMULATOR="$(ARM64_EMULATOR)" $(RUNNER) tests/arm64/arm64.sh $(ARM64_TESTS)
+
 .PHONY: san-run
 san-run: tests
 	@T="$(T)" HARD_RAYS=20000 PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
@@ -358,8 +379,8 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
 
-clean: ## removes build/, build-asan/, build-tsan/
-	rm -rf $(BUILD) build-asan build-tsan
+clean: ## removes build/, build-asan/, build-tsan/, build-arm64/
+	rm -rf $(BUILD) build-asan build-tsan $(ARM64)
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

@@ -2,7 +2,8 @@
 # What glint needs on Debian, and how to get it.
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
-#                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm)
+#                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64
+#                         (the tests under qemu)
 set -eu
 
 # package  how to tell that it is there
@@ -47,9 +48,14 @@ tachyon         command:tachyon
 farm_optional='
 parallel        command:parallel
 '
-
+arm64_required='
+gcc-aarch64-linux-gnu command:aarch64-linux-gnu-gcc
+libc6-dev-arm64-cross file:/usr/aarch64-linux-gnu/include/stdio.h
+qemu-user       command:qemu-aarch64
+'
 present() {
     case $1 in
+    file:*) [ -e "${1#file:}" ] ;;
     command:*) command -v "${1#command:}" >/dev/null 2>&1 ;;
     header:*) echo "#include <${1#header:}>" | "${CC:-cc}" -E - >/dev/null 2>&1 ;;
     module:*) pkg-config --exists "${1#module:}" 2>/dev/null ;;
@@ -130,9 +136,10 @@ for what in "$@"; do
         ;;
     films) prefer "$films_optional" "the tests that need it will be skipped" ;;
     rock) require "$rock_required" ;;
+    arm64) require "$arm64_required" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 ..." >&2
         exit 2
         ;;
     esac

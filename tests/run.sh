@@ -2,7 +2,8 @@
 # Runs tests, JOBS at a time, and prints a line for each as it ends, then the totals: 'N passed, N failed, N skipped'.
 #   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, or make:TARGET
 # From the environment: BUILD (the build folder), T (run the items whose name has it), JOBS (as many as there are
-# processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, TEST_LIMIT_S (for one item). A test exits 0
+# processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (what C tests run under), TEST_LIMIT_S
+# (for one item). A test exits 0
 # when it passed and 77 when it cannot run here. What it prints goes to BUILD/tests/log/NAME and is shown when it fails.
 # Cases are counted from a line of totals like our own, from cmocka's lines or from TAP; a test that prints none of
 # these counts as one. Tests run beside each other, so each has its files in a folder of its own.
@@ -20,7 +21,7 @@ run_item() {
     make:*) ${MAKE:-make} --no-print-directory "${1#make:}" ;;
     *.lua) LD_PRELOAD=${PRELOAD:-} timeout "$limit_s" "${LUA:-lua5.4}" "$1" ;;
     *.sh) timeout "$limit_s" bash "$1" ;;
-    *) timeout "$limit_s" "$1" ;;
+    *) timeout "$limit_s" ${EMULATOR:-} "$1" ;;
     esac
 }
 

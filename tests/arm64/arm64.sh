@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# arm64.sh: what the command built for arm64 renders under qemu against the goldens and against what this machine renders.
+#   EMULATOR   what runs a program of arm64        ARM64   the build folder of the programs for arm64
+set -u
+native=$GLINT scratch=$ARM64/tests/arm64
+rm -rf "$scratch"
+mkdir -p "$scratch"
+scratch=$(cd "$scratch" && pwd)
+printf '#!/bin/sh\nexec %s %s/glint "$@"\n' "$EMULATOR" "$(cd "$ARM64" && pwd)" >"$scratch/glint"
+chmod +x "$scratch/glint"
+bad=0
+
+# check NAME COMMAND...
+check() {
+    local name=$1
+    shift
+    if "$@"; then
+        echo "ok - $name"
+    else
+        echo "not ok - $name"
+        bad=1
+    fi
+}
+
+sums() { (cd "$1" && sha256sum -- *); }
+
+# both NAME SCRIPT OPTION...    The same job here and there; NAME has the ending of its files.
+both() {
+    local name=$1
+    shift
+    "$native" "$@" --quiet -o "$scratch/here/$name" || echo "no picture here"
+    "$scratch/glint" "$@" --quiet -o "$scratch/there/$name" || echo "no picture there"
+}
+
+GLINT=$scratch/glint BUILD=$ARM64 bash tests/command/golden.sh || bad=1
+
+mkdir "$scratch/here" "$scratch/there"
+both 'light_%04d.pfm' scripts/moving_light.lua -f 1-120:20 --size 96x54 --passes depth,normal,object_id
+both 'sphere_%04d.pfm' scripts/mesh_and_sphere.lua -f 1 --size 96x54
+both 'float_%04d.pfm' scripts/molecule.lua -f 1 --size 96x54 --precision float --samples 4
+both 'indirect_%04d.pfm' scripts/indirect.lua --set samples=4 -f 1-2 --size 48x27
+check "pictures of floats: the same bytes" test "$(sums "$scratch/here")" = "$(sums "$scratch/there")"
+check "and all of them" test "$(find "$scratch/here" -name '*.pfm' | wc -l)" -ge 16
+
+rm -rf "$scratch/here" "$scratch/there"
+mkdir "$scratch/here" "$scratch/there"
+both 'small_%04d.png' scripts/moving_light.lua -f 1-3 --size 96x54 --encode small
+check "one encoder library: the same files" test "$(sums "$scratch/here")" = "$(sums "$scratch/there")"
+both 'fast_%04d.png' scripts/moving_light.lua -f 1-3 --size 96x54 --encode fast
+for n in 1 2 3; do
+    check "fast, frame $n: the same pixels" \
+        "$native" compare "$scratch/here/fast_000$n.png" "$scratch/there/fast_000$n.png"
+done
+"$scratch/glint" scripts/moving_light.lua -f 1-3 --size 96x54 --json -o "$scratch/here/fast_%04d.png" >"$scratch/kept" 2>&1
+check "a job goes on where another machine has stopped" test "$(grep -c '"status":"kept"' "$scratch/kept")" -eq 3
+check "an instruction set of another machine is refused" \
+    sh -c "GLINT_ISA=avx2 '$scratch/glint' scripts/moving_light.lua -f 1 -o none 2>&1 | grep -q 'lacks .avx2'"
+exit $bad
