@@ -44,6 +44,9 @@ endif
 # WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
+# PORTABLE=1 takes on Linux, too, what macOS and the BSDs have in place of inotify, eventfd and the like.
+DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE)
+
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
 ifdef SANITIZE
   SAN_FLAGS := -fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
+#include "bindings/run/system.h"
 
 #define BAR_WIDTH 24
 #define BAR_LEAST 4 // a narrower one is left out
@@ -95,7 +96,7 @@ static void *draw_until_stopped(void *argument)
     struct timespec until;
     pthread_mutex_lock(&progress->lock);
     while (!progress->stops) {
-        clock_gettime(CLOCK_MONOTONIC, &until);
+        clock_gettime(GLINTL_COND_CLOCK, &until);
         until.tv_nsec += INTERVAL_MS * 1000000L;
         until.tv_sec += until.tv_nsec / 1000000000L;
         until.tv_nsec %= 1000000000L;
@@ -114,7 +115,6 @@ static void *draw_until_stopped(void *argument)
 cli_progress *cli_progress_create(bool color)
 {
     const char *term = getenv("TERM");
-    pthread_condattr_t attributes;
     sigset_t stops, before;
     if (!isatty(STDERR_FILENO) || !term || strcmp(term, "dumb") == 0)
         return NULL;
@@ -124,10 +124,7 @@ cli_progress *cli_progress_create(bool color)
     progress->color = color;
     progress->start_ms = glintL_now_ms();
     pthread_mutex_init(&progress->lock, NULL);
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&progress->wake, &attributes);
-    pthread_condattr_destroy(&attributes);
+    glintL_cond_init(&progress->wake);
     sigemptyset(&stops); // these are for the main thread
     sigaddset(&stops, SIGINT);
     sigaddset(&stops, SIGTERM);

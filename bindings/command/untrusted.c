@@ -22,6 +22,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers" // SCMP_A0 and the like leave fields out, says clang
+
 #define MEMORY_LIMIT ((rlim_t)4 << 30) // of the process
 #define FILE_LIMIT ((rlim_t)1 << 30) // of one file
 #define OPEN_FILES_LIMIT 64

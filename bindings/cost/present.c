@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "bindings/cost/cost.h"
+#include "bindings/run/system.h"
 
 static const unsigned char PLOT_LUA[] = {
 #include "bindings/cost/plot.lua.h"
@@ -21,17 +22,8 @@ static const glintL_carried modules[] = {
 
 static void cost_machine(const cost_study *study, char out[256])
 {
-    char line[256], model[128] = "processor unknown";
-    FILE *file = fopen("/proc/cpuinfo", "re");
-    while (file && fgets(line, sizeof line, file)) {
-        const char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) != 0 || !colon)
-            continue;
-        snprintf(model, sizeof model, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
-        break;
-    }
-    if (file)
-        fclose(file);
+    char model[128];
+    glintL_processor_name(model);
     const glint_renderer *renderer = study->renderers[false][false];
     int threads = glint_renderer_threads(renderer);
     snprintf(out, 256, "%.100s, %d thread%s, %s, glint " GLINT_VERSION ", compiler %.40s", model, threads,

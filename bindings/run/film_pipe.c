@@ -6,12 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "bindings/run/film.h"
+#include "bindings/run/system.h"
 
 #define WAIT_MS 50 // between looks at whether the run was interrupted
 #define GRACE_MS 2000 // from SIGTERM to SIGKILL
@@ -116,7 +116,7 @@ static int start(encoder *e, const char *target)
     size_t room = strlen(target) + 8;
     char *url = malloc(room); // a ':' in a name is no protocol's
     e->said = tmpfile();
-    if (!url || !e->said || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    if (!url || !e->said || !glintL_socket_pair(ends)) {
         int code = url && errno ? errno : ENOMEM;
         free(url);
         return code;

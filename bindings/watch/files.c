@@ -1,26 +1,24 @@
-// The files of a watched script: inotify on their folders, for editors replace a file as often as they write into it.
+// The files of a watched script, by their folders: editors replace a file as often as they write into it.
 #include <errno.h>
 #include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "bindings/run/system.h"
+#include "bindings/watch/folders.h"
 #include "bindings/watch/watch.h"
 
 #define SETTLE_MS 6 // after a write: more of the burst may follow
 #define GONE_MS 150 // after a deletion: editors move a file away before they write it anew
 #define RETRY_MS 500 // folders that are not there are looked for this often
-#define EVENTS \
-    (IN_CLOSE_WRITE | IN_CREATE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR)
 
 typedef struct watched {
     char *folder, *name; // owned
-    int wd; // of the folder; -1: it is not there
+    int folder_number; // -1: it is not there
     unsigned run; // the last that added it
     bool skipped; // the script writes it
 } watched;
@@ -28,7 +26,8 @@ typedef struct watched {
 struct watch_files {
     pthread_t thread;
     pthread_mutex_t lock;
-    int notify, wake;
+    watch_folders *folders;
+    glintL_wake wake;
     bool stops;
     void (*changed)(void *context, const char *path);
     void *context;
@@ -47,10 +46,10 @@ static void free_watched(watched *file)
     free(file->name);
 }
 
-static bool has_wd(const watch_files *files, int wd)
+static bool is_in(const watch_files *files, int folder_number)
 {
     for (size_t i = 0; i < files->count; i++)
-        if (files->list[i].wd == wd)
+        if (files->list[i].folder_number == folder_number)
             return true;
     return false;
 }
@@ -72,8 +71,8 @@ static watched *add(watch_files *files, char *folder, char *name, bool optional)
         free(name);
         return found;
     }
-    int wd = folder && name ? inotify_add_watch(files->notify, folder, EVENTS) : -1;
-    bool wanted = folder && name && (wd >= 0 || !optional);
+    int number = folder && name ? watch_folders_add(files->folders, folder) : -1;
+    bool wanted = folder && name && (number >= 0 || !optional);
     watched *grown = wanted ? realloc(files->list, (files->count + 1) * sizeof *grown) : NULL;
     if (!grown) {
         free(folder);
@@ -81,7 +80,7 @@ static watched *add(watch_files *files, char *folder, char *name, bool optional)
         return NULL;
     }
     files->list = grown;
-    grown[files->count] = (watched) { .folder = folder, .name = name, .wd = wd };
+    grown[files->count] = (watched) { .folder = folder, .name = name, .folder_number = number };
     return &grown[files->count++];
 }
 
@@ -117,13 +116,11 @@ static void add_target(watch_files *files, const char *path, bool skipped)
 
 static void note(watch_files *files, const char *path, bool optional, bool skipped)
 {
-    uint64_t one = 1;
     pthread_mutex_lock(&files->lock);
     add_path(files, path, optional, skipped);
     add_target(files, path, skipped);
     pthread_mutex_unlock(&files->lock);
-    if (write(files->wake, &one, sizeof one) < 0) // there may be a folder to look for
-        return;
+    glintL_wake_call(&files->wake); // there may be a folder to look for
 }
 
 void watch_files_add(watch_files *files, const char *path, bool optional) { note(files, path, optional, false); }
@@ -144,8 +141,8 @@ void watch_files_end(watch_files *files, bool good)
         if (gone.run == files->run)
             continue;
         files->list[i] = files->list[--files->count];
-        if (gone.wd >= 0 && !has_wd(files, gone.wd))
-            inotify_rm_watch(files->notify, gone.wd);
+        if (gone.folder_number >= 0 && !is_in(files, gone.folder_number))
+            watch_folders_remove(files->folders, gone.folder_number);
         free_watched(&gone);
     }
     pthread_mutex_unlock(&files->lock);
@@ -161,7 +158,7 @@ size_t watch_files_count(watch_files *files)
     return count;
 }
 
-// ---- The thread; the lock is held but in wait_for_events ----
+// ---- The thread; the lock is held but in wait_for_changes ----
 
 static void tell_later(watch_files *files, const watched *file, double delay_ms)
 {
@@ -178,43 +175,26 @@ static bool is_link(const watched *file)
     return lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
 }
 
-static void take_event(watch_files *files, const struct inotify_event *event)
+static void take_change(void *user, int number, const char *name, watch_change change)
 {
-    bool lost = event->mask & (IN_IGNORED | IN_DELETE_SELF | IN_MOVE_SELF);
+    watch_files *files = user;
     for (size_t i = 0; i < files->count; i++) {
         watched *file = &files->list[i];
-        if (event->mask & IN_Q_OVERFLOW) { // anything may have changed
+        if (change == WATCH_OVERFLOW) {
             tell_later(files, file, SETTLE_MS);
             continue;
         }
-        if (file->wd != event->wd)
+        if (file->folder_number != number)
             continue;
-        if (lost)
-            file->wd = -1;
-        if (file->skipped || (!lost && (event->len == 0 || strcmp(event->name, file->name) != 0)))
+        if (change == WATCH_LOST)
+            file->folder_number = -1;
+        if (file->skipped || (change != WATCH_LOST && strcmp(name, file->name) != 0))
             continue;
-        if (lost || event->mask & (IN_DELETE | IN_MOVED_FROM))
+        if (change == WATCH_LOST || change == WATCH_REMOVED)
             tell_later(files, file, GONE_MS);
-        else if (!(event->mask & IN_CREATE) || is_link(file))
+        else if (change != WATCH_CREATED || is_link(file))
             tell_later(files, file, SETTLE_MS);
     }
-    if (event->mask & IN_MOVE_SELF) // the watch went along with the folder
-        inotify_rm_watch(files->notify, event->wd);
-}
-
-static void read_events(watch_files *files)
-{
-    union { // as aligned as an event
-        struct inotify_event first;
-        char bytes[16384];
-    } buffer;
-    ssize_t size;
-    while ((size = read(files->notify, buffer.bytes, sizeof buffer.bytes)) > 0)
-        for (ssize_t at = 0; at < size;) {
-            const struct inotify_event *event = (const void *)(buffer.bytes + at);
-            take_event(files, event);
-            at += (ssize_t)(sizeof *event + event->len);
-        }
 }
 
 // Looks for folders that were not there. Returns whether some still are not.
@@ -223,23 +203,26 @@ static bool find_folders(watch_files *files)
     bool lacking = false;
     for (size_t i = 0; i < files->count; i++) {
         watched *file = &files->list[i];
-        if (file->wd >= 0)
+        if (file->folder_number >= 0)
             continue;
-        file->wd = inotify_add_watch(files->notify, file->folder, EVENTS);
-        lacking = lacking || file->wd < 0;
-        if (file->wd >= 0 && !file->skipped)
+        file->folder_number = watch_folders_add(files->folders, file->folder);
+        lacking = lacking || file->folder_number < 0;
+        if (file->folder_number >= 0 && !file->skipped)
             tell_later(files, file, SETTLE_MS);
     }
     return lacking;
 }
 
-static void wait_for_events(watch_files *files, int timeout_ms)
+static void wait_for_changes(watch_files *files, int timeout_ms)
 {
-    uint64_t count;
-    struct pollfd wait[2] = { { .fd = files->notify, .events = POLLIN }, { .fd = files->wake, .events = POLLIN } };
+    int look_ms;
+    struct pollfd wait[2] = { { .fd = watch_folders_poll(files->folders, &look_ms), .events = POLLIN },
+                              { .fd = files->wake.from, .events = POLLIN } };
+    if (look_ms >= 0 && (timeout_ms < 0 || look_ms < timeout_ms))
+        timeout_ms = look_ms;
     pthread_mutex_unlock(&files->lock);
-    if (poll(wait, 2, timeout_ms) > 0 && wait[1].revents && read(files->wake, &count, sizeof count) < 0)
-        count = 0; // read already, which only this thread does
+    if (poll(wait, 2, timeout_ms) > 0 && wait[1].revents)
+        glintL_wake_clear(&files->wake);
     pthread_mutex_lock(&files->lock);
 }
 
@@ -261,8 +244,8 @@ static void *watch(void *argument)
         }
         if (files->due_ms > 0 && (timeout < 0 || left < timeout))
             timeout = (int)left + 1;
-        wait_for_events(files, timeout);
-        read_events(files);
+        wait_for_changes(files, timeout);
+        watch_folders_read(files->folders, take_change, files);
     }
     pthread_mutex_unlock(&files->lock);
     return NULL;
@@ -280,20 +263,18 @@ watch_files *watch_files_create(void (*changed)(void *context, const char *path)
     files->changed = changed;
     files->context = context;
     pthread_mutex_init(&files->lock, NULL);
-    files->notify = inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
-    files->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    files->folders = watch_folders_create();
+    bool good = files->folders && glintL_wake_open(&files->wake);
     sigfillset(&all); // signals are for the script's thread
     pthread_sigmask(SIG_BLOCK, &all, &before);
-    bool good = files->notify >= 0 && files->wake >= 0 && pthread_create(&files->thread, NULL, watch, files) == 0;
+    good = good && pthread_create(&files->thread, NULL, watch, files) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (good)
         return files;
-    snprintf(message, GLINTL_MESSAGE_SIZE, "watch: inotify: %s%s", strerror(errno),
+    snprintf(message, GLINTL_MESSAGE_SIZE, "watch: folders: %s%s", strerror(errno),
              errno == EMFILE ? "; fs.inotify.max_user_instances limits it" : "");
-    if (files->notify >= 0)
-        close(files->notify);
-    if (files->wake >= 0)
-        close(files->wake);
+    watch_folders_destroy(files->folders);
+    glintL_wake_close(&files->wake);
     pthread_mutex_destroy(&files->lock);
     free(files);
     return NULL;
@@ -301,16 +282,15 @@ watch_files *watch_files_create(void (*changed)(void *context, const char *path)
 
 void watch_files_destroy(watch_files *files)
 {
-    uint64_t one = 1;
     if (!files)
         return;
     pthread_mutex_lock(&files->lock);
     files->stops = true;
     pthread_mutex_unlock(&files->lock);
-    if (write(files->wake, &one, sizeof one) == (ssize_t)sizeof one)
-        pthread_join(files->thread, NULL);
-    close(files->notify);
-    close(files->wake);
+    glintL_wake_call(&files->wake);
+    pthread_join(files->thread, NULL);
+    watch_folders_destroy(files->folders);
+    glintL_wake_close(&files->wake);
     for (size_t i = 0; i < files->count; i++)
         free_watched(&files->list[i]);
     free(files->list);

@@ -14,8 +14,6 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <sys/random.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -34,7 +32,8 @@ static const char page[] = {
 struct watch_server {
     pthread_t thread;
     pthread_mutex_t lock; // over state, version, picture and stops
-    int listener, wake;
+    int listener;
+    glintL_wake wake;
     bool stops;
     char token[TOKEN_SIZE], host[32], url[96];
     watch_orders orders;
@@ -198,7 +197,7 @@ static bool read_client(watch_server *server, watch_client *c)
 
 static void accept_client(watch_server *server)
 {
-    int socket = accept4(server->listener, NULL, NULL, SOCK_NONBLOCK | SOCK_CLOEXEC);
+    int socket = glintL_accept(server->listener);
     if (socket < 0)
         return;
     watch_client *c = server->count < CLIENTS_MAX ? watch_client_create(socket) : NULL;
@@ -228,7 +227,7 @@ static int fill_poll(const watch_server *server, struct pollfd *list)
 {
     int timeout = -1;
     double now = glintL_now_ms();
-    list[0] = (struct pollfd) { .fd = server->wake, .events = POLLIN };
+    list[0] = (struct pollfd) { .fd = server->wake.from, .events = POLLIN };
     list[1] = (struct pollfd) { .fd = server->listener, .events = POLLIN };
     for (int i = 0; i < server->count; i++) {
         const watch_client *c = server->clients[i];
@@ -245,7 +244,6 @@ static void *serve(void *argument)
 {
     watch_server *server = argument;
     struct pollfd list[2 + CLIENTS_MAX];
-    uint64_t count;
     while (take_state(server)) {
         for (int i = server->count - 1; i >= 0; i--) { // what can be sent is sent at once
             watch_client *c = server->clients[i];
@@ -255,8 +253,8 @@ static void *serve(void *argument)
         int timeout = fill_poll(server, list), polled = server->count;
         if (poll(list, (nfds_t)(2 + polled), timeout) < 0)
             continue;
-        if (list[0].revents && read(server->wake, &count, sizeof count) < 0)
-            continue;
+        if (list[0].revents)
+            glintL_wake_clear(&server->wake);
         for (int i = polled - 1; i >= 0; i--)
             if (list[2 + i].revents && !read_client(server, server->clients[i]))
                 close_client(server, i);
@@ -274,7 +272,7 @@ static bool open_listener(watch_server *server, int port, char *message)
     socklen_t size = sizeof address;
     int yes = 1;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    server->listener = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    server->listener = glintL_socket(AF_INET, SOCK_STREAM);
     if (server->listener >= 0)
         setsockopt(server->listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     if (server->listener >= 0 && bind(server->listener, (void *)&address, sizeof address) == 0 &&
@@ -290,7 +288,7 @@ static bool open_listener(watch_server *server, int port, char *message)
 static bool make_token(watch_server *server)
 {
     unsigned char random[(TOKEN_SIZE - 1) / 2];
-    if (getrandom(random, sizeof random, 0) != (ssize_t)sizeof random)
+    if (!glintL_random(random, sizeof random))
         return false;
     for (size_t i = 0; i < sizeof random; i++)
         snprintf(server->token + 2 * i, 3, "%02x", random[i]);
@@ -304,8 +302,7 @@ static void free_server(watch_server *server)
         close_client(server, server->count - 1);
     if (server->listener >= 0)
         close(server->listener);
-    if (server->wake >= 0)
-        close(server->wake);
+    glintL_wake_close(&server->wake);
     free(server->state);
     watch_picture_release(server->picture);
     pthread_mutex_destroy(&server->lock);
@@ -321,9 +318,8 @@ watch_server *watch_server_create(int port, const watch_orders *orders, char mes
         return NULL;
     server->listener = -1;
     server->orders = *orders;
-    server->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     pthread_mutex_init(&server->lock, NULL);
-    if (!open_listener(server, port, message) || server->wake < 0 || !make_token(server)) {
+    if (!open_listener(server, port, message) || !glintL_wake_open(&server->wake) || !make_token(server)) {
         free_server(server);
         return NULL;
     }
@@ -337,13 +333,6 @@ watch_server *watch_server_create(int port, const watch_orders *orders, char mes
     return NULL;
 }
 
-static void wake_server(watch_server *server)
-{
-    uint64_t one = 1;
-    if (write(server->wake, &one, sizeof one) < 0)
-        return; // the counter is full: it is awake
-}
-
 void watch_server_destroy(watch_server *server)
 {
     if (!server)
@@ -351,7 +340,7 @@ void watch_server_destroy(watch_server *server)
     pthread_mutex_lock(&server->lock);
     server->stops = true;
     pthread_mutex_unlock(&server->lock);
-    wake_server(server);
+    glintL_wake_call(&server->wake);
     pthread_join(server->thread, NULL);
     free_server(server);
 }
@@ -372,5 +361,5 @@ void watch_server_publish(watch_server *server, const char *state, watch_picture
         server->picture = watch_picture_retain(picture);
     }
     pthread_mutex_unlock(&server->lock);
-    wake_server(server);
+    glintL_wake_call(&server->wake);
 }

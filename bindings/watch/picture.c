@@ -1,6 +1,5 @@
 // Pictures of glint watch: as PNG bytes, and made small for a terminal.
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,10 +57,10 @@ watch_picture *watch_picture_create(const glint_image *image, const glintL_rende
     int ends[2] = { -1, -1 };
     pthread_t thread;
     watch_picture *picture = calloc(1, sizeof *picture);
-    if (!picture || pipe2(ends, O_CLOEXEC) != 0)
+    if (!picture || !glintL_pipe(ends))
         goto fail;
     atomic_init(&picture->references, 1);
-    snprintf(path, sizeof path, "/proc/self/fd/%d", ends[1]);
+    glintL_end_path(ends[1], path);
     encoding e = { .image = image, .end = ends[1] };
     e.desc = (glint_write_desc) { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone };
     e.desc.tone.bits = 8; // a screen shows no more

@@ -3,7 +3,6 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "bindings/watch/watch.h"
@@ -12,9 +11,8 @@ bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_S
 {
     memset(requests, 0, sizeof *requests);
     requests->wanted = 1;
-    requests->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (requests->wake < 0) {
-        snprintf(message, GLINTL_MESSAGE_SIZE, "watch: eventfd: %s", strerror(errno));
+    if (!glintL_wake_open(&requests->wake)) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "watch: %s", strerror(errno));
         return false;
     }
     pthread_mutex_init(&requests->lock, NULL);
@@ -32,7 +30,7 @@ void watch_free_sets(glintL_set *sets, size_t count)
 
 void watch_requests_close(watch_requests *requests)
 {
-    close(requests->wake);
+    glintL_wake_close(&requests->wake);
     watch_free_sets(requests->overrides, requests->override_count);
     pthread_mutex_destroy(&requests->lock);
 }
@@ -40,15 +38,13 @@ void watch_requests_close(watch_requests *requests)
 // The lock is held. A preview ends soon, and showing it beats never showing any while a slider moves.
 static void post(watch_requests *requests, bool cancels_preview)
 {
-    uint64_t one = 1;
     if (requests->since_ms == 0)
         requests->since_ms = glintL_now_ms();
     if (requests->rendering && (!requests->is_preview || cancels_preview)) {
         glint_renderer_cancel(requests->rendering);
         requests->cancelled = true;
     }
-    if (write(requests->wake, &one, sizeof one) < 0)
-        return; // the counter is full: it is awake
+    glintL_wake_call(&requests->wake);
 }
 
 void watch_requests_change(void *context, const char *path)
@@ -136,14 +132,13 @@ bool watch_requests_waiting(watch_requests *requests)
 
 bool watch_requests_take(watch_requests *requests, const glintL_run *run, watch_request *out)
 {
-    struct pollfd wait = { .fd = requests->wake, .events = POLLIN };
-    uint64_t count;
+    struct pollfd wait = { .fd = requests->wake.from, .events = POLLIN };
     while (!watch_requests_waiting(requests)) {
         // A signal between the test and poll() is seen at the next wake, a second later at most.
         if (run->interrupted)
             return false;
-        if (poll(&wait, 1, 1000) > 0 && read(requests->wake, &count, sizeof count) < 0 && errno != EAGAIN)
-            return false;
+        if (poll(&wait, 1, 1000) > 0)
+            glintL_wake_clear(&requests->wake);
     }
     pthread_mutex_lock(&requests->lock);
     *out = (watch_request) { .run_again = requests->script, .since_ms = requests->since_ms };

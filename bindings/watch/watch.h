@@ -15,6 +15,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "bindings/run/system.h"
 #include "bindings/run/run.h"
 
 // ---- watch/picture.c ----
@@ -97,7 +98,7 @@ void watch_terminal_error(watch_terminal *terminal, const char *message);
 /// What is to be done next, told by the threads of the files and of the server, and by signals.
 typedef struct watch_requests {
     pthread_mutex_t lock;
-    int wake; ///< eventfd
+    glintL_wake wake;
     bool script, frame; ///< the script runs again; another frame is shown
     char changed[GLINTL_PATH_SIZE]; ///< a file that has; "": none
     double since_ms; ///< of the first request that waits

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 struct worker {
     glint_pool *pool;
@@ -138,9 +139,11 @@ void glint_pool_run(glint_pool *pool, size_t count, glint_pool_item *item, void 
 
 int glint_pool_processors(void)
 {
+#if defined(__linux__) && !defined(GLINT_PORTABLE)
     cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set))
-        return 1;
-    const int count = CPU_COUNT(&set);
-    return count < 1 ? 1 : count > 1024 ? 1024 : count;
+    const long count = sched_getaffinity(0, sizeof set, &set) ? 1 : CPU_COUNT(&set);
+#else
+    const long count = sysconf(_SC_NPROCESSORS_ONLN);
+#endif
+    return count < 1 ? 1 : count > 1024 ? 1024 : (int)count;
 }

@@ -1,0 +1,53 @@
+/// What operating systems have under different names, or not at all. Each function takes Linux's way there and a portable
+/// one elsewhere (macOS, the BSDs); GLINT_PORTABLE, from `make PORTABLE=1`, takes the portable one on Linux, too, for tests.
+#ifndef GLINT_L_SYSTEM_H
+#define GLINT_L_SYSTEM_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/socket.h>
+#include <time.h>
+
+#ifndef MSG_NOSIGNAL
+#define MSG_NOSIGNAL 0 // then the sockets made here have SO_NOSIGPIPE
+#endif
+
+/// Wakes a thread that polls. {0} is not open.
+typedef struct glintL_wake {
+    int from; ///< to poll for POLLIN
+    int to;
+} glintL_wake;
+
+/// False: errno says why.
+bool glintL_wake_open(glintL_wake *wake);
+void glintL_wake_close(glintL_wake *wake); ///< does nothing unless open
+void glintL_wake_call(const glintL_wake *wake); ///< from any thread, any number of times
+void glintL_wake_clear(const glintL_wake *wake); ///< after poll: calls up to now are taken
+
+/// A pipe whose ends no other program inherits. False: errno says why.
+bool glintL_pipe(int ends[2]);
+/// Sockets that no other program inherits and that never raise SIGPIPE; neither end blocks. -1: errno says why.
+int glintL_socket(int domain, int type);
+int glintL_accept(int listener);
+/// Two ends joined; these block. False: errno says why.
+bool glintL_socket_pair(int ends[2]);
+
+/// A condition that is waited for until a time of GLINTL_COND_CLOCK, which no setting of the date moves where there is such.
+void glintL_cond_init(pthread_cond_t *cond);
+#if defined(__linux__) && !defined(GLINT_PORTABLE)
+#define GLINTL_COND_CLOCK CLOCK_MONOTONIC
+#else
+#define GLINTL_COND_CLOCK CLOCK_REALTIME
+#endif
+
+/// Bytes that cannot be guessed. False: there are none to be had.
+bool glintL_random(void *bytes, size_t size);
+
+/// A name for the end of a pipe, for what opens files by name.
+void glintL_end_path(int end, char out[32]);
+
+/// The processor's model, or its kind where the system does not tell.
+void glintL_processor_name(char out[128]);
+
+#endif
