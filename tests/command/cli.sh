@@ -1,58 +1,20 @@
 #!/usr/bin/env bash
 # The command line from outside: names, selection, options, events, exit codes, files that are whole or absent.
-# GLINT is the command (default build/glint). Prints a line for each check that fails, then "N passed, N failed".
 # shellcheck disable=SC2016
-set -u
+. tests/command/prelude.sh
 
-GLINT=$(realpath "${GLINT:-build/glint}")
 LUA=${LUA:-lua5.4}
 SAN_EXIT=99
 export ASAN_OPTIONS="${ASAN_OPTIONS:-}:exitcode=$SAN_EXIT" UBSAN_OPTIONS="${UBSAN_OPTIONS:-}:exitcode=$SAN_EXIT"
 export TSAN_OPTIONS="${TSAN_OPTIONS:-}:exitcode=$SAN_EXIT"
-work=$(mktemp -d)
 mounted=
 cleanup() {
     [ -z "$mounted" ] || umount "$mounted"
     chmod -R u+rwx "$work"
-    rm -rf "$work"
+    rm -rf "$work" "$work.log"
 }
 trap cleanup EXIT
 cd "$work" || exit 1
-passed=0 failed=0
-
-pass() { passed=$((passed + 1)); }
-fail() {
-    failed=$((failed + 1))
-    echo "not ok - $*"
-}
-
-# run ARGUMENTS...: the command; its streams in out and err, its exit code in $status.
-run() {
-    "$GLINT" "$@" >out 2>err </dev/null
-    status=$?
-}
-
-# exits WANT NAME ARGUMENTS...
-exits() {
-    local want=$1 name=$2
-    shift 2
-    run "$@"
-    if [ "$status" -eq "$want" ]; then pass; else fail "$name: exit $status, not $want: $(head -n 3 err)"; fi
-}
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >/dev/null 2>&1; then pass; else fail "$name"; fi
-}
-
-says() { # NAME PATTERN: the last run said so on stderr
-    if grep -qE -- "$2" err; then pass; else fail "$1: stderr says: $(head -n 3 err)"; fi
-}
-
-prints() { # NAME PATTERN: the last run printed so on stdout
-    if grep -qE -- "$2" out; then pass; else fail "$1: stdout says: $(head -n 3 out)"; fi
-}
 
 files() { # NAME FILE...: exactly these pictures are here; removes them
     local name=$1 have want
@@ -702,5 +664,4 @@ for part in names selection parameters options events errors whole small_disk si
     $part
     clean
 done
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+totals

@@ -1,21 +1,7 @@
 #!/usr/bin/env bash
 # glint completion: each shell's script is read by that shell where it is installed, offers what the command takes, and
-# every word it offers for an option is one the command accepts. Prints TAP lines.
-set -u
-glint=${GLINT:-$PWD/${BUILD:-build}/glint}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-bad=0
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
-        echo "not ok - $name"
-        cat "$work/log"
-        bad=1
-    fi
-}
+# every word it offers for an option is one the command accepts.
+. tests/command/prelude.sh
 
 for shell in bash zsh fish; do
     check "glint completion $shell" "$glint" completion $shell
@@ -115,7 +101,7 @@ if command -v zsh >/dev/null; then
     check "zsh: the options of watch" grep -q -- '^--terminal\[how to draw\]:terminal:(kitty sixel blocks text)$' "$work/specs"
     check "zsh: not those of render" test "$(grep -c -- '--frames' "$work/specs")" -eq 0
 else
-    echo "ok - zsh # skip zsh is not installed"
+    skip "zsh is not installed"
 fi
 if command -v fish >/dev/null; then
     fish_offers() { HOME=$work fish --no-config -c "source $work/fish; complete -C '$1'" 2>&1; }
@@ -124,6 +110,6 @@ if command -v fish >/dev/null; then
     check "fish: choices" grep -q '^linear' <(fish_offers "glint scene.lua --transfer ")
     check "fish: commands" grep -q '^watch' <(fish_offers "glint w")
 else
-    echo "ok - fish # skip fish is not installed"
+    skip "fish is not installed"
 fi
-exit $bad
+totals

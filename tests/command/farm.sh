@@ -1,29 +1,15 @@
 #!/usr/bin/env bash
 # scripts/farm: the shards of a job by GNU parallel, and by a Slurm array over two nodes of which one dies in the
 # middle. The pictures must be complete and byte for byte those of one machine. SLURM_CLUSTER names a program that sets
-# up a Slurm of two nodes on this machine (start, kill, stop); without it that part is skipped. Prints TAP lines.
-set -u
-root=$PWD
-export GLINT=${GLINT:-$PWD/${BUILD:-build}/glint}
-work=$(mktemp -d /tmp/glint-farm.XXXXXX)
+# up a Slurm of two nodes on this machine (start, kill, stop); without it that part is skipped.
+. tests/command/prelude.sh
 slurm=$work/slurm
-bad=0
 frames=32 shards=8
 finish() {
     [ ! -d "$slurm" ] || "$SLURM_CLUSTER" stop "$slurm" >"$work/stop.log" 2>&1
-    rm -rf "$work"
+    rm -rf "$work" "$work.log"
 }
 trap finish EXIT
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
-        echo "not ok - $name"
-        tail -n 20 "$work/log"
-        bad=1
-    fi
-}
 
 cd "$work" || exit 1
 mkdir logs
@@ -68,8 +54,9 @@ fi
 # ---- Slurm ----
 
 skip_slurm() {
-    echo "ok - Slurm # skip $1"
-    exit $bad
+    skip "$1"
+    totals
+    exit
 }
 "$root/scripts/farm/slurm.sh" 8 film.lua 2>"$work/usage"
 check "the task alone says how it is used" grep -q "usage: sbatch" "$work/usage"
@@ -123,4 +110,4 @@ rm film/0009.png
 again=$(submit 0 3 film)
 check "one shard again" ended "$again"
 check "the pictures are complete again" same film
-exit $bad
+totals

@@ -1,40 +1,15 @@
 #!/usr/bin/env bash
 # Sheets, films, reproduce and new, from outside. Films by ffmpeg are made by a stand-in that checks and counts what it is
-# fed; tests/command/real_films.sh (make check-films) uses the real one. Prints each check that fails, then "N passed, N failed".
-set -u
+# fed; tests/command/real_films.sh (make check-films) uses the real one.
+. tests/command/prelude.sh
 
-GLINT=$(realpath "${GLINT:-build/glint}")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-passed=0 failed=0
 
-pass() { passed=$((passed + 1)); }
-fail() {
-    failed=$((failed + 1))
-    echo "not ok - $*"
-}
-
-# exits WANT NAME ARGUMENTS...: the command; its streams in out and err.
-exits() {
-    local want=$1 name=$2 status
-    shift 2
-    timeout 60 "$GLINT" "$@" >out 2>err </dev/null
-    status=$?
-    if [ "$status" -eq "$want" ]; then pass; else fail "$name: exit $status, not $want: $(head -n 3 err)"; fi
-}
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >/dev/null 2>&1; then pass; else fail "$name"; fi
-}
 absent() { # NAME FILE...: none of these is there, nor any draft
     local name=$1
     shift
     if [ -z "$(ls -d "$@" 2>/dev/null; find . -name '.*.tmp')" ]; then pass; else fail "$name: $* or a draft is there"; fi
 }
-says() { if grep -qE -- "$2" err; then pass; else fail "$1: stderr says: $(head -n 3 err)"; fi; }
-prints() { if grep -qE -- "$2" out; then pass; else fail "$1: stdout says: $(head -n 3 out)"; fi; }
 
 # ---- Scripts ----
 
@@ -424,5 +399,4 @@ exits 2 "a word that is neither command nor script" stort
 says "says both" 'cannot open stort: .*no command has this name'
 command -v luacheck >/dev/null && check "and is clean Lua" luacheck -q start.lua
 
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+totals

@@ -1,22 +1,9 @@
 #!/usr/bin/env bash
 # make install into a folder of its own: the command, the module, the manual page, the completions, and a C program
-# built against the installed files alone. make uninstall leaves nothing. Prints TAP lines.
-set -u
-build=${BUILD:-build}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# built against the installed files alone. make uninstall leaves nothing.
+. tests/command/prelude.sh
 prefix=$work/usr
-bad=0
 
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
-        echo "not ok - $name"
-        cat "$work/log"
-        bad=1
-    fi
-}
 quiet_make() { ${MAKE:-make} -s --no-print-directory BUILD="$build" "$@"; }
 
 check "make install" quiet_make install PREFIX="$prefix"
@@ -62,4 +49,4 @@ check "make uninstall" quiet_make uninstall PREFIX="$prefix"
 check "nothing is left" test -z "$(find "$prefix" -type f)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
 check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
-exit $bad
+totals

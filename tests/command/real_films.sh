@@ -1,30 +1,12 @@
 #!/usr/bin/env bash
 # Films by the real ffmpeg, and animated PNG and sheets as pages in Chromium: make check-films. What is not installed is
 # skipped, and says so. Prints each check that fails, then "N passed, N failed, N skipped".
-set -u
+. tests/command/prelude.sh
 
-GLINT=$(realpath "${GLINT:-build/glint}")
 scripts=$PWD/scripts
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-passed=0 failed=0 skipped=0
 
-pass() { passed=$((passed + 1)); }
-fail() {
-    failed=$((failed + 1))
-    echo "not ok - $*"
-}
 same() { if [ "$2" = "$3" ]; then pass; else fail "$1: '$2', not '$3'"; fi; } # NAME GOT WANT
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if timeout 120 "$@" >log 2>&1 </dev/null; then pass; else fail "$name: $(tail -n 3 log)"; fi
-}
-skip() {
-    skipped=$((skipped + 1))
-    echo "skip: $*"
-}
 
 check "frames" "$GLINT" "$scripts/moving_light.lua" --size 161x91 -f 1-24 -o 'frame_%04d.png' -q
 
@@ -162,5 +144,4 @@ browser() {
 }
 if command -v chromium >/dev/null; then browser; else skip "chromium is not installed"; fi
 
-echo "$passed passed, $failed failed, $skipped skipped"
-[ "$failed" -eq 0 ]
+totals

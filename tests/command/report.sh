@@ -1,28 +1,13 @@
 #!/usr/bin/env bash
 # The page of `glint cost --report` in a browser: it draws without an error on the console, a point reached by focus or by
 # the pointer shows its setting, a heading sorts the table, and it fits the width of a phone. Exit 77: no browser.
-set -u
-GLINT=$(realpath "${GLINT:-build/glint}")
+. tests/command/prelude.sh
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
     echo "skip: Chromium is not installed; get it with:  apt-get install chromium"
     exit 77
 }
 script=$PWD/scripts/workshop.lua
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-passed=0 failed=0
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >/dev/null; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "not ok - $name"
-    fi
-}
 
 # browse WIDTH URL: the document after its scripts have run, in dom; the console in log
 browse() {
@@ -86,5 +71,4 @@ check "an error does show on the console" grep -q 'CONSOLE.*nothing is not defin
 browse 800 "file://$work/page/plot.svg"
 check "the plot alone is well-formed" bash -c 'grep -q "<svg" dom && ! grep -q "contains the following errors" dom'
 
-echo "$passed passed, $failed failed"
-[ "$failed" -eq 0 ]
+totals

@@ -1,21 +1,8 @@
 #!/usr/bin/env bash
 # luarocks make for Lua 5.4 into a folder of its own: the module loads in plain Lua and renders, the command runs, and
-# removing the rock leaves neither. Prints TAP lines.
-set -u
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-bad=0
+# removing the rock leaves neither.
+. tests/command/prelude.sh
 rocks() { HOME=$work MAKEFLAGS=-j2 luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
-
-check() { # NAME COMMAND...
-    local name=$1
-    shift
-    if "$@" >"$work/log" 2>&1; then echo "ok - $name"; else
-        echo "not ok - $name"
-        tail -n 20 "$work/log"
-        bad=1
-    fi
-}
 
 command -v luarocks >/dev/null || {
     echo "skip: luarocks is not installed"
@@ -38,4 +25,4 @@ check "the command renders" "$work/tree/bin/glint" "$work/scene.lua" --quiet -- 
 check "both alike" "$work/tree/bin/glint" compare "$work/plain.png" "$work/command.png" --fail 0 --warn 0
 check "luarocks remove" rocks remove glint
 check "nothing is left" test -z "$(find "$work/tree" -name 'glint*' -type f)"
-exit $bad
+totals

@@ -1,20 +1,10 @@
 #!/usr/bin/env bash
-# --untrusted: what a hostile script tries, and what becomes of it. Prints TAP.
-set -u
+# --untrusted: what a hostile script tries, and what becomes of it.
+. tests/command/prelude.sh
 export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # which traces processes
-glint=${GLINT:-$PWD/${BUILD:-build}/glint}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
-bad=0 seconds=20
+seconds=20
 
-result() { # STATUS NAME
-    if [ "$1" -eq 0 ]; then echo "ok - $2"; else
-        echo "not ok - $2"
-        cat out err
-        bad=1
-    fi
-}
 # script LINE...: scene.lua, which renders a small picture when the lines are through
 script() {
     {
@@ -149,4 +139,4 @@ for signal in INT TERM; do
 done
 [ -z "$(find . -name '*.tmp')" ]
 result $? "nothing half written is left"
-exit $bad
+totals

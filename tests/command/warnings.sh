@@ -1,20 +1,8 @@
 #!/usr/bin/env bash
-# Warnings that teach: each where it is due and nowhere else, once, as an event, and as an error on request. Prints TAP.
-set -u
-root=$PWD
-glint=${GLINT:-$PWD/${BUILD:-build}/glint}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# Warnings that teach: each where it is due and nowhere else, once, as an event, and as an error on request.
+. tests/command/prelude.sh
 cd "$work" || exit 1
-bad=0
 
-result() { # STATUS NAME
-    if [ "$1" -eq 0 ]; then echo "ok - $2"; else
-        echo "not ok - $2"
-        cat err
-        bad=1
-    fi
-}
 run() { "$glint" "$@" -t 1 -o none --quiet >out 2>err </dev/null; }
 
 # scene LINE...: a script with a camera that looks at the origin, the lines, and `objects` to render
@@ -255,4 +243,4 @@ for step in ambient diffuse specular; do
     run "$root/scripts/workshop.lua" --size 64x36 --samples 1 --warnings=error --set step=$step
     result $? "workshop.lua, step $step"
 done
-exit $bad
+totals
