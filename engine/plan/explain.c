@@ -332,6 +332,7 @@ static void list_stages(glint_plan *plan)
         "which points each shadow-casting light reaches",
         "light worked out once for a face or a vertex",
         "ambient, diffuse and specular terms",
+        "shaders of materials, once a light",
         "light that surfaces get from other surfaces and the background",
         "mirrored and refracted rays, and what they find",
         "light faded by the way from the eye",

@@ -45,6 +45,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_OCCLUDE] = READS(SHADOWS) | READS(TINTS),
     [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
+    [GLINT_STAGE_SHADER] = 0,
     [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_DEPTH_CUE] = READS(DEPTH_CUE),
@@ -194,7 +195,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     if (which & READS(LOOKS))
         ADD(key, geometry->look);
     if (which & READS(PATTERNS))
-        key = programs_key(plan, (1u << GLINT_FIELD_PLANES) - 1, key);
+        key = programs_key(plan, GLINT_FIELDS_PLANES, key);
     if (which & READS(BUMPS))
         key = programs_key(plan, 1u << GLINT_FIELD_BUMP, key);
     if (which & READS(HIGHLIGHTS))

@@ -57,7 +57,7 @@ static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
 {
     const glint_material_desc *desc = &pattern->desc;
     uint32_t made = 0;
-    for (int field = 0; field < GLINT_FIELD_PLANES; field++)
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         made |= pattern->program[field] ? 1u << field : 0;
     if (made >> GLINT_FIELD_SHININESS & 1 && desc->normalized && !pattern->program[GLINT_FIELD_SHADER])
         made |= 1u << GLINT_FIELD_SPECULAR; // whose factor depends on the exponent
@@ -79,6 +79,20 @@ static glint_key numbers_key(const glint_plan_pattern *pattern)
         key = glint_key_add(key, &desc->shininess, sizeof desc->shininess);
     }
     return pattern->made >> GLINT_FIELD_AMBIENT & 1 ? glint_key_add(key, desc->ambient, sizeof desc->ambient) : key;
+}
+
+/// The derivatives of a bump by the point in the shape's own space and in the world.
+static glint_status find_slope(glint_plan_patterns *patterns, glint_plan_pattern *pattern, glint_error *error)
+{
+    static const glint_input by[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y,     GLINT_INPUT_P_Z,
+                                      GLINT_INPUT_WORLD_X, GLINT_INPUT_WORLD_Y, GLINT_INPUT_WORLD_Z };
+    const glint_program *bump = pattern->program[GLINT_FIELD_BUMP];
+    if (!bump)
+        return GLINT_OK;
+    glint_status status = glint_program_slope(bump, by, sizeof by / sizeof *by, &pattern->slope, error);
+    if (!status && pattern->slope->code.row_count > patterns->row_count)
+        patterns->row_count = pattern->slope->code.row_count;
+    return status;
 }
 
 static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *pattern, const glint_material_desc *desc,
@@ -106,7 +120,7 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
     patterns->reads |= pattern->reads;
     patterns->bumps = patterns->bumps || pattern->program[GLINT_FIELD_BUMP];
     patterns->shaders = patterns->shaders || pattern->program[GLINT_FIELD_SHADER];
-    patterns->any = patterns->any || pattern->made;
+    patterns->any = patterns->any || pattern->made & GLINT_FIELDS_PLANES;
 }
 
 /// Gives planes to the fields that some material has.
@@ -132,6 +146,14 @@ static int axis_of(const double v[3])
     return -1;
 }
 
+/// Of the map to the shape's own space.
+static double determinant_of(const glint_pattern_place *place)
+{
+    double cross[3];
+    vec_cross(cross, place->inverse[1], place->inverse[2]);
+    return vec_dot(place->inverse[0], cross);
+}
+
 static void invert(glint_pattern_place *place, const glint_transform *map)
 {
     double cofactors[3][3], scaled[3][3], largest = 0;
@@ -151,6 +173,42 @@ static void invert(glint_pattern_place *place, const glint_transform *map)
     place->mapped = true;
 }
 
+/// Two unit vectors across a unit one (Duff et al., JCGT 6(1), 2017).
+static void sides_of(const double n[3], double side[2][3])
+{
+    const double sign = copysign(1, n[2]), a = -1 / (sign + n[2]), b = n[0] * n[1] * a;
+    const double x[3] = { 1 + sign * n[0] * n[0] * a, sign * b, -sign * n[0] };
+    const double y[3] = { b, sign + n[1] * n[1] * a, -n[1] };
+    vec_copy(side[0], x);
+    vec_copy(side[1], y);
+}
+
+/// What the coordinates on the surface are measured by.
+static void surface_init(glint_pattern_place *place, const glint_shape_desc *desc)
+{
+    double along[3];
+    switch (desc->kind) {
+    case GLINT_SHAPE_PLANE:
+    case GLINT_SHAPE_DISK:
+        vec_copy(place->origin, desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center);
+        vec_normalize(along, desc->normal);
+        sides_of(along, place->side);
+        break;
+    case GLINT_SHAPE_CYLINDER:
+    case GLINT_SHAPE_CONE:
+        vec_copy(place->origin, desc->base);
+        vec_sub(along, desc->top, desc->base);
+        place->length = sqrt(vec_dot(along, along));
+        place->radius = desc->radius;
+        vec_scale(place->along, along, 1 / (place->length * place->length));
+        vec_normalize(along, along);
+        sides_of(along, place->side);
+        break;
+    default:
+        break;
+    }
+}
+
 static void place_init(glint_pattern_place *place, const glint_part *part)
 {
     const glint_shape_desc *desc = &part->shape->desc;
@@ -160,6 +218,8 @@ static void place_init(glint_pattern_place *place, const glint_part *part)
         invert(place, part->map);
     if (place->axis >= 0)
         place->face = (desc->kind == GLINT_SHAPE_PLANE ? desc->point : desc->center)[place->axis];
+    place->shrink = place->mapped ? glint_pow(fabs(determinant_of(place)), 1 / 3.0) : 1;
+    surface_init(place, desc);
     vec_copy(place->lower, desc->min);
     vec_copy(place->upper, desc->max);
 }
@@ -171,7 +231,20 @@ static glint_key place_key(const glint_pattern_place *place, uint32_t part, glin
     key = glint_key_add(key, place->inverse, sizeof place->inverse);
     key = glint_key_add(key, place->forward, sizeof place->forward);
     key = glint_key_add(key, place->lower, sizeof place->lower);
+    key = glint_key_add(key, place->origin, sizeof place->origin);
+    key = glint_key_add(key, place->along, sizeof place->along);
+    key = glint_key_add(key, place->side, sizeof place->side);
+    key = glint_key_add(key, &place->radius, sizeof place->radius);
     return glint_key_add(key, place->upper, sizeof place->upper);
+}
+
+static bool reads_uv(const glint_plan_pattern *own)
+{
+    const uint32_t uv = 1u << GLINT_INPUT_UV_U | 1u << GLINT_INPUT_UV_V | 1u << GLINT_INPUT_UV_FOOTPRINT;
+    uint32_t reads = 0;
+    for (int field = 0; field < GLINT_FIELD_COUNT; field++)
+        reads |= own->program[field] ? own->program[field]->inputs : 0;
+    return reads & uv;
 }
 
 /// The places of the shapes whose materials have programs.
@@ -187,6 +260,10 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
             glint_plan_pattern *own = &patterns->of[glint_list_find(&geometry->materials, part->shape->materials[k])];
             if (!own->any)
                 continue;
+            if (part->shape->mesh && reads_uv(own))
+                return glint_fail(error, GLINT_ERR_INVALID, "s.uv: a mesh has no coordinates on its surface%s%s%s",
+                                  part->shape->desc.name[0] ? ", as '" : "", part->shape->desc.name,
+                                  part->shape->desc.name[0] ? "'" : "");
             if (!begun)
                 place_init(&patterns->places[i], part);
             begun = true;
@@ -218,17 +295,25 @@ glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_err
     if (!patterns || !(patterns->of = glint_alloc(list->count, sizeof *patterns->of)))
         return glint_fail_nomem(error);
     patterns->material_count = (uint32_t)list->count;
-    for (size_t i = 0; i < list->count; i++)
+    for (size_t i = 0; i < list->count; i++) {
         add_material(patterns, &patterns->of[i], &((const glint_material *)list->items[i])->desc, indirect);
+        glint_status status = find_slope(patterns, &patterns->of[i], error);
+        if (status)
+            return status;
+    }
     lay_out(patterns, patterns->material_count);
+    patterns->pixel = 2 * sqrt(vec_dot(plan->camera.right, plan->camera.right));
+    patterns->parallel = plan->camera.orthographic;
     return find_places(patterns, plan->geometry, error);
 }
 
 void glint_plan_patterns_free(glint_plan_patterns *patterns)
 {
-    for (uint32_t i = 0; patterns && patterns->of && i < patterns->material_count; i++)
+    for (uint32_t i = 0; patterns && patterns->of && i < patterns->material_count; i++) {
+        glint_program_release(patterns->of[i].slope);
         for (int field = 0; field < GLINT_FIELD_COUNT; field++)
             glint_program_release((glint_program *)patterns->of[i].program[field]);
+    }
     if (patterns)
         free(patterns->places), free(patterns->of);
     free(patterns);

@@ -21,7 +21,7 @@ typedef enum glint_field {
     GLINT_FIELD_COUNT
 } glint_field;
 
-#define GLINT_PLANES_MAX 17 ///< of all fields
+#define GLINT_FIELDS_PLANES ((1u << GLINT_FIELD_PLANES) - 1) ///< bits of those that have planes
 
 /// How many planes a field has.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
@@ -29,8 +29,9 @@ static inline int glint_field_channels(int field) { return field < GLINT_FIELD_S
 /// A material's programs.
 typedef struct glint_plan_pattern {
     const glint_program *program[GLINT_FIELD_COUNT]; ///< owned references; NULL: a number, or nothing
+    glint_program *slope; ///< of the bump: its derivatives by p and world; NULL: there is none
     glint_material_desc desc; ///< resolved; its own programs mean nothing
-    uint32_t made; ///< fields that have planes, a bit each: of programs, and what follows from these
+    uint32_t made; ///< fields that programs give, a bit each, and what follows from these
     uint32_t reads; ///< inputs of the programs that are run at surfaces, a bit each
     bool any; ///< it has programs
     bool ambient_follows; ///< ambient is diffuse
@@ -47,6 +48,11 @@ typedef struct glint_pattern_place {
     int axis; ///< plane and disk: the axis that its normal is; -1: none
     double face; ///< of these: the coordinate of all of its points
     double lower[3], upper[3]; ///< box
+    double origin[3], along[3],
+        side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the
+        ///< base, its axis divided by its squared length, and two unit vectors across it
+    double shrink; ///< own lengths over the world's
+    double radius, length; ///< cylinder and cone
 } glint_pattern_place;
 
 typedef struct glint_plan_patterns {
@@ -59,6 +65,8 @@ typedef struct glint_plan_patterns {
     uint32_t material_count;
     bool any; ///< some material has planes
     bool bumps, shaders;
+    double pixel; ///< width of a pixel, in an orthographic view; in a perspective one at distance 1
+    bool parallel; ///< the view is orthographic
 } glint_plan_patterns;
 
 struct glint_plan;

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
-    "camera", "cast",  "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude",
-    "vertex", "shade", "indirect",       "bounce",  "depth_cue", "refine", "resolve", "tone",  "outline"
+    "camera", "cast",   "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude", "vertex",
+    "shade",  "shader", "indirect",       "bounce",  "depth_cue", "refine", "resolve", "tone",  "outline"
 };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
@@ -64,11 +64,11 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 }
 
 /// Stages that never walk the index, but for the cast.
-static const uint32_t without_index = 1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST |
-                                      1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
-                                      1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT |
-                                      1u << GLINT_STAGE_FACET | 1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE |
-                                      1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
+static const uint32_t without_index =
+    1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
+    1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET |
+    1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_SHADER | 1u << GLINT_STAGE_RESOLVE |
+    1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
 
 /// Whether triangles are to be scanned.
 static void choose_visibility(glint_plan *plan)
@@ -87,7 +87,8 @@ static void choose_visibility(glint_plan *plan)
 static bool shades_together(const glint_plan *plan)
 {
     static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
-                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET };
+                                            GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET,
+                                            GLINT_STAGE_SHADER };
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
@@ -104,15 +105,17 @@ static void choose_stages(glint_plan *plan)
     plan->tints = lit && plan->transmits && plan->shadow_count > 0;
     plan->dims = plan->tints && plan->absorbs;
     plan->runs[GLINT_STAGE_VISIBLE_LIGHT] = plan->visible_light_count > 0;
+    plan->runs[GLINT_STAGE_SHADER] = lit && plan->patterns && plan->patterns->shaders;
     plan->depth_cue.on = plan->depth_cue.on && (surfaces || plan->visible_light_count > 0);
     plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
     plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
                        plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
-                       plan->light_count > GLINT_LIGHT_CHUNK || (lit && plan->geometry->table.shading_point_count > 0);
+                       plan->runs[GLINT_STAGE_SHADER] || plan->light_count > GLINT_LIGHT_CHUNK ||
+                       (lit && plan->geometry->table.shading_point_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
-    plan->runs[GLINT_STAGE_PATTERN] = surfaces && plan->patterns;
+    plan->runs[GLINT_STAGE_PATTERN] = surfaces && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
     plan->runs[GLINT_STAGE_LIGHT] = lit;
     plan->runs[GLINT_STAGE_VIEW] = plan->runs[GLINT_STAGE_FACET] = lit && plan->facets;
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;

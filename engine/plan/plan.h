@@ -30,6 +30,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_OCCLUDE,
     GLINT_STAGE_VERTEX,
     GLINT_STAGE_SHADE,
+    GLINT_STAGE_SHADER,
     GLINT_STAGE_INDIRECT,
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_DEPTH_CUE,
@@ -177,6 +178,9 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
 {
     return plan->patterns ? plan->patterns->of[material].desc.diffuse : plan->materials[material].diffuse;
 }
+
+/// Whether some material turns normals.
+static inline bool glint_plan_bumps(const glint_plan *plan) { return plan->patterns && plan->patterns->bumps; }
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);

@@ -101,8 +101,6 @@ static glint_status check_program(const program_field *field, const glint_progra
 {
     const bool shader = glint_program_kind_of(program) == GLINT_PROGRAM_SHADER, wanted = field->count == 0;
     const size_t count = glint_program_output_count(program);
-    if (field->program == AT(program.bump) || field->program == AT(program.shader))
-        return glint_fail(error, GLINT_ERR_UNSUPPORTED, "%s: programs are not run there yet", field->name);
     if (shader != wanted)
         return glint_fail(error, GLINT_ERR_INVALID, "%s: a %s expected, got a %s", field->name,
                           wanted ? "shader" : "pattern", wanted ? "pattern" : "shader");

@@ -158,7 +158,7 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
             memset(tile->film.sum[k][c], 0, tile->group_count * GLINT_GROUP * sizeof *tile->film.sum[k][c]);
     if (any && plan->runs[GLINT_STAGE_VIEW])
         glint_tile_view(tile, frame);
-    if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan))
+    if (plan->runs[GLINT_STAGE_PATTERN] && glint_tile_fields_shown(tile, plan) & GLINT_FIELDS_PLANES)
         glint_tile_pattern(tile, frame);
     do {
         const uint32_t count = lights - from < GLINT_LIGHT_CHUNK ? lights - from : GLINT_LIGHT_CHUNK;
@@ -227,6 +227,8 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
                                 glint_has_lane(tile->hit.back, i));
         glint_real_put(batch->ratio, precision, i, ratio);
     }
+    if (glint_plan_bumps(frame->plan))
+        glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);
     frame->stages->geometry[precision].bounce(&args);
 }
 
@@ -236,6 +238,8 @@ glint_batch_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile
     glint_batch_ray ray = { .weight = { 1, 1, 1 }, .pixel = i, .media = *media_of(batch, tile, frame, i) };
     if (tile == &batch->tile)
         ray = batch->ray[i];
+    if (frame->plan->patterns)
+        ray.way += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
     ray.leaving = tile->at.prim[i];
     for (int c = 0; c < 3; c++)
         ray.origin[c] = glint_real_at(tile->surface.point[c], frame->plan->desc.precision, i);

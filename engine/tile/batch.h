@@ -14,6 +14,7 @@ typedef struct glint_batch_ray {
     uint32_t pixel; ///< its sample's place in the tile
     uint32_t depth; ///< mirrors and refractions on its path so far
     uint32_t scatters; ///< matt surfaces
+    double way; ///< from the eye to where it starts, along its path; in frames with programs
     double least; ///< the weight below which a path of indirect light ends
     uint16_t term; ///< where its light goes
     bool inward;

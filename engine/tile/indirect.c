@@ -150,15 +150,19 @@ static void scatter(struct glint_indirect *indirect, const glint_tile *tile, con
 }
 
 /// Sends ray i along its direction from a point of `tile`.
-static void leave(const struct glint_indirect *indirect, const glint_tile *tile, glint_precision precision,
-                  const double share[3], double factor, uint32_t i, glint_batch_ray *ray)
+static void leave(const struct glint_indirect *indirect, const glint_tile *tile, double factor, uint32_t i,
+                  glint_batch_ray *ray)
 {
+    const glint_plan *plan = &indirect->plan;
+    double room[3];
+    const double *share = glint_tile_diffuse(tile, plan, i, room);
     ray->inward = glint_has_lane(tile->hit.back, i);
     ray->scatters++;
-    for (int c = 0; c < 3; c++) {
-        ray->direction[c] = glint_real_at(indirect->direction[c], precision, i);
-        ray->weight[c] = fmin(ray->weight[c] * (share[c] * factor), GLINT_WEIGHT_MAX);
-    }
+    for (int c = 0; c < 3; c++)
+        ray->direction[c] = glint_real_at(indirect->direction[c], plan->desc.precision, i);
+    const double left = glint_tile_leaves(tile, plan, i, ray->direction) ? factor : 0;
+    for (int c = 0; c < 3; c++)
+        ray->weight[c] = fmin(ray->weight[c] * (share[c] * left), GLINT_WEIGHT_MAX);
 }
 
 /// The first rays of path `path` of every point. Returns whether there are any.
@@ -189,14 +193,12 @@ static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame 
         for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const double share = 1.0 / indirect->paths[i];
-            double room[3];
             glint_batch_ray *ray = &batch->ray[i];
             *ray = glint_batch_start_ray(from ? from : batch, seen, frame, i);
             if (!from)
                 ray->term = GLINT_TERM_INDIRECT;
             ray->least = largest(ray->weight) * share * frame->plan->indirect.least;
-            leave(indirect, seen, frame->plan->desc.precision, glint_tile_diffuse(seen, frame->plan, i, room), share, i,
-                  ray);
+            leave(indirect, seen, share, i, ray);
         }
     return true;
 }
@@ -297,9 +299,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            double room[3];
-            leave(indirect, tile, frame->plan->desc.precision, glint_tile_diffuse(tile, frame->plan, i, room), 1, i,
-                  &batch->ray[i]);
+            leave(indirect, tile, 1, i, &batch->ray[i]);
         }
     return true;
 }

@@ -3,25 +3,10 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
-#include "engine/tile/pattern_inputs.h"
+#include "engine/tile/pattern_work.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/// The lanes of a group that show one material.
-typedef struct glint_pattern_lanes {
-    uint32_t material;
-    uint16_t group, lanes;
-} glint_pattern_lanes;
-
-struct glint_pattern {
-    glint_pattern_inputs inputs;
-    double *rows; ///< scratch of the kernel
-    float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
-    double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
-    size_t planes_each; ///< floats of a sample's planes
-    glint_pattern_lanes lanes[GLINT_TILE_SAMPLES];
-};
 
 struct glint_pattern *glint_pattern_create(const glint_plan *plan)
 {
@@ -83,9 +68,9 @@ static unsigned alike(const uint32_t *material, unsigned lanes)
     return same & lanes;
 }
 
-/// Lists the lanes of all materials with programs. Returns how many entries there are.
-static uint32_t find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
-                           const glint_pattern_points *points, bool (*wants)(const glint_plan_pattern *, uint32_t))
+uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                                  const glint_pattern_points *points,
+                                  bool (*wants)(const glint_plan_pattern *own, uint32_t fields))
 {
     uint32_t count = 0;
     for (uint32_t g = 0; g < points->group_count; g++) {
@@ -98,6 +83,24 @@ static uint32_t find_lanes(struct glint_pattern *pattern, const glint_plan_patte
         }
     }
     return count;
+}
+
+uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t first, uint32_t count,
+                            glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS])
+{
+    uint32_t taken = 0;
+    if (!pattern->lanes[first].lanes)
+        return 0;
+    for (uint32_t k = first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
+        glint_pattern_lanes *entry = &pattern->lanes[k];
+        if (!entry->lanes || entry->material != pattern->lanes[first].material)
+            continue;
+        entries[taken++] = *entry;
+        if (k > first)
+            entry->lanes = 0;
+    }
+    pattern->lanes[first].lanes = 0;
+    return taken;
 }
 
 // ---- What follows from what programs give ----
@@ -164,18 +167,24 @@ static void finish(const glint_plan_pattern *own, const glint_pattern_points *po
 
 // ---- The programs ----
 
-/// One program, into planes: a colour's where its channels are 3.
+void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
+                        glint_program_args *args)
+{
+    args->code = code;
+    args->rows = pattern->rows;
+    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+        args->input[input] = pattern->inputs.row[input];
+    frame->stages->program(args);
+}
+
+/// One program, into planes: of one number, into all of them.
 static void run_program(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program *program,
                         glint_program_args *args, int channels)
 {
     glint_program_code code = program->code;
     for (; code.output_count < (uint32_t)channels; code.output_count++)
         code.outputs[code.output_count] = code.outputs[0];
-    args->code = &code;
-    args->rows = pattern->rows;
-    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
-        args->input[input] = pattern->inputs.row[input];
-    frame->stages->program(args);
+    glint_pattern_call(pattern, frame, &code, args);
 }
 
 /// The programs of one material, for some groups that show it.
@@ -208,21 +217,32 @@ static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return 
 void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts)
 {
-    const uint32_t count = find_lanes(pattern, frame->plan->patterns, points, has_planes);
+    const uint32_t count = glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
     for (uint32_t first = 0; first < count; first++) {
         glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-        uint32_t taken = 0;
-        if (!pattern->lanes[first].lanes)
-            continue;
-        const glint_plan_pattern *own = &frame->plan->patterns->of[pattern->lanes[first].material];
-        for (uint32_t k = first; k < count && taken < GLINT_PROGRAM_GROUPS; k++) {
-            if (!pattern->lanes[k].lanes || pattern->lanes[k].material != pattern->lanes[first].material)
-                continue;
-            entries[taken++] = pattern->lanes[k];
-            pattern->lanes[k].lanes = 0;
-        }
-        run_material(pattern, frame, points, own, entries, taken, counts);
+        const uint32_t taken = glint_pattern_take(pattern, first, count, entries);
+        if (taken)
+            run_material(pattern, frame, points, &frame->plan->patterns->of[entries[0].material], entries, taken,
+                         counts);
     }
+}
+
+glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
+{
+    glint_pattern_points points = { .group_count = tile->group_count,
+                                    .hits = tile->at.hits,
+                                    .back = tile->hit.back,
+                                    .prim = tile->at.prim,
+                                    .material = tile->surface.material,
+                                    .t = tile->owner ? NULL : tile->at.t,
+                                    .tile = tile,
+                                    .planes = tile->at.planes,
+                                    .fields = GLINT_FIELDS_PLANES };
+    for (int c = 0; c < 3; c++) {
+        points.point[c] = tile->surface.point[c];
+        points.normal[c] = tile->unbumped[c] ? (const void *)tile->unbumped[c] : tile->surface.normal[c];
+    }
+    return points;
 }
 
 bool glint_pattern_needs_normals(const glint_plan *plan)
@@ -262,20 +282,7 @@ void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
 
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
 {
-    glint_pattern_points points = { .group_count = tile->group_count,
-                                    .hits = tile->at.hits,
-                                    .back = tile->hit.back,
-                                    .prim = tile->at.prim,
-                                    .material = tile->surface.material,
-                                    .t = tile->at.t,
-                                    .tile = tile,
-                                    .planes = tile->at.planes,
-                                    .fields = (1u << GLINT_FIELD_PLANES) - 1,
-                                    .sample = tile->sample };
-    for (int c = 0; c < 3; c++) {
-        points.point[c] = tile->surface.point[c];
-        points.normal[c] = tile->unbumped[c] ? tile->unbumped[c] : tile->surface.normal[c];
-    }
+    const glint_pattern_points points = glint_pattern_points_of(tile);
     glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
 }

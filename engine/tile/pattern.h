@@ -20,12 +20,12 @@ typedef struct glint_pattern_points {
     const uint16_t *hits, *back;
     const uint32_t *prim, *material;
     const void *point[3], *normal[3]; ///< real; the normal geometric, or of smooth meshes theirs
-    const void *t;
+    const void *t; ///< NULL: no pixel is as wide as anything there
     const glint_tile *tile; ///< whose rays found them
     const void *direction[3]; ///< real: other rays, which show no pixel; NULL: those of the tile
     float *planes; ///< out
     uint32_t fields; ///< that are wanted, a bit each
-    uint32_t sample; ///< of the pixels
+    bool shading; ///< `normal` is the one to give, whatever it is
 } glint_pattern_points;
 
 /// Makes room for the plan's programs. NULL: no memory.
@@ -51,8 +51,10 @@ void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
 void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);
 
-/// Turns the normals of surfaces with a bump, which have been found; what they were is kept beside them.
+/// Turns the normals of surfaces with a bump, which have been found; what they were is kept in tile->unbumped.
 void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame);
+/// After the stage light: lanes of surfaces with a bump from whose own normal the light is behind are not lit.
+void glint_tile_cut_horizon(const glint_tile *tile, const glint_plan *plan, const glint_light_args *light);
 
 /// A plane of a field's channel; NULL: no material has it.
 static inline const float *glint_plane_of(const float *planes, const glint_plan *plan, int field, int channel)
@@ -71,6 +73,29 @@ static inline const double *glint_color_at(const float *planes, const glint_plan
         room[c] = (double)glint_plane_of(planes, plan, field, c)[i];
     return room;
 }
+
+/// The normals that mirrors and glass of a tile's samples see: where light would go on through the surface of a mirror, or
+/// not through that of glass, the surface's own. ratio: see glint_bounce_args.
+void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, const uint16_t *wanted,
+                               const void *ratio, const void *normal[3]);
+/// Whether light that is scattered around a normal that a bump has turned leaves the surface.
+bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3]);
+
+/// Where a light reaches, and how strongly.
+typedef struct glint_shader_light {
+    const uint16_t *lit; ///< a bit a lane
+    const float *weight[3]; ///< of its colour, a channel each; NULL: 1
+    const float *share; ///< of what it gives that arrives; NULL: 1
+} glint_shader_light;
+
+/// Whether some material in sight has a shader.
+static inline bool glint_tile_shows_shader(const glint_tile *tile, const glint_plan *plan)
+{
+    return plan->runs[GLINT_STAGE_SHADER] && glint_tile_fields_shown(tile, plan) >> GLINT_FIELD_SHADER & 1;
+}
+/// Adds what shaders make of a light to the sums. Points and normals are found, patterns run.
+void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                       const glint_shader_light *reach);
 
 /// The diffuse reflectance of a tile's sample.
 static inline const double *glint_tile_diffuse(const glint_tile *tile, const glint_plan *plan, uint32_t i,

@@ -62,6 +62,23 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
     }
 }
 
+/// What shaders make of the lights of a call of shade.
+static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count,
+                        const glint_shade_light *lights)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_plan_light *light = &frame->plan->lights[from + i];
+        const float *weight = light->attenuated ? tile->at.light[i].attenuation : NULL;
+        float share[GLINT_TILE_SAMPLES];
+        glint_shader_light reach = { .lit = lights[i].lit, .weight = { weight, weight, weight } };
+        for (uint32_t k = 0; light->cap && k < tile->group_count * GLINT_GROUP; k++) // seen, without the attenuation
+            share[k] =
+                weight && weight[k] > 0 ? tile->at.light[i].visible[k] / weight[k] : tile->at.light[i].visible[k];
+        reach.share = light->cap ? share : NULL;
+        glint_tile_shader(tile, frame, light, &reach);
+    }
+}
+
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
 {
     const glint_plan *plan = frame->plan;
@@ -85,6 +102,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
             args.sum[k][c] = plan->accumulate ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
     frame->stages->shade(&args);
+    if (glint_tile_shows_shader(tile, plan))
+        run_shaders(tile, frame, from, count, lights);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
         glint_tile_add_visible_light(tile, frame);
     glint_tile_count_powers(tile, frame, from, count);

@@ -1,5 +1,5 @@
 /// The calls of a tile's stages: plan and memory in, the kernels' argument structs out.
-#include "engine/tile/tile.h"
+#include "engine/tile/pattern.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/stages/simd/coefficients.h"
@@ -175,6 +175,8 @@ void glint_tile_find_surfaces(glint_tile *tile, const glint_tile_frame *frame)
     frame->stages->geometry[frame->plan->desc.precision].surface(&args);
     take_box(tile, frame, args.box);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
+    if (glint_plan_bumps(frame->plan))
+        glint_tile_bump(tile, frame);
 }
 
 void glint_tile_name_materials(glint_tile *tile, const glint_tile_frame *frame)
@@ -260,6 +262,8 @@ void glint_tile_shine(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
 {
     const glint_light_args args = glint_tile_light_args(tile, frame, first, slot, count);
     frame->stages->geometry[frame->plan->desc.precision].light(&args);
+    if (glint_plan_bumps(frame->plan))
+        glint_tile_cut_horizon(tile, frame->plan, &args);
     bound_brightest(tile, frame, &args, slot);
     glint_tile_count_light(tile, frame, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);

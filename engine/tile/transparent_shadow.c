@@ -226,7 +226,6 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
                                     .back = transparent_shadow->back,
                                     .prim = transparent_shadow->prim,
                                     .material = transparent_shadow->material,
-                                    .t = transparent_shadow->t,
                                     .tile = tile,
                                     .planes = transparent_shadow->planes,
                                     .fields = 1u << GLINT_FIELD_TRANSMISSION };
@@ -328,6 +327,12 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
             args.sum[k][c] = tile->film.sum[k][c];
     }
     frame->stages->shade(&args);
+    if (!glint_tile_shows_shader(tile, frame->plan))
+        return;
+    glint_shader_light reach = { .lit = transparent_shadow->arrived };
+    for (int c = 0; c < 3; c++)
+        reach.weight[c] = transparent_shadow->attenuation[c];
+    glint_tile_shader(tile, frame, light, &reach);
 }
 
 void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, uint32_t index, uint32_t slot)

@@ -238,6 +238,8 @@ static void work_out(glint_tile *to, const glint_tile_frame *frame, uint32_t blo
     for (int c = 0; c < 3; c++)
         tile->viewed[c] = vertex->nowhere;
     load_block(vertex, frame, block);
+    if (glint_plan_bumps(frame->plan))
+        glint_tile_bump(tile, frame);
     glint_batch_shine(&vertex->batch, frame, true);
     glint_batch_end(&vertex->batch, to);
     keep_block(vertex, frame, block);
@@ -338,7 +340,7 @@ static void spread(glint_tile *tile, const glint_tile_frame *frame)
     for (int c = 0; c < 3; c++) {
         args.origin[c] = tile->rays.origin[c];
         args.direction[c] = tile->rays.direction[c];
-        for (int term = 0; term < (plan->highlights ? 2 : 1); term++)
+        for (int term = 0; term < (plan->highlights || plan->runs[GLINT_STAGE_SHADER] ? 2 : 1); term++)
             args.sum[term][c] = tile->film.sum[GLINT_TERM_DIFFUSE + term][c];
     }
     frame->stages->geometry[plan->desc.precision].vertex(&args);

@@ -76,7 +76,7 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
         return;
     }
-    if (!glint_tile_fields_shown(tile, frame->plan))
+    if (!(glint_tile_fields_shown(tile, frame->plan) & GLINT_FIELDS_PLANES))
         return;
     if (!w->lit)
         need_points(tile, frame, w);
@@ -285,6 +285,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         }
         if (any)
             find_patterns(tile, frame, &w);
+        if (lit && glint_tile_shows_shader(tile, frame->plan))
+            need_points(tile, frame, &w);
         if (lit && frame->plan->dims) // which points are inside what absorbs
             need_points(tile, frame, &w);
         if (frame->plan->together)

@@ -212,6 +212,35 @@ static glint_program *random_program(size_t count, double low, double high)
     return end_program(out, count);
 }
 
+/// Steps of n.l, and a highlight of half of the colour.
+static glint_program *random_shader(void)
+{
+    glint_value out[6];
+    begin_program(GLINT_PROGRAM_SHADER);
+    glint_value nl = num(0), nv = num(0);
+    for (int c = 0; c < 3; c++) {
+        const glint_value n = in((glint_input)(GLINT_INPUT_N_X + c));
+        nl = op(GLINT_OP_MULADD, n, in((glint_input)(GLINT_INPUT_L_X + c)), nl);
+        nv = op(GLINT_OP_MULADD, n, in((glint_input)(GLINT_INPUT_V_X + c)), nv);
+    }
+    const glint_value step = op(GLINT_OP_SELECT, op(GLINT_OP_LESS, num(uniform(0.2, 0.6)), nl, 0), num(1), num(0.3));
+    const glint_value shine = op(GLINT_OP_HIGHLIGHT, nv, in(GLINT_INPUT_SHININESS), 0);
+    for (int c = 0; c < 3; c++) {
+        const glint_value light = in((glint_input)(GLINT_INPUT_LIGHT_R + c));
+        out[c] = mul(mul(in((glint_input)(GLINT_INPUT_KD_R + c)), light), step);
+        out[3 + c] = mul(mul(in((glint_input)(GLINT_INPUT_KS_R + c)), light), shine);
+    }
+    return end_program(out, draw(2) ? 3 : 6);
+}
+
+static void release_programs(const glint_material_programs *p)
+{
+    glint_program *const programs[] = { p->diffuse,   p->specular,  p->mirror, p->transmission,
+                                        p->shininess, p->roughness, p->bump,   p->shader };
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        glint_program_release(programs[i]);
+}
+
 static glint_material *random_material(bool bouncing)
 {
     glint_material_desc desc = glint_material_desc_default();
@@ -237,11 +266,12 @@ static glint_material *random_material(bool bouncing)
         desc.program.mirror = random_program(draw(2) ? 3 : 1, 0, 0.6);
     if (bouncing && draw(3) == 0)
         desc.program.transmission = random_program(draw(2) ? 3 : 1, 0, 0.6);
+    if (draw(3) == 0)
+        desc.program.bump = random_program(1, 0, 0.2);
+    if (draw(4) == 0)
+        desc.program.shader = random_shader();
     glint_material *material = new_material(&desc);
-    glint_program *const programs[] = { desc.program.diffuse,   desc.program.specular, desc.program.shininess,
-                                        desc.program.roughness, desc.program.mirror,   desc.program.transmission };
-    for (int i = 0; i < 6; i++)
-        glint_program_release(programs[i]);
+    release_programs(&desc.program);
     return material;
 }
 
@@ -358,8 +388,170 @@ static void test_same_bits(void **state)
     }
 }
 
+// ---- Bumps ------------------------------------------------------------------------------------------------------------
+
+/// h = a sin(k . p), under a map that turns, stretches and mirrors: the normal against the formula, with the map's inverse
+/// solved for; and no light from below the surface itself.
+static void test_bump(void **state)
+{
+    (void)state;
+    const double eye[3] = { 0.5, 6, 4 }, at[3] = { 0, 0, 0 }, k[3] = { 3, 0.5, 1.5 }, a = 0.07;
+    world w = new_world(eye, at, 120, 90);
+    glint_material_desc desc = glint_material_desc_default();
+    begin_program(GLINT_PROGRAM_PATTERN);
+    glint_value phase = num(0);
+    for (int c = 0; c < 3; c++)
+        phase = op(GLINT_OP_MULADD, in((glint_input)(GLINT_INPUT_P_X + c)), num(k[c]), phase);
+    const glint_value height = mul(op(GLINT_OP_SIN, phase, 0, 0), num(a));
+    desc.program.bump = end_program(&height, 1);
+    glint_material *material = new_material(&desc);
+    glint_program_release(desc.program.bump);
+    glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    const double axis[3] = { 0.2, 1, 0.1 }, by[3] = { 2, 1.5, -0.5 }, to[3] = { 0.3, -0.2, 0.7 };
+    const glint_transform turn = glint_transform_rotate(axis, 40), size = glint_transform_scale(by);
+    const glint_transform both = glint_transform_product(&turn, &size), move = glint_transform_translate(to);
+    floor.transform = glint_transform_product(&move, &both);
+    add_shape(&w, &floor, material);
+    glint_material_release(material);
+    glint_light_desc light = glint_light_desc_default(GLINT_LIGHT_DIRECTIONAL);
+    const double travel[3] = { 1, -0.05, 0.2 };
+    memcpy(light.direction, travel, sizeof travel);
+    glint_light *sun;
+    OK(glint_light_create(&light, &sun, &error));
+    OK(glint_scene_add_light(w.scene, sun, &error));
+    w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
+    glint_image *image = render(&w, NULL, 0);
+    // columns of the linear part: x_world = m p + t, so that p and the gradient come from its adjugate
+    double m[3][3], cross[3][3], t[3];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            m[j][i] = floor.transform.m[i][j];
+        t[i] = floor.transform.m[i][3];
+    }
+    for (int i = 0; i < 3; i++)
+        vec_cross(cross[i], m[(i + 1) % 3], m[(i + 2) % 3]);
+    const double determinant = vec_dot(m[0], cross[0]);
+    double up[3], worst = 0;
+    vec_normalize(up, cross[1]);
+    if (up[1] < 0)
+        vec_scale(up, up, -1);
+    glint_plan *plan;
+    OK(glint_plan_create(w.scene, &w.render, &plan, &error));
+    const glint_plan_camera *c = &plan->camera;
+    int bright = 0, dark = 0;
+    for (int y = 0; y < 90; y++)
+        for (int x = 0; x < 120; x++) {
+            const double sx = 2 * (x + 0.5) - 120, sy = 90 - 2 * (y + 0.5);
+            double d[3], away[3], g[3] = { 0 }, n[3], l[3], sum = 0;
+            float normal[3], diffuse[3];
+            for (int i = 0; i < 3; i++) {
+                d[i] = (c->forward[i] + sx * c->right[i]) + sy * c->up[i];
+                away[i] = t[i] - c->eye[i];
+            }
+            const double far = vec_dot(up, away) / vec_dot(up, d);
+            OK(glint_image_pixel(image, GLINT_PASS_NORMAL, x, y, normal, &error));
+            OK(glint_image_pixel(image, GLINT_PASS_DIFFUSE, x, y, diffuse, &error));
+            if (!(far > 0))
+                continue;
+            for (int i = 0; i < 3; i++)
+                away[i] = c->eye[i] + far * d[i] - t[i];
+            for (int i = 0; i < 3; i++)
+                sum += k[i] * vec_dot(cross[i], away) / determinant;
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++)
+                    g[j] += a * cos(sum) * k[i] * cross[i][j] / determinant;
+            const double along = vec_dot(g, up);
+            for (int i = 0; i < 3; i++)
+                n[i] = up[i] - (g[i] - along * up[i]);
+            vec_normalize(n, n);
+            for (int i = 0; i < 3; i++)
+                worst = fmax(worst, fabs(n[i] - (double)normal[i]));
+            vec_normalize(l, travel);
+            vec_scale(l, l, -1);
+            const double cosine = vec_dot(n, l), own = vec_dot(up, l);
+            const double expected = cosine > 0 && own > 0 ? 0.8 * cosine : 0;
+            if (fabs(cosine) > 1e-6 && fabs((double)diffuse[0] - expected) > 2e-6)
+                fail_msg("%d, %d: %.9g expected, got %.9g", x, y, expected, (double)diffuse[0]);
+            bright += expected > 0;
+            dark += expected == 0;
+        }
+    assert_true(worst < 1e-6 && bright > 1000 && dark > 100);
+    glint_plan_destroy(plan);
+    glint_image_release(image);
+    glint_light_release(sun);
+    release_world(&w);
+}
+
+// ---- Shaders ----------------------------------------------------------------------------------------------------------
+
+/// Lambert's law and Phong's as a program, against the built-in ones.
+static void test_shader(void **state)
+{
+    (void)state;
+    glint_value out[6], rv, nl, nv, lv;
+    begin_program(GLINT_PROGRAM_SHADER);
+    nl = nv = lv = num(0);
+    for (int c = 0; c < 3; c++) {
+        const glint_value n = in((glint_input)(GLINT_INPUT_N_X + c)), l = in((glint_input)(GLINT_INPUT_L_X + c));
+        const glint_value v = in((glint_input)(GLINT_INPUT_V_X + c));
+        nl = op(GLINT_OP_MULADD, n, l, nl);
+        nv = op(GLINT_OP_MULADD, n, v, nv);
+        lv = op(GLINT_OP_MULADD, l, v, lv);
+    }
+    rv = op(GLINT_OP_MULSUB, mul(nl, num(2)), nv, lv);
+    for (int c = 0; c < 3; c++) {
+        const glint_value light = in((glint_input)(GLINT_INPUT_LIGHT_R + c));
+        out[c] = mul(mul(in((glint_input)(GLINT_INPUT_KD_R + c)), light), nl);
+        out[3 + c] = mul(mul(in((glint_input)(GLINT_INPUT_KS_R + c)), light),
+                         op(GLINT_OP_HIGHLIGHT, rv, in(GLINT_INPUT_SHININESS), 0));
+    }
+    glint_program *phong = end_program(out, 6);
+    for (int round = 0; round < 12; round++) {
+        glint_image *images[2];
+        for (int which = 0; which < 2; which++) {
+            seed = 900 + (uint64_t)round;
+            const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
+            world w = new_world(eye, at, 80, 60);
+            glint_material_desc desc = glint_material_desc_default();
+            desc.specular[0] = desc.specular[1] = 0.4;
+            desc.shininess = 20;
+            desc.program.diffuse = random_program(3, 0, 1);
+            desc.program.shininess = random_program(1, 4, 60);
+            desc.program.shader = which ? phong : NULL;
+            glint_material *material = new_material(&desc);
+            glint_program_release(desc.program.diffuse);
+            glint_program_release(desc.program.shininess);
+            glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+            add_shape(&w, &floor, material);
+            for (int i = 0; i < 5; i++)
+                random_shape(&w, material);
+            if (round % 3 == 0)
+                random_mesh(&w, material);
+            for (int i = 0; i < 1 + round % 3; i++)
+                random_light(&w);
+            glint_material_release(material);
+            w.render.samples = round % 2 ? 4 : 1;
+            w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
+            images[which] = render(&w, NULL, 2);
+            release_world(&w);
+        }
+        for (int pass = GLINT_PASS_BEAUTY; pass <= GLINT_PASS_SPECULAR; pass++)
+            for (int c = 0; c < 3; c++)
+                for (int i = 0; i < 80 * 60; i++) {
+                    const float x = images[0]->plane[pass][c][i], y = images[1]->plane[pass][c][i];
+                    if (fabsf(x - y) > 4e-6f * (1 + fabsf(x)))
+                        fail_msg("round %d, pass %s, %d, %d: %.9g built in, %.9g by the program", round,
+                                 glint_pass_name((glint_pass)pass), i % 80, i / 80, (double)x, (double)y);
+                }
+        glint_image_release(images[0]);
+        glint_image_release(images[1]);
+    }
+    glint_program_release(phong);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_floor), cmocka_unit_test(test_same_bits) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_floor), cmocka_unit_test(test_same_bits),
+                                        cmocka_unit_test(test_bump), cmocka_unit_test(test_shader) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

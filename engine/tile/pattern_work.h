@@ -1,0 +1,43 @@
+/// What the stages pattern and shader, and bumps, have in common. Internal.
+#ifndef GLINT_PATTERN_WORK_H
+#define GLINT_PATTERN_WORK_H
+
+#include "engine/tile/pattern_inputs.h"
+
+#define GLINT_BUMP_SLOPES 6 ///< by the point in the shape's own space, and in the world
+
+#define GLINT_SHADER_TERMS 6 ///< diffuse, specular
+
+/// The lanes of a group that show one material.
+typedef struct glint_pattern_lanes {
+    uint32_t material;
+    uint16_t group, lanes;
+} glint_pattern_lanes;
+
+struct glint_pattern {
+    glint_pattern_inputs inputs;
+    _Alignas(64) double slopes[GLINT_BUMP_SLOPES][GLINT_PROGRAM_LANES];
+    _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< what a shader gave
+    _Alignas(64) double bounced[3][GLINT_TILE_SAMPLES]; ///< real: see glint_tile_bounce_normals
+    double *rows; ///< scratch of the kernel
+    float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
+    double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
+    size_t planes_each; ///< floats of a sample's planes
+    glint_pattern_lanes lanes[GLINT_TILE_SAMPLES];
+};
+
+/// The points that a tile has found.
+glint_pattern_points glint_pattern_points_of(const glint_tile *tile);
+/// Lists the lanes of the materials that are wanted. Returns how many entries there are.
+uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_plan_patterns *patterns,
+                                  const glint_pattern_points *points,
+                                  bool (*wants)(const glint_plan_pattern *own, uint32_t fields));
+/// Takes entry `first` and those after it of the same material, as many as a call has room for, off the list. Returns how
+/// many: 0, where it has been taken.
+uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t first, uint32_t count,
+                            glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS]);
+/// Runs a program on the inputs that are gathered.
+void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
+                        glint_program_args *args);
+
+#endif
