@@ -112,7 +112,7 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
         if (light->attenuated) {
             vr attenuation[VF / VR];
             for (int j = 0; j < VF / VR; j++)
-                attenuation[j] = R(fall_off)(light, whole->l2[i / VR + j]);
+                attenuation[j] = R(fall_off)(light, r_sqrt(whole->l2[i / VR + j]) / r_set(light->scale));
             const vf w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
             f_store(light->attenuation[0] + at + i, f_select(lit, w, f_set(0)));
         }
