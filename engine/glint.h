@@ -150,7 +150,8 @@ typedef enum glint_op {
                    ///< (S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996): 2 results
     GLINT_OP_HASH, ///< of x, y, z: a number of [0, 1) that has nothing to do with that of other x, y, z
     GLINT_OP_PARITY, ///< of x, y, z: (floor(x) + floor(y) + floor(z)) % 2, for numbers of any size: a checkerboard
-    // what differentiation makes, and textures: not for glint_builder_op
+    // what the builder and differentiation make, and textures: not for glint_builder_op
+    GLINT_OP_MULMUL, ///< (a b) c
     GLINT_OP_NOISE_SLOPE, ///< of x, y, z, k: derivatives of NOISE (k = 0) or of result k of NOISE3 (1 .. 3): 3 results
     GLINT_OP_CELL_SLOPE, ///< derivatives of CELL's first and second result: 6 results
     GLINT_OP_TEXEL, ///< glint_builder_texel: 4 results

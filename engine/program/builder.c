@@ -241,7 +241,7 @@ glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t tex
 glint_status glint_builder_op(glint_builder *builder, glint_op op, const glint_value *operands, glint_value *out,
                               glint_error *error)
 {
-    if ((unsigned)op >= GLINT_OP_NOISE_SLOPE)
+    if ((unsigned)op > GLINT_OP_PARITY)
         return glint_fail(error, GLINT_ERR_INVALID, "op: no operation of a caller's: %d", (int)op);
     return glint_builder_add(builder, op, 0, operands, out, error);
 }

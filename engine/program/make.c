@@ -118,6 +118,17 @@ static void make_pairs(maker *m)
     }
 }
 
+/// Products of three, of what is in no sum.
+static void make_products(maker *m)
+{
+    for (uint32_t i = 0; i < m->count; i++)
+        for (int k = 0; k < 2 && m->needed[i] && m->nodes[i].op == GLINT_OP_MUL; k++) {
+            const glint_value inner = m->nodes[i].operand[k], *of = m->nodes[inner].operand;
+            if (is_only_of_this(m, inner, GLINT_OP_MUL))
+                become(m, i, GLINT_OP_MULMUL, of[0], of[1], m->nodes[i].operand[1 - k], inner);
+        }
+}
+
 // ---- Order and rows -----------------------------------------------------------------------------------------------
 
 static void order_as_written(maker *m)
@@ -340,8 +351,10 @@ static glint_status make(maker *m, const glint_builder *builder, const glint_val
                          glint_program *program, glint_error *error)
 {
     mark_needed(m, outputs, count);
-    if (!builder->plain)
+    if (!builder->plain) {
         make_pairs(m);
+        make_products(m);
+    }
     const glint_status status = find_rows(m, outputs, count, error);
     if (status)
         return status;

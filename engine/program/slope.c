@@ -132,6 +132,12 @@ static void pass_pairs(slope_maker *s, const rule_case *x)
         give(s, c, times(s, turned, b));
         break;
     }
+    case GLINT_OP_MULMUL:
+        give(s, a, times(s, times(s, g, b), c));
+        give(s, b, times(s, times(s, g, a), c));
+        if (s->varies[c])
+            give(s, c, times(s, g, times(s, a, b)));
+        break;
     default: // mix
         give(s, a, times(s, g, two(s, GLINT_OP_SUB, number(s, 1), c)));
         give(s, b, times(s, g, c));
@@ -217,7 +223,7 @@ static void pass_on(slope_maker *s, const rule_case *x)
 {
     if (x->op < GLINT_OP_MULADD)
         pass_exact(s, x);
-    else if (x->op < GLINT_OP_LESS)
+    else if (x->op < GLINT_OP_LESS || x->op == GLINT_OP_MULMUL)
         pass_pairs(s, x);
     else if (x->op < GLINT_OP_SIN)
         pass_choice(s, x);
@@ -313,7 +319,7 @@ static void walk_back(slope_maker *s)
         if (g == NOTHING || !glint_ssa_is_op(&node))
             continue;
         const rule_case x = { (glint_op)node.op, i, g, node.operand[0], node.operand[1], node.operand[2] };
-        if (node.op >= GLINT_OP_NOISE)
+        if (node.op >= GLINT_OP_NOISE && node.op != GLINT_OP_MULMUL)
             pass_pattern(s, &node, node.part, g);
         else
             pass_on(s, &x);

@@ -1,7 +1,7 @@
-/// Phong by hand, as a shader's program has it: doubles, eight a vector, S by the polynomials of wide.h in float. Everything
-/// stays in registers from the first load to the store.
-#include <string.h>
-
+/// Phong by hand, as a shader's program has it: doubles, eight a vector, and S in float by the engine's polynomials, so that
+/// both give seven digits. By hand everything stays in registers from the first load to the store, and products and sums are
+/// fused.
+#include "engine/stages/simd/coefficients.h"
 #include "tests/bench/hand_program.h"
 #include "tests/bench/options.h"
 #include "tests/bench/program_points.h"
@@ -44,6 +44,26 @@ static inline void store(float *to, const vd v[2])
         to, narrow(_mm512_min_pd(_mm512_max_pd(v[0], zero), most), _mm512_min_pd(_mm512_max_pd(v[1], zero), most)));
 }
 
+/// x^s for 0 < x <= 1 and s >= 0.
+static inline vf power(vf x, vf s)
+{
+    static const float log2_terms[] = { GLINT_LOG2_C9, GLINT_LOG2_C8, GLINT_LOG2_C7, GLINT_LOG2_C6, GLINT_LOG2_C5,
+                                        GLINT_LOG2_C4, GLINT_LOG2_C3, GLINT_LOG2_C2, GLINT_LOG2_C1, GLINT_LOG2_C0 };
+    static const float exp2_terms[] = { GLINT_EXP2_D6, GLINT_EXP2_D5, GLINT_EXP2_D4, GLINT_EXP2_D3,
+                                        GLINT_EXP2_D2, GLINT_EXP2_D1, GLINT_EXP2_D0 };
+    const vf f = _mm512_getmant_ps(x, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero) - all(1);
+    const vf e = _mm512_getexp_ps(x * all(1.3333333F));
+    vf p = all(log2_terms[0]);
+    for (int i = 1; i < 10; i++)
+        p = p * f + all(log2_terms[i]);
+    const vf y = _mm512_max_ps(s * (e + f * p), all(-100));
+    const vf n = _mm512_roundscale_ps(y, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC), rest = y - n;
+    p = all(exp2_terms[0]);
+    for (int i = 1; i < 7; i++)
+        p = p * rest + all(exp2_terms[i]);
+    return _mm512_scalef_ps(p, n);
+}
+
 static void phong(program_points *p)
 {
     for (int i = 0; i < PROGRAM_POINTS; i += 16) {
@@ -53,7 +73,7 @@ static void phong(program_points *p)
         const vf x = narrow(angle[0], angle[1]);
         const vf s = narrow(load(p, GLINT_INPUT_SHININESS, i), load(p, GLINT_INPUT_SHININESS, i + 8));
         const vm shines = less(all(0), x);
-        const vf highlight = pick(shines, exp2_of(s * log2_of(pick(shines, x, all(1)))), all(0));
+        const vf highlight = pick(shines, power(pick(shines, x, all(1)), s), all(0));
         for (int c = 0; c < 3; c++) {
             vd diffuse[2], specular[2];
             for (int half = 0; half < 2; half++) {

@@ -6,7 +6,7 @@
 
 #include "engine/glint.h"
 
-enum { PROGRAM_POINTS = 128, PROGRAM_REPEATS = 2000 };
+enum { PROGRAM_POINTS = 128, PROGRAM_REPEATS = 100 };
 
 typedef struct program_points {
     _Alignas(64) double input[GLINT_INPUT_COUNT][PROGRAM_POINTS];

@@ -103,6 +103,10 @@ static void test_pairs(void **state)
     const glint_value way = op2(b, GLINT_OP_SUB, y, x), share = op2(b, GLINT_OP_MUL, way, z);
     check_listing(b, op2(b, GLINT_OP_ADD, x, share), "r0 = mix p.x p.y p.z\nreturn r0\n");
     check_listing(b, op2(b, GLINT_OP_ADD, z, share), "r0 = sub p.y p.x\nr0 = muladd r0 p.z p.z\nreturn r0\n");
+    const glint_value three = op2(b, GLINT_OP_MUL, z, product), cosine = op2(b, GLINT_OP_COS, z, 0);
+    check_listing(b, three, "r0 = mulmul p.x p.y p.z\nreturn r0\n");
+    check_listing(b, op2(b, GLINT_OP_ADD, three, cosine),
+                  "r0 = mul p.x p.y\nr1 = cos p.z\nr0 = muladd p.z r0 r1\nreturn r0\n");
     const glint_value outputs[] = { op2(b, GLINT_OP_ADD, z, product), product, z }; // which is needed by itself, too
     glint_program *p = finish(b, outputs, 3);
     assert_int_equal(glint_program_length(p), 2);

@@ -112,8 +112,12 @@ static void op_highlight(const op_call *call)
             x[k] = d_select(there, d_min(cosine, one), one);
             s[k] = d_min(d_max(exponent, zero), d_set((double)FLT_MAX));
         }
-        const vf log2 = f_log2(f_join(x[0], x[1]), f_join(x[0] - one, x[1] - one));
-        f_split(f_select(fm_from_bits(shiny), f_exp2(f_join(s[0], s[1]) * log2), f_set(0)), out);
+        out[0] = out[VF / VD - 1] = zero;
+        if (shiny) {
+            const vf y = f_join(s[0], s[1]) * f_log2(f_join(x[0], x[1]), f_join(x[0] - one, x[1] - one));
+            if (fm_bits(f_le(f_set(GLINT_EXP2_LOWEST), y)))
+                f_split(f_select(fm_from_bits(shiny), f_exp2(y), f_set(0)), out);
+        }
         for (int k = 0; k < VF / VD; k++)
             d_store(call->out[0] + i + (size_t)k * VD, out[k]);
     }

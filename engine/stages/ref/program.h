@@ -211,6 +211,7 @@ static double op_of_one(glint_op op, double a, double b, double c)
     case GLINT_OP_NOISE: return op_noise(a, b, c, 0, NULL);
     case GLINT_OP_HASH: return op_hash(a, b, c);
     case GLINT_OP_PARITY: return op_parity(a, b, c);
+    case GLINT_OP_MULMUL: return (a * b) * c;
     default: return NAN;
     }
 }
