@@ -47,8 +47,8 @@ typedef struct glint_error {
 // ---- Programs: patterns and shaders -------------------------------------------------------------------------------
 
 /// A straight list of operations on doubles, run for many points at once: a pattern says what a material is at a point,
-/// a shader what one light leaves there. A builder makes it, value by value; it has no branches and no loops, so that its
-/// time is its length. The same numbers give the same bits on every machine.
+/// a shader what one light leaves there. A builder makes it, value by value. It has no branches and no loops: its time
+/// is its length. The same numbers give the same bits on every machine.
 
 typedef struct glint_program glint_program; ///< immutable
 typedef struct glint_builder glint_builder; ///< a program on its way; of one thread at a time
@@ -97,7 +97,7 @@ typedef enum glint_input {
 } glint_input;
 
 /// Operations. `true` is 1 and `false` 0; as a condition, every number but 0 is true. min and max are a < b ? a : b and
-/// a > b ? a : b. The rows of "exact" are those of IEEE 754, rounded once; where nothing else is said, the others are made of
+/// a > b ? a : b. Those under "exact" are IEEE 754's, rounded once; where nothing else is said, the others are made of
 /// them in the order written here.
 typedef enum glint_op {
     // exact
@@ -132,16 +132,16 @@ typedef enum glint_op {
     GLINT_OP_STEP, ///< x < e ? 0 : 1, of e, x
     GLINT_OP_SMOOTHSTEP, ///< t t (3 - 2 t), t = min(max((x - a) / (b - a), 0), 1), of a, b, x
     GLINT_OP_CLAMP, ///< min(max(x, a), b), of x, a, b
-    // elementary, our own; how far they may be off stands in engine/stages/program
-    GLINT_OP_SIN,
-    GLINT_OP_COS,
-    GLINT_OP_EXP2,
-    GLINT_OP_LOG2,
-    GLINT_OP_POW, ///< as C99, annex F has it
-    GLINT_OP_ATAN2, ///< of y, x; -pi .. pi
-    GLINT_OP_ACOS, ///< 0 .. pi; NaN beyond -1 .. 1
-    GLINT_OP_HIGHLIGHT, ///< x^s for a cosine x and an exponent s, as the built-in models have it: the bits of their S, in
-                        ///< float; 0 where x <= 0, x > 1 as 1, s < 0 as 0
+    // elementary, our own; special values as in C99, annex F
+    GLINT_OP_SIN, ///< of radians; off by 4e-16 at most, whatever the angle
+    GLINT_OP_COS, ///< likewise
+    GLINT_OP_EXP2, ///< 2^a; off by 2.5e-16 of itself
+    GLINT_OP_LOG2, ///< off by 4e-16 of itself, or 4e-16 where it is below 1
+    GLINT_OP_POW, ///< a^b; off by 1e-12 of itself
+    GLINT_OP_ATAN2, ///< of y, x; -pi .. pi; off by 6e-16
+    GLINT_OP_ACOS, ///< 0 .. pi; NaN beyond -1 .. 1; off by 6e-16
+    GLINT_OP_HIGHLIGHT, ///< x^s of a cosine x and an exponent s by the built-in models' kernel, in float: seven digits, 0
+        ///< below 2^-40; x above 1 is taken as 1, s below 0 as 0
     // patterns
     GLINT_OP_NOISE, ///< of x, y, z: gradient noise, smooth, -1 .. 1, 0 at whole numbers (K. Perlin, "Improving Noise",
                     ///< SIGGRAPH 2002: his gradients and fade; the hash is our own); repeats after 2^32
@@ -228,13 +228,13 @@ size_t glint_program_output_count(const glint_program *program);
 size_t glint_program_length(const glint_program *program); ///< instructions; 0 where all outputs are inputs or numbers
 size_t glint_program_rows(const glint_program *program); ///< intermediate values at the same time
 bool glint_program_reads(const glint_program *program, glint_input input);
-/// A hash of the operations, of what they read and of the textures, but not of the numbers: programs that differ in numbers
-/// alone have the same.
+/// A hash of the operations, of what they read and of the textures, but not of the numbers: programs that differ in
+/// numbers alone have the same.
 void glint_program_structure(const glint_program *program, uint64_t key[2]);
 /// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
 bool glint_program_constant(const glint_program *program, double *outputs);
-/// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers can be read back as they
-/// are. The caller frees it. NULL: out of memory.
+/// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers read back as the
+/// same bits. The caller frees it. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
 typedef enum glint_wrap { GLINT_WRAP_REPEAT, GLINT_WRAP_CLAMP } glint_wrap;
@@ -247,8 +247,8 @@ typedef struct glint_texture_desc {
     const char *path; ///< a .png
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
-    bool linear; ///< false, the default: codes are sRGB and are decoded, but for a picture that says it is linear; true: they
-                 ///< are numbers as they are
+    bool linear; ///< true: codes are numbers as they are; false, the default: they are sRGB and are decoded, unless the
+        ///< file says (gAMA 1.0) that it is linear
 } glint_texture_desc;
 
 glint_texture_desc glint_texture_desc_default(void);

@@ -21,7 +21,7 @@ typedef struct recipe {
 
 static glint_texture *recipe_texture; ///< NULL: no texels
 
-/// A number as people write them, or as nobody expects.
+/// A number as people write them, or an odd one.
 static inline double recipe_number(bool odd)
 {
     static const double usual[] = { 0, 1, 2, 0.5, -1, 3, 10, 0.1, 0.25, -0.5, 100, 1e7 };

@@ -1,4 +1,4 @@
-/// Noise, cells, hash and parity: what they promise to whoever paints with them. Results are the reference kernels'.
+/// Noise, cells, hash and parity: range, continuity, evenness. Results are the reference kernels'.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
