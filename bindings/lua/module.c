@@ -16,6 +16,7 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     };
     luaL_checkversion(L);
     glintL_open_run(L);
+    glintL_set_tracing(L, &glintL_patterns);
     lua_newtable(L);
     lua_pushliteral(L, GLINT_VERSION);
     lua_setfield(L, -2, "version");

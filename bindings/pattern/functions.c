@@ -173,20 +173,13 @@ static void open_type(lua_State *L, const char *type)
     glintL_list_variant(L, &variant, METHODS);
 }
 
-void glintL_open_patterns(lua_State *L)
+void glintL_open_functions(lua_State *L)
 {
     static const luaL_Reg constructors[] = {
         { "pattern", new_pattern },
         { "shader", new_shader },
         { NULL, NULL },
     };
-    glintL_open_symbol(L);
-    glintL_open_triple(L);
-    glintL_open_operation(L);
-    glintL_open_tiling(L);
-    glintL_open_input(L);
-    glintL_open_trace(L);
-    glintL_open_texture(L);
     open_type(L, GLINTL_PATTERN);
     open_type(L, GLINTL_SHADER);
     luaL_setfuncs(L, constructors, 0);

@@ -8,9 +8,10 @@
 ///   input.c       what a function reads of a point: p, and the fields of s
 ///   trace.c       a function called with symbols; its result as a program
 ///   points.c      the same function with plain numbers, against the program
-///   pattern.c     the objects that glint.pattern and glint.shader make
+///   functions.c   the objects that glint.pattern and glint.shader make
 ///   texture.c     the objects that glint.texture makes
 ///   reflection.c  material:evaluate with patterns and shaders
+///   patterns.c    opens all of them
 ///   patterned.c   materials whose fields hold patterns: traced when a frame is planned
 #ifndef GLINT_PATTERN_H
 #define GLINT_PATTERN_H
@@ -107,7 +108,7 @@ size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_
 /// Raises when plain Lua and the program differ at one of 64 points.
 void glintL_compare_points(lua_State *L, int index, const glintL_traced *traced);
 
-// ---- pattern.c ----
+// ---- functions.c ----
 
 /// The function of a pattern or shader is the user value 1, the structures that were looked at are the keys of the table 2.
 typedef struct glintL_pattern {
@@ -120,7 +121,7 @@ glintL_pattern *glintL_to_pattern(lua_State *L, int index);
 glintL_pattern *glintL_push_pattern(lua_State *L, glint_program_kind kind, const char *type);
 int glintL_pattern_evaluate(lua_State *L); ///< the method
 
-// ---- What pattern.c opens ----
+// ---- What patterns.c opens ----
 
 void glintL_open_symbol(lua_State *L);
 void glintL_open_triple(lua_State *L);
@@ -129,5 +130,6 @@ void glintL_open_tiling(lua_State *L);
 void glintL_open_input(lua_State *L);
 void glintL_open_trace(lua_State *L);
 void glintL_open_texture(lua_State *L);
+void glintL_open_functions(lua_State *L);
 
 #endif

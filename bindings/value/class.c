@@ -189,7 +189,7 @@ static int write_member(lua_State *L)
     const glintL_field *field = NULL;
     description desc;
     glint_error error;
-    glintL_refuse_within_trace(L, variant->name);
+    glintL_get_tracing(L)->refuse(L, variant->name);
     if (part < 0)
         field = writable_field(L, class, variant, name);
     class->get(object, &desc);
@@ -205,7 +205,7 @@ static int write_member(lua_State *L)
     if (field && field->kind == GLINTL_OBJECT)
         glintL_keep(L, 1, field->name, 3);
     if (field && field->program_offset)
-        glintL_keep_source(L, 1, field, 3);
+        glintL_get_tracing(L)->keep(L, 1, field, 3);
     if (field && class->accepted)
         class->accepted(L, field, &desc);
     return 0;
@@ -220,7 +220,7 @@ static int close_object(lua_State *L)
     if (!box)
         return glintL_refuse(L, 1, "", class->type + sizeof "glint." - 1);
     if (!lua_toboolean(L, lua_upvalueindex(2))) // not by the collector
-        glintL_keep_closed(L, 1);
+        glintL_get_tracing(L)->keep_closed(L, 1);
     void *object = box->object;
     box->object = NULL; // first: nothing can come between
     if (object)
@@ -234,20 +234,6 @@ static int same_object(lua_State *L)
     const void *a = glintL_test_object(L, 1, class->type), *b = glintL_test_object(L, 2, class->type);
     lua_pushboolean(L, a && a == b);
     return 1;
-}
-
-bool glintL_push_object_name(lua_State *L, int index)
-{
-    if (luaL_getmetafield(L, index, "class") == LUA_TNIL)
-        return false;
-    const glintL_class *class = lua_touserdata(L, -1);
-    lua_pop(L, 1);
-    const void *object = class ? glintL_test_object(L, index, class->type) : NULL;
-    if (object)
-        lua_pushstring(L, class->variant(object)->name);
-    else if (class)
-        lua_pushfstring(L, "closed %s", class->type + sizeof "glint." - 1);
-    return class != NULL;
 }
 
 static int to_string(lua_State *L)

@@ -84,14 +84,34 @@ size_t glintL_check_list(lua_State *L, int index, const char *path, bool allow_f
 
 /// Pushes a userdata "glint.vector": v[1..3], v.x/y/z, v.r/g/b, #v, unpack(), ==, tostring, + - * /; assigning raises.
 void glintL_push_vector(lua_State *L, const double v[3]);
+#define GLINTL_VECTOR_TYPE "glint.vector"
 /// NULL when the value at index is not one.
 const double *glintL_to_vector(lua_State *L, int index);
+int glintL_unpack(lua_State *L); ///< the method
 
 // ---- transform.c: the immutable value of an affine map ----
 
 void glintL_push_transform(lua_State *L, const glint_transform *t);
 /// NULL when the value at index is not one.
 const glint_transform *glintL_to_transform(lua_State *L, int index);
+
+// ---- What patterns do where values are read: bindings/pattern is above, and says it when the module opens ----
+
+typedef struct glintL_tracing {
+    const char *(*place)(lua_State *L, lua_CFunction reached); ///< glintL_traced_place, and so on: see below
+    bool (*to_numbers)(lua_State *L, int index, double out[3]);
+    bool (*is_source)(lua_State *L, int index, bool is_shader);
+    bool (*is_traced)(lua_State *L, int index);
+    int (*operate)(lua_State *L, glint_op op);
+    void (*refuse)(lua_State *L, const char *what);
+    void (*keep)(lua_State *L, int index, const glintL_field *field, int value);
+    void (*keep_closed)(lua_State *L, int index);
+    const luaL_Reg *methods; ///< of vectors; ended by a NULL name
+} glintL_tracing;
+
+extern const glintL_tracing glintL_patterns; ///< bindings/pattern/patterns.c
+void glintL_set_tracing(lua_State *L, const glintL_tracing *tracing);
+const glintL_tracing *glintL_get_tracing(lua_State *L); ///< NULL before the module is opened
 
 // ---- bindings/pattern: patterns and shaders ----
 

@@ -1,8 +1,11 @@
 // Boxes: the userdata that stand for objects of the engine.
+#include <stdint.h>
 #include <limits.h>
 #include <string.h>
 
 #include "bindings/value/glintL.h"
+
+static const char TRACING; // its address is the registry's key of what patterns do
 
 #define OBJECT_BYTES 1024 // about what the engine keeps of a sphere, a light or a material
 
@@ -144,4 +147,33 @@ void glintL_set_field(lua_State *L, int object_index, const char *name)
     luaL_checkstack(L, 4, "field");
     lua_pushvalue(L, -1);
     lua_setfield(L, object_index, name);
+}
+
+bool glintL_push_object_name(lua_State *L, int index)
+{
+    if (luaL_getmetafield(L, index, "class") == LUA_TNIL)
+        return false;
+    const glintL_class *class = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    const void *object = class ? glintL_test_object(L, index, class->type) : NULL;
+    if (object)
+        lua_pushstring(L, class->variant(object)->name);
+    else if (class)
+        lua_pushfstring(L, "closed %s", class->type + sizeof "glint." - 1);
+    return class != NULL;
+}
+
+void glintL_set_tracing(lua_State *L, const glintL_tracing *tracing)
+{
+    lua_pushlightuserdata(L, (void *)(uintptr_t)tracing);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &TRACING);
+}
+
+const glintL_tracing *glintL_get_tracing(lua_State *L)
+{
+    luaL_checkstack(L, 1, "patterns");
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &TRACING);
+    const glintL_tracing *tracing = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return tracing;
 }

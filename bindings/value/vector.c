@@ -4,16 +4,12 @@
 
 #include "bindings/value/glintL.h"
 
-#define VECTOR "glint.vector"
-
 void glintL_push_vector(lua_State *L, const double v[3])
 {
     double *out = lua_newuserdatauv(L, 3 * sizeof *out, 0);
     memcpy(out, v, 3 * sizeof *out);
-    luaL_setmetatable(L, VECTOR);
+    luaL_setmetatable(L, GLINTL_VECTOR_TYPE);
 }
-
-const double *glintL_to_vector(lua_State *L, int index) { return luaL_testudata(L, index, VECTOR); }
 
 static const double *check_self(lua_State *L)
 {
@@ -35,13 +31,17 @@ static void read_operand(lua_State *L, int index, bool allow_number, double out[
 }
 
 // Such a sum or product is one of patterns, see bindings/pattern.
-static bool has_traced(lua_State *L) { return glintL_is_traced(L, 1) || glintL_is_traced(L, 2); }
+static bool has_traced(lua_State *L)
+{
+    const glintL_tracing *tracing = glintL_get_tracing(L);
+    return tracing->is_traced(L, 1) || tracing->is_traced(L, 2);
+}
 
 static int add(lua_State *L)
 {
     double a[3], b[3];
     if (has_traced(L))
-        return glintL_operator(L, GLINT_OP_ADD);
+        return glintL_get_tracing(L)->operate(L, GLINT_OP_ADD);
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
     glintL_push_vector(L, (const double[3]) { a[0] + b[0], a[1] + b[1], a[2] + b[2] });
@@ -52,7 +52,7 @@ static int subtract(lua_State *L)
 {
     double a[3], b[3];
     if (has_traced(L))
-        return glintL_operator(L, GLINT_OP_SUB);
+        return glintL_get_tracing(L)->operate(L, GLINT_OP_SUB);
     read_operand(L, 1, false, a);
     read_operand(L, 2, false, b);
     glintL_push_vector(L, (const double[3]) { a[0] - b[0], a[1] - b[1], a[2] - b[2] });
@@ -63,7 +63,7 @@ static int multiply(lua_State *L)
 {
     double a[3], b[3];
     if (has_traced(L))
-        return glintL_operator(L, GLINT_OP_MUL);
+        return glintL_get_tracing(L)->operate(L, GLINT_OP_MUL);
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
     glintL_push_vector(L, (const double[3]) { a[0] * b[0], a[1] * b[1], a[2] * b[2] });
@@ -74,7 +74,7 @@ static int divide(lua_State *L)
 {
     double a[3], b[3];
     if (has_traced(L))
-        return glintL_operator(L, GLINT_OP_DIV);
+        return glintL_get_tracing(L)->operate(L, GLINT_OP_DIV);
     read_operand(L, 1, true, a);
     read_operand(L, 2, true, b);
     glintL_push_vector(L, (const double[3]) { a[0] / b[0], a[1] / b[1], a[2] / b[2] });
@@ -101,23 +101,13 @@ static int length(lua_State *L)
     return 1;
 }
 
-static int unpack(lua_State *L)
+int glintL_unpack(lua_State *L)
 {
     const double *v = check_self(L);
     for (int i = 0; i < 3; i++)
         lua_pushnumber(L, v[i]);
     return 3;
 }
-
-static const luaL_Reg METHODS[] = {
-    { "unpack", unpack },
-    { "dot", glintL_dot },
-    { "cross", glintL_cross },
-    { "length", glintL_length },
-    { "unit", glintL_unit },
-    { "reflect", glintL_reflect },
-    { NULL, NULL },
-};
 
 static int to_string(lua_State *L)
 {
@@ -131,7 +121,7 @@ static int to_string(lua_State *L)
 static int read_method(lua_State *L, const char *name)
 {
     const char *near = NULL;
-    for (const luaL_Reg *method = METHODS; method->name; method++) {
+    for (const luaL_Reg *method = glintL_get_tracing(L)->methods; method->name; method++) {
         near = glintL_nearer(name, near, method->name);
         if (strcmp(name, method->name) == 0) {
             lua_pushcfunction(L, method->func);
@@ -193,10 +183,10 @@ void glintL_open_vector(lua_State *L)
         { .name = "g" }, { .name = "b" }, { .name = NULL },
     };
     static const glintL_variant variant = { .name = "vector", .fields = fields };
-    luaL_newmetatable(L, VECTOR);
+    luaL_newmetatable(L, GLINTL_VECTOR_TYPE);
     luaL_setfuncs(L, meta, 0);
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
     lua_pop(L, 1);
-    glintL_list_variant(L, &variant, METHODS);
+    glintL_list_variant(L, &variant, glintL_get_tracing(L)->methods);
 }

@@ -1,0 +1,36 @@
+// What of patterns the module opens, and what values have to know of them.
+#include "bindings/pattern/pattern.h"
+
+static const luaL_Reg METHODS[] = {
+    { "unpack", glintL_unpack },
+    { "dot", glintL_dot },
+    { "cross", glintL_cross },
+    { "length", glintL_length },
+    { "unit", glintL_unit },
+    { "reflect", glintL_reflect },
+    { NULL, NULL },
+};
+
+const glintL_tracing glintL_patterns = {
+    .place = glintL_traced_place,
+    .to_numbers = glintL_to_numbers,
+    .is_source = glintL_is_source,
+    .is_traced = glintL_is_traced,
+    .operate = glintL_operator,
+    .refuse = glintL_refuse_within_trace,
+    .keep = glintL_keep_source,
+    .keep_closed = glintL_keep_closed,
+    .methods = METHODS,
+};
+
+void glintL_open_patterns(lua_State *L)
+{
+    glintL_open_symbol(L);
+    glintL_open_triple(L);
+    glintL_open_operation(L);
+    glintL_open_tiling(L);
+    glintL_open_input(L);
+    glintL_open_trace(L);
+    glintL_open_texture(L);
+    glintL_open_functions(L);
+}
