@@ -4,6 +4,7 @@
 /// from the one before, laid over it without blending.
 #include "engine/base/status.h"
 #include "engine/file/bands.h"
+#include "engine/file/libpng.h"
 #include "engine/file/picture.h"
 #include "engine/file/png.h"
 
@@ -41,20 +42,6 @@ static void take_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, "no room");
 }
 
-static void nothing_to_flush(png_structp png) { (void)png; }
-
-static void jump_out(png_structp png, png_const_charp message)
-{
-    (void)message;
-    png_longjmp(png, 1);
-}
-
-static void heed_warning(png_structp png, png_const_charp message)
-{
-    if (strstr(message, "emory"))
-        png_longjmp(png, 1);
-}
-
 /// What libpng met: the draft's error, else it ran out of memory.
 static glint_status give_error(const glint_apng *apng, glint_error *error)
 {
@@ -81,7 +68,7 @@ static bool write_head(glint_apng *apng)
     uint8_t control[8];
     if (setjmp(png_jmpbuf(apng->png)))
         return false;
-    png_set_write_fn(apng->png, apng, take_bytes, nothing_to_flush);
+    png_set_write_fn(apng->png, apng, take_bytes, glint_png_flush);
     png_set_IHDR(apng->png, apng->info, (png_uint_32)desc->width, (png_uint_32)desc->height, desc->bits,
                  desc->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -173,7 +160,7 @@ static glint_status open_apng(glint_apng *apng, const char *path, glint_error *e
     apng->pixel_bytes = (desc->alpha ? 4 : 3) * (desc->bits == 16 ? 2 : 1);
     apng->before = calloc((size_t)desc->width * (size_t)desc->height, apng->pixel_bytes);
     apng->chunk = malloc(CHUNK_BYTES + 4);
-    apng->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, jump_out, heed_warning);
+    apng->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, glint_png_fail, glint_png_warn);
     apng->info = apng->png ? png_create_info_struct(apng->png) : NULL;
     if (!apng->before || !apng->chunk || !apng->info)
         return glint_fail_nomem(error);

@@ -2,6 +2,7 @@
 
 #include "engine/base/status.h"
 #include "engine/file/bands.h"
+#include "engine/file/libpng.h"
 
 #include <png.h>
 #include <setjmp.h>
@@ -75,21 +76,6 @@ static void take_bytes(png_structp png, png_bytep data, size_t size)
         png_error(png, "out of memory");
 }
 
-static void nothing_to_flush(png_structp png) { (void)png; }
-
-static void jump_out(png_structp png, png_const_charp message)
-{
-    (void)message;
-    png_longjmp(png, 1);
-}
-
-/// Arguments are checked, so that a warning too can only mean that memory is short: no file without its text.
-static void heed_warning(png_structp png, png_const_charp message)
-{
-    if (strstr(message, "emory"))
-        jump_out(png, message);
-}
-
 static void set_text(container *c)
 {
     for (size_t i = 0; i < c->text_count; i++) {
@@ -107,7 +93,7 @@ static bool write_container(container *c)
     if (setjmp(png_jmpbuf(c->png)))
         return false;
     const glint_png_source *source = c->source;
-    png_set_write_fn(c->png, c->out, take_bytes, nothing_to_flush);
+    png_set_write_fn(c->png, c->out, take_bytes, glint_png_flush);
     png_set_IHDR(c->png, c->info, (png_uint_32)source->width, (png_uint_32)source->height, source->tone.bits,
                  source->alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
@@ -133,7 +119,7 @@ static glint_status put_in_container(container *c, glint_error *error)
         longest = strlen(c->text[i].value) > longest ? strlen(c->text[i].value) : longest;
     bool done = false;
     c->latin1 = malloc(longest + 1);
-    c->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, jump_out, heed_warning);
+    c->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, glint_png_fail, glint_png_warn);
     c->info = c->png ? png_create_info_struct(c->png) : NULL;
     if (c->latin1 && c->info && glint_bytes_reserve(c->out, c->stream->size + 1024))
         done = write_container(c);

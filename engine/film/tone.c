@@ -326,16 +326,21 @@ static inline bool is_clipped(const glint_tone_table *table, const float x[3])
     return x[0] > table->white || x[1] > table->white || x[2] > table->white;
 }
 
-void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
-                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+/// Codes of either width: the other pointer is NULL.
+static inline void make_row(const glint_tone_table *table, float gain, const float *const light[3], size_t count,
+                            uint8_t *rgb8, uint16_t *rgb16, uint64_t *clipped, uint64_t *nonfinite)
 {
     uint64_t above = 0, odd = 0;
     for (size_t i = 0; i < count; i++) {
-        const float x[3] = { gain * r[i], gain * g[i], gain * b[i] };
-        for (int c = 0; c < 3; c++)
-            rgb[3 * i + (size_t)c] = code8(table, x[c]);
+        const float x[3] = { gain * light[0][i], gain * light[1][i], gain * light[2][i] };
+        for (size_t c = 0; c < 3; c++) {
+            if (rgb8)
+                rgb8[3 * i + c] = code8(table, x[c]);
+            else
+                rgb16[3 * i + c] = code16(table, x[c]);
+        }
         above += is_clipped(table, x);
-        odd += is_odd(r[i], g[i], b[i]);
+        odd += is_odd(light[0][i], light[1][i], light[2][i]);
     }
     if (clipped)
         *clipped += above;
@@ -343,21 +348,16 @@ void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, 
         *nonfinite += odd;
 }
 
+void glint_tone_row8(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
+                     size_t count, uint8_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
+{
+    make_row(table, gain, (const float *const[3]) { r, g, b }, count, rgb, NULL, clipped, nonfinite);
+}
+
 void glint_tone_row16(const glint_tone_table *table, float gain, const float *r, const float *g, const float *b,
                       size_t count, uint16_t *rgb, uint64_t *clipped, uint64_t *nonfinite)
 {
-    uint64_t above = 0, odd = 0;
-    for (size_t i = 0; i < count; i++) {
-        const float x[3] = { gain * r[i], gain * g[i], gain * b[i] };
-        for (int c = 0; c < 3; c++)
-            rgb[3 * i + (size_t)c] = code16(table, x[c]);
-        above += is_clipped(table, x);
-        odd += is_odd(r[i], g[i], b[i]);
-    }
-    if (clipped)
-        *clipped += above;
-    if (nonfinite)
-        *nonfinite += odd;
+    make_row(table, gain, (const float *const[3]) { r, g, b }, count, NULL, rgb, clipped, nonfinite);
 }
 
 void glint_tone_row_alpha(const glint_tone_table *table, float gain, const float *const rgb[3], const float *alpha,

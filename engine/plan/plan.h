@@ -229,4 +229,10 @@ void glint_plan_twin_free(glint_plan_twin *twin);
 
 glint_status glint_plan_explain(glint_plan *plan, const glint_scene *scene, glint_error *error);
 
+/// What absorption, per unit of length, leaves of light over a distance.
+static inline double glint_plan_left(double absorption, double distance)
+{
+    return absorption > 0 ? glint_exp(-absorption * distance) : 1;
+}
+
 #endif

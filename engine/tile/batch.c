@@ -103,8 +103,7 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
             continue;
         const double way = glint_real_at(tile->at.t, frame->plan->desc.precision, i); // the directions are unit
         for (int c = 0; c < 3; c++)
-            if (frame->plan->bouncing[medium].absorption[c] > 0)
-                ray->weight[c] *= glint_exp(-frame->plan->bouncing[medium].absorption[c] * way);
+            ray->weight[c] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], way);
     }
 }
 

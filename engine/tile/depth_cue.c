@@ -44,10 +44,8 @@ void glint_tile_find_depth_cue(glint_tile *tile, const glint_plan *plan, bool an
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
         const double way = any ? way_of(tile, plan, i) : HUGE_VAL;
         depth_cue->share[i] = share_of(plan, way);
-        for (int c = 0; c < 3; c++) {
-            const double a = plan->veil.absorption[c];
-            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * (a > 0 ? glint_exp(-a * way) : 1);
-        }
+        for (int c = 0; c < 3; c++)
+            depth_cue->left[c][i] = (1 - depth_cue->share[i]) * glint_plan_left(plan->veil.absorption[c], way);
     }
 }
 

@@ -150,8 +150,7 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
 /// What a medium leaves of channel c over a distance.
 static double left_of(const glint_plan *plan, uint32_t medium, int c, double way)
 {
-    const double a = medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c];
-    return a > 0 ? glint_exp(-a * way) : 1;
+    return glint_plan_left(medium == GLINT_NO_MEDIUM ? 0 : plan->bouncing[medium].absorption[c], way);
 }
 
 /// The rest of the distance to the light, on which there is nothing more; directional light has none that ends.
