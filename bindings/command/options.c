@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "bindings/command/cli.h"
-#include "bindings/run/render_fields.h"
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)

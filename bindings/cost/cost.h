@@ -11,8 +11,8 @@
 ///   cost/errors.c   how far it is from the truth: the reference, decisions pixel by pixel
 ///   cost/timing.c   runs in random order, quartiles, the time that is left
 ///   cost/front.c    who is on the Pareto front, which combinations are worth a look, what to advise
-///   cost/table.c    the table for people; cost/json.c for programs
-///   cost/report.c   the page; cost/plot.c its plot
+///   cost/present.c  the study as data; cost/lines.lua the table for people, and lines for programs
+///   cost/report.c   the page and the pictures; cost/page.lua, page.html, plot.lua, plot.css what is in them
 #ifndef GLINT_COST_H
 #define GLINT_COST_H
 

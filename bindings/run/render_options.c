@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bindings/run/render_fields.h"
 #include "bindings/run/run.h"
 
 #define SEED_MAX 9007199254740992.0 // 2^53

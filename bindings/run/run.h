@@ -19,6 +19,7 @@
 
 #include <signal.h>
 
+#include "bindings/run/render_fields.h"
 #include "bindings/value/glintL.h"
 
 #define GLINTL_PATH_SIZE 4096
@@ -60,7 +61,8 @@ bool glintL_selection_outside(const glintL_selection *selection, int64_t total, 
 
 // ---- render_options.c ----
 
-#define GLINTL_RENDER_FIELDS 18
+#define GLINTL_ONE(...) +1
+#define GLINTL_RENDER_FIELDS (0 GLINTL_RENDER_LIST(GLINTL_ONE, GLINTL_ONE))
 
 extern const glintL_field glintL_render_fields[GLINTL_RENDER_FIELDS + 1]; ///< names, and whether numbers, for listing
 glintL_render glintL_render_default(void);
