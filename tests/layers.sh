@@ -33,7 +33,7 @@ layer engine/film engine/stages $base
 layer engine/program engine/file $stages $base
 layer engine/plan engine/program engine/geometry engine/scene engine/film $stages $base
 layer engine/reuse engine/plan engine/film $stages $base
-layer engine/tile engine/program engine/reuse engine/plan engine/film $stages $base
+layer engine/tile engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
 layer engine/file engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
