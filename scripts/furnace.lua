@@ -7,9 +7,17 @@
 --     red Phong, s = 1   orange Phong, s = 8   green normalised Phong, s = 8
 --     blue GGX, roughness 0.5   violet Beckmann, roughness 0.5
 --     glint scripts/furnace.lua
+--     glint scripts/furnace.lua --set model=ward      a shader of scripts/lib/glint/models.lua in white, too
 local glint = require "glint"
+local models = require "glint.models"
 
-local P = glint.params { steps = { 40, min = 8, max = 200, doc = "rings of directions that are summed up" } }
+local P = glint.params {
+  steps = { 40, min = 8, max = 200, doc = "rings of directions that are summed up" },
+  model = {
+    "none", choices = { "none", "phong", "blinn_phong", "ward", "toon", "gooch" },
+    doc = "a shader to be drawn beside them",
+  },
+}
 
 local WIDTH <const>, HEIGHT <const>, POINTS <const> = 6, 2, 48
 local CURVES <const> = {
@@ -19,6 +27,10 @@ local CURVES <const> = {
   { "#4cc9f0", { model = "cook_torrance", f0 = 1, roughness = 0.5 } },
   { "#9d7bff", { model = "cook_torrance", f0 = 1, roughness = 0.5, distribution = "beckmann" } },
 }
+
+if P.model ~= "none" then
+  table.insert(CURVES, { "#ffffff", { model = models[P.model] {}, diffuse = 0, shininess = 8 } })
+end
 
 local function direction(cosine, azimuth)
   local sine = math.sqrt(1 - cosine * cosine)

@@ -6,10 +6,13 @@
 -- the exponent, and the two rows look alike while all lies in one plane.
 --     glint scripts/lobes.lua                      6 + 6 lobes, light 40 degrees from the normal
 --     glint scripts/lobes.lua --set angle=75       at a low light Phong's lobes are cut off at the surface
+--     glint scripts/lobes.lua --set model=toon     a shader of scripts/lib/glint/models.lua in the lower row
 local glint = require "glint"
+local models = require "glint.models"
 
 local P = glint.params {
   angle = { 40, min = 0, max = 85, doc = "between light and normal, degrees" },
+  model = { "blinn_phong", choices = { "blinn_phong", "ward", "toon" }, doc = "of the lower row" },
   matched = { false, doc = "Blinn-Phong with four times the exponent" },
 }
 
@@ -51,11 +54,12 @@ local scene = glint.scene {
   ambient = 1, background = "#14161b",
 }
 
-for row, model in ipairs { "phong", "blinn_phong" } do
+for row, model in ipairs { "phong", P.model } do
   local y = row == 1 and 0.35 or -1.55
   for i, exponent in ipairs(EXPONENTS) do
     local x, data, axes = 1.75 * (i - 3.5) - 0.08, {}, {}
-    local material = glint.material { model = model, specular = 1, shininess = exponent, matched = P.matched }
+    local shader = row == 2 and model ~= "blinn_phong" and models[model] {}
+    local material = glint.material { model = shader or model, specular = 1, shininess = exponent, matched = P.matched }
     lobe(material, x, y, data)
     scene:add(glint.spheres { data = data, material = bright(COLORS[i]), name = model .. " " .. exponent })
     line(axes, x - 0.85, y, x + 0.85, y, 0.012)

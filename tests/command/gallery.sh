@@ -35,7 +35,10 @@ picture() {
 
 mkdir -p "$out"
 picture adaptive --frames 3
+picture bricks --frames 1
 picture caps --frames 6
+picture chessboard --frames 1
+picture earth --frames 1
 picture furnace
 picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
@@ -53,11 +56,14 @@ picture phong_and_blinn --frames 4 --samples 4
 picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb
 picture protein --size 320x180
 picture roughness --size 400x160
+picture shaders --samples 4
 picture shading --size 400x200 --frames 5
 picture shininess_sweep --frames 5 --samples 4
 picture soft_shadows --frames 11 --samples 4
 picture sphereflake --samples 4
 picture spotlights --size 320x180
+picture toon_teapot --frames 1
+picture wood_and_marble
 picture workshop --samples 9
 
 for script in scripts/*.lua; do

@@ -194,6 +194,52 @@ function tests.evaluate_sees_the_point()
   check(material:evaluate(at).specular.x == 0)
 end
 
+function tests.evaluate_runs_shaders()
+  local at = { normal = { 0, 0, 1 }, to_light = { 0.3, 0.1, 1 }, to_eye = { -0.2, 0, 1 } }
+  local toon = glint.material { diffuse = 0.5, specular = 0.25, model = glint.shader(function(s)
+    return s.kd * glint.select(glint.less(0.9, s.n:dot(s.l)), 1, 0.25), s.ks * s.shininess
+  end) }
+  local out = toon:evaluate(at)
+  check(out.diffuse.x == 0.5 and out.specular.x == 0.25 * 32)
+  at.to_light = { 0, 0, -1 }
+  check(toon:evaluate(at).diffuse.x == 0, "a light behind the surface")
+end
+
+-- Phong's model as a shader is the built-in one, but for what rounding to float leaves.
+function tests.phong_as_a_shader_is_phong()
+  local shader = glint.shader(function(s)
+    return s.kd * s.light * s.n:dot(s.l), s.ks * s.light * glint.highlight((-s.l):reflect(s.n):dot(s.v), s.shininess)
+  end)
+  local function image(model)
+    return select(2, picture(make_scene(glint.material { diffuse = { 0.6, 0.3, 0.1 }, specular = 0.5, shininess = 30, model = model })))
+  end
+  local plain, shaded, worst = image "phong", image(shader), 0
+  for y = 0, plain.height - 1 do
+    for x = 0, plain.width - 1 do
+      local a, b = { plain:pixel(x, y) }, { shaded:pixel(x, y) }
+      for c = 1, 3 do worst = math.max(worst, math.abs(a[c] - b[c])) end
+    end
+  end
+  tally.near(worst, 0, 2e-6, "the greatest difference")
+end
+
+-- A height of a x tilts the normal of a floor to (-a, 1, 0).
+function tests.a_bump_of_a_slope_tilts_the_normal()
+  local slope = 0.25
+  local function lit(fields, direction)
+    local scene = glint.scene {
+      camera = glint.camera { eye = { 0, 5, 0.001 }, at = { 0, 0, 0 } }, glint.directional_light { direction = direction },
+      glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material(fields) },
+    }
+    return (scene:render { width = 8, height = 8 }:pixel(4, 4))
+  end
+  local bump = glint.pattern(function(p) return slope * p.x end)
+  local l = glint.unit { 0.5, 1, 0.2 }
+  local want = 0.8 * glint.unit({ -slope, 1, 0 }):dot(l)
+  tally.near(lit({ diffuse = 0.8, bump = bump }, -l), want, 1e-6, "tilted")
+  tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
+end
+
 function tests.textures_are_looked_up()
   local name = os.tmpname() .. ".png"
   local source = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, background = { 0.25, 0.5, 1 },

@@ -1,0 +1,71 @@
+-- Small pictures painted by a script, written as PNG without compression: for glint.texture.
+--     local png = require "glint.png"
+--     local picture = png.new(64, 32)
+--     picture:set(x, y, { 0.5, 0.2, 0.1 })     -- from 0, 0 at the top left; linear, 0 .. 1
+--     picture:save "picture.png"
+local png = {}
+local picture = {}
+picture.__index = picture
+
+--- A black picture.
+function png.new(width, height)
+  return setmetatable({ width = width, height = height, rows = {} }, picture)
+end
+
+-- The code of sRGB, IEC 61966-2-1.
+local function encode(x)
+  x = math.min(math.max(x, 0), 1)
+  x = x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055
+  return math.floor(255 * x + 0.5)
+end
+
+--- Sets a pixel to a linear colour: a list of three, or what has x, y and z.
+function picture:set(x, y, color)
+  local row = self.rows[y] or {}
+  self.rows[y] = row
+  row[x] = string.char(encode(color.x or color[1]), encode(color.y or color[2]), encode(color.z or color[3]))
+end
+
+local remainders = {} -- of CRC-32, by byte
+for byte = 0, 255 do
+  local r = byte
+  for _ = 1, 8 do r = r & 1 == 1 and 0xedb88320 ~ r >> 1 or r >> 1 end
+  remainders[byte] = r
+end
+
+local function chunk(kind, data)
+  local crc, text = 0xffffffff, kind .. data
+  for i = 1, #text do crc = remainders[(crc ~ text:byte(i)) & 255] ~ crc >> 8 end
+  return string.pack(">I4", #data) .. text .. string.pack(">I4", crc ~ 0xffffffff)
+end
+
+-- A zlib stream of stored blocks.
+local function store(data)
+  local parts, a, b = { "\x78\x01" }, 1, 0
+  for at = 1, #data, 65535 do
+    local block = data:sub(at, at + 65534)
+    parts[#parts + 1] = string.pack("<BI2I2", at + 65535 > #data and 1 or 0, #block, #block ~ 0xffff) .. block
+  end
+  for i = 1, #data do
+    a = (a + data:byte(i)) % 65521
+    b = (b + a) % 65521
+  end
+  return table.concat(parts) .. string.pack(">I2I2", b, a)
+end
+
+--- Writes the picture to a file; raises when that fails.
+function picture:save(path)
+  local lines = {}
+  for y = 0, self.height - 1 do
+    local row = self.rows[y] or {}
+    lines[#lines + 1] = "\0"
+    for x = 0, self.width - 1 do lines[#lines + 1] = row[x] or "\0\0\0" end
+  end
+  local file = assert(io.open(path, "wb"))
+  local head = string.pack(">I4I4BBBBB", self.width, self.height, 8, 2, 0, 0, 0)
+  assert(file:write("\x89PNG\r\n\x1a\n", chunk("IHDR", head), chunk("sRGB", "\0"),
+    chunk("IDAT", store(table.concat(lines))), chunk("IEND", "")))
+  assert(file:close())
+end
+
+return png
