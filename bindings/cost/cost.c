@@ -8,6 +8,7 @@
 
 #define RUNS 11 // of each setting, the first not counted
 #define RUNS_QUICK 5
+#define MORE_RUNS 3 // times as many for settings whose quartiles meet their neighbours'
 #define RUN_MS 30.0 // of short frames as many make a run
 #define RUN_QUICK_MS 5.0
 #define ALLOWANCE_MS 45e3 // for the reference, where it may be better than it must be
@@ -223,6 +224,7 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
     study->options = options;
     study->own = &run->kept_render;
     study->runs = options->quick ? RUNS_QUICK : RUNS;
+    study->most_runs = MORE_RUNS * study->runs < COST_RUNS_MAX ? MORE_RUNS * study->runs : COST_RUNS_MAX;
     study->run_ms = options->quick ? RUN_QUICK_MS : RUN_MS;
     study->start_ms = output->start_ms;
     study->deadline_ms = options->budget_s > 0 ? output->start_ms + options->budget_s * 1e3 : 0;

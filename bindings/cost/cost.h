@@ -24,6 +24,7 @@
 #define COST_RUNS_MAX 64
 #define COST_RUNS_LEAST 3 ///< a quartile of fewer means nothing
 #define COST_COMBINATIONS_MAX 8
+#define COST_REFERENCE_PARTS 4 ///< pictures of other seeds that the reference is the mean of
 #define COST_LABEL_SIZE 128
 
 // ---- cost/scene.c ----
@@ -156,6 +157,8 @@ typedef struct cost_quartiles {
     double min, q1, median, q3;
 } cost_quartiles;
 
+/// COST_TOTAL: wall time of what is before it. COST_CPU: time that all threads of the process were on a processor; rows
+/// are compared by it, since a busy machine changes it little.
 typedef enum cost_part { COST_RENDER, COST_TONE, COST_ENCODE, COST_TOTAL, COST_CPU, COST_PART_COUNT } cost_part;
 
 /// A setting that is measured. Several rows may show one.
@@ -165,7 +168,7 @@ typedef struct cost_case {
     bool needs_file; ///< a row shows what the file keeps
     double estimate_ms; ///< of a run with all that is around it
     int batch; ///< frames in a run, so that it takes long enough to be timed; 0: one
-    double guess_ms; ///< of the frame alone, before it is timed in earnest
+    double guess_ms, guess_cpu_ms; ///< of the frame alone, before it is timed in earnest
     int run_count;
     double ms[COST_PART_COUNT][COST_RUNS_MAX];
     cost_quartiles time[COST_PART_COUNT]; ///< of the runs, by cost_summarize
@@ -196,6 +199,7 @@ typedef struct cost_row {
     bool is_default, is_front, is_resolved, is_partial;
     double x_fastest;
     int difference; ///< from the script's own time: -1 faster, 1 slower, 0 within the quartile range
+    bool is_apart; ///< its quartiles have nothing in common with those of the rows next to it in time
 } cost_row;
 
 typedef struct cost_study {
@@ -211,15 +215,16 @@ typedef struct cost_study {
     cost_row *rows;
     int row_count;
     int runs; ///< wanted of each case, the first not counted
+    int most_runs; ///< of a case whose quartiles do not part from its neighbours'
     double run_ms; ///< what a run should take at least
     double overhead_ms; ///< of finding the error of a picture
     double start_ms, deadline_ms; ///< deadline 0: none
     uint64_t random;
 
-    double reference_samples; ///< of each half; 0: there is none
-    double reference_seed[2];
-    glint_reference *reference;
-    glint_picture_error reference_error; ///< of the mean of the halves, by their difference
+    double reference_samples; ///< of each part; 0: there is none
+    double reference_seed[COST_REFERENCE_PARTS];
+    glint_reference *reference; ///< the mean of the parts
+    glint_picture_error reference_error; ///< of that mean, by how far the parts are from it
     cost_decisions truth; ///< of the base, in double
     bool is_complete; ///< not interrupted
 
@@ -255,6 +260,7 @@ typedef struct cost_shot {
     size_t light;
 } cost_shot;
 
+double cost_cpu_ms(void); ///< time on processors so far, of all threads of the process
 bool cost_fail(cost_study *study, const glint_error *error); ///< the run fails, unless it was stopped; false
 // Each of type bool returns false when the run has failed or was stopped.
 bool cost_open_renderers(cost_study *study);
@@ -271,7 +277,7 @@ bool cost_expect(cost_study *study, const cost_case *c, double *rays);
 
 /// What the reference is made with where that is not the script's own: ", with segments exact"; else "".
 void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE]);
-/// The reference, its own error and the true decisions. `allowance_ms` is for both halves.
+/// The reference, its own error and the true decisions. `allowance_ms` is for all of its parts.
 bool cost_make_reference(cost_study *study, double allowance_ms);
 /// A case's first run, its work, errors and decisions, and pictures for the report.
 bool cost_measure(cost_study *study, cost_case *c);
@@ -279,10 +285,14 @@ bool cost_measure(cost_study *study, cost_case *c);
 // ---- cost/timing.c ----
 
 double cost_left_ms(const cost_study *study); ///< of the budget; infinite without one
-/// The runs of all cases, one at a time, in random order.
+/// The runs of all cases, one at a time, in random order; then more of those whose quartiles meet their neighbours', up to
+/// the most runs or the budget's end.
 bool cost_time_cases(cost_study *study);
 void cost_summarize(cost_study *study); ///< quartiles of what was measured
-double cost_quartile_range(const cost_case *c);
+double cost_time_ms(const cost_case *c); ///< the median of the time that rows are compared by
+double cost_quartile_range(const cost_case *c); ///< of the same
+/// Whether a case's quartiles have nothing in common with those of the cases next to it in time.
+bool cost_is_apart(const cost_study *study, int index);
 double cost_round_ms(const cost_study *study); ///< a run of every case that is not left out, as far as is known
 /// Shows on a terminal what is being done; this step and those of the study after it take so long.
 void cost_show(const cost_study *study, const char *what, double step_ms, double left_ms);

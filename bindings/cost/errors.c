@@ -8,8 +8,8 @@
 #define LIGHTS_MAX 8 // looked at one by one
 #define LIT 0x1p-10 // less than a quarter of a code: a surface that a light grazes counts as dark
 #define BATCH_MAX 1000 // frames in a run
-#define TIMES 64 // samples of a half of the reference for each of the script's
-#define LEAST_TIMES 4 // where a budget forces fewer; below it no error would be worth showing
+#define TIMES 32 // samples of a part of the reference for each of the script's
+#define LEAST_TIMES 2 // where a budget forces fewer; below it no error would be worth showing
 
 // ---- Decisions ----
 
@@ -91,12 +91,12 @@ static glint_status count_decisions(cost_study *study, cost_case *c, glint_error
 
 // ---- The reference ----
 
-// Samples of each half: 64 times the script's, and as near to 64 times the most that is shown as the allowance goes. A
+// Samples of each part: 32 times the script's, and as near to 32 times the most that is shown as the allowance goes. A
 // budget may force fewer; 0: none at all.
 static double choose_samples(const cost_study *study, double allowance_ms)
 {
     const int knob = cost_knob_find("samples", strlen("samples"));
-    const double own = study->own->desc.samples, each = 2 * study->cases[0].stats.render_ms / own;
+    const double own = study->own->desc.samples, each = COST_REFERENCE_PARTS * study->cases[0].stats.render_ms / own;
     double most = own, samples = TIMES * own;
     for (int i = 0; i < study->values[knob].count; i++)
         most = fmax(most, study->values[knob].value[i].number);
@@ -131,57 +131,88 @@ void cost_truth_name(const cost_study *study, char out[COST_LABEL_SIZE])
     }
 }
 
-static glint_status render_halves(cost_study *study, glint_image *halves[2], glint_error *error)
+// Seeds that have nothing to do with each other: those of neighbouring numbers share a sequence, and their errors might
+// cancel. Below 2^20, where a seed's shift keeps all of its digits.
+static void choose_seeds(cost_study *study)
+{
+    uint64_t state = (uint64_t)study->own->desc.seed;
+    for (int i = 0; i < COST_REFERENCE_PARTS; i++) {
+        bool fresh;
+        do {
+            uint64_t z = state += 0x9e3779b97f4a7c15u; // SplitMix64
+            z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+            z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+            study->reference_seed[i] = (double)(1 + ((z ^ z >> 31) & 0xfffff));
+            fresh = study->reference_seed[i] != study->own->desc.seed;
+            for (int k = 0; k < i; k++)
+                fresh = fresh && study->reference_seed[k] != study->reference_seed[i];
+        } while (!fresh);
+    }
+}
+
+static glint_status render_parts(cost_study *study, glint_image *parts[COST_REFERENCE_PARTS], glint_error *error)
 {
     const cost_case c = true_case(study);
-    const double half_ms = study->cases[0].stats.render_ms / study->own->desc.samples * study->reference_samples;
+    const double part_ms = study->cases[0].stats.render_ms / study->own->desc.samples * study->reference_samples;
     glint_status status = GLINT_OK;
-    for (int i = 0; i < 2 && !status; i++) {
+    for (int i = 0; i < COST_REFERENCE_PARTS && !status; i++) {
         const cost_shot how = { .passes = 1u << GLINT_PASS_BEAUTY,
                                 .samples = study->reference_samples,
                                 .seed = study->reference_seed[i],
                                 .is_exact = true };
-        cost_show(study, "reference", half_ms, (1 - i) * half_ms + cost_round_ms(study) * (study->runs + 2));
-        status = cost_take(study, &c, &how, &halves[i], NULL, error);
+        cost_show(study, "reference", part_ms,
+                  (COST_REFERENCE_PARTS - 1 - i) * part_ms + cost_round_ms(study) * (study->runs + 2));
+        status = cost_take(study, &c, &how, &parts[i], NULL, error);
     }
     return status;
 }
 
-// How far the halves are from each other says how far their mean is from the truth: half as far.
-static glint_status measure_halves(cost_study *study, glint_image *const halves[2], glint_error *error)
+// How far n independent parts are from their mean says how far that mean is from the truth: the squares' sum over n (n - 1),
+// which is the variance of a mean.
+static glint_status measure_parts(cost_study *study, glint_image *const parts[COST_REFERENCE_PARTS], glint_error *error)
 {
-    const glint_tone_desc *tone = &study->own->desc.tone;
-    const glint_image *const list[2] = { halves[0], halves[1] };
-    glint_reference *first = NULL;
-    glint_status status = glint_reference_create(list, 1, tone, &first, error);
-    if (!status)
-        status = glint_reference_measure(first, halves[1], 0, &study->reference_error, error);
-    glint_reference_destroy(first);
-    study->reference_error.rmse /= 2;
-    study->reference_error.relmse /= 4;
-    return status ? status : glint_reference_create(list, 2, tone, &study->reference, error);
+    const double n = COST_REFERENCE_PARTS;
+    const glint_image *list[COST_REFERENCE_PARTS];
+    glint_picture_error *sum = &study->reference_error;
+    for (int i = 0; i < COST_REFERENCE_PARTS; i++)
+        list[i] = parts[i];
+    *sum = (glint_picture_error) { .rmse = 0 };
+    glint_status status =
+        glint_reference_create(list, COST_REFERENCE_PARTS, &study->own->desc.tone, &study->reference, error);
+    for (int i = 0; i < COST_REFERENCE_PARTS && !status; i++) {
+        glint_picture_error part;
+        status = glint_reference_measure(study->reference, parts[i], 0, &part, error);
+        if (status)
+            break;
+        sum->rmse += part.rmse * part.rmse / (n * (n - 1));
+        sum->relmse += part.relmse / (n * (n - 1));
+        sum->max_code = fmax(sum->max_code, part.max_code);
+        sum->flip += part.flip / n;
+    }
+    sum->rmse = sqrt(sum->rmse);
+    return status;
 }
 
 bool cost_make_reference(cost_study *study, double allowance_ms)
 {
-    const double own = study->own->desc.samples, seed = study->own->desc.seed;
+    const double own = study->own->desc.samples;
     const cost_case truth = true_case(study);
-    glint_image *halves[2] = { NULL, NULL };
+    glint_image *parts[COST_REFERENCE_PARTS] = { NULL };
     glint_error error;
     study->reference_samples = choose_samples(study, allowance_ms);
     if (study->reference_samples == 0)
         return cost_leave_out(study, "every error: the budget leaves no time for a reference");
     if (study->reference_samples < TIMES * own)
-        cost_leave_out(study, "a full reference: %.0f samples instead of %.0f", study->reference_samples, TIMES * own);
-    for (int i = 0; i < 2; i++)
-        study->reference_seed[i] = seed + 1 + i <= 0x1p53 ? seed + 1 + i : 1 + i;
-    glint_status status = render_halves(study, halves, &error);
+        cost_leave_out(study, "a full reference: %.0f samples instead of %.0f",
+                       COST_REFERENCE_PARTS * study->reference_samples, COST_REFERENCE_PARTS * TIMES * own);
+    choose_seeds(study);
+    glint_status status = render_parts(study, parts, &error);
     if (!status)
-        status = measure_halves(study, halves, &error);
+        status = measure_parts(study, parts, &error);
     if (!status)
         status = decide(study, &truth, true, &study->truth, &error);
-    glint_image_release(halves[0]);
-    glint_image_release(halves[1]);
+    for (int i = 0; i < COST_REFERENCE_PARTS; i++)
+        glint_image_release(parts[i]);
     return status ? cost_fail(study, &error) : true;
 }
 
@@ -227,7 +258,9 @@ bool cost_measure(cost_study *study, cost_case *c)
         return false;
     c->is_first_alone = true;
     how.passes |= 1u << GLINT_PASS_BEAUTY;
+    const double cpu = cost_cpu_ms();
     glint_status status = cost_take(study, c, &how, &image, &stats, &error);
+    c->guess_cpu_ms = fmin(c->ms[COST_CPU][0], cost_cpu_ms() - cpu);
     c->is_counted = !status;
     if (!status) {
         c->work = stats.work;

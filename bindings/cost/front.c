@@ -28,7 +28,7 @@ static bool is_useful(const cost_study *study, const cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
     return c->has_error && c->run_count > 0 &&
-           (c->guess_ms < CLEARLY * own->guess_ms || c->film.rmse < CLEARLY * own->film.rmse);
+           (c->guess_cpu_ms < CLEARLY * own->guess_cpu_ms || c->film.rmse < CLEARLY * own->film.rmse);
 }
 
 // Every known candidate with one more knob turned. Times multiply; errors, being independent, add as squares.
@@ -45,7 +45,7 @@ static int extend(const cost_study *study, int knob, candidate *list, int count)
             candidate *new = &list[count++];
             *new = list[i];
             new->choice[knob] = row->value;
-            new->ms *= c->guess_ms / base->guess_ms;
+            new->ms *= c->guess_cpu_ms / base->guess_cpu_ms;
             double square = new->error *new->error + c->film.rmse * c->film.rmse - base->film.rmse * base->film.rmse;
             new->error = sqrt(fmax(square, 0));
         }
@@ -97,7 +97,7 @@ bool cost_add_combinations(cost_study *study)
     int count = 1;
     if (!list)
         return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    list[0] = (candidate) { .ms = study->cases[0].guess_ms, .error = study->cases[0].film.rmse };
+    list[0] = (candidate) { .ms = study->cases[0].guess_cpu_ms, .error = study->cases[0].film.rmse };
     for (int i = 0; i < COST_KNOBS_MAX; i++)
         list[0].choice[i] = -1;
     for (int knob = 0; knob < cost_knob_count; knob++)
@@ -127,7 +127,7 @@ static bool beats(const cost_study *study, const cost_row *a, const cost_row *b)
 {
     const cost_case *ca = &study->cases[a->measured], *cb = &study->cases[b->measured];
     const double ea = cost_row_error(study, a)->rmse, eb = cost_row_error(study, b)->rmse;
-    const double ta = ca->time[COST_TOTAL].median, tb = cb->time[COST_TOTAL].median;
+    const double ta = cost_time_ms(ca), tb = cost_time_ms(cb);
     const double noise = fmin(cost_quartile_range(ca), cost_quartile_range(cb));
     return (ea < eb && ta <= tb + noise) || (ea == eb && ta < tb) ||
            (ea <= eb + study->reference_error.rmse && ta < tb - noise);
@@ -137,10 +137,11 @@ static void judge_row(cost_study *study, cost_row *row)
 {
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
     const glint_picture_error *error = cost_row_error(study, row);
-    const double difference = c->time[COST_TOTAL].median - own->time[COST_TOTAL].median;
+    const double difference = cost_time_ms(c) - cost_time_ms(own);
     row->is_resolved = error && error->rmse >= RESOLVED * study->reference_error.rmse;
     row->is_partial = !error || (!c->is_left_out && c->run_count < study->runs) || c->is_first_alone;
     row->difference = fabs(difference) <= range_of(c, own) ? 0 : difference < 0 ? -1 : 1;
+    row->is_apart = cost_is_apart(study, row->measured);
     row->is_front = is_point(study, row);
     for (int i = 0; i < study->row_count && row->is_front; i++)
         if (is_point(study, &study->rows[i]) && beats(study, &study->rows[i], row))
@@ -152,9 +153,9 @@ static void compare_times(cost_study *study)
     double fastest = INFINITY;
     for (int i = 0; i < study->row_count; i++)
         if (study->cases[study->rows[i].measured].run_count > 0)
-            fastest = fmin(fastest, study->cases[study->rows[i].measured].time[COST_TOTAL].median);
+            fastest = fmin(fastest, cost_time_ms(&study->cases[study->rows[i].measured]));
     for (int i = 0; i < study->row_count; i++)
-        study->rows[i].x_fastest = study->cases[study->rows[i].measured].time[COST_TOTAL].median / fastest;
+        study->rows[i].x_fastest = cost_time_ms(&study->cases[study->rows[i].measured]) / fastest;
 }
 
 // ---- The advice ----
@@ -208,7 +209,7 @@ static double worth(const cost_study *study, const cost_row *row)
     if (!is_eligible(study, row))
         return 0;
     const double e = own->film.rmse / cost_row_error(study, row)->rmse;
-    const double t = c->time[COST_TOTAL].median / own->time[COST_TOTAL].median;
+    const double t = cost_time_ms(c) / cost_time_ms(own);
     if (e >= 0.98 && row->difference < 0) // the same or better, and faster
         return 1e3 / t;
     if (!(e >= 1.5))
@@ -237,7 +238,7 @@ static void advise_step(cost_study *study, const cost_row *row)
     const cost_case *c = &study->cases[row->measured], *own = &study->cases[0];
     spell_step(study, row, step);
     spell_share(cost_row_error(study, row)->rmse / own->film.rmse, error);
-    spell_share(c->time[COST_TOTAL].median / own->time[COST_TOTAL].median, time);
+    spell_share(cost_time_ms(c) / cost_time_ms(own), time);
     if (row->difference == 0)
         snprintf(time, sizeof time, "no difference in the");
     snprintf(study->advice, sizeof study->advice, "%s: %s time, %s error%s", step, time, error,
@@ -250,8 +251,7 @@ static const cost_row *find_cheaper(const cost_study *study)
     const cost_row *best = NULL;
     for (int i = 0; i < study->row_count; i++) {
         const cost_row *row = &study->rows[i];
-        const double share =
-            study->cases[row->measured].time[COST_TOTAL].median / study->cases[0].time[COST_TOTAL].median;
+        const double share = cost_time_ms(&study->cases[row->measured]) / cost_time_ms(&study->cases[0]);
         if (is_eligible(study, row) && row->is_resolved && row->difference < 0 && share < CHEAPER &&
             (!best || cost_row_error(study, row)->rmse < cost_row_error(study, best)->rmse))
             best = row;

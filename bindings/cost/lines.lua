@@ -2,16 +2,23 @@
 local the = ...
 local format, json = string.format, the.json
 
+-- The seeds of the pictures that a reference is the mean of: "3, 14 and 15".
+function the.seeds_of(reference)
+  local out = {}
+  for i, seed in ipairs(reference.seeds) do out[i] = format("%.0f", seed) end
+  return table.concat(out, ", ", 1, #out - 1) .. " and " .. out[#out]
+end
+
 -- ---- For people ----
 
 local function head_of(study)
   local reference = study.reference
   return study.machine .. "\n"
-    .. (reference and format("reference: the mean of two pictures of %.0f samples a pixel, decided in double, seeds %.0f and "
-      .. "%.0f%s; its own error %.2g RMSE\n", reference.samples, reference.seeds[1], reference.seeds[2], study.truth,
+    .. (reference and format("reference: the mean of %d pictures of %.0f samples a pixel, decided in double, "
+      .. "seeds %s%s; its own error, by how they differ, %.2g RMSE\n", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
       reference.rmse) or "")
-    .. format("\n%-24s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "ms", "+-", "x", "rmse", "relmse", "codes",
-      ">1", ">8", "FLIP", "object", "shadow", "Mrays")
+    .. format("\n%-24s %8s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "wall ms", "CPU ms", "+-", "x", "rmse",
+      "relmse", "codes", ">1", ">8", "FLIP", "object", "shadow", "Mrays")
 end
 
 local function errors_for_people(row)
@@ -25,11 +32,23 @@ local function row_for_people(row)
   local case = row.case
   local mark = row.default and " *" or "  "
   local label = #row.label > 22 and format("%s%s\n  %22s", mark, row.label, "") or format("%s%-22s", mark, row.label)
-  return label .. format(" %8.4g %7.2g %6.3g", case.time.median, case.quartile_range / 2, row.x_fastest)
+  return label
+    .. format(" %8.4g %8.4g %7.2g %6.3g", case.wall.median, case.time.median, case.quartile_range / 2, row.x_fastest)
     .. errors_for_people(row) .. format(" %6.3g", the.all_rays(case) * 1e-6) .. (row.front and "  front" or "")
     .. (not row.own and not row.partial and row.difference == 0 and "  no difference in time" or "")
     .. (row.error and not row.resolved and "  error not resolved" or "")
     .. ((row.partial or case.left_out) and format("  partial, %d run%s", case.runs, case.runs == 1 and "" or "s") or "") .. "\n"
+end
+
+-- Which rows more runs might tell from the row next to them.
+local function rows_together(study)
+  local together, runs = 0, 0
+  for _, row in ipairs(study.rows) do
+    together = together + (row.apart and 0 or 1)
+    runs = math.max(runs, row.case.runs)
+  end
+  return together == 0 and "" or format("%d of %d rows do not part in time from the row next to them, after up to %d runs.\n",
+    together, #study.rows, runs)
 end
 
 function the.table(study)
@@ -40,9 +59,11 @@ function the.table(study)
     knob = heading
     out[#out + 1] = row_for_people(row)
   end
-  out[#out + 1] = format("\n* the script's own setting. ms: the median of %d runs, rendering, codes and encoding of a whole "
-    .. "frame, +- half the\nquartile range; x: times the fastest. codes: steps of 8 bits, >1 and >8 the share of pixels. "
-    .. "object, shadow: pixels\nthat see or shade the wrong thing.\n", study.runs)
+  out[#out + 1] = format("\n* the script's own setting. ms: medians of %d runs or more, rendering, codes and encoding of a whole "
+    .. "frame: by the\nclock, and on all processors, which other programs change little; +- half the latter's quartile range; "
+    .. "x: times the\nfastest, by processor time, as all that compares. codes: steps of 8 bits, >1 and >8 the share of "
+    .. "pixels. object, shadow:\npixels that see or shade the wrong thing.\n", study.runs)
+  out[#out + 1] = rows_together(study)
   if #study.left_out > 0 then out[#out + 1] = "left out:\n" end
   for _, line in ipairs(study.left_out) do out[#out + 1] = "  " .. line .. "\n" end
   return table.concat(out) .. "\n" .. study.advice .. "\n"
@@ -70,25 +91,29 @@ local function settings_of(row)
   return ',"settings":{' .. table.concat(out, ",") .. "}"
 end
 
+local function quartiles_for_programs(name, time)
+  return format(',"%s":{"min":%.4f,"q1":%.4f,"median":%.4f,"q3":%.4f}', name, time.min, time.q1, time.median, time.q3)
+end
+
 local function row_for_programs(row)
   local case, e = row.case, row.error or {}
   local wrong = row.error and case or {}
   return '{"knob":' .. json(row.knob or "combination") .. ',"value":' .. json(row.value)
-    .. format(',"ms":{"min":%.4f,"q1":%.4f,"median":%.4f,"q3":%.4f},"x_fastest":%.4f,', case.time.min, case.time.q1,
-      case.time.median, case.time.q3, row.x_fastest)
+    .. quartiles_for_programs("ms", case.wall) .. quartiles_for_programs("cpu", case.time)
+    .. format(',"x_fastest":%.4f,', row.x_fastest)
     .. members(e, "rmse", "relmse", "max_code", "over1", "over8", "flip") .. ","
     .. members(wrong, "wrong_object", "wrong_shadow") .. ',"counters":{' .. counters_of(case) .. '},'
     .. format('"pareto":%s,"default":%s,"resolved":%s,"difference":"%s",', row.front, row.default, row.resolved,
       ({ "faster", "no difference", "slower" })[row.difference + 2])
-    .. format('"runs":%d,"frames_a_run":%d,"partial":%s,', case.runs, case.frames, row.partial)
+    .. format('"runs":%d,"frames_a_run":%d,"partial":%s,"apart":%s,', case.runs, case.frames, row.partial, row.apart)
     .. format('"parts":{"render":%.4f,"tone":%.4f,"encode":%.4f},"cpu_ms":%.4f', case.render, case.tone, case.encode,
-      case.cpu)
+      case.time.median)
     .. (row.knob and "" or settings_of(row)) .. "}\n"
 end
 
 local function reference_for_programs(reference)
   if not reference then return "null" end
-  return format('{"samples":%.0f,"seeds":[%.0f,%.0f],', reference.samples, reference.seeds[1], reference.seeds[2])
+  return format('{"samples":%.0f,"seeds":[%s],', reference.samples, (the.seeds_of(reference):gsub(" and ", ",")))
     .. members(reference, "rmse", "relmse", "max_code", "flip") .. "}"
 end
 

@@ -96,7 +96,7 @@ bool cost_expect(cost_study *study, const cost_case *c, double *rays)
 
 // ---- One run ----
 
-static double cpu_ms(void)
+double cost_cpu_ms(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -159,7 +159,7 @@ static glint_status time_frame(cost_study *study, cost_case *c, const glint_plan
     glint_image *image = NULL;
     double encode_ms = 0;
     glint_status status = prepare(study, draft, false, error);
-    const double cpu = cpu_ms();
+    const double cpu = cost_cpu_ms();
     if (!status)
         status = glint_render(study->run->renderer, plan, &image, &c->stats, error);
     if (!status)
@@ -171,7 +171,7 @@ static glint_status time_frame(cost_study *study, cost_case *c, const glint_plan
     sum[COST_TONE] += c->stats.tone_ms;
     sum[COST_ENCODE] += encode_ms;
     sum[COST_TOTAL] += c->stats.render_ms + c->stats.tone_ms + encode_ms;
-    sum[COST_CPU] += cpu_ms() - cpu;
+    sum[COST_CPU] += cost_cpu_ms() - cpu;
     return GLINT_OK;
 }
 

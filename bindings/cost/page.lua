@@ -23,8 +23,8 @@ end
 -- What the page says when the row's point is reached.
 local function text_of(row)
   local time, error = row.case.time, row.error
-  local text = format("%s: %.4g ms (%.4g to %.4g), %.3g times the fastest",
-    the.html(row.own and "the script's own setting" or row.name), time.median, time.q1, time.q3, row.x_fastest)
+  local text = format("%s: %.4g ms by the clock, %.4g ms (%.4g to %.4g) of processor time, %.3g times the fastest",
+    the.html(row.own and "the script's own setting" or row.name), row.case.wall.median, time.median, time.q1, time.q3, row.x_fastest)
   if error then
     text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than a code", error.rmse,
       error.flip, 100 * error.over1)
@@ -76,9 +76,10 @@ end
 local function reference_of(study)
   local reference = study.reference
   if not reference then return "No reference was rendered, so no error is known." end
-  return format("Errors are against the mean of two pictures of %.0f samples a pixel, decided in double, of seeds %.0f and "
-    .. "%.0f%s. By their difference that mean is itself %.2g RMSE from the truth; an error under ten times that is "
-    .. "marked as not resolved.", reference.samples, reference.seeds[1], reference.seeds[2], study.truth, reference.rmse)
+  return format("Errors are against the mean of %d pictures of %.0f samples a pixel, decided in double, of seeds "
+    .. "%s%s. By how they differ that mean is itself %.2g RMSE from the truth; an error under ten times that is "
+    .. "marked as not resolved.", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
+    reference.rmse)
 end
 
 local function left_out_of(study)

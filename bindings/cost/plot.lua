@@ -113,7 +113,7 @@ function the.plot(study)
   local function draw_point(row)
     local t, e = row.case.time, row.error.rmse
     local x, y = x_of(t.median), y_of(e)
-    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s: %.4g ms, error %.2g%s'>",
+    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s: %.4g ms of processor time, error %.2g%s'>",
       row.front and " best" or "", row.own and " own" or "", row.index,
       the.html(row.own and "the script's own setting" or row.name), t.median, e, row.front and ", on the front" or "")
     put("<circle class='reach' cx='%.1f' cy='%.1f' r='14'/>", x, y)

@@ -90,8 +90,8 @@ static const member RAYS[] = { MEMBER('u', glint_ray_counts, primary), MEMBER('u
 static const member WORK[] = { MEMBER('f', glint_work, tests),    MEMBER('f', glint_work, light_samples),
                                MEMBER('f', glint_work, powers),   MEMBER('f', glint_work, sites),
                                MEMBER('f', glint_work, overlaps), MEMBER('f', glint_work, lights_seen) };
-static const member ROW[] = { FLAG(default), FLAG(front), FLAG(resolved), FLAG(partial),
-                              MEMBER('d', cost_row, x_fastest) };
+static const member ROW[] = { FLAG(default), FLAG(front), FLAG(resolved),
+                              FLAG(partial), FLAG(apart), MEMBER('d', cost_row, x_fastest) };
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -128,13 +128,14 @@ static void set_settings(lua_State *L, const cost_study *study, const cost_case 
 static void set_case(lua_State *L, const cost_study *study, const cost_case *c)
 {
     lua_newtable(L);
-    push_members(L, &c->time[COST_TOTAL], TIME, COUNT(TIME));
+    push_members(L, &c->time[COST_CPU], TIME, COUNT(TIME)); // by which rows are compared
     lua_setfield(L, -2, "time");
+    push_members(L, &c->time[COST_TOTAL], TIME, COUNT(TIME));
+    lua_setfield(L, -2, "wall");
     set_number(L, "quartile_range", cost_quartile_range(c));
     set_number(L, "render", c->time[COST_RENDER].median);
     set_number(L, "tone", c->time[COST_TONE].median);
     set_number(L, "encode", c->time[COST_ENCODE].median);
-    set_number(L, "cpu", c->time[COST_CPU].median);
     set_count(L, "runs", (uint64_t)c->run_count);
     set_count(L, "frames", c->batch > 0 && !c->is_first_alone ? (uint64_t)c->batch : 1);
     set_flag(L, "left_out", c->is_left_out);
@@ -200,7 +201,7 @@ static void set_reference(lua_State *L, const cost_study *study)
     push_members(L, &study->reference_error, ERROR, COUNT(ERROR));
     set_number(L, "samples", study->reference_samples);
     lua_newtable(L);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < COST_REFERENCE_PARTS; i++) {
         lua_pushnumber(L, study->reference_seed[i]);
         lua_rawseti(L, -2, i + 1);
     }

@@ -83,10 +83,8 @@ static void shuffle(cost_study *study, int *order, int count)
     }
 }
 
-static bool run_round(cost_study *study, int *order, int count, int round)
+static bool run_round(cost_study *study, int *order, int count, double left)
 {
-    const double whole = cost_round_ms(study);
-    double left = whole * (study->runs - round);
     shuffle(study, order, count);
     for (int i = 0; i < count; i++) {
         cost_case *c = &study->cases[order[i]];
@@ -99,18 +97,48 @@ static bool run_round(cost_study *study, int *order, int count, int round)
     return true;
 }
 
-bool cost_time_cases(cost_study *study)
+static bool is_timed(const cost_case *c) { return !c->is_left_out && c->run_count > 0; }
+
+// The cases that are timed and, with `more`, not told apart from a neighbour yet and may run on. *ms: what a round of them takes.
+static int list_cases(cost_study *study, bool more, int *order, double *ms)
 {
     int count = 0;
+    *ms = 0;
+    if (more)
+        cost_summarize(study);
+    for (int i = 0; i < study->case_count; i++) {
+        const cost_case *c = &study->cases[i];
+        if (!is_timed(c) || (more && (c->run_count >= study->most_runs || cost_is_apart(study, i))))
+            continue;
+        order[count++] = i;
+        *ms += c->estimate_ms;
+    }
+    return count;
+}
+
+// More runs of the cases whose quartiles meet a neighbour's. One that never parts from it costs the same.
+static bool tell_apart(cost_study *study, int *order)
+{
+    double ms;
+    int count;
+    while ((count = list_cases(study, true, order, &ms)) > 0 && ms <= cost_left_ms(study))
+        if (!run_round(study, order, count, ms))
+            return false;
+    return count == 0 || cost_leave_out(study, "more runs of %d settings whose times do not part: the budget ends", count);
+}
+
+bool cost_time_cases(cost_study *study)
+{
+    double ms;
     bool good = fit_budget(study);
     int *order = malloc(((size_t)study->case_count + 1) * sizeof *order);
     if (!order)
         return glintL_run_fail(study->run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    for (int i = 0; i < study->case_count; i++)
-        if (!study->cases[i].is_left_out && study->cases[i].run_count > 0)
-            order[count++] = i;
+    const int count = list_cases(study, false, order, &ms);
     for (int round = 0; round < study->runs && good; round++)
-        good = run_round(study, order, count, round);
+        good = run_round(study, order, count, ms * (study->runs - round));
+    if (good && study->runs >= COST_RUNS_LEAST)
+        good = tell_apart(study, order);
     free(order);
     return good;
 }
@@ -145,4 +173,23 @@ void cost_summarize(cost_study *study)
     }
 }
 
-double cost_quartile_range(const cost_case *c) { return c->time[COST_TOTAL].q3 - c->time[COST_TOTAL].q1; }
+double cost_time_ms(const cost_case *c) { return c->time[COST_CPU].median; }
+
+double cost_quartile_range(const cost_case *c) { return c->time[COST_CPU].q3 - c->time[COST_CPU].q1; }
+
+bool cost_is_apart(const cost_study *study, int index)
+{
+    const cost_case *c = &study->cases[index], *below = NULL, *above = NULL;
+    for (int i = 0; i < study->case_count; i++) {
+        const cost_case *other = &study->cases[i];
+        if (i == index || !is_timed(other))
+            continue;
+        const double ms = cost_time_ms(other);
+        if (ms <= cost_time_ms(c) && (!below || ms > cost_time_ms(below)))
+            below = other;
+        if (ms >= cost_time_ms(c) && (!above || ms < cost_time_ms(above)))
+            above = other;
+    }
+    return (!below || below->time[COST_CPU].q3 < c->time[COST_CPU].q1) &&
+           (!above || above->time[COST_CPU].q1 > c->time[COST_CPU].q3);
+}

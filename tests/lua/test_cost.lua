@@ -118,15 +118,15 @@ end
 
 -- ---- What every study's rows must be ----
 
-local fields = { knob = "string", ms = "table", x_fastest = "number", rmse = "number", relmse = "number", max_code = "number",
+local fields = { knob = "string", ms = "table", cpu = "table", apart = "boolean", x_fastest = "number", rmse = "number", relmse = "number", max_code = "number",
   over1 = "number", over8 = "number", flip = "number", wrong_object = "number", wrong_shadow = "number", counters = "table",
   pareto = "boolean", default = "boolean", resolved = "boolean", difference = "string", runs = "number",
   partial = "boolean" }
 
 local function is_dominated(rows, row)
   for _, other in ipairs(rows) do
-    local e, t = other.rmse, other.ms.median
-    if other.knob ~= "reuse" and e <= row.rmse and t <= row.ms.median and (e < row.rmse or t < row.ms.median) then
+    local e, t = other.rmse, other.cpu.median
+    if other.knob ~= "reuse" and e <= row.rmse and t <= row.cpu.median and (e < row.rmse or t < row.cpu.median) then
       return true
     end
   end
@@ -141,11 +141,19 @@ local function check_rows(name, rows, reference)
       check(type(row[field]) == kind, "%s: %s is a %s", where, field, type(row[field]))
     end
     check(type(row.value) == "number" or type(row.value) == "string", "%s: value", where)
-    local ms = row.ms
-    check(0 <= ms.min and ms.min <= ms.q1 and ms.q1 <= ms.median and ms.median <= ms.q3, "%s: quartiles", where)
+    for _, ms in ipairs { row.ms, row.cpu } do
+      check(0 <= ms.min and ms.min <= ms.q1 and ms.q1 <= ms.median and ms.median <= ms.q3, "%s: quartiles", where)
+    end
     check(row.rmse >= 0 and row.relmse >= 0 and row.flip >= 0 and row.flip <= 1, "%s: errors in range", where)
     check(row.over8 <= row.over1 and row.over1 <= 1, "%s: shares of pixels", where)
-    check(row.runs == 5 and not row.partial, "%s: %d runs", where, row.runs)
+    check(row.runs >= 5 and row.runs <= 15 and not row.partial, "%s: %d runs", where, row.runs)
+    local apart = true -- from the nearest in time, whose rows may be others of the same case
+    for _, other in ipairs(rows) do
+      apart = apart and (other.cpu.median == row.cpu.median and other.cpu.q1 == row.cpu.q1 or other.cpu.q3 < row.cpu.q1
+        or row.cpu.q3 < other.cpu.q1)
+    end
+    check(row.apart or not apart, "%s: apart from all others, and said not to be", where)
+    check(row.apart or row.runs == 15, "%s: not apart, and given up after %d runs", where, row.runs)
     if row.default then defaults[row.knob] = (defaults[row.knob] or 0) + 1 end
     fastest = math.min(fastest, row.x_fastest)
     if row.knob ~= "reuse" then least = math.min(least, row.rmse) end
@@ -236,14 +244,19 @@ local function pfm(name, options)
 end
 
 local mine = pfm("mine", "")
-local halves = { pfm("a", ("--samples %d --seed 1"):format(advice.reference.samples)),
-  pfm("b", ("--samples %d --seed 2"):format(advice.reference.samples)) }
+local seeds, parts = advice.reference.seeds, {}
+check(#seeds >= 4, "the reference has %d seeds", #seeds)
+for i, seed in ipairs(seeds) do
+  parts[i] = pfm("part" .. i, ("--samples %d --seed %d"):format(advice.reference.samples, seed))
+  for k = 1, i - 1 do check(seeds[k] ~= seed and seed ~= 0, "seed %d twice", seed) end
+end
 local squares, relative, apart = 0, 0, 0
 for i = 1, #mine do
-  local r = (halves[1][i] + halves[2][i]) / 2
+  local r = 0
+  for _, part in ipairs(parts) do r = r + part[i] / #parts end
   squares = squares + (mine[i] - r) ^ 2
   relative = relative + (mine[i] - r) ^ 2 / (r ^ 2 + 0.01)
-  apart = apart + (halves[1][i] - halves[2][i]) ^ 2 / 4
+  for _, part in ipairs(parts) do apart = apart + (part[i] - r) ^ 2 / (#parts * (#parts - 1)) end
 end
 local function near(got, want) return math.abs(got - want) <= 1e-5 * want end
 check(near(own.rmse, (squares / #mine) ^ 0.5), "RMSE %g, by hand %g", own.rmse, (squares / #mine) ^ 0.5)
