@@ -498,7 +498,10 @@ glint_transform glint_transform_rotate(const double axis[3], double degrees);
 /// wherever it is seen: in a mirror too, its highlights are those that the eye sees from its own place.
 typedef enum glint_shading {
     GLINT_SHADING_FACETED, ///< for each sample, with the normal of its face
-    GLINT_SHADING_PHONG, ///< for each sample, with a normal between those of the corners
+    /// For each sample, with a normal between those of the corners, which are interpolated in the mesh's own space: a
+    /// transform moves them as it moves the faces. Where surfaces are, and what throws shadows, is decided by the faces
+    /// alone: a face that looks away from a light is dark to its edge, however its normals lean; see glint_mesh_bend
+    GLINT_SHADING_PHONG,
     GLINT_SHADING_FLAT, ///< once a face, at its centroid, with its normal
     GLINT_SHADING_GOURAUD ///< once a vertex; between them by barycentric coordinates, over triangles
 } glint_shading;
@@ -605,6 +608,12 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
 /// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.
 glint_status glint_sphere_mesh_create(const double center[3], double radius, double segments,
                                       const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
+
+/// How far smooth shading bends a mesh: the largest angle between a face and the normals of its corners, degrees, 0 .. 90, in the
+/// mesh's own space; 0 for other shapes and shading. Faces that a light grazes by less throw a shadow on themselves
+/// where their shading is lit: more segments, or lights with `shadows` false, are the cure. The first call looks at all
+/// triangles; not to be called for one mesh by two threads at once.
+double glint_mesh_bend(const glint_shape *shape);
 
 /// The arguments of glint_sphere_mesh_create; false, and nothing written, when the shape was not made by it.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);

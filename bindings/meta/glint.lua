@@ -186,7 +186,8 @@ function glint.spot_light(fields) end
 --- caps: sphere lights, in closed form, without noise: the terms of a point at its centre (of `radiance` L, of irradiance
 --- pi L r^2/d^2 (n.l)) times the share of the light that is seen, exact past one sphere, past several the product of what
 --- each leaves. Scenes with other shapes than spheres and planes, or with transparent ones, have rays all the same;
---- `glint explain` says which. Default "rays"
+--- `glint explain` says which. By `radiance` caps are the limit of rays, but for how the cosine changes across the light. By
+--- `intensity` they are not: its rays go to all of the surface, the far side as well, since it is a mean over that. Default "rays"
 
 ---@class glint.disk_light_fields: glint.area_light_fields
 ---@field position glint.vec3  its centre, world units
@@ -354,7 +355,7 @@ function glint.spheres(fields) end
 
 ---@alias glint.shading
 ---| "faceted"  # lit in each sample, with the normal of its face
----| "phong"  # lit in each sample, with a normal between those of the vertices (without `normals`, the mean of the faces around)
+---| "phong"  # lit in each sample, with a normal between those of the vertices, in the mesh's own space (without `normals`, the mean of the faces around); shadows are the faces' own
 ---| "flat"  # lit once a face, at its centroid
 ---| "gouraud"  # lit once a vertex, with its normal; between them by barycentric coordinates
 

@@ -1,4 +1,5 @@
-// Warnings about where things are: a light inside a closed sphere, an object that no frame can show.
+// Warnings about where things are: a light inside a closed sphere, an object that no frame can show, a smooth mesh of so few
+// faces that their own shadows show.
 //
 // Each is given only where it is certain, of shapes of their own and of those in groups, where their transforms put them. A
 // ball around a shape is out of a picture when one plane of the view has it outside; its
@@ -12,6 +13,7 @@
 
 #define MEMBERS_MAX 1000 // of a scene, and of its groups: above that single shapes are not looked for
 #define LIGHTS_MAX 64
+#define BEND_MOST 8.0 // degrees between a smooth mesh's faces and its normals that shadows may hide
 #define UNSEEN_MAX 1000 // shapes that a run keeps a line about; more are not told of
 
 // The addresses are the registry's keys of two tables. A shape's userdata -> its place in the other, or false once a view
@@ -282,6 +284,24 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *shape, c
     }
 }
 
+// Faces throw shadows, normals shade: where a light grazes a face that the normals have turned towards it, the face is dark to
+// its edge.
+static void look_for_bends(const look *l, const glint_shape *shape, const ball *b)
+{
+    char name[160];
+    bool shadows = false;
+    const double bend = glint_mesh_bend(shape);
+    for (int i = 0; i < l->all->light_count; i++)
+        shadows = shadows || (glint_light_get(l->all->lights[i])->shadows && !is_dark(glint_light_get(l->all->lights[i])));
+    if (!shadows || !(bend > BEND_MOST) || (l->view && is_outside(l->view, b, NULL)))
+        return;
+    describe(glint_shape_get(shape), b, name);
+    glintL_run_warn(l->run,
+                    "%s: smooth shading bends its faces by up to %.0f degrees, and where a light grazes them they are in "
+                    "their own shadow to the edge; give it more faces, or the lights shadows = false",
+                    name, bend);
+}
+
 static bool is_unseen(const look *l, const ball *b)
 {
     bool unseen = is_outside(l->view, b, NULL);
@@ -350,6 +370,8 @@ static void look_into(lua_State *L, const look *l, const glint_shape *shape, con
     move_ball(&placed, &b);
     if (l->view && b.is_sphere && !shows_through(L, desc->material))
         look_for_inner_light(l, desc, &b);
+    if (desc->kind == GLINT_SHAPE_MESH)
+        look_for_bends(l, shape, &b);
     if (l->whole && !lua_isnil(L, -1))
         look_for_unseen(L, l, desc, &b);
 }

@@ -1,7 +1,8 @@
 // Warnings that teach: what they say is said once, names the cause and the cure, and is certain.
 //
 //   a shininess without a specular colour, a parameter that is not read       here
-//   a light inside a closed sphere, an object outside the view                warn_view.c
+//   a light inside a closed sphere, an object outside the view, a smooth
+//   mesh of few faces                                                         warn_view.c
 //   a picture that is clipped                                                 events.c, at the end
 //
 // --warnings=error makes the first of them end the run with 2.

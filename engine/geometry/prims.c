@@ -191,6 +191,7 @@ typedef struct filler {
 typedef struct placing {
     const glint_transform *map;
     double cofactors[3][3], determinant; ///< of it
+    bool similar; ///< it keeps angles
 } placing;
 
 static void place_normal(const placing *place, const double n[3], double out[3])
@@ -201,6 +202,22 @@ static void place_normal(const placing *place, const double n[3], double out[3])
     if (place->map && vec_max_abs(turned) > 0)
         vec_normalize(turned, turned);
     vec_copy(out, turned);
+}
+
+/// Of a corner that smooth shading interpolates. Where the map keeps no angles, normals keep the lengths it gives them, in
+/// common units: what is between them is then the map of what is between them in the mesh's own space.
+static void place_corner_normal(const placing *place, const double n[3], double out[3])
+{
+    double largest = 0;
+    if (!place->map || place->similar) {
+        place_normal(place, n, out);
+        return;
+    }
+    for (int c = 0; c < 3; c++)
+        largest = fmax(largest, vec_max_abs(place->cofactors[c]));
+    const double scale = power_of_two_scale(largest) * (place->determinant < 0 ? -1 : 1);
+    for (int c = 0; c < 3; c++)
+        out[c] = vec_dot(place->cofactors[c], n) * scale;
 }
 
 static void place_point(const placing *place, const double p[3], double out[3])
@@ -271,7 +288,7 @@ static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, 
         const int from = mirrored ? (3 - j) % 3 : j;
         place_point(place, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
-            place_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
+            place_corner_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
         if (prim->shading_points != GLINT_MISS)
             name_shading_point(f->geometry, prim, j,
                                f->geometry->table.shading_point_count + shading_point_of(shape, i, from));
@@ -377,6 +394,8 @@ static glint_status add_shape(filler *f, glint_shape *shape, const glint_transfo
         return status;
     glint_transform_linear(&map, linear);
     place.determinant = glint_linear_cofactors(linear, place.cofactors);
+    double factor = 1;
+    place.similar = !place.map || glint_transform_similar(&map, &factor);
     if (shape->desc.kind != GLINT_SHAPE_GROUP)
         return add_prims(f, shape, &place);
     for (size_t i = 0; i < shape->children.count && !status; i++)

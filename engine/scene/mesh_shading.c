@@ -104,3 +104,36 @@ glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_e
         status = number_shading_points(mesh, error);
     return status;
 }
+
+/// The cosine of the angle between a triangle's face and the normal of its corner that leans the most.
+static double least_cosine(const glint_mesh *mesh, size_t i)
+{
+    const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
+    double f[3], g[3], n[3], least = 1;
+    vec_sub(f, mesh->vertices[at[1]], mesh->vertices[at[0]]);
+    vec_sub(g, mesh->vertices[at[2]], mesh->vertices[at[0]]);
+    const double scale = power_of_two_scale(fmax(vec_max_abs(f), vec_max_abs(g)));
+    vec_scale(f, f, scale);
+    vec_scale(g, g, scale);
+    vec_cross(n, f, g);
+    if (!(vec_max_abs(n) > 0))
+        return 1;
+    vec_normalize(n, n);
+    for (int j = 0; j < 3; j++)
+        if (!is_zero(mesh->normals[normal[j]]))
+            least = fmin(least, fabs(vec_dot(n, mesh->normals[normal[j]])));
+    return least;
+}
+
+double glint_mesh_bend(const glint_shape *shape)
+{
+    glint_mesh *mesh = shape->mesh;
+    double least = 1;
+    if (!mesh || !mesh->normals || shape->desc.shading != GLINT_SHADING_PHONG)
+        return 0;
+    for (size_t i = 0; mesh->bend == 0 && i < mesh->triangle_count; i++)
+        least = fmin(least, least_cosine(mesh, i));
+    if (mesh->bend == 0)
+        mesh->bend = acos(fmin(least, 1)) * (180 / 0x1.921fb54442d18p+1);
+    return mesh->bend;
+}

@@ -34,6 +34,7 @@ typedef struct glint_mesh {
         [3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
     size_t shading_point_count; ///< pairs; 0: not counted yet
     double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
+    double bend; ///< see glint_mesh_bend; 0: none, or not looked for yet
 } glint_mesh;
 
 struct glint_shape {

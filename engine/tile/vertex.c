@@ -139,8 +139,9 @@ static void find_corner(const glint_geometry *geometry, const glint_prim *prim, 
     const double *normal = geometry->normals[prim->item].normal[j];
     put_on(s, prim, corners[j]);
     vec_copy(s->point, prim->corner[j]);
-    if (vec_dot(normal, normal) > 0)
-        vec_scale(s->normal, normal, vec_dot(normal, s->normal) < 0 ? -1 : 1);
+    const double length2 = vec_dot(normal, normal), side = vec_dot(normal, s->normal) < 0 ? -1 : 1;
+    if (length2 > 0) // which are unit but for rounding stay as they are
+        vec_scale(s->normal, normal, fabs(length2 - 1) < 1e-12 ? side : side / sqrt(length2));
 }
 
 static void find_shading_point(const glint_geometry *geometry, uint32_t number, shading_point *s)

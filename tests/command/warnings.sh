@@ -89,6 +89,17 @@ scene 'objects = { glint.spheres { data = { 29, 0, 0, 1, -33, 0, 0, 1 } } }'
 silent "not when the view is between them"
 scene 'objects = { glint.mesh { vertices = { { 30, 0, 0 }, { 31, 0, 0 }, { 30, 1, 0 } }, faces = { { 1, 2, 3 } }, name = "roof" } }'
 warns "a mesh" "mesh 'roof' is outside the view"
+coarse='glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, name = "ball", segments ='
+scene "objects = { $coarse 16 } }"
+warns "a smooth mesh of few faces" "mesh 'ball': smooth shading bends its faces by up to 1[0-9] degrees"
+scene "objects = { glint.group { $coarse 16 } } }"
+warns "in a group" "mesh 'ball': smooth shading bends its faces"
+scene "objects = { $coarse 64 } }"
+silent "not one of many faces"
+scene "objects = { $coarse 16, shading = \"faceted\" } }"
+silent "nor one that is shaded as it is"
+scene "objects = { $coarse 16 } }" 'lamp.shadows = false'
+silent "nor without shadows"
 scene 'objects = { glint.sphere_mesh { center = { 0, 0, 0 }, radius = 1, segments = 8, transform = glint.translate(0, 0, 20) } }'
 warns "a mesh that its transform takes out" 'the mesh around {0, .*, 20} is outside the view'
 scene 'objects = { glint.mesh { vertices = { { 30, 0, 0 }, { 31, 0, 0 }, { 0, 1, 0 } }, faces = { { 1, 2, 3 } } } }'

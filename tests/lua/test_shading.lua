@@ -407,6 +407,46 @@ function tests.called_for()
   check(text:find "flat shading" and text:find "vertex", "explain: %s", text)
 end
 
+-- ---- Smooth normals of a mesh that is stretched: those of its own space, mapped ----
+
+do
+  local corners = { unit { 0.3, -0.2, 1 }, unit { -0.6, 0.1, 1 }, unit { 0.2, 0.7, 0.8 } }
+  local map = glint.translate(0.5, -1, 2) * glint.scale(2, 3, 0.25)
+  local function between(shares, lengths) -- of the corners' normals under diag(1/2, 1/3, 4), `lengths`: made unit before or after
+    local sum = { 0, 0, 0 }
+    for i, n in ipairs(corners) do
+      local m = { n[1] / 2, n[2] / 3, n[3] * 4 }
+      sum = plus(sum, lengths and m or unit(m), shares[i])
+    end
+    return unit(sum)
+  end
+  for _, way in ipairs { "transform", "group", "mirrored" } do
+    local mesh = glint.mesh { vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, faces = { { 1, 2, 3 } }, normals = corners,
+      shading = "phong" }
+    local shown = mesh
+    if way == "group" then shown = glint.group { mesh, transform = map } else mesh.transform = map end
+    if way == "mirrored" then shown = glint.group { mesh, transform = glint.scale(-1, 1, 1) } end
+    local sign = way == "mirrored" and -1 or 1
+    local image = glint.scene { camera = glint.camera { eye = { sign * 1.1, 0.05, 9 }, direction = { 0, 0, -1 }, projection = "orthographic",
+      height = 0.6 }, ambient = 1, shown }:render { width = 5, height = 5, output = "none", passes = "normal" }
+    local worst, least = 0, math.huge
+    for y = 0, 4 do
+      for x = 0, 4 do
+        local wx, wy = sign * 1.1 + (x - 2) * 0.12, 0.05 - (y - 2) * 0.12
+        local u, v = (sign * wx - 0.5) / 2, (wy + 1) / 3
+        local shares = { 1 - u - v, u, v }
+        local want, other = between(shares, true), between(shares, false)
+        local got = { image:pixel(x, y, "normal") }
+        got[1] = got[1] * sign
+        worst = math.max(worst, math.abs(got[1] - want[1]), math.abs(got[2] - want[2]), math.abs(got[3] - want[3]))
+        least = math.min(least, math.abs(other[1] - want[1]) + math.abs(other[2] - want[2]))
+      end
+    end
+    check(worst < 1e-6, "stretched by a %s: normals %.3g off", way, worst)
+    check(least > 1e-3, "stretched by a %s: normals made unit before would be %.3g off", way, least)
+  end
+end
+
 -- ---- In mirrors, instances, threads and with soft light: the same bits ----
 
 local BITS = [[

@@ -83,8 +83,8 @@ local function mesh(s)
       or ("triangle { %s, %s, %s }"):format(vector(m.vertices[f[1]]), vector(m.vertices[f[2]]), vector(m.vertices[f[3]]))
   end
   if not s.smooth then return "mesh { " .. table.concat(texts, " ") end
-  return ("mesh2 { vertex_vectors { %s } normal_vectors { %s } face_indices { %d, %s }"):format(list(m.vertices),
-    list(m.normals), #texts, table.concat(texts, ", "))
+  return ("mesh2 { vertex_vectors { %s } normal_vectors { %s } face_indices { %d, %s } %s"):format(list(m.vertices),
+    list(m.normals), #texts, table.concat(texts, ", "), s.scale and "scale " .. vector(s.scale) or "")
 end
 
 -- The shape in a sphere's place, up to its texture.

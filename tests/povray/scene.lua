@@ -3,7 +3,8 @@ local glint = require "glint"
 local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
-  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open", "faceted", "smooth", "prism", "nested" } },
+  surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
+     "faceted", "smooth", "stretched", "prism", "nested" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -53,7 +54,7 @@ local function shape(s, sphere, surface, coat)
   if s.kind == "box" then return glint.box { min = s.min, max = s.max, material = coat } end
   if s.kind == "mesh" then
     return glint.mesh { vertices = s.mesh.vertices, normals = s.mesh.normals, faces = s.mesh.faces, material = coat,
-      shading = s.smooth and "phong" or "faceted" }
+      shading = s.smooth and "phong" or "faceted", transform = s.scale and glint.scale(s.scale) }
   end
   if s.kind == "sphere" then
     return glint.sphere { center = { 0, 0, 0 }, radius = 1, material = coat,

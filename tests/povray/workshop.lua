@@ -4,8 +4,9 @@
 local function float(x) return (string.unpack("f", string.pack("f", x))) end
 
 -- A wavy sheet that faces eye and light, of 24 x 16 quadrangles: POV-Ray keeps corners and normals of meshes in float,
--- and turns a normal that looks away from the eye.
-local function sheet()
+-- and turns a normal that looks away from the eye. `scale`: of a map that makes it of the sheet that is returned.
+local function sheet(scale)
+  local s = scale or { 1, 1, 1 }
   local vertices, normals, faces, across, down = {}, {}, {}, 24, 16
   for j = 0, down do
     for i = 0, across do
@@ -15,8 +16,10 @@ local function sheet()
       local du = 0.35 * 7 * math.cos(7 * u) * math.cos(5 * v) / 6 -- of z, by x and by y
       local dv = -(5 - 0.35 * 5 * math.sin(7 * u) * math.sin(5 * v)) / 5
       local l = math.sqrt(du * du + dv * dv + 1)
-      vertices[#vertices + 1] = { float(x), float(y), z }
-      normals[#normals + 1] = { float(-du / l), float(-dv / l), float(1 / l) }
+      local n = { -du / l * s[1], -dv / l * s[2], s[3] / l }
+      l = math.sqrt(n[1] ^ 2 + n[2] ^ 2 + n[3] ^ 2)
+      vertices[#vertices + 1] = { float(x / s[1]), float(y / s[2]), float(z / s[3]) }
+      normals[#normals + 1] = { float(n[1] / l), float(n[2] / l), float(n[3] / l) }
       if i < across and j < down then
         local a = j * (across + 1) + i + 1
         faces[#faces + 1] = { a, a + across + 1, a + across + 2 }
@@ -56,6 +59,7 @@ return {
     },
     faceted = { [4] = { kind = "mesh", mesh = sheet() } },
     smooth = { [4] = { kind = "mesh", mesh = sheet(), smooth = true } },
+    stretched = { [4] = { kind = "mesh", mesh = sheet { 2, 0.5, 4 }, smooth = true, scale = { 2, 0.5, 4 } } },
   },
   surfaces = { -- what becomes of some of the spheres, by number; `lift`: POV-Ray sees no hit nearer than 1e-3, and glass that
     -- stands on the ground shows that, enlarged

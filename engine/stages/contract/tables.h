@@ -61,7 +61,7 @@ typedef struct glint_node {
     uint32_t child[GLINT_NODE_WIDTH];
 } glint_node;
 
-/// Unit normals at the corners of a triangle that is shaded smoothly.
+/// Normals at the corners of a triangle that is shaded smoothly, unit or as a map that keeps no angles leaves them.
 typedef struct glint_corner_normals {
     double normal[3][3];
 } glint_corner_normals;
