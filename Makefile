@@ -9,7 +9,9 @@ LUA      ?= lua5.4
 
 PREFIX   ?= /usr/local
 bindir   ?= $(PREFIX)/bin
-libdir   ?= $(PREFIX)/lib
+# Of a system's own packages Debian keeps the libraries of each architecture apart.
+MULTIARCH := $(if $(filter /usr,$(PREFIX)),$(shell $(CC) -print-multiarch 2>/dev/null))
+libdir   ?= $(PREFIX)/lib$(if $(MULTIARCH),/$(MULTIARCH))
 incdir   ?= $(PREFIX)/include
 datadir  ?= $(PREFIX)/share
 luadir   ?= $(libdir)/lua/5.4
@@ -41,10 +43,18 @@ ifeq ($(call have,libseccomp),yes)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
 
+# Checks at run time, for all but the kernels, which read and write where they are told and are timed to the instruction. A
+# sanitizer has its own.
+OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
+ifndef SANITIZE
+  HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
+  HARDEN_LINK := -Wl,-z,relro -Wl,-z,now
+endif
+
 # WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
-# PORTABLE=1 takes on Linux, too, what macOS and the BSDs have in place of inotify, eventfd and the like.
+# PORTABLE=1 takes here, too, what other machines have: generic kernels, and POSIX in place of inotify, eventfd and the like.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -58,13 +68,13 @@ LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
 LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
-LINK       := $(SAN_FLAGS) $(LDFLAGS) -Wl,--as-needed
+LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) -Wl,--as-needed
 
 # ---- Sources ----
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
-ifeq ($(findstring x86_64,$(shell $(CC) -dumpmachine)),)
+ifneq ($(if $(PORTABLE),,$(findstring x86_64,$(shell $(CC) -dumpmachine))),x86_64)
   ENGINE_SRC := $(filter-out $(addprefix engine/stages/simd/isa_,sse2.c avx2.c avx512.c),$(ENGINE_SRC))
 endif
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
@@ -110,7 +120,7 @@ $(BINDINGS_OBJ): | $(CARRIED)
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(ISA) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),,$(HARDEN)) $(ISA) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -125,15 +135,39 @@ $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	$(call say,AR)
 	$(Q)$(AR) qcs $@ $(ENGINE_OBJ) # q: sources of two folders may have one name
 
+# The shared library: its version of the ABI is in its name (what that promises: engine/README.md), its symbols are those of
+# glint.h. The kernels' objects are the static library's; they have nothing that is seen.
+SHARED     := libglint.so.$(VERSION)
+SONAME     := libglint.so.$(if $(filter 0.%,$(VERSION)),$(basename $(VERSION)),$(firstword $(subst ., ,$(VERSION))))
+SHARED_OBJ := $(KERNEL_OBJ) $(patsubst $(BUILD)/%,$(BUILD)/shared/%,$(filter-out $(KERNEL_OBJ),$(ENGINE_OBJ)))
+
+$(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(HARDEN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
+
+$(BUILD)/libglint.map: engine/glint.h
+	@mkdir -p $(@D)
+	@{ echo '$(SONAME:libglint.so.%=GLINT_%) {'; echo '  global:'; \
+	    sed -nE '/^(typedef|static|#|\/\/)/d; s/^[a-z].*[ *](glint_[a-z0-9_]+)\(.*/    \1;/p' $< | sort -u; \
+	    echo '  local: *;'; echo '};'; } > $@
+
+$(BUILD)/$(SHARED): $(SHARED_OBJ) $(BUILD)/libglint.map
+	$(call say,LINK)
+	$(Q)$(CC) $(LINK) -shared -Wl,-soname,$(SONAME) -Wl,--version-script=$(BUILD)/libglint.map -Wl,-z,defs $(SHARED_OBJ) $(LIBS) -o $@
+
+.PHONY: shared
+shared: $(BUILD)/$(SHARED) ## the shared library build/libglint.so.$(VERSION)
+
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(COMPILE) $(LUA_CFLAGS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(LUA_CFLAGS)' > $@
+	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS)' > $@
 
 need:
 	@tests/deps.sh need
 
--include $(ENGINE_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
+-include $(ENGINE_OBJ:.o=.d) $(SHARED_OBJ:.o=.d) $(BINDINGS_OBJ:.o=.d) $(TEST_BIN:=.d) $(TEST_TOOLS:=.d) $(HARD_OBJ:.o=.d) $(HARD_BIN:=.d)
 
 # ---- Tests ----
 
@@ -195,6 +229,11 @@ check-rock: ## luarocks make into a folder of its own; installs luarocks through
 	@tests/deps.sh build rock
 	@$(RUNNER) tests/command/rock.sh
 
+.PHONY: check-package
+check-package: ## the Debian source package of .github/debian, and what lintian says of it; installs what that takes through apt
+	@tests/deps.sh package
+	@$(RUNNER) tests/command/source_package.sh
+
 check-farm: all ## scripts/farm with GNU parallel, and on a Slurm that SLURM_CLUSTER=PROGRAM starts
 	@tests/deps.sh farm
 	@$(RUNNER) tests/command/farm.sh
@@ -203,7 +242,7 @@ ARM64          := build-arm64
 ARM64_SYSROOT  := $(ARM64)/sysroot
 ARM64_LIBRARY  := $(CURDIR)/$(ARM64_SYSROOT)/usr/lib/aarch64-linux-gnu
 ARM64_TESTS    := $(patsubst %,$(ARM64)/tests/engine/test_%,stages_bounce stages_cast stages_light stages_occlude stages_scatter \
-                    stages_shade caps leaf soft tone)
+                    stages_shade soft tone)
 ARM64_EMULATOR := qemu-aarch64 -L $(CURDIR)/$(ARM64_SYSROOT)
 
 .PHONY: check-arm64 check-arm64-run
@@ -343,6 +382,7 @@ define INSTALLED
 755 $(BUILD)/glint $(bindir)/glint
 755 $(BUILD)/glint.so $(luadir)/glint.so
 644 $(BUILD)/libglint.a $(libdir)/libglint.a
+644 $(BUILD)/$(SHARED) $(libdir)/$(SHARED)
 644 $(BUILD)/glint.pc $(libdir)/pkgconfig/glint.pc
 644 engine/glint.h $(incdir)/glint.h
 644 bindings/glint.1 $(datadir)/man/man1/glint.1
@@ -363,9 +403,14 @@ $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
 	@$(BUILD)/glint completion $* > $@
 
-install: all $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
+# What debuggers need is four fifths of the command and the archive; STRIP=: leaves it there.
+STRIP ?= strip
+install: all shared $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
-	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; }; done
+	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
+	    case $$to in *.a) $(STRIP) --strip-debug "$(DESTDIR)$$to" ;; \
+	    */bin/glint | *.so | *.so.*) $(STRIP) --strip-unneeded "$(DESTDIR)$$to" ;; esac || exit 1; }; done
+	@for link in $(SONAME) libglint.so; do ln -sf $(SHARED) "$(DESTDIR)$(libdir)/$$link" || exit 1; done
 
 # The rockspec's: LuaRocks copies what it finds in its folders.
 install-rock: all
@@ -376,6 +421,7 @@ install-rock: all
 uninstall: ## removes what install has put there, with the same PREFIX and DESTDIR
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
+	@rm -f $(addprefix "$(DESTDIR)$(libdir)"/,$(SONAME) libglint.so)
 	@for folder in $(datadir)/glint $(luasharedir)/glint $(luasharedir)/gr; do \
 	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 

@@ -3,7 +3,7 @@
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
 #                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64
-#                         (the tests under qemu)
+#                         (the tests under qemu), package (the test of Debian's source package)
 set -eu
 
 # package  how to tell that it is there
@@ -52,6 +52,11 @@ arm64_required='
 gcc-aarch64-linux-gnu command:aarch64-linux-gnu-gcc
 libc6-dev-arm64-cross file:/usr/aarch64-linux-gnu/include/stdio.h
 qemu-user       command:qemu-aarch64
+'
+package_optional='
+dpkg-dev        command:dpkg-buildpackage
+debhelper       command:dh
+lintian         command:lintian
 '
 present() {
     case $1 in
@@ -137,9 +142,10 @@ for what in "$@"; do
     films) prefer "$films_optional" "the tests that need it will be skipped" ;;
     rock) require "$rock_required" ;;
     arm64) require "$arm64_required" ;;
+    package) prefer "$package_optional" "the test that needs it will be skipped" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | package ..." >&2
         exit 2
         ;;
     esac

@@ -51,7 +51,7 @@ typedef struct glint_stages {
 } glint_stages;
 
 extern const glint_stages glint_stages_ref, glint_stages_generic;
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
 extern const glint_stages glint_stages_sse2, glint_stages_avx2, glint_stages_avx512;
 #endif
 

@@ -30,9 +30,26 @@ compile() { # in the folder of the example
     cd "$work" && ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$1.c" $(pkg-config --cflags --libs glint) -o "$1"
 }
 check "the C example compiles" eval '(compile c_example)'
-check "and runs" eval '(cd "$work" && ./c_example)'
+check "and runs with the shared library" env -C "$work" LD_LIBRARY_PATH="$prefix/lib" ./c_example
 check "the C example of patterns compiles" eval '(compile c_pattern)'
-check "and runs" eval '(cd "$work" && ./c_pattern)'
+check "and runs" env -C "$work" LD_LIBRARY_PATH="$prefix/lib" ./c_pattern
+check "the library is named by its ABI" eval 'readelf -d "$work/c_example" | grep -qE "NEEDED.*libglint\.so\.[0-9]+(\.[0-9]+)?\]"'
+check "and nothing of what it needs" eval '! readelf -d "$work/c_example" | grep -qE "NEEDED.*(png|deflate|isal|xxhash)"'
+link_static() {
+    cd "$work" && rm -f c_example && ${CC:-cc} -std=c11 c_example.c $(pkg-config --cflags glint) "$prefix/lib/libglint.a" \
+        $(pkg-config --static --libs glint | sed 's/-lglint//') -o c_example && ./c_example
+}
+check "the archive does as well" eval '(link_static)'
+nm -D --defined-only "$prefix/lib/libglint.so" | awk '$2 == "T" { sub(/@.*/, "", $3); print $3 }' | sort >"$work/exported"
+check "the shared library has all of glint.h" eval \
+    'for f in $(grep -oE "\bglint_[a-z0-9_]+\(" engine/glint.h | tr -d "(" | sort -u); do grep -qx "$f" "$work/exported" || exit 1; done'
+check "and nothing else" eval 'test "$(wc -l <"$work/exported")" -gt 100 &&
+    for f in $(cat "$work/exported"); do grep -q "\b$f(" engine/glint.h || exit 1; done'
+for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
+    check "$file is stripped and hardened" eval \
+        '! readelf -SW "$prefix/$file" | grep -q debug_info && readelf -dW "$prefix/$file" | grep -qE "BIND_NOW|NOW" &&
+         readelf -lW "$prefix/$file" | grep -q GNU_RELRO'
+done
 cat >"$work/same.lua" <<'END'
 local glint = require "glint"
 local function paint(r, g, b, ks) return glint.material { diffuse = { r, g, b }, specular = ks, shininess = 64 } end
@@ -46,7 +63,7 @@ check "the same scene from Lua" eval '(cd "$work" && "$prefix/bin/glint" same.lu
 check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$work/same.png" --fail 0 --warn 0
 
 check "make uninstall" quiet_make uninstall PREFIX="$prefix"
-check "nothing is left" test -z "$(find "$prefix" -type f)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
+check "nothing is left" test -z "$(find "$prefix" -type f -o -type l)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
 check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
 totals

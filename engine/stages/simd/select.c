@@ -7,7 +7,7 @@
 const glint_stages *const glint_stages_built[] = {
     &glint_stages_ref,
     &glint_stages_generic,
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
     &glint_stages_sse2,
     &glint_stages_avx2,
     &glint_stages_avx512,
@@ -17,7 +17,7 @@ const glint_stages *const glint_stages_built[] = {
 
 bool glint_stages_usable(const glint_stages *stages)
 {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
     __builtin_cpu_init();
     const bool bits =
         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
