@@ -259,6 +259,40 @@ ARM64_CC ?= aarch64-linux-gnu-gcc
 check-arm64-run:
 	@ARM64=$(ARM64) GLINT_CASE_STEP=23 EMULATOR="$(ARM64_EMULATOR)" $(RUNNER) tests/arm64/arm64.sh $(ARM64_TESTS)
 
+# libFuzzer is clang's. The kernels are compiled without its counters: other tests are for them.
+FUZZ       := build-fuzz
+FUZZERS    := picture mesh command data scene
+FUZZ_CC    ?= clang
+FUZZ_BIN   := $(FUZZERS:%=$(BUILD)/tests/fuzz/fuzz_%)
+FUZZ_MAKE  := $(MAKE) --no-print-directory BUILD=$(FUZZ) PORTABLE=1 CC="$(FUZZ_CC)" CFLAGS="-O1 -g" \
+                KERNEL_CFLAGS="-O1 -fno-sanitize=all" \
+                SANITIZE=fuzzer-no-link,address,undefined,float-cast-overflow
+
+.PHONY: fuzz check-fuzz fuzz-programs
+check-fuzz: ## each fuzzer for FUZZ_SECONDS (60), from its corpus in tests/fuzz/corpus; installs clang through apt
+	@tests/deps.sh build fuzz
+	@$(FUZZ_MAKE) fuzz-programs
+	@T="$(T)" FUZZ=$(FUZZ) $(RUNNER) $(FUZZERS:%=fuzz:%)
+
+fuzz: ## the fuzzers for an hour each, or FUZZ_SECONDS
+	@FUZZ_SECONDS=$${FUZZ_SECONDS:-3600} TEST_LIMIT_S=1000000 $(MAKE) --no-print-directory check-fuzz
+
+fuzz-programs: $(FUZZ_BIN)
+
+$(BUILD)/tests/fuzz/fuzz_data $(BUILD)/tests/fuzz/fuzz_scene: $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_lua.c tests/fuzz/fuzz.h \
+    $(MODULE_OBJ) $(BUILD)/libglint.a
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -DDRIVER='"tests/fuzz/$*.lua"' $< -fsanitize=fuzzer $(LINK) $(MODULE_OBJ) $(BUILD)/libglint.a \
+	    $(LUA_LIBS) $(LIBS) -ldl -o $@
+
+$(BUILD)/tests/fuzz/fuzz_command: $(filter-out $(BUILD)/bindings/command/main.o,$(BINDINGS_OBJ))
+$(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/file.c tests/fuzz/fuzz.h $(BUILD)/libglint.a
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) $(filter %.c,$^) -fsanitize=fuzzer $(LINK) $(filter %.o,$^) $(BUILD)/libglint.a \
+	    $(if $(filter %.o,$^),$(LUA_LIBS) $(COMMAND_LIBS) -ldl) $(LIBS) -o $@
+
 .PHONY: san-run
 san-run: tests
 	@T="$(T)" HARD_RAYS=20000 PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
@@ -428,8 +462,8 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
 
-clean: ## removes build/, build-asan/, build-tsan/, build-arm64/
-	rm -rf $(BUILD) build-asan build-tsan $(ARM64)
+clean: ## removes build/, build-asan/, build-tsan/, build-arm64/, build-fuzz/
+	rm -rf $(BUILD) build-asan build-tsan $(ARM64) $(FUZZ)
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

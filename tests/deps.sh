@@ -3,7 +3,7 @@
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
 #                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64
-#                         (the tests under qemu), package (the test of Debian's source package)
+#                         (the tests under qemu), fuzz (the fuzzers), package (the test of Debian's source package)
 set -eu
 
 # package  how to tell that it is there
@@ -58,6 +58,10 @@ dpkg-dev        command:dpkg-buildpackage
 debhelper       command:dh
 lintian         command:lintian
 '
+fuzz_required='
+clang           command:clang
+'
+
 present() {
     case $1 in
     file:*) [ -e "${1#file:}" ] ;;
@@ -143,9 +147,10 @@ for what in "$@"; do
     rock) require "$rock_required" ;;
     arm64) require "$arm64_required" ;;
     package) prefer "$package_optional" "the test that needs it will be skipped" ;;
+    fuzz) require "$fuzz_required" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | package ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | fuzz | package ..." >&2
         exit 2
         ;;
     esac

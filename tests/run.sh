@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs tests, JOBS at a time, and prints a line for each as it ends, then the totals: 'N passed, N failed, N skipped'.
-#   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, or make:TARGET
+#   run.sh ITEM...    an item is a C test program, a .lua file, a .sh file, make:TARGET, or fuzz:NAME
 # From the environment: BUILD (the build folder), T (run the items whose name has it), JOBS (as many as there are
 # processors), PRELOAD (a sanitizer's runtime, for the Lua tests), LUA, MAKE, EMULATOR (what C tests run under), TEST_LIMIT_S
 # (for one item). A test exits 0
@@ -18,6 +18,7 @@ limit_s=${TEST_LIMIT_S:-300}
 
 run_item() {
     case $1 in
+    fuzz:*) bash tests/fuzz/fuzz.sh "${1#fuzz:}" ;;
     make:*) ${MAKE:-make} --no-print-directory "${1#make:}" ;;
     *.lua) LD_PRELOAD=${PRELOAD:-} timeout "$limit_s" "${LUA:-lua5.4}" "$1" ;;
     *.sh) timeout "$limit_s" bash "$1" ;;
@@ -63,7 +64,7 @@ tell() {
 
 # Runs one item; its lines go out together, its totals to NAME.count.
 if [ "${1:-}" = --one ]; then
-    name=$(basename "${2#make:}")
+    name=$(basename "${2#*:}")
     log=$log_folder/$name
     start=$(date +%s%N)
     run_item "$2" >"$log" 2>&1 </dev/null
@@ -78,7 +79,7 @@ fi
 mkdir -p "$log_folder"
 items=() counts=()
 for item in "$@"; do
-    name=$(basename "${item#make:}")
+    name=$(basename "${item#*:}")
     case $name in *"${T:-}"*) ;; *) continue ;; esac
     items+=("$item")
     counts+=("$log_folder/$name.count")

@@ -156,7 +156,7 @@ static glint_status remove_plot(const char *folder, glint_error *error)
 
 int cost_report_write(const cost_study *study, const char *folder, char message[GLINTL_MESSAGE_SIZE])
 {
-    glintL_made_text plot = { NULL }, page = { NULL };
+    glintL_made_text plot = { 0 }, page = { 0 };
     glint_error error;
     glint_status status = GLINT_ERR_NOMEM;
     if (cost_make(study, "plot", push_report, &plot, message) &&

@@ -81,7 +81,7 @@ void watch_folders_read(watch_folders *folders, void (*take)(void *user, int num
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#define LOOK_MS 100
+#define LOOK_MS 20
 
 // One name at the last look.
 typedef struct entry {

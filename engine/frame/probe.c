@@ -179,7 +179,7 @@ glint_status glint_material_evaluate(const glint_material *material, const doubl
         return status;
     double n[3], l[3], v[3];
     glint_material_desc desc = material->desc;
-    desc.program = (glint_material_programs) { NULL };
+    desc.program = (glint_material_programs) { 0 };
     vec_normalize(n, normal);
     vec_normalize(l, to_light);
     vec_normalize(v, to_eye);

@@ -298,7 +298,7 @@ static picture make_screen(const glint_plan *plan, double scale)
 static glint_status enter_all(scanning *s, glint_pool *pool, glint_error *error)
 {
     glint_raster *raster = s->raster;
-    const size_t total = place_entries(s);
+    const size_t placed = place_entries(s), total = placed ? placed : 1; // a table of its own, be it empty
     if (total > ENTRIES_MAX)
         return GLINT_OK;
     if (total > raster->entry_room) {

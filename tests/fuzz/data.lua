@@ -1,0 +1,35 @@
+-- Bytes as a file of data, the first of them choosing the reader: what it finds, or an error that names file and line. An error of
+-- Lua's own (a nil indexed, a nil added to) is a finding.
+package.path = "scripts/lib/?.lua;" .. package.path
+local path = ("/dev/shm/glint-fuzz-data-%d"):format(io.open("/proc/self/stat"):read "n")
+
+local function walk(frames)
+  return function()
+    for frame in frames(path) do
+      for _ in frame:atoms() do end
+    end
+  end
+end
+
+local function load(name) return require("glint." .. name) end
+local readers = {
+  walk(load "xyz".frames),
+  walk(load "pdb".frames),
+  walk(load "lammps".frames),
+  function() for _ in load "points".frame(path):atoms() do end end,
+  function() load "nff".load(path) end,
+}
+
+return function(bytes)
+  if #bytes < 1 then return end
+  local file = assert(io.open(path, "wb"))
+  file:write(bytes:sub(2))
+  file:close()
+  local ok, message = pcall(readers[bytes:byte() % #readers + 1])
+  os.remove(path)
+  if ok then return end
+  assert(type(message) == "string", "an error that is no text")
+  for _, own in ipairs { "attempt to", "bad argument", "stack overflow", "malformed", "out of range" } do
+    assert(not message:find(own, 1, true), message)
+  end
+end

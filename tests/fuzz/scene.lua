@@ -1,0 +1,142 @@
+-- Bytes as choices: objects with fields of every kind and size, edits of them, and small pictures. What is made or set is good or
+-- refused with a message; a picture is rendered or refused; an error of Lua's own from inside the module is a finding.
+local glint = require "glint"
+
+local bytes, at = "", 1
+local function next_byte()
+  local b = bytes:byte(at) or 0
+  at = at + 1
+  return b
+end
+local function any(list) return list[next_byte() % #list + 1] end
+
+local NUMBERS = { 0, 1, -1, 2, 0.5, 3, 1e-3, 1e3, 1e-30, 1e30, 1e-310, 1e308, -1e308, 1 / 0, -1 / 0, 0 / 0, 2 ^ 31, 2 ^ 53, 16, -0.0 }
+local TEXTS = { "", "red", "#123456", "phong", "blinn_phong", "cook_torrance", "lambert", "flat", "gouraud", "ggx", "f32", "hard", "a\0b" }
+local function number() return next_byte() < 200 and (next_byte() - 100) / 16 or any(NUMBERS) end
+local function three() return { number(), number(), number() } end
+
+local depth = 0
+local value
+local KINDS = {
+  number, number, three, three,
+  function() return { { number(), number(), number() }, three(), three() } end,
+  function() return any { true, false } end,
+  function() return any(TEXTS) end,
+  function() return {} end,
+  function()
+    local t = {}
+    for i = 1, next_byte() % 16 do t[i] = number() end
+    return t
+  end,
+  function() return { { 1, 2, 3 }, { 1, 3, next_byte() % 6 } } end,
+}
+function value()
+  depth = depth + 1
+  local v = any(KINDS)()
+  depth = depth - 1
+  return v
+end
+
+local FIELDS = {
+  sphere = { "center", "radius", "material", "transform", "two_sided" }, plane = { "point", "normal", "material", "transform" },
+  box = { "min", "max", "material", "transform" }, disk = { "center", "normal", "radius", "material" },
+  cylinder = { "base", "top", "radius", "capped", "material", "transform" }, cone = { "base", "top", "radius", "capped", "material" },
+  mesh = { "vertices", "faces", "normals", "shading", "material" }, spheres = { "data", "format", "material" },
+  sphere_mesh = { "center", "radius", "segments", "shading" }, group = { "transform" },
+  point_light = { "position", "intensity", "color", "attenuation", "shadows" },
+  directional_light = { "direction", "intensity", "color", "shadows" },
+  spot_light = { "position", "direction", "inner", "outer", "exponent" },
+  disk_light = { "position", "normal", "radius", "radiance", "visible" },
+  polygon_light = { "vertices", "two_sided", "radiance", "visible" },
+  sphere_light = { "position", "radius", "intensity", "visible" },
+  material = { "model", "diffuse", "specular", "shininess", "ambient", "mirror", "transmission", "ior", "fresnel", "roughness", "absorption",
+    "distribution", "normalized" },
+  camera = { "eye", "at", "direction", "up", "fov", "projection", "height" },
+}
+local NAMES = {}
+for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end
+table.sort(NAMES)
+
+-- The calls of the module that a message may come from; Lua's own words for a mistake in a program are not among them.
+local function refused(message)
+  assert(type(message) == "string", "an error that is no text")
+  for _, own in ipairs { "attempt to", "stack overflow", "not enough memory", "out of memory" } do
+    assert(not message:find(own, 1, true), message)
+  end
+end
+
+-- What is given to begin with is good, so that most of what is changed is still an object.
+local GOOD = {
+  sphere = { center = { 0, 0, 0 }, radius = 1 }, plane = { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
+  box = { min = { -1, -1, -1 }, max = { 1, 1, 1 } }, disk = { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },
+  cylinder = { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 }, cone = { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
+  mesh = { vertices = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1 }, faces = { { 1, 2, 3 }, { 2, 3, 4 } } },
+  spheres = { data = { 0, 0, 0, 1, 2, 0, 0, 1 } }, sphere_mesh = { center = { 0, 0, 0 }, radius = 1, segments = 6 }, group = {},
+  point_light = { position = { 0, 5, 0 } }, directional_light = { direction = { 0, -1, 0 } },
+  spot_light = { position = { 0, 5, 0 }, direction = { 0, -1, 0 }, inner = 10, outer = 20 },
+  disk_light = { position = { 0, 5, 0 }, normal = { 0, -1, 0 }, radius = 1 },
+  polygon_light = { vertices = { { 0, 5, 0 }, { 1, 5, 0 }, { 0, 5, 1 } } }, sphere_light = { position = { 0, 5, 0 }, radius = 1 },
+  material = {}, camera = { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
+}
+
+local function field_value(field, made)
+  if field == "material" and made.material then return made.material end
+  if field == "transform" then
+    local ok, t = pcall(function() return glint.translate(number(), number(), number()) * glint.scale(number(), number(), number()) end)
+    return ok and t or glint.translate(0, 0, 0)
+  end
+  if field == "segments" then return next_byte() % 40 end -- 16384 is good, and takes long
+  return value()
+end
+
+local function make(name, made)
+  local fields = { samples = nil }
+  for key, v in pairs(GOOD[name]) do fields[key] = v end
+  for _ = 1, next_byte() % 4 do
+    local field = any(FIELDS[name])
+    fields[field] = field_value(field, made)
+  end
+  if name:find "disk_light" or name:find "polygon_light" or name:find "sphere_light" then fields.samples = 1 + next_byte() % 4 end
+  local ok, object = pcall(glint[name], fields)
+  if not ok then refused(object) end
+  return ok and object or nil
+end
+
+local function change(object, name, made)
+  local field = any(FIELDS[name])
+  local ok, message = pcall(function() object[field] = field_value(field, made) end)
+  if not ok then refused(message) end
+end
+
+local function render(scene)
+  local ok, image, message = pcall(scene.render, scene, {
+    width = 1 + next_byte() % 24, height = 1 + next_byte() % 24, samples = any { 1, 1, 2, 4 }, precision = any { "double", "float" },
+    max_depth = next_byte() % 4,
+  })
+  if not ok then refused(image) else assert(image or message) end
+end
+
+return function(input)
+  bytes, at = input, 1
+  local made, list = {}, {}
+  local camera = make("camera", made) or glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }
+  local scene = glint.scene { camera = camera, ambient = 0.1 }
+  for _ = 1, 2 + next_byte() % 10 do
+    local name = any(NAMES)
+    local object = make(name, made)
+    made[name] = object or made[name]
+    if object then list[#list + 1] = { object, name } end
+    if object and name ~= "material" and name ~= "camera" then
+      local ok, message = pcall(scene.add, scene, object)
+      if not ok then refused(message) end
+    end
+  end
+  render(scene)
+  for _ = 1, next_byte() % 4 do
+    if #list > 0 then
+      local pick = any(list)
+      change(pick[1], pick[2], made)
+    end
+    render(scene)
+  end
+end
