@@ -13,7 +13,7 @@
 
 #define MEMBERS_MAX 1000 // of a scene, and of its groups: above that single shapes are not looked for
 #define LIGHTS_MAX 64
-#define BEND_MOST 8.0 // degrees between a smooth mesh's faces and its normals that shadows may hide
+#define BEND_MOST 11.0 // degrees from a smooth mesh's faces to its normals: shadows cut off light of a cosine of 0.19
 #define UNSEEN_MAX 1000 // shapes that a run keeps a line about; more are not told of
 
 // The addresses are the registry's keys of two tables. A shape's userdata -> its place in the other, or false once a view
