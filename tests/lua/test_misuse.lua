@@ -8,8 +8,8 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "plane", "point_light", "polygon_light", "scene",
-  "sphere", "sphere_light", "spheres", "spot_light", "vector",
+  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light", "polygon_light", "scene", "shader",
+  "sphere", "sphere_light", "spheres", "spot_light", "triple", "vector",
 }
 
 local function objects()
@@ -34,6 +34,9 @@ local function objects()
     group = glint.group { ball, transform = glint.translate(1, 0, 0) },
     scene = glint.scene { ball, lamp },
     vector = ball.center,
+    pattern = glint.pattern(function(p) return p * 2 end),
+    shader = glint.shader(function(at) return at.kd end),
+    triple = glint.vector(1, 2, 3),
   }
 end
 
