@@ -826,6 +826,17 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 
+/// A program that a frame runs for a material.
+typedef struct glint_program_use {
+    const char *material; ///< its name; may be empty
+    const char *field; ///< "diffuse"; "model" of a shader
+    const glint_program *program;
+} glint_program_use;
+
+/// Number `index` of the plan's programs, from 0, with what belongs to the plan. False, and nothing written: there are not so
+/// many.
+bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use *out);
+
 // ---- Render -------------------------------------------------------------------------------------------------------
 
 /// Worker threads, and what is kept from frame to frame.
@@ -887,6 +898,10 @@ typedef struct glint_frame_stats {
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
+    uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
+    const char *odd_field; ///< static string: "diffuse"; NULL: there is none
+    char odd_material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
+    double odd_point[3]; ///< in the world
 } glint_frame_stats;
 
 /// Renders one frame. *out holds the passes and codes the plan's glint_render_desc names. `stats` may be NULL.

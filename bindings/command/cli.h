@@ -66,6 +66,7 @@ typedef struct cli_options {
     size_t sweep_count;
     glintL_request request; ///< moved into the run
     bool quick; ///< of cost
+    bool programs; ///< of explain: list their instructions
     double budget_s; ///< of cost; 0: none
     const char *report, *knobs; ///< of cost; NULL: none, all
     char width[16], height[16]; ///< of --size
@@ -100,7 +101,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 55
+#define CLI_OPTION_COUNT 56
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.

@@ -109,7 +109,7 @@ static bool read_argv(int argc, char **argv, cli_options *options, bool used[CLI
 
 const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
     { "render", CLI_RENDER, CLI_SCRIPT, "SCRIPT [options]", "render the frames of a script; the word may be left out" },
-    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--json]", "what a frame needs, and who called for it" },
+    { "explain", CLI_EXPLAIN, CLI_SCRIPT, "SCRIPT [--frame N] [--programs] [--json]", "what a frame needs, and who called for it" },
     { "describe", CLI_DESCRIBE, CLI_SCRIPT, "SCRIPT --json", "the parameters of a script, for programs" },
     { "compare", CLI_COMPARE, CLI_FILES, "A B [--fail X] [--warn X]",
       "compare pictures: 0 same, 1 warn, 2 differ, 3 size, 4 file" },

@@ -138,6 +138,13 @@ static void report_frame(void *context, const glintL_run *run, const glintL_reco
         print_frame_json(output, record);
     else if (!output->quiet && (!output->progress || record->repeat))
         print_frame_line(output, record);
+    if (record->stats.odd > 0 && !record->kept)
+        glintL_run_warn(output->run,
+                        "frame %" PRId64 ": material%s%s%s.%s: the pattern is NaN, below 0 or above 2^100 at %" PRIu64
+                        " points, such as (%.6g, %.6g, %.6g); NaN and less are taken as 0",
+                        record->index, record->stats.odd_material[0] ? " '" : "", record->stats.odd_material,
+                        record->stats.odd_material[0] ? "'" : "", record->stats.odd_field, record->stats.odd,
+                        record->stats.odd_point[0], record->stats.odd_point[1], record->stats.odd_point[2]);
     if (record->stats.nonfinite > 0 && !record->kept)
         glintL_run_warn(output->run,
                         "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",

@@ -1,5 +1,6 @@
 // glint explain SCRIPT: the plan of one frame: its effects and who called for them, its stages, the rays to expect.
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bindings/command/cli.h"
@@ -36,6 +37,23 @@ static void print_for_people(FILE *out, const glintL_run *run)
         fprintf(out, "  indirect   %" PRIu64 " at most\n", rays.indirect);
 }
 
+// The instructions of each program, a line each.
+static void print_programs(FILE *out, const glint_plan *plan)
+{
+    glint_program_use use;
+    for (size_t i = 0; glint_plan_program(plan, i, &use); i++) {
+        char *listing = glint_program_listing(use.program);
+        const bool named = use.material[0];
+        fprintf(out, "\nmaterial%s%s%s.%s\n", named ? " '" : "", use.material, named ? "'" : "", use.field);
+        for (char *line = listing, *end; line && *line; line = end) {
+            end = line + strcspn(line, "\n");
+            fprintf(out, "  %.*s\n", (int)(end - line), line);
+            end += *end == '\n';
+        }
+        free(listing);
+    }
+}
+
 // `"first":"...","second":"..."`
 static void print_pair(FILE *out, const char *first, const char *value, const char *second, const char *other)
 {
@@ -45,7 +63,25 @@ static void print_pair(FILE *out, const char *first, const char *value, const ch
     glintL_json_string(out, other);
 }
 
-static void print_json(FILE *out, const glintL_run *run)
+// `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`
+static void print_programs_json(FILE *out, const glint_plan *plan)
+{
+    glint_program_use use;
+    fputs(",\"programs\":[", out);
+    for (size_t i = 0; glint_plan_program(plan, i, &use); i++) {
+        char *listing = glint_program_listing(use.program);
+        fputs(i ? ",{" : "{", out);
+        print_pair(out, "material", use.material, "field", use.field);
+        fprintf(out, ",\"instructions\":%zu,\"rows\":%zu,\"listing\":", glint_program_length(use.program),
+                glint_program_rows(use.program));
+        glintL_json_string(out, listing ? listing : "");
+        fputc('}', out);
+        free(listing);
+    }
+    fputc(']', out);
+}
+
+static void print_json(FILE *out, const glintL_run *run, bool programs)
 {
     const glint_effect *effects;
     const glint_stage_info *stages;
@@ -74,6 +110,8 @@ static void print_json(FILE *out, const glintL_run *run)
     }
     fputs("],", out);
     cli_print_rays(out, &rays);
+    if (programs)
+        print_programs_json(out, plan);
     fputs("}\n", out);
 }
 
@@ -96,8 +134,10 @@ int cli_explain(cli_options *options, cli_output *output, glintL_run *run)
         return run->exit_code;
     }
     if (options->json)
-        print_json(output->data, run);
+        print_json(output->data, run, options->programs);
     else
         print_for_people(output->data, run);
+    if (options->programs && !options->json)
+        print_programs(output->data, run->explain_plan);
     return GLINTL_EXIT_DONE;
 }

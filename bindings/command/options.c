@@ -279,6 +279,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       WITHIN(1, 1000000) },
     { "untrusted", 0, "[SECONDS]", CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE, read_untrusted,
       .help = "the script can compute, and write pictures; no more" },
+    { "programs", 0, NULL, CLI_EXPLAIN, read_flag, .help = "also the instructions of patterns and shaders",
+      AT(programs), .group = "explain" },
     { "quick", 0, NULL, CLI_COST, read_flag, .help = "fewer runs of each setting", AT(quick), .group = "cost" },
     { "budget", 0, "SECONDS", CLI_COST, read_real, .help = "how long the study may take", AT(budget_s),
       WITHIN(DBL_TRUE_MIN, 1e6), .expected = "seconds, a number above 0 and up to 1000000," },

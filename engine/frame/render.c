@@ -183,6 +183,9 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
     sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
     sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
     const double toned = sum.tile_ns ? (double)sum.ns[GLINT_STAGE_TONE] / (double)sum.tile_ns : 0;
+    glint_odd_pattern odd = { 0 };
+    for (int i = 0; i < glint_pool_threads(renderer->pool); i++)
+        glint_odd_pattern_add(&odd, &renderer->tiles[i]->counts.odd);
     *stats = (glint_frame_stats) { .render_ms = wall_ms * (1 - toned), .tone_ms = wall_ms * toned };
     stats->rays = (glint_ray_counts) { .primary = sum.primary,
                                        .shadow = sum.shadow,
@@ -192,6 +195,12 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
     stats->work = sum.work;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
+    if (odd.count) {
+        stats->odd = odd.count;
+        stats->odd_field = glint_field_name(odd.field);
+        memcpy(stats->odd_material, plan->patterns->of[odd.material].desc.name, sizeof stats->odd_material);
+        memcpy(stats->odd_point, odd.point, sizeof stats->odd_point);
+    }
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         if (!plan->runs[id])
             continue;

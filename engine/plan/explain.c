@@ -171,9 +171,6 @@ static void materials(explainer *e, const char *effect, material_test *test)
 /// Each program of a material, with its length.
 static void patterns(explainer *e)
 {
-    static const char *const names[GLINT_FIELD_COUNT] = { "diffuse",   "ambient",      "specular",
-                                                          "mirror",    "transmission", "shininess",
-                                                          "roughness", "bump",         "model" };
     const glint_plan_patterns *all = e->plan->patterns;
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         for (uint32_t i = 0; i < all->material_count; i++) {
@@ -181,7 +178,7 @@ static void patterns(explainer *e)
             char effect[sizeof e->plan->lines->effect], caller[2 * GLINT_NAME_SIZE], owner[GLINT_NAME_SIZE];
             if (!program)
                 continue;
-            snprintf(effect, sizeof effect, "pattern: %s", names[field]);
+            snprintf(effect, sizeof effect, "pattern: %s", glint_field_name(field));
             snprintf(owner, sizeof owner, "#%u", i + 1);
             const glint_material *material = e->plan->geometry->materials.items[i];
             size_t used = material->desc.name[0]

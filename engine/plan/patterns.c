@@ -11,6 +11,14 @@
 
 // ---- A material's programs ----
 
+const char *glint_field_name(int field)
+{
+    static const char *const names[GLINT_FIELD_COUNT] = { "diffuse",   "ambient",      "specular",
+                                                          "mirror",    "transmission", "shininess",
+                                                          "roughness", "bump",         "model" };
+    return names[field];
+}
+
 static const glint_program *program_of(const glint_material_programs *programs, int field)
 {
     switch (field) {
@@ -338,4 +346,18 @@ bool glint_patterns_see(const glint_plan_patterns *patterns)
 {
     const uint32_t eye = 1u << GLINT_INPUT_V_X | 1u << GLINT_INPUT_V_Y | 1u << GLINT_INPUT_V_Z;
     return patterns && (patterns->reads & eye || patterns->shaders);
+}
+
+bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use *out)
+{
+    const glint_plan_patterns *patterns = plan->patterns;
+    for (uint32_t i = 0; patterns && i < patterns->material_count; i++)
+        for (int field = 0; field < GLINT_FIELD_COUNT; field++) {
+            const glint_program *program = patterns->of[i].program[field];
+            if (!program || index-- > 0)
+                continue;
+            *out = (glint_program_use) { patterns->of[i].desc.name, glint_field_name(field), program };
+            return true;
+        }
+    return false;
 }

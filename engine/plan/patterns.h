@@ -23,6 +23,8 @@ typedef enum glint_field {
 
 #define GLINT_FIELDS_PLANES ((1u << GLINT_FIELD_PLANES) - 1) ///< bits of those that have planes
 
+/// "diffuse", "model"
+const char *glint_field_name(int field);
 /// How many planes a field has.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
 
@@ -50,7 +52,7 @@ typedef struct glint_pattern_place {
     double lower[3], upper[3]; ///< box
     double origin[3], along[3],
         side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the
-        ///< base, its axis divided by its squared length, and two unit vectors across it
+    ///< base, its axis divided by its squared length, and two unit vectors across it
     double shrink; ///< own lengths over the world's
     double radius, length; ///< cylinder and cone
 } glint_pattern_place;

@@ -40,6 +40,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
     to->counts.work.overlaps += batch->tile.counts.work.overlaps;
     to->counts.work.patterns += batch->tile.counts.work.patterns;
+    glint_odd_pattern_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 
 // ---- What the rays find ----

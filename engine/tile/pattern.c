@@ -187,6 +187,36 @@ static void run_program(struct glint_pattern *pattern, const glint_tile_frame *f
     glint_pattern_call(pattern, frame, &code, args);
 }
 
+static bool is_before(const double a[3], const double b[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (a[c] != b[c])
+            return a[c] < b[c];
+    return false;
+}
+
+void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more)
+{
+    const uint64_t count = to->count + more->count;
+    if (more->count && (!to->count || is_before(more->point, to->point)))
+        *to = *more;
+    to->count = count;
+}
+
+/// Notes the lanes at which a program of a field gave what is no reflectance.
+static void note_odd(glint_tile_counts *counts, const glint_tile_frame *frame, const glint_pattern_points *points,
+                     const glint_pattern_lanes *entries, uint32_t count, const uint16_t *odd, int field)
+{
+    for (uint32_t k = 0; k < count; k++)
+        for (unsigned left = odd[k]; left; left &= left - 1) {
+            const uint32_t i = entries[k].group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            glint_odd_pattern one = { .count = 1, .material = entries[k].material, .field = field };
+            for (int c = 0; c < 3; c++)
+                one.point[c] = glint_real_at(points->point[c], frame->plan->desc.precision, i);
+            glint_odd_pattern_add(&counts->odd, &one);
+        }
+}
+
 /// The programs of one material, for some groups that show it.
 static void run_material(struct glint_pattern *pattern, const glint_tile_frame *frame,
                          const glint_pattern_points *points, const glint_plan_pattern *own,
@@ -206,8 +236,10 @@ static void run_material(struct glint_pattern *pattern, const glint_tile_frame *
             continue;
         for (int c = 0; c < glint_field_channels(field) && own->program[field]; c++)
             args.plane[c] = plane_at(points, frame->plan, field, c);
-        if (own->program[field])
+        if (own->program[field]) {
             run_program(pattern, frame, own->program[field], &args, glint_field_channels(field));
+            note_odd(counts, frame, points, entries, count, odd, field);
+        }
         finish(own, points, frame->plan, entries, count, field);
     }
 }

@@ -9,11 +9,23 @@
 #include "engine/plan/raster.h"
 #include "engine/tile/shading_points.h"
 
+/// Results of patterns that are no reflectances.
+typedef struct glint_odd_pattern {
+    uint64_t count;
+    uint32_t material; ///< of one of them, and the following: that at the least point, by x, then y, then z
+    int field;
+    double point[3];
+} glint_odd_pattern;
+
+/// Adds some to others.
+void glint_odd_pattern_add(glint_odd_pattern *to, const glint_odd_pattern *more);
+
 /// What one worker counted in one frame.
 typedef struct glint_tile_counts {
     uint64_t ns[GLINT_STAGE_COUNT], tile_ns;
     uint64_t primary, shadow, mirror, refraction, indirect, clipped, nonfinite;
     glint_work work;
+    glint_odd_pattern odd;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
 

@@ -16,7 +16,8 @@
 struct glint_transparent_shadow {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double target[3][GLINT_TILE_SAMPLES]; ///< of each ray: the light's position; directional: the direction
+    _Alignas(
+        64) double target[3][GLINT_TILE_SAMPLES]; ///< of each ray: the light's position; directional: the direction
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double normal[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double t[GLINT_TILE_SAMPLES];

@@ -77,6 +77,14 @@ for i = 1, 5 do
 end
 END
 
+cat >pattern.lua <<'END'
+local glint = require "glint"
+local S = require "scene"
+local tiles = glint.pattern(function(p) return glint.select(glint.checker(p), 0.9, { 0.1, 0.1, 0.2 }) end)
+S.scene:add(glint.plane { point = { 0, -2, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = tiles } })
+S.scene:render { width = 40, height = 24 }
+END
+
 cat >single.lua <<'END'
 local S = require "scene"
 local image = S.scene:render { width = 40, height = 24 }
@@ -399,6 +407,11 @@ events() {
     valued "explain has effects" '^\.effects\.[0-9]+\.caller=.*lamp'
     valued "explain has stages" '^\.stages\.[0-9]+\.name=cast$'
     valued "explain has rays" '^\.rays\.primary=960$'
+    exits 0 "explain --programs" explain pattern.lua --json --programs
+    parsed "explain --programs"
+    valued "a pattern's length" '^\.programs\.[0-9]+\.instructions=[1-9]'
+    valued "a pattern's instructions" '^\.programs\.[0-9]+\.listing=.*parity'
+    valued "whose pattern it is" '^\.effects\.[0-9]+\.effect=pattern: diffuse'
     exits 0 "explain of a loop" explain loop.lua --json --frame 3
     exits 2 "explain beyond the end" explain ten.lua --frame 11
     exits 0 "explain for people" explain ten.lua

@@ -549,9 +549,224 @@ static void test_shader(void **state)
     glint_program_release(phong);
 }
 
+// ---- Reuse ------------------------------------------------------------------------------------------------------------
+
+/// a sin(b p.x) + c p.y, or with another operation in place of the sine: what is changed one by one.
+typedef struct wave {
+    double a, b, c;
+    bool other;
+} wave;
+
+static glint_program *wave_program(const wave *v)
+{
+    begin_program(GLINT_PROGRAM_PATTERN);
+    const glint_value x = mul(in(GLINT_INPUT_P_X), num(v->b));
+    const glint_value s = op(v->other ? GLINT_OP_COS : GLINT_OP_SIN, x, 0, 0);
+    const glint_value out =
+        op(GLINT_OP_MULADD, s, num(v->a), op(GLINT_OP_MULADD, in(GLINT_INPUT_P_Y), num(v->c), num(0.5)));
+    return end_program(&out, 1);
+}
+
+/// The programs of one material's fields, in their order.
+enum { WAVES = 7 };
+
+static void set_waves(glint_material *material, const wave waves[WAVES])
+{
+    glint_material_desc desc = *glint_material_get(material);
+    glint_program **const programs[WAVES] = { &desc.program.diffuse,     &desc.program.specular,  &desc.program.mirror,
+                                              &desc.program.shininess,   &desc.program.roughness, &desc.program.bump,
+                                              &desc.program.transmission };
+    for (int i = 0; i < WAVES; i++)
+        *programs[i] = wave_program(&waves[i]);
+    OK(glint_material_set(material, &desc, &error));
+    release_programs(&desc.program);
+}
+
+static glint_image *render_with(glint_renderer *renderer, const world *w, glint_frame_stats *stats)
+{
+    glint_plan *plan;
+    glint_image *image;
+    OK(glint_plan_create(w->scene, &w->render, &plan, &error));
+    OK(glint_render(renderer, plan, &image, stats, &error));
+    glint_plan_destroy(plan);
+    return image;
+}
+
+/// Every number and the operation of every program, one after the other; a place that turns where it stands; a light.
+static void edit(uint32_t turn, wave waves[WAVES], glint_material *material, world *w)
+{
+    wave *v = &waves[turn / 4 % WAVES];
+    glint_shape *ball = glint_scene_shape_at(w->scene, 1);
+    glint_shape_desc desc = *glint_shape_get(ball);
+    glint_light *light = glint_scene_light_at(w->scene, 0);
+    glint_light_desc lamp = *glint_light_get(light);
+    const double axis[3] = { 0, 1, 0 };
+    switch (turn % 4) {
+    case 0:
+        v->a += 0.05;
+        break;
+    case 1:
+        v->b += 0.5;
+        break;
+    case 2:
+        v->c += 0.1;
+        break;
+    default:
+        v->other = !v->other;
+    }
+    if (turn % 5 == 4) { // the surface stays where it is
+        desc.transform = glint_transform_rotate(axis, 37.0 * turn);
+        OK(glint_shape_set(ball, &desc, &error));
+    } else if (turn % 5 == 3) {
+        lamp.position[0] += 0.3;
+        OK(glint_light_set(light, &lamp, &error));
+    } else {
+        set_waves(material, waves);
+    }
+}
+
+static void test_reuse(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 4; round++) {
+        const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
+        world w = new_world(eye, at, 48, 36);
+        wave waves[WAVES] = { { 0.3, 3, 0.05, false }, { 0.3, 5, 0.1, false }, { 0.1, 2, 0, true }, { 5, 3, 9, false },
+                              { 0.2, 3, 0.1, false },  { 0.1, 6, 0, false },   { 0.1, 3, 0, false } };
+        glint_material_desc desc = glint_material_desc_default();
+        desc.model = round % 2 ? GLINT_MODEL_COOK_TORRANCE : GLINT_MODEL_PHONG;
+        desc.normalized = round == 2;
+        glint_material *material = new_material(&desc);
+        seed = 5 + (uint64_t)round;
+        glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+        glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+        add_shape(&w, &floor, material);
+        add_shape(&w, &ball, material);
+        random_light(&w);
+        set_waves(material, waves);
+        w.render.samples = round == 3 ? 4 : 1;
+        w.render.passes = (1u << GLINT_PASS_COUNT) - 1;
+        glint_renderer_desc options = { .threads = 2 };
+        glint_renderer *renderer;
+        OK(glint_renderer_create(&options, &renderer, &error));
+        for (uint32_t turn = 0; turn < 5 * WAVES * 4; turn++) {
+            edit(turn, waves, material, &w);
+            for (int again = 0; again < 2; again++) { // what stays is kept from the second frame on
+                glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
+                check_same(reused, fresh, "reused", (int)turn);
+                glint_image_release(reused);
+                glint_image_release(fresh);
+            }
+        }
+        glint_renderer_destroy(renderer);
+        glint_material_release(material);
+        release_world(&w);
+    }
+}
+
+/// NaN and numbers below 0 are taken as 0, and counted, with a place.
+static void test_odd(void **state)
+{
+    (void)state;
+    const double eye[3] = { 0, 4, 4 }, at[3] = { 0, 0, 0 };
+    world w = new_world(eye, at, 64, 48);
+    glint_material_desc desc = glint_material_desc_default();
+    begin_program(GLINT_PROGRAM_PATTERN);
+    const glint_value out = op(GLINT_OP_SQRT, in(GLINT_INPUT_P_X), 0, 0); // NaN where x < 0
+    desc.program.diffuse = end_program(&out, 1);
+    snprintf(desc.name, sizeof desc.name, "root");
+    glint_material *material = new_material(&desc);
+    glint_program_release(desc.program.diffuse);
+    glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    add_shape(&w, &floor, material);
+    glint_renderer_desc options = { .threads = 2, .no_reuse = true };
+    glint_renderer *renderer;
+    glint_frame_stats stats;
+    OK(glint_renderer_create(&options, &renderer, &error));
+    glint_image *image = render_with(renderer, &w, &stats);
+    float albedo[3];
+    uint64_t black = 0;
+    for (int i = 0; i < 64 * 48; i++) {
+        OK(glint_image_pixel(image, GLINT_PASS_ALBEDO, i % 64, i / 64, albedo, &error));
+        assert_true(albedo[0] >= 0);
+        black += albedo[0] == 0;
+    }
+    assert_int_equal(black, 64 * 48 / 2);
+    assert_int_equal(stats.odd, 64 * 48 / 2);
+    assert_string_equal(stats.odd_field, "diffuse");
+    assert_string_equal(stats.odd_material, "root");
+    assert_true(stats.odd_point[0] < -1 && stats.odd_point[1] == 0);
+    glint_image_release(image);
+    glint_renderer_destroy(renderer);
+    glint_material_release(material);
+    release_world(&w);
+}
+
+static double share_reused(const glint_frame_stats *stats, const char *stage)
+{
+    for (int i = 0; i < stats->stage_count; i++)
+        if (strcmp(stats->stage_name[i], stage) == 0)
+            return stats->stage_reused[i];
+    return -1;
+}
+
+/// A moved light does not run the pattern; a changed number leaves hits, light and shadows alone; without a program there is no
+/// such stage.
+static void test_stages(void **state)
+{
+    (void)state;
+    const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
+    world w = new_world(eye, at, 96, 72);
+    glint_material_desc desc = glint_material_desc_default();
+    wave v = { 0.3, 3, 0.05, false };
+    desc.program.diffuse = wave_program(&v);
+    glint_material *material = new_material(&desc), *plain;
+    glint_program_release(desc.program.diffuse);
+    glint_shape_desc floor = glint_shape_desc_default(GLINT_SHAPE_PLANE);
+    add_shape(&w, &floor, material);
+    glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_light *light;
+    glint_renderer_desc options = { .threads = 1 };
+    glint_renderer *renderer;
+    glint_frame_stats stats;
+    lamp.position[1] = 5;
+    OK(glint_light_create(&lamp, &light, &error));
+    OK(glint_scene_add_light(w.scene, light, &error));
+    OK(glint_renderer_create(&options, &renderer, &error));
+    w.render.passes = 1u << GLINT_PASS_BEAUTY;
+    for (int i = 0; i < 4; i++) {
+        lamp.position[0] = i;
+        OK(glint_light_set(light, &lamp, &error));
+        glint_image_release(render_with(renderer, &w, &stats));
+    }
+    assert_true(share_reused(&stats, "pattern") == 1 && share_reused(&stats, "light") == 0);
+    for (int i = 0; i < 4; i++) {
+        v.a = 0.1 + 0.1 * i;
+        desc.program.diffuse = wave_program(&v);
+        OK(glint_material_set(material, &desc, &error));
+        glint_program_release(desc.program.diffuse);
+        glint_image_release(render_with(renderer, &w, &stats));
+    }
+    assert_true(share_reused(&stats, "pattern") == 0 && share_reused(&stats, "shade") == 0);
+    assert_true(share_reused(&stats, "cast") == 1 && share_reused(&stats, "light") == 1 &&
+                share_reused(&stats, "occlude") == 1);
+    desc.program.diffuse = NULL;
+    plain = new_material(&desc);
+    OK(glint_material_set(material, glint_material_get(plain), &error));
+    glint_image_release(render_with(renderer, &w, &stats));
+    assert_true(share_reused(&stats, "pattern") == -1);
+    glint_material_release(plain);
+    glint_renderer_destroy(renderer);
+    glint_light_release(light);
+    glint_material_release(material);
+    release_world(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_floor), cmocka_unit_test(test_same_bits),
-                                        cmocka_unit_test(test_bump), cmocka_unit_test(test_shader) };
+                                        cmocka_unit_test(test_bump),  cmocka_unit_test(test_shader),
+                                        cmocka_unit_test(test_reuse), cmocka_unit_test(test_stages),
+                                        cmocka_unit_test(test_odd) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
