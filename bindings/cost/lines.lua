@@ -15,9 +15,11 @@ local function head_of(study)
   local reference = study.reference
   return study.machine .. "\n"
     .. (reference and format("reference: the mean of %d pictures of %.0f samples a pixel, decided in double, "
-      .. "seeds %s%s; its own error, by how they differ, %.2g RMSE\n", #reference.seeds, reference.samples, the.seeds_of(reference), study.truth,
+      .. "seeds %s%s; its own error, by how they differ, %.2g RMSE\n", #reference.seeds, reference.samples,
+        the.seeds_of(reference), study.truth,
       reference.rmse) or "")
-    .. format("\n%-24s %8s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "wall ms", "CPU ms", "+-", "x", "rmse",
+    .. format("\n%-24s %8s %8s %7s %6s %8s %8s %6s %6s %6s %7s %6s %6s %6s\n", "", "wall ms", "CPU ms", "+-", "x",
+      "rmse",
       "relmse", "codes", ">1", ">8", "FLIP", "object", "shadow", "Mrays")
 end
 
@@ -37,7 +39,8 @@ local function row_for_people(row)
     .. errors_for_people(row) .. format(" %6.3g", the.all_rays(case) * 1e-6) .. (row.front and "  front" or "")
     .. (not row.own and not row.partial and row.difference == 0 and "  no difference in time" or "")
     .. (row.error and not row.resolved and "  error not resolved" or "")
-    .. ((row.partial or case.left_out) and format("  partial, %d run%s", case.runs, case.runs == 1 and "" or "s") or "") .. "\n"
+    .. ((row.partial or case.left_out) and format("  partial, %d run%s", case.runs,
+      case.runs == 1 and "" or "s") or "") .. "\n"
 end
 
 -- Which rows more runs might tell from the row next to them.
@@ -47,7 +50,8 @@ local function rows_together(study)
     together = together + (row.apart and 0 or 1)
     runs = math.max(runs, row.case.runs)
   end
-  return together == 0 and "" or format("%d of %d rows do not part in time from the row next to them, after up to %d runs.\n",
+  return together == 0 and "" or format("%d of %d rows do not part in time from the row next to them, after up to "
+    .. "%d runs.\n",
     together, #study.rows, runs)
 end
 
@@ -59,8 +63,10 @@ function the.table(study)
     knob = heading
     out[#out + 1] = row_for_people(row)
   end
-  out[#out + 1] = format("\n* the script's own setting. ms: medians of %d runs or more, rendering, codes and encoding of a whole "
-    .. "frame: by the\nclock, and on all processors, which other programs change little; +- half the latter's quartile range; "
+  out[#out + 1] = format("\n* the script's own setting. ms: medians of %d runs or more, rendering, codes and "
+    .. "encoding of a whole "
+    .. "frame: by the\nclock, and on all processors, which other programs change little; +- half the latter's "
+    .. "quartile range; "
     .. "x: times the\nfastest, by processor time, as all that compares. codes: steps of 8 bits, >1 and >8 the share of "
     .. "pixels. object, shadow:\npixels that see or shade the wrong thing.\n", study.runs)
   out[#out + 1] = rows_together(study)

@@ -1,4 +1,4 @@
--- The page of glint cost: page.html with its @NAMES@ filled in. It needs no network; the plot is in it, and the pictures.
+-- The page of glint cost: page.html with its @NAMES@ filled in, the plot and the pictures in it. It needs no network.
 local the = ...
 local format = string.format
 
@@ -24,7 +24,8 @@ end
 local function text_of(row)
   local time, error = row.case.time, row.error
   local text = format("%s: %.4g ms by the clock, %.4g ms (%.4g to %.4g) of processor time, %.3g times the fastest",
-    the.html(row.own and "the script's own setting" or row.name), row.case.wall.median, time.median, time.q1, time.q3, row.x_fastest)
+    the.html(row.own and "the script's own setting" or row.name), row.case.wall.median, time.median, time.q1, time.q3,
+      row.x_fastest)
   if error then
     text = text .. format("; RMSE %.2g, FLIP %.2g, %.2g %% of the pixels off by more than a code", error.rmse,
       error.flip, 100 * error.over1)
@@ -37,15 +38,19 @@ local function errors_of(row)
   local work = case.work or {}
   return cell(e.rmse, "%.2g") .. cell(e.relmse, "%.2g") .. cell(e.max_code, "%.3g")
     .. cell(e.over1, "%.2g %%", 100 * (e.over1 or 0)) .. cell(e.over8, "%.2g %%", 100 * (e.over8 or 0))
-    .. cell(e.flip, "%.2g") .. cell(row.error and case.wrong_object, "%.0f") .. cell(row.error and case.wrong_shadow, "%.0f")
-    .. cell(all_rays(case), "%.0f") .. cell(work.tests, "%.0f") .. cell(work.light_samples, "%.0f") .. cell(work.powers, "%.0f")
+    .. cell(e.flip, "%.2g") .. cell(row.error and case.wrong_object, "%.0f") .. cell(row.error and case.wrong_shadow,
+      "%.0f")
+    .. cell(all_rays(case), "%.0f") .. cell(work.tests, "%.0f") .. cell(work.light_samples, "%.0f")
+    .. cell(work.powers, "%.0f")
 end
 
 local function row_of(row)
   local time, remarks = row.case.time, remarks_of(row)
-  return format("<tr id='row-%d' data-text='%s'><td data-v='%03d'><span class='%s'>%s</span></td>", row.index, text_of(row),
+  return format("<tr id='row-%d' data-text='%s'><td data-v='%03d'><span class='%s'>%s</span></td>", row.index,
+    text_of(row),
       row.index, row.default and "own" or row.front and "best" or "", the.html(row.name))
-    .. cell(time.median, "%.4g") .. format("<td data-v='%.9g'>%.4g &ndash; %.4g</td>", time.q3 - time.q1, time.q1, time.q3)
+    .. cell(time.median, "%.4g") .. format("<td data-v='%.9g'>%.4g &ndash; %.4g</td>", time.q3 - time.q1, time.q1,
+      time.q3)
     .. cell(row.x_fastest, "%.3g") .. errors_of(row)
     .. format("<td class='remark' data-v='%s'>%s</td></tr>\n", the.html(remarks), the.html(remarks:sub(3)))
 end
@@ -53,7 +58,8 @@ end
 -- The pictures are in the page itself, or, where they would make it too heavy, in files beside it.
 local function picture(study, name, what, bytes)
   local source = study.is_light and "data:image/png;base64," .. the.base64(bytes) or name .. ".png"
-  return format("<img loading='lazy' width='%.0f' height='%.0f' alt='%s' src='", study.width, study.height, what) .. source .. "'>"
+  return format("<img loading='lazy' width='%.0f' height='%.0f' alt='%s' src='", study.width, study.height, what)
+    .. source .. "'>"
 end
 
 local function pictures_of(study)
@@ -68,7 +74,8 @@ local function pictures_of(study)
 end
 
 local function lead_of(study)
-  return format("Frame %d, %.0f &times; %.0f pixels, %.0f sample%s a pixel, each setting timed %d times in random order",
+  return format("Frame %d, %.0f &times; %.0f pixels, %.0f sample%s a pixel, each setting timed %d times in random "
+    .. "order",
       study.frame, study.width, study.height, study.samples, study.samples == 1 and "" or "s", study.runs)
     .. (study.complete and " on " or " (interrupted: part of the study only) on ") .. the.html(study.machine) .. "."
 end

@@ -113,7 +113,8 @@ function the.plot(study)
   local function draw_point(row)
     local t, e = row.case.time, row.error.rmse
     local x, y = x_of(t.median), y_of(e)
-    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s: %.4g ms of processor time, error %.2g%s'>",
+    put("<g class='point%s%s' tabindex='0' role='img' data-row='%d' aria-label='%s: %.4g ms of processor time, "
+      .. "error %.2g%s'>",
       row.front and " best" or "", row.own and " own" or "", row.index,
       the.html(row.own and "the script's own setting" or row.name), t.median, e, row.front and ", on the front" or "")
     put("<circle class='reach' cx='%.1f' cy='%.1f' r='14'/>", x, y)
@@ -131,8 +132,9 @@ function the.plot(study)
   local function draw_label(row)
     local text = row.own and "the script's own" or row.name
     local width, x, y = CHARACTER * #text, x_of(row.case.time.median), y_of(row.error.rmse)
-    local places = { { x + 9, y - 14 }, { x + 9, y + 1 }, { x - 9 - width, y + 1, true }, { x - 9 - width, y - 14, true },
-      { x - width / 2, y + 8 }, { x - width / 2, y - 22 } } -- true: the text ends where its place does
+    local places = { { x + 9, y - 14 }, { x + 9, y + 1 }, { x - 9 - width, y + 1, true },
+      { x - 9 - width, y - 14, true }, { x - width / 2, y + 8 },
+      { x - width / 2, y - 22 } } -- true: the text ends where its place does
     for _, place in ipairs(places) do
       local left, top, ends = table.unpack(place, 1, 3)
       if is_free(left, top, width, 13) then

@@ -19,7 +19,8 @@ function the.sheet(sheet)
   local axes, labels = {}, {}
   for i, a in ipairs(sheet.axes or {}) do axes[i] = axis(a) end
   if not sheet.axes then -- without a grid one slider runs through the pictures
-    axes[1] = ('  { name: "picture", values: Array.from({ length: %d }, (_, i) => String(i + 1)) },\n'):format(#sheet.labels)
+    local every = "Array.from({ length: %d }, (_, i) => String(i + 1))"
+    axes[1] = ('  { name: "picture", values: ' .. every .. " },\n"):format(#sheet.labels)
   end
   for i, label in ipairs(sheet.labels) do labels[i] = quoted(label) .. ",\n" end
   local title = html(sheet.title or "Contact sheet")
