@@ -8,7 +8,8 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light", "polygon_light", "scene", "shader",
+  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light",
+  "polygon_light", "scene", "shader",
   "sphere", "sphere_light", "spheres", "spot_light", "triple", "vector",
 }
 
