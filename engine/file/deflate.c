@@ -181,7 +181,7 @@ glint_status glint_deflate_band(glint_encode encode, const uint8_t *data, size_t
 
 uint32_t glint_deflate_join(uint32_t first, uint32_t second, size_t second_size)
 {
-    return (uint32_t)adler32_combine64(first, second, (off_t)second_size);
+    return (uint32_t)adler32_combine(first, second, (z_off_t)second_size);
 }
 
 bool glint_deflate_begin(glint_bytes *out) { return glint_bytes_append(out, "\x78\x01", 2); }

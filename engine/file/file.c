@@ -14,7 +14,11 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code)
                           : code == ENOMEM                 ? GLINT_ERR_NOMEM
                                                            : GLINT_ERR_IO;
     char text[128];
-    const char *reason = strerror_r(code, text, sizeof text); // the GNU one
+#ifdef __GLIBC__
+    const char *reason = strerror_r(code, text, sizeof text); // perhaps not in `text`
+#else
+    const char *reason = strerror_r(code, text, sizeof text) == 0 ? text : "unknown error";
+#endif
     size_t length = strlen(path), most = 400;
     return glint_fail(error, status, "%s%s: %s", length > most ? "..." : "",
                       length > most ? path + length - most : path, reason);
