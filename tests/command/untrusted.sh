@@ -84,6 +84,11 @@ script 'while true do coroutine.wrap(function() for i = 1, 100 do end end)() end
 refused "coroutines that no hook sees" "$late" -o a.png
 script 'string.rep("a", 40):find(string.rep("a-", 40) .. "b")'
 refused "a pattern that takes for ever" "$late" -o a.png
+script 'local _ = #require "glint".pattern(function(p) while true do pcall(function() return p.x + 1 end) end end)'
+refused "a traced function without an end" "$late" -o a.png
+script 'local kept, glint = {}, require "glint"' \
+    'local _ = #glint.pattern(function(p) for i = 1, 1e9 do pcall(function() kept[i] = glint.noise(p + i) end) end end)'
+refused "a traced function that only grows" "$late" -o a.png
 seconds=20
 script 'error(setmetatable({}, { __tostring = function() while true do end end }))'
 refused "an error that is spelt for ever" "(error object is a table value)" -o a.png
