@@ -79,8 +79,11 @@ static const glint_pattern_place *next_place(const gathering *g, unsigned left, 
     const glint_prim *prims = g->frame->geometry.prims;
     const uint32_t *prim = g->points->prim + g->at;
     const uint32_t first = prim[__builtin_ctz(left)], part = geometry->prim_part[prims[first].id];
-    *lanes = 0;
-    for (unsigned rest = left; rest; rest &= rest - 1) {
+    uint32_t other = 0;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        other |= prim[i] ^ first;
+    *lanes = other ? 0 : left; // the common case: one primitive
+    for (unsigned rest = other ? left : 0; rest; rest &= rest - 1) {
         const uint32_t id = prim[__builtin_ctz(rest)];
         if (id == first || geometry->prim_part[prims[id].id] == part)
             *lanes |= rest & -rest;
@@ -119,8 +122,23 @@ static void put_exact(const gathering *g, const glint_pattern_place *place, unsi
         }
         return;
     }
-    for (; lanes && place->axis >= 0; lanes &= lanes - 1)
+    for (int i = 0; lanes == 0xffff && place->axis >= 0 && i < GLINT_GROUP; i++)
+        row(g, GLINT_INPUT_P_X + place->axis)[i] = place->face;
+    for (; lanes != 0xffff && lanes && place->axis >= 0; lanes &= lanes - 1)
         row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
+}
+
+/// Coordinate c of a group in the shape's own space.
+static void own_coordinates(const glint_pattern_place *place, int c, double world[3][GLINT_GROUP],
+                            double out[GLINT_GROUP])
+{
+    const double x = place->inverse[c][0], y = place->inverse[c][1], z = place->inverse[c][2], w = place->inverse[c][3];
+    if (!place->mapped) {
+        memcpy(out, world[c], GLINT_GROUP * sizeof *out);
+        return;
+    }
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] = ((x * world[0][i] + y * world[1][i]) + z * world[2][i]) + w;
 }
 
 static void gather_points(const gathering *g, unsigned lanes)
@@ -132,13 +150,10 @@ static void gather_points(const gathering *g, unsigned lanes)
     for (unsigned left = lanes, here; left; left &= ~here) {
         const glint_pattern_place *place = next_place(g, left, &here);
         for (int c = 0; c < 3; c++) {
-            const double *m = place->inverse[c];
-            double own[GLINT_GROUP], *to = row(g, GLINT_INPUT_P_X + c);
-            for (int i = 0; i < GLINT_GROUP; i++)
-                own[i] = place->mapped ? ((m[0] * world[0][i] + m[1] * world[1][i]) + m[2] * world[2][i]) + m[3]
-                                       : world[c][i];
-            for (int i = 0; i < GLINT_GROUP; i++)
-                to[i] = !begun || here >> i & 1 ? own[i] : to[i];
+            double *to = row(g, GLINT_INPUT_P_X + c), own[GLINT_GROUP];
+            own_coordinates(place, c, world, begun ? own : to);
+            for (int i = 0; begun && i < GLINT_GROUP; i++)
+                to[i] = here >> i & 1 ? own[i] : to[i];
         }
         begun = true;
         put_exact(g, place, here);
