@@ -303,7 +303,8 @@ hard: ## the hard cases as Markdown tables: truth, engine in double and in float
 
 hard-run: $(HARD_BIN) $(BUILD)/glint.so
 	@bad=0; for program in $(HARD_BIN); do $$program --table || bad=1; echo; done; \
-	LUA_CPATH="$(BUILD)/?.so;;" $(LUA) tests/hard/hard_scenes.lua --table || bad=1; exit $$bad
+	LUA_CPATH="$(BUILD)/?.so;;" $(LUA) tests/hard/hard_scenes.lua --table || bad=1; \
+	BUILD=$(BUILD) $(LUA) tests/hard/hard_faces.lua --table || bad=1; exit $$bad
 
 SOAK_RAYS ?= 1e8
 SOAK_SECONDS ?= 300

@@ -390,6 +390,7 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->maps);
     free(geometry->normals);
     free(geometry->solids);
+    free(geometry->faces);
     free(geometry->unbounded);
     free(geometry->shading_points);
     free(geometry->shading_point_prims);

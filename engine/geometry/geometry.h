@@ -46,6 +46,7 @@ struct glint_geometry {
     uint32_t *shading_point_prims; ///< id of the first triangle of each site
     uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
     glint_solid *solids;
+    glint_face *faces; ///< of solids and triangles
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
     glint_index *index;
@@ -78,7 +79,7 @@ uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 /// geometry/prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
 /// All that a primitive's place is made of. Returns how many numbers.
-enum { GLINT_PLACE_MAX = 14 };
+enum { GLINT_PLACE_MAX = 50 };
 int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX]);
 /// A box around a primitive that has an end.
 void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3]);

@@ -2,8 +2,10 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/geometry/faces.h"
 #include "engine/geometry/geometry.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,13 +23,24 @@ static void sphere_init(glint_prim *prim, const double center[3], double radius)
     prim->r2_low = fma(r, r, -prim->r2);
 }
 
-static void plane_init(glint_prim *prim, const double point[3], const double normal[3])
+static void plane_init(glint_prim *prim, const double point[3], const double normal[3], const glint_placing *place)
 {
+    glint_face face;
+    glint_face_init(&face, place, normal, point);
     prim->kind = GLINT_PRIM_PLANE;
-    for (int c = 0; c < 3; c++)
-        prim->center[c] = point[c] + 0.0;
-    vec_normalize(prim->normal, normal);
+    vec_copy(prim->center, face.at);
+    vec_copy(prim->normal, face.normal);
     prim->scale = 1;
+    prim->places = 0;
+    for (int c = 0; c < 3 && face.axis == 3; c++)
+        prim->places += 2 * fabs(face.normal[c] * face.at[c]) + DBL_MIN;
+}
+
+static int copy_face(double *out, const glint_face *face)
+{
+    vec_copy(out, face->normal);
+    vec_copy(out + 3, face->at);
+    return 6;
 }
 
 int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX])
@@ -35,14 +48,17 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
     out[0] = prim->kind;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
         memcpy(out + 1, prim->corner, sizeof prim->corner);
-        return 10;
+        return 10 + (prim->face ? copy_face(out + 10, &geometry->faces[prim->face - 1]) : 0);
     }
     vec_copy(out + 1, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &geometry->solids[prim->item];
         out[4] = solid->form;
         memcpy(out + 5, solid->inverse, sizeof solid->inverse);
-        return 14;
+        int count = 14;
+        for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+            count += copy_face(out + count, &solid->faces[i]);
+        return count;
     }
     vec_copy(out + 4, prim->normal);
     out[7] = prim->radius;
@@ -154,7 +170,23 @@ static glint_transform unit_map(const glint_shape_desc *desc)
     return map;
 }
 
-static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *map)
+/// What rounding is measured by: of the faces, and of the curved side, which is near 1 in each of the unit shape's directions.
+static void bound_solid(const glint_prim *prim, const glint_placing *place, glint_solid *solid, glint_face *faces)
+{
+    double lower[3], upper[3];
+    solid_bounds(solid, prim->center, lower, upper);
+    for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+        glint_face_bound(&faces[i], place, lower, upper);
+    solid->faces = faces;
+    solid->places = 1;
+    for (int i = 0; i < 9; i++)
+        solid->places += 2 * fabs(solid->inverse[i / 3][i % 3]) *
+                         (fmax(fabs(lower[i % 3]), fabs(upper[i % 3])) + fabs(prim->center[i % 3]));
+}
+
+/// faces: of it, not yet bounded.
+static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *map,
+                       const glint_placing *place, glint_face *faces)
 {
     double cofactors[3][3], scaled[3][3], largest = 0;
     prim->kind = GLINT_PRIM_SOLID;
@@ -171,6 +203,7 @@ static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, co
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             solid->inverse[i][j] = cofactors[j][i] / determinant * scale;
+    bound_solid(prim, place, solid, faces);
 }
 
 // ---- All of a scene ----
@@ -179,38 +212,23 @@ typedef struct filler {
     glint_geometry *geometry;
     uint32_t *numbers; ///< of the materials of the shape at hand
     uint32_t object_count;
-    size_t prims, parts, smooth, shared, shading_points, solids,
+    size_t prims, parts, smooth, shared, shading_points, solids, faces,
         materials; ///< how many there are; materials: most of any shape
     size_t maps; ///< of parts, at most
     size_t visits, map_count;
-    uint32_t normal_count, shared_count, solid_count;
+    uint32_t normal_count, shared_count, solid_count, face_count;
+    int level_axis; ///< of the last triangle of the shape that is square to an axis; 3: none so far
+    double level; ///< where on it
     glint_error *error;
 } filler;
 
-/// A shape where it stands: the map of all groups around it, NULL where there is none but the identity.
-typedef struct placing {
-    const glint_transform *map;
-    double cofactors[3][3], determinant; ///< of it
-    bool similar; ///< it keeps angles
-} placing;
-
-static void place_normal(const placing *place, const double n[3], double out[3])
-{
-    double turned[3] = { n[0], n[1], n[2] };
-    for (int c = 0; c < 3 && place->map; c++)
-        turned[c] = vec_dot(place->cofactors[c], n) * (place->determinant < 0 ? -1 : 1);
-    if (place->map && vec_max_abs(turned) > 0)
-        vec_normalize(turned, turned);
-    vec_copy(out, turned);
-}
-
 /// Of a corner that smooth shading interpolates. Where the map keeps no angles, normals keep the lengths it gives them, in
 /// common units: what is between them is then the map of what is between them in the mesh's own space.
-static void place_corner_normal(const placing *place, const double n[3], double out[3])
+static void place_corner_normal(const glint_placing *place, const double n[3], double out[3])
 {
     double largest = 0;
     if (!place->map || place->similar) {
-        place_normal(place, n, out);
+        glint_place_normal(place, n, out);
         return;
     }
     for (int c = 0; c < 3; c++)
@@ -218,16 +236,6 @@ static void place_corner_normal(const placing *place, const double n[3], double 
     const double scale = power_of_two_scale(largest) * (place->determinant < 0 ? -1 : 1);
     for (int c = 0; c < 3; c++)
         out[c] = vec_dot(place->cofactors[c], n) * scale;
-}
-
-static void place_point(const placing *place, const double p[3], double out[3])
-{
-    if (place->map)
-        glint_transform_point(place->map, p, out);
-    else
-        vec_copy(out, p);
-    for (int c = 0; c < 3; c++)
-        out[c] += 0.0;
 }
 
 /// The number of the shape's material in `materials`, which grows as new ones appear.
@@ -275,32 +283,54 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
         geometry->shading_point_prims[shading_point] = prim->id;
 }
 
+/// A triangle that is square to an axis shares its plane with others, those of its own mesh before all.
+static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
+{
+    double lower[3], upper[3], normal[3];
+    const int axis = glint_level_axis(mesh, i);
+    const double *corner = mesh->vertices[mesh->triangles[i][0]];
+    if (axis == 3)
+        return;
+    if (axis != f->level_axis || corner[axis] != f->level) {
+        for (int c = 0; c < 3; c++)
+            normal[c] = c == axis;
+        glint_face_init(&f->geometry->faces[f->face_count++], place, normal, corner);
+    }
+    f->level_axis = axis;
+    f->level = corner[axis];
+    prim->face = f->face_count;
+    glint_prim_bounds(NULL, prim, lower, upper);
+    glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper);
+}
+
 /// A mirrored triangle's corners are taken the other way round: its front stays its front.
-static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const placing *place)
+static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place)
 {
     const glint_mesh *mesh = shape->mesh;
     const bool mirrored = place->map && place->determinant < 0;
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
     prim->kind = GLINT_PRIM_TRIANGLE;
+    prim->face = 0;
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
         const int from = mirrored ? (3 - j) % 3 : j;
-        place_point(place, mesh->vertices[at[from]], prim->corner[j]);
+        glint_place_point(place, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
             place_corner_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
         if (prim->shading_points != GLINT_MISS)
             name_shading_point(f->geometry, prim, j,
                                f->geometry->table.shading_point_count + shading_point_of(shape, i, from));
     }
+    share_face(f, prim, mesh, i, place);
 }
 
 /// A ball stays a sphere where the map keeps angles.
-static void add_ball(filler *f, glint_prim *prim, const double center[3], double radius, const placing *place)
+static void add_ball(filler *f, glint_prim *prim, const double center[3], double radius, const glint_placing *place)
 {
     double factor = 1, moved[3];
     if (!place->map || glint_transform_similar(place->map, &factor)) {
-        place_point(place, center, moved);
+        glint_place_point(place, center, moved);
         sphere_init(prim, moved, radius * factor);
         return;
     }
@@ -308,25 +338,28 @@ static void add_ball(filler *f, glint_prim *prim, const double center[3], double
     vec_copy(desc.center, center);
     const glint_transform unit = unit_map(&desc), map = glint_transform_product(place->map, &unit);
     prim->item = f->solid_count++;
-    solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &map);
+    solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &map, place, NULL);
 }
 
-static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc, const placing *place)
+static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place)
 {
     glint_transform map = unit_map(desc);
     if (place->map)
         map = glint_transform_product(place->map, &map);
+    const glint_form form = form_of(desc);
+    glint_face *faces = f->geometry->faces + f->face_count;
+    glint_solid_faces(desc, form, place, faces);
+    f->face_count += 2 * (uint32_t)glint_slab_count(form);
     prim->item = f->solid_count++;
-    solid_init(prim, &f->geometry->solids[prim->item], form_of(desc), &map);
+    solid_init(prim, &f->geometry->solids[prim->item], form, &map, place, faces);
 }
 
-static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const placing *place)
+static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     const glint_shape_desc *desc = &shape->desc;
     const uint32_t at = geometry->table.prim_count++;
     glint_prim *prim = &geometry->prims[at];
-    double point[3], normal[3];
     prim->id = at;
     switch (desc->kind) {
     case GLINT_SHAPE_MESH:
@@ -339,9 +372,7 @@ static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t par
         add_ball(f, prim, desc->center, desc->radius, place);
         break;
     case GLINT_SHAPE_PLANE:
-        place_point(place, desc->point, point);
-        place_normal(place, desc->normal, normal);
-        plane_init(prim, point, normal);
+        plane_init(prim, desc->point, desc->normal, place);
         break;
     default:
         add_solid(f, prim, desc, place);
@@ -354,7 +385,7 @@ static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t par
 
 static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around);
 
-static glint_status add_prims(filler *f, glint_shape *shape, const placing *place)
+static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     for (size_t i = 0; i < shape->material_count; i++) {
@@ -368,6 +399,7 @@ static glint_status add_prims(filler *f, glint_shape *shape, const placing *plac
         geometry->maps[f->map_count] = *place->map;
         geometry->parts[part].map = &geometry->maps[f->map_count++];
     }
+    f->level_axis = 3;
     for (size_t i = 0; i < shape->count; i++)
         add_prim(f, shape, i, part, place);
     f->object_count += shape->mesh ? 1 : (uint32_t)shape->count;
@@ -381,7 +413,7 @@ static glint_status add_prims(filler *f, glint_shape *shape, const placing *plac
 static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around)
 {
     glint_transform map = shape->desc.transform;
-    placing place = { .map = &map };
+    glint_placing place = { .map = &map };
     double linear[3][3];
     glint_status status = GLINT_OK;
     if (around)
@@ -422,6 +454,7 @@ static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped
     f->shared += is_shared(shape) ? shape->count : 0;
     f->shading_points += count_shading_points(shape);
     f->solids += mapped || shape->desc.kind >= GLINT_SHAPE_BOX ? shape->count : 0; // at most
+    f->faces += shape->mesh ? glint_count_levels(shape->mesh) : shape->desc.kind >= GLINT_SHAPE_BOX ? 6 : 0; // at most
     f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
     return status;
 }
@@ -449,8 +482,10 @@ static bool allocate(filler *f)
     geometry->maps = f->maps ? glint_alloc(f->maps, sizeof *geometry->maps) : NULL;
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
+    geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
-           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && allocate_shading_points(f);
+           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) &&
+           (geometry->faces || !f->faces) && allocate_shading_points(f);
 }
 
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
@@ -475,5 +510,6 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     geometry->table.corner_normals = geometry->normals;
     geometry->table.solids = geometry->solids;
     geometry->table.shading_points = geometry->shading_points;
+    geometry->table.faces = geometry->faces;
     return status;
 }

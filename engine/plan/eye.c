@@ -30,7 +30,7 @@ static bool holds(const glint_geometry *geometry, const glint_prim *prim, const 
     double e[3];
     vec_sub(e, point, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID)
-        return glint_solid_holds(&geometry->solids[prim->item], e);
+        return glint_solid_holds(&geometry->solids[prim->item], prim->center, point);
     if (prim->kind == GLINT_PRIM_PLANE)
         return vec_dot(prim->normal, e) < 0;
     return sqrt(vec_dot(e, e)) < prim->radius;

@@ -30,6 +30,8 @@ typedef struct test_scene {
     glint_bvh bvh;
     glint_prim prims[MOST_PRIMS];
     glint_solid solids[MOST_PRIMS];
+    glint_face faces[6 * MOST_PRIMS];
+    uint32_t face_count;
     uint32_t unbounded[MOST_PRIMS];
 } test_scene;
 
@@ -122,6 +124,9 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
             out.corner[2][k] = last->corner[0][k] + (last->corner[1][k] - last->corner[2][k]);
     else if (one_in(6))
         along3(out.corner[0], size, line->direction, out.corner[1]);
+    if (!joined && one_in(4)) // square to an axis
+        for (int j = 0, c = (int)below(3); j < 3; j++)
+            out.corner[j][c] = out.corner[0][c];
     *prim = out;
 }
 
@@ -346,6 +351,75 @@ static inline void build_index(test_scene *scene)
     table->solids = scene->solids;
 }
 
+/// reach: of the surface on it, about `center`.
+static inline void set_face(glint_face *face, const double normal[3], const double at[3], const double center[3],
+                            double reach)
+{
+    const double length = length3(normal);
+    face->places = 0;
+    for (int c = 0; c < 3; c++) {
+        face->normal[c] = normal[c] / length;
+        face->at[c] = at[c];
+        face->places += fabs(face->normal[c]) * ((fabs(center[c]) + reach) + fabs(at[c]));
+    }
+    face->axis = (uint32_t)glint_axis_along(face->normal);
+}
+
+static inline void set_solid_faces(test_scene *scene, const glint_prim *prim)
+{
+    glint_solid *solid = &scene->solids[prim->item];
+    const bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    const int slabs = glint_slab_count(solid->form);
+    double reach = 0;
+    solid->faces = scene->faces + scene->face_count;
+    solid->places = 1;
+    for (int i = 0; i < 9; i++)
+        reach += fabs(solid->forward[i / 3][i % 3]);
+    for (int i = 0; i < 9; i++)
+        solid->places += 2 * fabs(solid->inverse[i / 3][i % 3]) * (reach + 2 * fabs(prim->center[i % 3]));
+    for (int i = 0; i < 2 * slabs; i++) {
+        const int k = slabs == 1 ? 2 : i / 2;
+        const double low = solid->form == GLINT_FORM_DISK || cone ? 0 : -1, high = solid->form == GLINT_FORM_DISK ? 0 : 1;
+        double at[3];
+        for (int c = 0; c < 3; c++)
+            at[c] = prim->center[c] + (i % 2 ? high : low) * solid->forward[c][k];
+        set_face(&scene->faces[scene->face_count++], solid->inverse[k], at, prim->center, reach);
+    }
+}
+
+/// Some triangles share their planes, of which one that is square to an axis has an exact one.
+static inline void set_triangle_face(test_scene *scene, glint_prim *prim)
+{
+    double f[3], g[3], n[3];
+    along3(prim->corner[1], -1, prim->corner[0], f);
+    along3(prim->corner[2], -1, prim->corner[0], g);
+    cross3(f, g, n);
+    for (int c = 0; c < 3; c++)
+        if (f[c] == 0 && g[c] == 0)
+            for (int k = 0; k < 3; k++)
+                n[k] = k == c ? n[k] : 0;
+    if (!(length3(n) > 0) || !isfinite(length3(n)))
+        return;
+    set_face(&scene->faces[scene->face_count++], n, prim->corner[0], prim->corner[0], length3(f) + length3(g));
+    prim->face = scene->face_count;
+}
+
+/// The planes of what is flat, now that all is in place.
+static inline void set_faces(test_scene *scene)
+{
+    scene->face_count = 0;
+    for (uint32_t i = 0; i < scene->table.prim_count; i++) {
+        glint_prim *prim = &scene->prims[i];
+        if (prim->kind == GLINT_PRIM_SOLID)
+            set_solid_faces(scene, prim);
+        if (prim->kind == GLINT_PRIM_TRIANGLE && one_in(3))
+            set_triangle_face(scene, prim);
+        for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_PLANE && glint_axis_along(prim->normal) == 3; c++)
+            prim->places += 2 * fabs(prim->normal[c] * prim->center[c]) + DBL_MIN;
+    }
+    scene->table.faces = scene->faces;
+}
+
 /// The order of definition: that of the array, or any.
 static inline void number_prims(test_scene *scene)
 {
@@ -361,6 +435,7 @@ static inline void number_prims(test_scene *scene)
 static inline void finish_scene(const scene_plan *plan, test_scene *scene)
 {
     number_prims(scene);
+    set_faces(scene);
     for (uint32_t i = 0; i < scene->table.prim_count; i++) {
         scene->prims[i].material = below(4);
         scene->prims[i].two_sided = one_in(2);

@@ -194,7 +194,7 @@ static void start_shadows(shadow_case *c, int precision, bool odd)
         random_unit(way);
         put3(c->args.direction, precision, i, way);
         put3(c->args.normal, precision, i, (const double[3]) { way[1], -way[2], way[0] });
-        put(c->slack, precision, i, 0);
+        put(c->slack, precision, i, one_in(2) ? 0 : -1e-15 * length3(c->plan.middle));
     }
     const double distance = place_light(c);
     if (!c->args.directional && one_in(2))

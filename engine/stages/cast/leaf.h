@@ -11,6 +11,7 @@ typedef struct R(cast_leaf) {
     uint16_t at[GLINT_PAIRS]; ///< the ray
     int count;
     const glint_node *node;
+    unsigned faced; ///< slots whose triangle shares its plane with others
     leaf_on_screen shown;
     _Alignas(64) uint32_t pixels[GLINT_NODE_WIDTH]; ///< of the tile, see screen_cells
 } R(cast_leaf);
@@ -19,6 +20,7 @@ static inline void R(begin_leaf)(R(cast_leaf) * leaf)
 {
     memset(leaf->corner, 0, sizeof leaf->corner);
     leaf->count = 0;
+    leaf->faced = 0;
 }
 
 /// Loads the corners. Lanes without a triangle keep what they had.
@@ -26,9 +28,11 @@ static inline void R(load_leaf)(const glint_cast_args *args, unsigned mask, R(ca
 {
     const glint_geometry_table *geometry = args->geometry;
     const real eye[3] = { (real)args->camera->eye[0], (real)args->camera->eye[1], (real)args->camera->eye[2] };
+    leaf->faced = 0;
     for (; mask; mask &= mask - 1) {
         const int slot = __builtin_ctz(mask);
         const glint_prim *prim = &geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
+        leaf->faced |= prim->face ? 1u << slot : 0;
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 leaf->corner[j][k][slot] = ((real)prim->corner[j][k] - eye[k]) * (real)geometry->scale;
@@ -69,8 +73,37 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     return mask | edge_on;
 }
 
-/// Keeps what is nearer than all before.
-static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, int n, uint64_t *moved)
+/// Whether the eye is in the plane of a triangle.
+static bool R(begins_in_plane)(const R(tile_cast) * tile, const glint_prim *prim)
+{
+    const double *eye = tile->args->camera->eye;
+    const real place[3] = { (real)eye[0], (real)eye[1], (real)eye[2] };
+    const R(flat) flat = R(flat_of)(prim, tile->args->geometry->scale);
+    return R(is_in_plane)(&flat, place, false);
+}
+
+/// The hits of pairs from i on. Triangles that share their planes with others are decided anew; `through`: lanes whose rays pass
+/// between the edges.
+static unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, int i, unsigned through, unsigned hits)
+{
+    const glint_geometry_table *table = tile->args->geometry;
+    const double *eye = tile->args->camera->eye;
+    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    for (; through; through &= through - 1) {
+        const unsigned lane = through & -through;
+        const int n = i + __builtin_ctz(through);
+        if (!(leaf->faced >> leaf->slot[n] & 1))
+            continue;
+        const glint_prim *prim = &table->prims[leaf->node->child[leaf->slot[n]] & ~GLINT_NODE_PRIM];
+        const vr d[3] = { r_set(leaf->direction[0][n]), r_set(leaf->direction[1][n]), r_set(leaf->direction[2][n]) };
+        leaf->t[n] = R(first_lane)(R(face_way)(R(face_of)(table, prim), o, d));
+        hits = 0 < leaf->t[n] ? hits | lane : hits & ~lane;
+    }
+    return hits;
+}
+
+/// Keeps what is nearer than all before. near: beyond it no triangle is in the eye's plane.
+static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
     const glint_prim *prims = args->geometry->prims;
@@ -78,6 +111,8 @@ static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, 
     const real t = leaf->t[n];
     real *best = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
+    if (t <= near && !prims[id].face && R(begins_in_plane)(tile, &prims[id]))
+        return;
     const bool tie = t == *best && t < (real)HUGE_VAL && *best_id != GLINT_MISS && prims[id].id < prims[*best_id].id;
     if (!(t < *best || tie))
         return;
@@ -89,7 +124,7 @@ static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, 
 
 static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
 {
-    const real scale = (real)tile->args->geometry->scale;
+    const real scale = (real)tile->args->geometry->scale, near = R(near_shared_edge)(tile->args->geometry);
     uint64_t moved = 0;
     if (tile->args->tests)
         *tile->args->tests += (unsigned)leaf->count;
@@ -106,10 +141,13 @@ static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
         for (int k = 0; k < 3; k++)
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
-        unsigned hits = rm_bits(R(meet_triangle)(p, d, r_set(scale), &t)) & there;
+        const R(seen_edges) edges = R(see_edges)(p, d, false);
+        unsigned hits = rm_bits(R(meet_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
         r_store(leaf->t + i, t);
+        if (leaf->faced)
+            hits = R(decide_faced)(tile, leaf, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
         for (; hits; hits &= hits - 1)
-            R(keep_pair)(tile, leaf, i + __builtin_ctz(hits), &moved);
+            R(keep_pair)(tile, leaf, i + __builtin_ctz(hits), near, &moved);
     }
     for (; moved; moved &= moved - 1) {
         const int g = __builtin_ctzll(moved);

@@ -177,6 +177,17 @@ static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
     return DOT(n, f);
 }
 
+/// The same of a point of some surface, which rounding has moved: of a plane, 0 on it as far as that lets us know.
+static inline vr R(point_constant)(const vr f[3], const glint_prim *prim)
+{
+    const vr c = R(offset_constant)(f, prim);
+    if (prim->kind != GLINT_PRIM_PLANE || !(prim->places > 0))
+        return c;
+    const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
+    const vr sizes = (R(abs)(n[0] * f[0]) + R(abs)(n[1] * f[1])) + R(abs)(n[2] * f[2]);
+    return R(unless_within)(c, r_set(GLINT_ON_FACE) * (sizes + r_set(prim->places)));
+}
+
 INNER rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
 {
     const vr a = DOT(d, d);

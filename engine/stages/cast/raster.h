@@ -119,6 +119,7 @@ static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_
                                     unsigned lanes)
 {
     const glint_cast_args *args = &tile->args->cast;
+    const glint_geometry_table *table = args->geometry;
     const bool bundle = !args->camera->orthographic;
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const R(group_directions) directions = R(directions_of)(bundle ? args->camera : NULL, (uint32_t)x, (uint32_t)y);
@@ -127,16 +128,18 @@ static inline bool R(decide_raster)(const R(raster_tile) * tile, const R(raster_
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(lanes >> i & ((1u << VR) - 1)))
             continue;
-        vr d[3], from[3], p[3][3], t;
+        vr d[3], p[3][3], t;
+        vr from[3] = { r_set(args->camera->eye[0]), r_set(args->camera->eye[1]), r_set(args->camera->eye[2]) };
         R(load_direction)(directions, args->direction, at, i, d);
         if (bundle) {
             for (int j = 0; j < 9; j++)
                 p[j / 3][j % 3] = r_set(triangle->corner[j / 3][j % 3]);
         } else {
             R(load3)(args->origin, at + (size_t)i, from);
-            R(corners_from)(from, triangle->prim, args->geometry->scale, p);
+            R(corners_from)(from, triangle->prim, table->scale, p);
         }
-        const rm hit = R(meet_triangle)(p, d, r_set(args->geometry->scale), &t);
+        rm hit = R(meet_triangle)(p, from, d, r_set(table->scale), R(face_of)(table, triangle->prim), &t);
+        hit = R(unless_begun_on)(table, triangle->prim, NULL, from, hit, t);
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + (size_t)i, triangle->id, hit, t);

@@ -7,12 +7,12 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
                             vr *t)
 {
     const rm all = rm_from_bits((1u << VR) - 1);
-    vr f[3], e[3];
+    vr f[3];
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[prim->item];
-        R(unit_offset)(solid, prim, o, f);
-        R(to_unit)(solid, d, e);
-        const R(span) span = R(span_of)(solid, f, e);
+        R(solid_start) start;
+        R(start_at)(solid, prim, o, &start);
+        const R(span) span = R(span_along)(solid, &start, d);
         *t = span.t[1];
         if (is_open(solid))
             return rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), *t));
@@ -68,6 +68,8 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
     R(flat) flat;
     if (!near)
         return;
+    const bool rounded = args->leaving && prim->kind == GLINT_PRIM_PLANE;
+    const unsigned on_surfaces = rounded ? ~lanes_equal(args->leaving + at, GLINT_MISS) : 0;
     count_tests(args->tests, near);
     if (shared_edge)
         flat = R(flat_of)(prim, args->geometry->scale);
@@ -82,16 +84,21 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_from)(o, prim, args->geometry->scale, p);
             const R(seen_edges) edges = R(see_edges)(p, d, shared_edge);
-            hit = R(meet_seen)(&edges, p, d, r_set(args->geometry->scale), &t);
+            hit = R(meet_seen)(&edges, p, o, d, r_set(args->geometry->scale), R(face_of)(args->geometry, prim), &t);
+            hit = R(unless_begun_on)(args->geometry, prim, shared_edge ? args->leaving + at + i : NULL, o, hit, t);
             if (shared_edge)
                 hit = R(meet_shared_edge)(args, at + (size_t)i, own, o, &flat, &edges, hit, &t);
         } else if (prim->kind == GLINT_PRIM_SOLID) {
             const glint_solid *solid = &args->geometry->solids[prim->item];
-            R(unit_offset)(solid, prim, o, f);
-            hit = R(meet_solid)(solid, f, d, &t);
+            R(solid_start) start;
+            R(start_at)(solid, prim, o, &start);
+            hit = R(meet_solid)(solid, &start, d, &t);
         } else {
             R(offset)(o, prim, f);
-            hit = R(meet)(f, R(offset_constant)(f, prim), d, prim, &t);
+            vr c = R(offset_constant)(f, prim);
+            if (rounded)
+                c = r_select(rm_from_bits(on_surfaces >> i & ((1u << VR) - 1)), R(point_constant)(f, prim), c);
+            hit = R(meet)(f, c, d, prim, &t);
         }
         hit = rm_andnot(hit, rm_from_bits(own)); // see cast_inward
         if (rm_bits(hit))

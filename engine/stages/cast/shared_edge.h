@@ -44,14 +44,55 @@ static inline real R(spread_of)(const R(flat) * flat)
     return (R(size_of)(flat->m[0]) + R(size_of)(flat->m[1])) + R(size_of)(flat->m[2]);
 }
 
+static inline real R(size_of_all)(const real v[3])
+{
+    real most = 0;
+    for (int k = 0; k < 3; k++)
+        most = most < R(size_of)(v[k]) ? R(size_of)(v[k]) : most;
+    return most;
+}
+
+/// Whether a place is in the triangle's plane as far as rounding lets us know; of a point of some surface, its own included.
+static inline bool R(is_in_plane)(const R(flat) * flat, const real place[3], bool on_surface)
+{
+    real rounding;
+    const real h = R(height_over)(flat, place, &rounding), off = (real)GLINT_POINT_SLACK * R(size_of_all)(place);
+    return R(size_of)(h) <= (on_surface ? rounding + R(spread_of)(flat) * off : rounding);
+}
+
+static inline real R(near_shared_edge)(const glint_geometry_table *table)
+{
+    return (real)(GLINT_NEAR_SHARED_EDGE * table->extent);
+}
+
+/// A triangle is not met where the ray begins. o: of the rays of `hit`; leaving: what they begin on, or NULL.
+static inline rm R(unless_begun_on)(const glint_geometry_table *table, const glint_prim *prim, const uint32_t *leaving,
+                                    const vr o[3], rm hit, vr t)
+{
+    if (!rm_bits(hit) || prim->face)
+        return hit;
+    unsigned soon = rm_bits(rm_and(hit, r_le(t, r_set(R(near_shared_edge)(table))))), on = 0;
+    if (!soon)
+        return hit;
+    const R(flat) flat = R(flat_of)(prim, table->scale);
+    _Alignas(64) real origin[3][VR];
+    for (int k = 0; k < 3; k++)
+        r_store(origin[k], o[k]);
+    for (; soon; soon &= soon - 1) {
+        const int j = __builtin_ctz(soon);
+        const real place[3] = { origin[0][j], origin[1][j], origin[2][j] };
+        if (R(is_in_plane)(&flat, place, leaving && leaving[j] != GLINT_MISS))
+            on |= soon & -soon;
+    }
+    return rm_andnot(hit, rm_from_bits(on));
+}
+
 /// Whether a corner of the triangle is for certain on the side of the plane that `way` points to; the corners too are rounded.
 static inline bool R(reaches)(const R(flat) * flat, real way, const R(flat) * other)
 {
     for (int j = 0; j < 3; j++) {
-        real rounding, place = 0;
-        const real h = R(height_over)(flat, other->corner[j], &rounding);
-        for (int k = 0; k < 3; k++)
-            place = place < R(size_of)(other->corner[j][k]) ? R(size_of)(other->corner[j][k]) : place;
+        real rounding;
+        const real h = R(height_over)(flat, other->corner[j], &rounding), place = R(size_of_all)(other->corner[j]);
         const real off = rounding + R(spread_of)(flat) * ((real)GLINT_POINT_SLACK * place);
         if (off < R(size_of)(h) && ((0 < way && 0 < h) || (way < 0 && h < 0)))
             return true;
@@ -142,7 +183,7 @@ static inline rm R(meet_shared_edge)(const glint_cast_args *args, size_t at, uns
     for (int k = 0; k < 3; k++)
         q[k] = o[k] - r_set(flat->corner[0][k]);
     const vr h = (r_set(m[0]) * q[0] + r_set(m[1]) * q[1]) + r_set(m[2]) * q[2];
-    const real near = (real)(GLINT_NEAR_SHARED_EDGE * table->extent);
+    const real near = R(near_shared_edge)(table);
     const rm soon = rm_and(r_lt(r_set(0), *t), r_le(*t, r_set(near)));
     _Alignas(64) real way[VR];
     unsigned begins = 0, anew = 0, through = 0;

@@ -26,29 +26,47 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
     R(to_unit)(solid, away, out);
 }
 
-/// Cuts the span by lower <= f_axis + t e_axis <= 1.
-static inline void R(cut_by_slab)(R(span) * span, const vr f[3], const vr e[3], int axis, double lower)
+/// What rays know of a solid by where they start.
+typedef struct R(solid_start) {
+    vr f[3]; ///< from the centre, where the shape is the unit one; of a box 0
+    vr height[6]; ///< over its faces
+} R(solid_start);
+
+static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr place[3],
+                               R(solid_start) * start)
 {
-    const vr zero = r_set(0), low = r_set(lower), high = r_set(1), x = f[axis], d = e[axis];
-    const rm rising = r_lt(zero, d), parallel = rm_andnot(r_le(d, zero), r_lt(d, zero));
-    const vr enter = r_select(rising, low - x, high - x) / d, leave = r_select(rising, high - x, low - x) / d;
+    const int slabs = glint_slab_count(solid->form);
+    for (int k = 0; k < 3; k++)
+        start->f[k] = r_set(0);
+    if (solid->form != GLINT_FORM_BOX)
+        R(unit_offset)(solid, prim, place, start->f);
+    for (int i = 0; i < 2 * slabs; i++)
+        start->height[i] = R(face_height)(&solid->faces[i], place);
+}
+
+/// Cuts the span by what is between a pair of faces; `axis`: of the unit shape. faces: whether span->face is wanted, a constant.
+INNER void R(cut_by_slab)(R(span) * span, const vr height[2], vr rise, int axis, const bool faces)
+{
+    const vr zero = r_set(0), below = height[0], above = height[1];
+    const rm rising = r_lt(zero, rise), parallel = rm_andnot(r_le(rise, zero), r_lt(rise, zero));
+    const vr enter = -r_select(rising, below, above) / rise, leave = -r_select(rising, above, below) / rise;
     const rm later = rm_andnot(r_lt(span->t[0], enter), parallel);
     const rm sooner = rm_andnot(r_lt(leave, span->t[1]), parallel);
     span->t[0] = r_select(later, enter, span->t[0]);
     span->t[1] = r_select(sooner, leave, span->t[1]);
     span->flat[0] = rm_or(span->flat[0], later);
     span->flat[1] = rm_or(span->flat[1], sooner);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; faces && k < 3; k++) {
         const vr one = r_set(k == axis), out = r_select(rising, one, zero - one),
                  in = r_select(rising, zero - one, one);
         span->face[0][k] = r_select(later, in, span->face[0][k]);
         span->face[1][k] = r_select(sooner, out, span->face[1][k]);
     }
-    span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(x, low), r_lt(high, x))));
+    span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(below, zero), r_lt(zero, above))));
 }
 
-/// a t^2 - 2 b t + c <= 0 for a ball (three axes) or cylinder (two).
-static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball)
+/// a t^2 - 2 b t + c <= 0 for a ball (three axes) or cylinder (two). places: of the solid.
+INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball, double places)
 {
     const vr zero = r_set(0), one = r_set(1);
     vr a = e[0] * e[0] + e[1] * e[1], b = f[0] * e[0] + f[1] * e[1], c = f[0] * f[0] + f[1] * f[1];
@@ -62,7 +80,7 @@ static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bo
         cross = (x * x + y * y) + z * z;
     }
     b = -b;
-    c = c - one;
+    c = R(unless_within)(c - one, r_set(GLINT_ON_FACE) * r_set(places));
     const rm near = r_lt(b * b, a);
     const vr disc = r_select(near, b * b - a * c, a - cross);
     const vr s = r_sqrt(r_max(disc, zero));
@@ -75,26 +93,22 @@ static inline void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bo
     span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
 }
 
-/// Rays that are begun anew where they are nearest to a cone's apex: what cut_cone takes are differences of squares, and
-/// where those of the start are far greater than those of any hit, too little is left. So it is with rays from afar, and
-/// with rays that pass the apex at about a third of how far from it they start, or less: down the side of either half. But what
-/// starts on the side, as far as rounding lets us know, stays: whether that is within is the same for all its rays.
-static inline rm R(starts_anew)(const vr from[3], vr toward, vr e2)
-{
-    const vr zero = r_set(0), away2 = DOT(from, from);
-    const vr side = (from[0] * from[0] + from[1] * from[1]) - from[2] * from[2];
-    const rm passes = r_lt(r_set(0.875) * (away2 * e2), toward * toward);
-    const rm on = rm_and(r_lt(zero, from[2]), r_le(r_max(side, -side), r_set(GLINT_POINT_SLACK) * away2));
-    return rm_or(r_lt(r_set(16), away2), rm_andnot(passes, on));
-}
-
 /// x^2 + y^2 <= z^2 on the side of z >= 0, the apex at the origin.
-static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
+///
+/// What is taken here are differences of squares, and where those of the start are far greater than those of any hit, too little
+/// is left: from afar, and where a ray passes the apex at about a third of how far from it it starts, or less, down the side of
+/// either half. Such rays are begun anew where they are nearest to the apex; but not what starts on the side.
+INNER void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3], double places)
 {
-    const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e);
-    const vr move = r_select(R(starts_anew)(from, toward, e2), -toward / e2, zero);
+    const vr zero = r_set(0), toward = DOT(from, e), e2 = DOT(e, e), away2 = DOT(from, from);
+    const vr side = (from[0] * from[0] + from[1] * from[1]) - from[2] * from[2];
+    const vr off = r_set(GLINT_POINT_SLACK) * away2 + (r_set(GLINT_ON_FACE) * r_set(places)) * from[2];
+    const rm far_off = r_lt(r_set(16), away2), passes = r_lt(r_set(0.875) * (away2 * e2), toward * toward);
+    const rm on = rm_andnot(rm_and(r_lt(zero, from[2]), r_le(r_max(side, -side), off)), far_off);
+    const vr move = r_select(rm_or(far_off, rm_andnot(passes, on)), -toward / e2, zero);
     const vr f[3] = { from[0] + move * e[0], from[1] + move * e[1], from[2] + move * e[2] };
-    const vr a = (e[0] * e[0] + e[1] * e[1]) - e[2] * e[2], c = (f[0] * f[0] + f[1] * f[1]) - f[2] * f[2];
+    const vr a = (e[0] * e[0] + e[1] * e[1]) - e[2] * e[2];
+    const vr c = r_select(on, zero, (f[0] * f[0] + f[1] * f[1]) - f[2] * f[2]);
     const vr b = f[2] * e[2] - (f[0] * e[0] + f[1] * e[1]);
     const vr x = f[1] * e[2] - f[2] * e[1], y = f[2] * e[0] - f[0] * e[2], z = f[0] * e[1] - f[1] * e[0];
     const vr disc = (x * x + y * y) - z * z;
@@ -114,7 +128,7 @@ static inline void R(cut_cone)(R(span) * span, const vr from[3], const vr e[3])
 }
 
 /// Takes the faces of a cylinder or cone away: what went through one meets the side once or not at all.
-static inline void R(open_ends)(R(span) * span)
+INNER void R(open_ends)(R(span) * span)
 {
     const rm none = rm_from_bits(0);
     const vr in = span->t[0];
@@ -125,9 +139,11 @@ static inline void R(open_ends)(R(span) * span)
     span->flat[0] = span->flat[1] = none;
 }
 
-static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const vr e[3])
+/// The span of rays that start at `start` along d, in the world, and e, where the shape is the unit one; a box has no use for e.
+INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], const vr e[3],
+                         const bool faces)
 {
-    const vr zero = r_set(0);
+    const vr zero = r_set(0), *f = start->f;
     const rm none = rm_from_bits(0), all = rm_from_bits((1u << VR) - 1);
     R(span)
     span = { .t = { r_set(-HUGE_VAL), r_set(HUGE_VAL) },
@@ -137,24 +153,24 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
              .face = { { zero, zero, zero }, { zero, zero, zero } } };
     switch (solid->form) {
     case GLINT_FORM_BALL:
-        R(cut_round)(&span, f, e, true);
+        R(cut_round)(&span, f, e, true, solid->places);
         break;
     case GLINT_FORM_CYLINDER:
     case GLINT_FORM_TUBE:
-        R(cut_round)(&span, f, e, false);
-        R(cut_by_slab)(&span, f, e, 2, -1);
+        R(cut_round)(&span, f, e, false, solid->places);
+        R(cut_by_slab)(&span, start->height, R(face_rise)(solid->faces, d), 2, faces);
         break;
     case GLINT_FORM_CONE:
     case GLINT_FORM_FUNNEL:
-        R(cut_cone)(&span, f, e);
-        R(cut_by_slab)(&span, f, e, 2, 0);
+        R(cut_cone)(&span, f, e, solid->places);
+        R(cut_by_slab)(&span, start->height, R(face_rise)(solid->faces, d), 2, faces);
         break;
     case GLINT_FORM_BOX:
         for (int axis = 0; axis < 3; axis++)
-            R(cut_by_slab)(&span, f, e, axis, -1);
+            R(cut_by_slab)(&span, start->height + 2 * axis, R(face_rise)(solid->faces + 2 * axis, d), axis, faces);
         break;
     default: // a disk: one place
-        span.t[0] = span.t[1] = -f[2] / e[2];
+        span.t[0] = span.t[1] = -start->height[0] / R(face_rise)(solid->faces, d);
         span.flat[0] = span.flat[1] = all;
         span.face[0][2] = span.face[1][2] = r_set(1);
         const vr x = f[0] + span.t[0] * e[0], y = f[1] + span.t[0] * e[1];
@@ -167,11 +183,17 @@ static inline R(span) R(span_of)(const glint_solid *solid, const vr f[3], const 
     return span;
 }
 
-static inline rm R(meet_solid)(const glint_solid *solid, const vr f[3], const vr d[3], vr *t)
+INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * start, const vr d[3])
 {
-    vr e[3];
-    R(to_unit)(solid, d, e);
-    const R(span) span = R(span_of)(solid, f, e);
+    vr e[3] = { d[0], d[1], d[2] };
+    if (solid->form != GLINT_FORM_BOX)
+        R(to_unit)(solid, d, e);
+    return R(span_of)(solid, start, d, e, false);
+}
+
+static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
+{
+    const R(span) span = R(span_along)(solid, start, d);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
     return rm_and(span.hit, r_lt(r_set(0), *t));
 }
@@ -197,24 +219,43 @@ static inline void R(onto_side)(uint32_t form, vr k[3], vr g[3])
     g[2] = cone ? r_set(-1) : r_set(0);
 }
 
+/// Puts points that are on a face along two axes of the world exactly there. face: of the unit shape, where `flat`.
+static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr face[3], vr p[3])
+{
+    const int slabs = glint_slab_count(solid->form);
+    for (int i = 0; i < slabs; i++) {
+        const glint_face *low = &solid->faces[2 * i], *high = low + 1;
+        if (low->axis > 2)
+            continue;
+        const vr out = face[slabs == 1 ? 2 : i];
+        const rm is_low = rm_and(flat, r_lt(out, r_set(0))), is_high = rm_and(flat, r_lt(r_set(0), out));
+        for (uint32_t c = 0; c < 3; c++)
+            if (c == low->axis)
+                p[c] = r_select(is_low, r_set(low->at[c]), r_select(is_high, r_set(high->at[c]), p[c]));
+    }
+}
+
 /// Where a ray meets the solid, and the unit normal there.
-static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const vr from[3], const vr d[3],
+static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const vr from[3], const vr d[3],
                                     vr t, vr n[3], vr p[3])
 {
-    vr f[3], e[3], k[3], side[3], g[3], on_side[3];
-    R(unit_offset)(solid, prim, from, f);
+    vr e[3], k[3], side[3], g[3], on_side[3], face[3];
+    R(solid_start) start;
+    R(start_at)(solid, prim, from, &start);
+    if (solid->form == GLINT_FORM_BOX)
+        R(unit_offset)(solid, prim, from, start.f);
     R(to_unit)(solid, d, e);
-    const R(span) span = R(span_of)(solid, f, e);
+    const R(span) span = R(span_of)(solid, &start, d, e, true);
     const rm entering = r_eq(t, span.t[0]);
     const rm flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
     for (int c = 0; c < 3; c++)
-        on_side[c] = k[c] = f[c] + t * e[c];
+        on_side[c] = k[c] = start.f[c] + t * e[c];
     R(onto_side)(solid->form, on_side, side);
     for (int c = 0; c < 3; c++) {
-        const vr face = r_select(entering, span.face[0][c], span.face[1][c]);
-        const rm this_axis = rm_or(r_lt(face, r_set(0)), r_lt(r_set(0), face));
-        g[c] = r_select(flat, face, side[c]);
-        k[c] = r_select(flat, r_select(this_axis, face, k[c]), on_side[c]);
+        face[c] = r_select(entering, span.face[0][c], span.face[1][c]);
+        const rm this_axis = rm_or(r_lt(face[c], r_set(0)), r_lt(r_set(0), face[c]));
+        g[c] = r_select(flat, face[c], side[c]);
+        k[c] = r_select(flat, r_select(this_axis, face[c], k[c]), on_side[c]);
     }
     if (solid->form == GLINT_FORM_DISK)
         k[2] = r_set(0);
@@ -226,6 +267,7 @@ static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *
         p[c] = r_set(prim->center[c]) + ((r_set(solid->forward[c][0]) * k[0] + r_set(solid->forward[c][1]) * k[1]) +
                                          r_set(solid->forward[c][2]) * k[2]);
     }
+    R(onto_plane)(solid, flat, face, p);
     const vr length = r_sqrt(DOT(n, n));
     for (int c = 0; c < 3; c++)
         n[c] = n[c] / length;
@@ -233,13 +275,12 @@ static inline void R(solid_surface)(const glint_solid *solid, const glint_prim *
 
 /// Whether the surface is crossed by segments from `point` along d, which end at 1 / scale; directional: nowhere. In lanes
 /// of `own` they begin on it, within: what they can meet is the other side of an open form.
-static inline rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
+static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
                                  double scale, bool directional, rm own)
 {
-    vr f[3], e[3];
-    R(unit_offset)(solid, prim, point, f);
-    R(to_unit)(solid, d, e);
-    const R(span) span = R(span_of)(solid, f, e);
+    R(solid_start) start;
+    R(start_at)(solid, prim, point, &start);
+    const R(span) span = R(span_along)(solid, &start, d);
     const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));

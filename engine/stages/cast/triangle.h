@@ -112,18 +112,29 @@ static inline rm R(passes)(const R(seen_edges) * edges, vr p[3][3], const vr d[3
     return rm_and(inside, rm_or(sure, R(between_corners)(p, d, zero)));
 }
 
-/// A triangle as the ray sees it; p: the corners from the ray's origin, in units of the table.
-static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr d[3], vr scale, vr *t)
+/// The face of a triangle that shares its plane with others; else NULL.
+static inline const glint_face *R(face_of)(const glint_geometry_table *table, const glint_prim *prim)
 {
-    *t = edges->depth / ((R(det)(edges) * edges->dz) * scale);
+    return prim->face ? &table->faces[prim->face - 1] : NULL;
+}
+
+/// A triangle as the ray sees it; p: the corners from the ray's origin, in units of the table. face: NULL, or what it shares
+/// its plane with.
+static inline rm R(meet_seen)(const R(seen_edges) * edges, vr p[3][3], const vr o[3], const vr d[3], vr scale,
+                              const glint_face *face, vr *t)
+{
+    if (face)
+        *t = R(face_way)(face, o, d);
+    else
+        *t = edges->depth / ((R(det)(edges) * edges->dz) * scale);
     return rm_and(R(passes)(edges, p, d), r_lt(r_set(0), *t));
 }
 
 /// The same of its corners alone.
-static inline rm R(meet_triangle)(vr p[3][3], const vr d[3], vr scale, vr *t)
+static inline rm R(meet_triangle)(vr p[3][3], const vr o[3], const vr d[3], vr scale, const glint_face *face, vr *t)
 {
     const R(seen_edges) edges = R(see_edges)(p, d, false);
-    return R(meet_seen)(&edges, p, d, scale, t);
+    return R(meet_seen)(&edges, p, o, d, scale, face, t);
 }
 
 /// A triangle's corners, in every lane.
@@ -271,15 +282,15 @@ static inline rm R(triangle_blocks)(vr corner[3][3], double scale, const vr poin
     const vr h = DOT(plane->m, q);
     const vr spread = (R(abs)(plane->m[0]) + R(abs)(plane->m[1])) + R(abs)(plane->m[2]);
     const vr rounding = (plane->size[0] * R(abs)(q[0]) + plane->size[1] * R(abs)(q[1])) + plane->size[2] * R(abs)(q[2]);
-    const vr bound = spread * slack + r_set(GLINT_POINT_SLACK) * rounding;
-    const rm on = rm_and(r_lt(zero, slack), r_le(R(abs)(h), bound));
+    const vr bound = spread * R(abs)(slack) + r_set(GLINT_POINT_SLACK) * rounding;
+    const rm in_plane = r_le(R(abs)(h), bound), on = rm_and(r_lt(zero, slack), in_plane);
     const bool any_on = rm_bits(on);
     const R(seen_edges) edges = R(see_edges)(p, d, any_on);
     const vr det = R(det)(&edges);
     const rm crosses =
         rm_or(rm_and(r_lt(h, zero), r_lt(zero, plane->light)), rm_and(r_lt(zero, h), r_lt(plane->light, zero)));
     const rm through = rm_and(R(passes)(&edges, p, d), rm_or(r_lt(det, zero), r_lt(zero, det)));
-    const rm blocks = rm_andnot(rm_and(crosses, through), on);
+    const rm blocks = rm_andnot(rm_and(crosses, through), in_plane);
     if (!any_on)
         return blocks;
     return rm_or(blocks, rm_and(on, R(parts_from_light)(p, d, &edges, plane, slack, scale, ray)));

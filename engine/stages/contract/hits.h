@@ -65,6 +65,11 @@ typedef struct glint_cast_args {
 //         corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the division, in the scaled plane). Where one is 0 its sign
 //         may be lost, and of a triangle seen edge-on all are 0: the bounds decide
 // solid:  the unit shape in its own frame; of a cone the ray is begun nearest to the apex, where that keeps more digits
+// faces:  what was described in one plane has one face's numbers, but for the sign of the normal: along two axes of one map (a
+//         transform and the groups around it) all of it, else what has bit-equal places and normals. It is met at bit-equal t,
+//         so that of boxes, caps, disks, planes and meshes the first defined wins in every ray. What starts on a face is at
+//         height 0 and meets it at t = 0, which is no hit: exactly where the face is along two axes of the world, else as far
+//         as rounding lets us know. So it is with a curved side but a sphere's, and with the plane of a triangle.
 // A ray meets the primitive that it leaves by a rule of its own: not, but for spheres and solids other than disks where the
 // lane is inward (and starts on them or within): these surely, at GLINT_LEAST_WAY or beyond.
 // A ray that leaves triangle A meets another, B, as any other ray does unless it is in the planes of both at once as far as
@@ -116,7 +121,9 @@ typedef struct glint_surface_args {
     glint_point_box *box; ///< out: of all hits' points; may be NULL
 } glint_surface_args;
 // Groups without a hit get back = dark = 0 and nothing else; of other groups, lanes without a hit get point = normal = 0
-// and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is 0.
+// and material = 0. Where it is not NULL, `slack` of lanes that hit no triangle is
+// -(point_slack |point|_max): as large as what rounding may have moved the point by, and told apart by its sign. Points of a face
+// or plane that is square to an axis of the world are exactly there.
 // The arithmetic: ref/real.h, ref/triangle.h, ref/solid.h. Of a sphere that is close, the normal is as long as it should be but
 // for F^2 + 8 roundings, F = |origin - center| / radius: the error of t at a point that is seen at an angle i goes along the
 // ray, and grows as 1 / cos i does. From further away it is brought to its length, from afar made of the line's distance from

@@ -42,11 +42,13 @@ typedef struct glint_prim {
             double normal[3]; ///< plane: unit
             double radius; ///< sphere, world units
             double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
+            double places; ///< plane: 2 (|normal| . |center|), above 0; 0: it is along two axes, and heights are exact
         };
         struct {
             double corner[3][3]; ///< triangle
             uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids
             uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
+            uint32_t face; ///< triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
         };
     };
 } glint_prim;
@@ -83,30 +85,72 @@ typedef enum glint_form {
     GLINT_FORM_FUNNEL
 } glint_form;
 
+/// The plane of a flat face. Whatever was described in one plane, along two axes of one map or by one place and normal, has
+/// the same numbers here, but for the sign of the normal: all of it is met at the same t.
+typedef struct glint_face {
+    double normal[3]; ///< unit
+    double at[3]; ///< a place of the plane
+    double places; ///< |normal| . (bound of |x| on the surface + |at|): what heights over it are made of
+    uint32_t axis; ///< of the world, which the normal is along; 3: none
+} glint_face;
+
 /// The image of a unit shape under center + forward k.
 typedef struct glint_solid {
     double inverse[3][3], forward[3][3]; ///< rows
+    const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open forms:
+        ///< of low z, high z (of a disk they are one); ball: none. Normals point from low to high
+    double places; ///< ball, cylinder, cone: bound of what x^2 + y^2 - 1 and the like are made of where a place is on the side
     uint32_t form;
 } glint_solid;
 
-/// Whether a place at `offset` from the centre is inside, not on, the solid; no place is inside a disk, tube or funnel.
-static inline bool glint_solid_holds(const glint_solid *solid, const double offset[3])
+/// How many pairs of faces there are.
+static inline int glint_slab_count(uint32_t form) { return form == GLINT_FORM_BALL ? 0 : form == GLINT_FORM_BOX ? 3 : 1; }
+
+/// The axis that a vector lies along; 3: none.
+static inline int glint_axis_along(const double v[3])
+{
+    const int x = v[0] != 0, y = v[1] != 0, z = v[2] != 0;
+    return x + y + z != 1 ? 3 : x ? 0 : y ? 1 : 2;
+}
+
+/// A share of what a height is made of: rounding moves it by no more, and what is nearer to a face is on it.
+#define GLINT_ON_FACE_DOUBLE 0x1p-50
+#define GLINT_ON_FACE_FLOAT 0x1p-21
+
+/// The height of a place over a face; 0 on it as far as rounding lets us know.
+static inline double glint_face_height(const glint_face *face, const double place[3])
+{
+    double q[3];
+    for (int c = 0; c < 3; c++)
+        q[c] = place[c] - face->at[c];
+    if (face->axis < 3)
+        return face->normal[face->axis] * q[face->axis];
+    const double h = (face->normal[0] * q[0] + face->normal[1] * q[1]) + face->normal[2] * q[2];
+    const double on = GLINT_ON_FACE_DOUBLE * face->places;
+    return h <= on && -on <= h ? 0 : h;
+}
+
+/// Whether a place is inside, not on, the solid around `center`; no place is inside a disk, tube or funnel.
+static inline bool glint_solid_holds(const glint_solid *solid, const double center[3], const double place[3])
 {
     double k[3];
     for (int c = 0; c < 3; c++) {
         const double *row = solid->inverse[c];
-        k[c] = (row[0] * offset[0] + row[1] * offset[1]) + row[2] * offset[2];
+        k[c] = (row[0] * (place[0] - center[0]) + row[1] * (place[1] - center[1])) + row[2] * (place[2] - center[2]);
     }
+    for (int i = 0; i < glint_slab_count(solid->form); i++)
+        if (!(glint_face_height(&solid->faces[2 * i], place) > 0 && glint_face_height(&solid->faces[2 * i + 1], place) < 0))
+            return false;
     const double round = k[0] * k[0] + k[1] * k[1], z = k[2];
     switch (solid->form) {
     case GLINT_FORM_BALL:
         return round + z * z < 1;
     case GLINT_FORM_BOX:
-        return -1 < k[0] && k[0] < 1 && -1 < k[1] && k[1] < 1 && -1 < z && z < 1;
+        return true;
     case GLINT_FORM_CYLINDER:
-        return round < 1 && -1 < z && z < 1;
+        return round < 1;
     case GLINT_FORM_CONE:
-        return round < z * z && 0 < z && z < 1;
+        return round < z * z;
     default:
         return false;
     }
@@ -124,6 +168,7 @@ typedef struct glint_geometry_table {
     bool triangles; ///< there are some
     const glint_corner_normals *corner_normals;
     const glint_solid *solids;
+    const glint_face *faces; ///< of triangles
     const glint_shading_points *shading_points;
     uint32_t shading_point_count; ///< 0: all light is worked out for each sample
 } glint_geometry_table;

@@ -30,7 +30,10 @@ typedef struct R(candidate) {
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
     ///< fast a ray nears a plane
     float limit; ///< sphere: square of how long f x d may be; triangle: how far below 0 e may be
-    real corner[3][3]; ///< of a triangle, from the eye
+    union {
+        real corner[3][3]; ///< of a triangle, from the eye
+        real height[6]; ///< of a solid, see R(solid_start)
+    };
     // what cover.h knows of it
     float outer, inner; ///< round: how long f x d may be; is where the ray hits for certain. < 0: nothing is certain
     float turn[2]; ///< round: lengths of along_s and along_t
@@ -201,13 +204,19 @@ static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) 
     candidate->limit = 1e-5f * tile->longest;
 }
 
+static inline real R(first_lane)(vr x)
+{
+    _Alignas(64) real lanes[VR];
+    r_store(lanes, x);
+    return lanes[0];
+}
+
 /// What the decision needs.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
     const glint_prim *prim = candidate->prim = &args->geometry->prims[id];
     const double *eye = args->camera->eye;
     const vr origin[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
-    _Alignas(64) real lanes[VR];
     vr f[3];
     candidate->id = id;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -216,18 +225,20 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
                 candidate->corner[j][k] = ((real)prim->corner[j][k] - (real)eye[k]) * (real)args->geometry->scale;
         return;
     }
-    if (prim->kind == GLINT_PRIM_SOLID)
-        R(unit_offset)(&args->geometry->solids[prim->item], prim, origin, f);
-    else
-        R(offset)(origin, prim, f);
-    for (int k = 0; k < 3; k++) {
-        r_store(lanes, f[k]);
-        candidate->f[k] = lanes[0];
-    }
-    if (prim->kind == GLINT_PRIM_SOLID)
+    if (prim->kind == GLINT_PRIM_SOLID) {
+        const glint_solid *solid = &args->geometry->solids[prim->item];
+        R(solid_start) start = { .f = { r_set(0), r_set(0), r_set(0) } };
+        R(start_at)(solid, prim, origin, &start);
+        for (int k = 0; k < 3; k++)
+            candidate->f[k] = R(first_lane)(start.f[k]);
+        for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+            candidate->height[i] = R(first_lane)(start.height[i]);
         return;
-    r_store(lanes, R(offset_constant)(f, prim));
-    candidate->c = lanes[0];
+    }
+    R(offset)(origin, prim, f);
+    for (int k = 0; k < 3; k++)
+        candidate->f[k] = R(first_lane)(f[k]);
+    candidate->c = R(first_lane)(R(offset_constant)(f, prim));
 }
 
 /// That, and the filter.
@@ -272,14 +283,23 @@ INNER unsigned R(near_pixels)(const R(tile_cast) * tile, const R(candidate) * ca
 INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * candidate, const vr f[3], const vr d[3],
                            vr *t)
 {
+    const glint_geometry_table *table = args->geometry;
+    const double *eye = args->camera->eye;
     vr corner[3][3];
-    if (candidate->prim->kind == GLINT_PRIM_SOLID)
-        return R(meet_solid)(&args->geometry->solids[candidate->prim->item], f, d, t);
+    if (candidate->prim->kind == GLINT_PRIM_SOLID) {
+        const glint_solid *solid = &table->solids[candidate->prim->item];
+        R(solid_start) start = { .f = { f[0], f[1], f[2] } };
+        for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+            start.height[i] = r_set(candidate->height[i]);
+        return R(meet_solid)(solid, &start, d, t);
+    }
     if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)
         return R(meet)(f, r_set(candidate->c), d, candidate->prim, t);
     for (int j = 0; j < 9; j++)
         corner[j / 3][j % 3] = r_set(candidate->corner[j / 3][j % 3]);
-    return R(meet_triangle)(corner, d, r_set(args->geometry->scale), t);
+    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    const rm hit = R(meet_triangle)(corner, o, d, r_set(table->scale), R(face_of)(table, candidate->prim), t);
+    return R(unless_begun_on)(table, candidate->prim, NULL, o, hit, *t);
 }
 
 /// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.

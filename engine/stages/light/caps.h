@@ -110,7 +110,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
             continue;
         R(load3)(args->point, at + i, p);
         R(offset)(p, prim, f);
-        const vr c = R(offset_constant)(f, prim);
+        const vr c = R(point_constant)(f, prim);
         if (plane) {
             share = r_select(r_lt(zero, c), within, r_select(r_lt(c, zero), behind, one));
         } else {

@@ -13,7 +13,7 @@ typedef struct R(lit_whole) {
 /// What all groups of a call read, as real; in memory as what is seen is.
 typedef struct R(lit_call) {
     R(surface_walk) walk;
-    real eye[3], position[3], scale;
+    real position[3], scale;
     bool scaled;
 } R(lit_call);
 
@@ -34,11 +34,13 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
         else
             R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, R(RANGE_NEAR), n, p);
     }
+    for (int k = 0; k < 3 && !sphere; k++) {
+        n[k] = r_set(seen->normal[k]);
+        p[k] = r_set(seen->from[k]) + r_set(seen->way[k]) * (t * d[k]);
+    }
+    if (!sphere && seen->level == 3)
+        R(onto_plane_of)(seen->prim, n, p);
     for (int k = 0; k < 3; k++) {
-        if (!sphere) {
-            n[k] = r_set(seen->normal[k]);
-            p[k] = r_set(call->eye[k]) + t * d[k];
-        }
         r_store((real *)surface->point[k] + at + i, p[k]);
         l[k] = r_set(call->position[k]);
         if (!light->directional)
@@ -173,7 +175,6 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
     R(begin_walk)(&call.walk);
     R(empty_box)(&box);
     for (int k = 0; k < 3; k++) {
-        call.eye[k] = surface->camera ? (real)surface->camera->eye[k] : 0;
         call.position[k] = (real)light->position[k];
     }
     call.scale = (real)light->scale;

@@ -93,7 +93,7 @@ static inline R(soft_lanes) R(sort_by_plane)(const R(shadow_tile) * tile, const 
         vr p[3], f[3];
         R(load3)(tile->args->point, at + (size_t)i, p);
         R(offset)(p, plane, f);
-        const vr h = R(offset_constant)(f, plane);
+        const vr h = R(point_constant)(f, plane);
         out.hidden |= rm_bits(side > 0 ? r_lt(h, r_set(0)) : r_lt(r_set(0), h)) << i;
     }
     out.apart = side ? 0xffff & ~out.hidden : 0;
@@ -236,7 +236,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             continue;
         R(load3)(args->point, at + (size_t)i, p);
         R(offset)(p, prim, f);
-        const vr c = R(offset_constant)(f, prim);
+        const vr c = R(point_constant)(f, prim);
         for (uint32_t s = 0; s < args->sample_count; s++) {
             const unsigned lanes = light->open[s] & others;
             const R(light_sides) sides = light->sides[k][s];

@@ -48,7 +48,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     if (prim->kind == GLINT_PRIM_TRIANGLE)
         return 0; // decided lane by lane
     if (prim->kind == GLINT_PRIM_SOLID)
-        return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], f) ? 1 : -1;
+        return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], prim->center, position) ? 1 : -1;
     if (prim->kind == GLINT_PRIM_PLANE) {
         height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {
@@ -242,7 +242,7 @@ static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const gl
     vr p[3], f[3];
     R(load3)(args->point, at + (size_t)i, p);
     R(offset)(p, prim, f);
-    const vr c = R(offset_constant)(f, prim);
+    const vr c = R(point_constant)(f, prim);
     return rm_bits(prim->kind == GLINT_PRIM_SPHERE ? R(sphere_blocks)(args, prim, outside, inside, f, c, d)
                                                    : R(plane_blocks)(outside, inside, c));
 }

@@ -64,7 +64,7 @@ static REAL NAME(share_left)(const glint_occlude_args *args, const glint_prim *p
     double within = fmin(fmax((radius + depth) / (2 * radius), 0), 1);
     double behind = fmin(fmax((radius - depth) / (2 * radius), 0), 1);
     if (prim->kind == GLINT_PRIM_PLANE) {
-        REAL h = NAME(dot)(NAME(rounded)(prim->normal), NAME(sub)(point, NAME(rounded)(prim->center)));
+        REAL h = NAME(over_plane)(prim, point, true);
         return h > 0 ? (REAL)within : h < 0 ? (REAL)behind : 1;
     }
     NAME(vec3) f = NAME(from_center)(point, prim);

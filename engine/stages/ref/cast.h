@@ -21,6 +21,15 @@ static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const gli
     return disc >= 0 && t > 0 ? t : 0;
 }
 
+/// The height of a place over a plane; of a point of some surface 0 on it, as far as rounding lets us know.
+static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) place, bool on_surface)
+{
+    NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(place, NAME(rounded)(prim->center));
+    REAL h = NAME(dot)(n, q);
+    REAL sizes = (NAME(abs)(n.x * q.x) + NAME(abs)(n.y * q.y)) + NAME(abs)(n.z * q.z);
+    return on_surface && prim->places > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->places)) : h;
+}
+
 /// The distance at which a ray meets a plane, h being the height of its origin; 0 stands for a miss.
 static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 {
@@ -31,16 +40,14 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
 
 /// Likewise for any primitive.
 static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
-                         NAME(vec3) direction)
+                         NAME(vec3) direction, bool on_surface)
 {
     if (prim->kind == GLINT_PRIM_TRIANGLE)
-        return NAME(triangle_t)(prim, geometry->scale, origin, direction);
+        return NAME(triangle_t)(geometry, prim, origin, direction, on_surface);
     if (prim->kind == GLINT_PRIM_SOLID)
         return NAME(solid_t)(&geometry->solids[prim->item], prim, origin, direction);
-    if (prim->kind == GLINT_PRIM_PLANE) {
-        NAME(vec3) away = NAME(sub)(origin, NAME(rounded)(prim->center));
-        return NAME(plane_t)(NAME(dot)(NAME(rounded)(prim->normal), away), direction, prim);
-    }
+    if (prim->kind == GLINT_PRIM_PLANE)
+        return NAME(plane_t)(NAME(over_plane)(prim, origin, on_surface), direction, prim);
     NAME(vec3) f = NAME(from_center)(origin, prim);
     return NAME(sphere_t)(f, NAME(exact_c)(f.x, f.y, f.z, prim), direction, prim);
 }
@@ -86,7 +93,8 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
             REAL t;
             note_test(args->tests);
             if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
-                t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction);
+                t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction,
+                                 !eye && args->leaving && args->leaving[i] != GLINT_MISS);
             bool first = t == best && best_prim != GLINT_MISS &&
                          args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
@@ -124,7 +132,7 @@ static void NAME(raster)(const glint_raster_args *args)
         NAME(vec3) origin = eye ? NAME(rounded)(cast->camera->eye) : NAME(load)(cast->origin, i);
         for (uint32_t k = 0; active && k < args->entry_count; k++) {
             uint32_t prim = args->entries[k].prim;
-            REAL t = NAME(triangle_t)(&prims[prim], cast->geometry->scale, origin, direction);
+            REAL t = NAME(triangle_t)(cast->geometry, &prims[prim], origin, direction, false);
             note_test(cast->tests);
             bool first = t == best && best_prim != GLINT_MISS && prims[prim].id < prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {

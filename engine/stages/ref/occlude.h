@@ -18,7 +18,7 @@ static bool NAME(sphere_blocks)(const glint_occlude_args *args, const glint_prim
 
 static bool NAME(plane_blocks)(const glint_prim *prim, int side, NAME(vec3) point)
 {
-    REAL h = NAME(dot)(NAME(rounded)(prim->normal), NAME(sub)(point, NAME(rounded)(prim->center)));
+    REAL h = NAME(over_plane)(prim, point, true);
     return (side > 0 && h < 0) || (side < 0 && h > 0);
 }
 

@@ -30,6 +30,10 @@ static REAL NAME(min)(REAL a, REAL b) { return a < b ? a : b; }
 
 static REAL NAME(max)(REAL a, REAL b) { return a > b ? a : b; }
 
+static REAL NAME(abs)(REAL x) { return NAME(max)(x, -x); }
+
+static REAL NAME(component)(NAME(vec3) v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
+
 static NAME(vec3) NAME(cross)(NAME(vec3) f, NAME(vec3) d)
 {
     return NAME(vec)(f.y * d.z - f.z * d.y, f.z * d.x - f.x * d.z, f.x * d.y - f.y * d.x);
@@ -106,8 +110,8 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
                      NAME(load_part)(camera->down, group / camera->groups_across, lane));
 }
 
-#include "engine/stages/ref/triangle.h"
 #include "engine/stages/ref/solid.h"
+#include "engine/stages/ref/triangle.h"
 #include "engine/stages/ref/cast.h"
 
 // ---- surface -----------------------------------------------------------------------------------------------------
@@ -162,8 +166,19 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
         point = NAME(solid_point)(&args->solids[prim->item], prim, origin, direction, t, &n);
     } else {
         n = NAME(rounded)(prim->normal);
+        const double *level = prim->normal;
         point = NAME(add)(origin, NAME(times)(direction, t));
+        if (level[1] == 0 && level[2] == 0)
+            point.x = (REAL)prim->center[0];
+        else if (level[0] == 0 && level[2] == 0)
+            point.y = (REAL)prim->center[1];
+        else if (level[0] == 0 && level[1] == 0)
+            point.z = (REAL)prim->center[2];
+        else
+            point = NAME(sub)(point, NAME(times)(n, NAME(dot)(n, NAME(sub)(point, NAME(rounded)(prim->center)))));
     }
+    if (prim->kind != GLINT_PRIM_TRIANGLE)
+        slack = -NAME(POINT_SLACK) * NAME(largest)(point);
     bool back = NAME(dot)(n, direction) > 0;
     if (prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS)
         n = NAME(smooth_normal)(&args->corner_normals[prim->item], weight, n, back);

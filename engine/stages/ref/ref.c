@@ -140,6 +140,17 @@ static int light_side_of_sphere(bool directional, const double position[3], cons
     return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
 }
 
+static double height_over(const glint_face *face, const double position[3])
+{
+    double away[3];
+    for (int c = 0; c < 3; c++)
+        away[c] = position[c] - face->at[c];
+    if (face->axis < 3)
+        return face->normal[face->axis] * away[face->axis];
+    double h = dot_of(face->normal, away);
+    return fabs(h) <= GLINT_ON_FACE_DOUBLE * face->places ? 0 : h;
+}
+
 static bool is_within(const glint_solid *solid, const glint_prim *prim, const double position[3])
 {
     double away[3];
@@ -147,14 +158,17 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
         away[c] = position[c] - prim->center[c];
     double x = dot_of(solid->inverse[0], away), y = dot_of(solid->inverse[1], away),
            z = dot_of(solid->inverse[2], away);
-    bool between = z > -1 && z < 1;
     if (solid->form == GLINT_FORM_BALL)
         return (x * x + y * y) + z * z < 1;
+    bool between = true;
+    for (int i = 0; i < (solid->form == GLINT_FORM_BOX ? 3 : 1); i++)
+        between = between && height_over(&solid->faces[2 * i], position) > 0 &&
+                  height_over(&solid->faces[2 * i + 1], position) < 0;
     if (solid->form == GLINT_FORM_BOX)
-        return x > -1 && x < 1 && y > -1 && y < 1 && between;
+        return between;
     if (solid->form == GLINT_FORM_CYLINDER)
         return x * x + y * y < 1 && between;
-    return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && z > 0 && z < 1;
+    return solid->form == GLINT_FORM_CONE && x * x + y * y < z * z && between;
 }
 
 /// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
@@ -176,6 +190,8 @@ static double square_root_double(double x) { return sqrt(x); }
 
 #define PLANE_GRAZING_float 1e-30f
 #define PLANE_GRAZING_double 1e-60
+#define ON_FACE_float ((float)GLINT_ON_FACE_FLOAT)
+#define ON_FACE_double GLINT_ON_FACE_DOUBLE
 #define POINT_SLACK_float ((float)GLINT_POINT_SLACK_FLOAT)
 #define POINT_SLACK_double GLINT_POINT_SLACK_DOUBLE
 #define SPHERE_CLOSE_float GLINT_SPHERE_CLOSE_FLOAT

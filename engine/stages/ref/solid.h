@@ -18,14 +18,36 @@ static NAME(vec3) NAME(into_unit)(const glint_solid *solid, NAME(vec3) v)
                      NAME(dot)(NAME(rounded)(solid->inverse[2]), v));
 }
 
-static void NAME(pass_slab)(NAME(passage) * p, NAME(vec3) f, NAME(vec3) e, int axis, REAL low)
+static REAL NAME(zero_within)(REAL x, REAL bound) { return NAME(abs)(x) <= bound ? 0 : x; }
+
+/// The height of a place over a face; 0 on it, as far as rounding lets us know.
+static REAL NAME(over_face)(const glint_face *face, NAME(vec3) place)
 {
-    REAL x = NAME(component)(f, axis), d = NAME(component)(e, axis);
+    NAME(vec3) n = NAME(rounded)(face->normal), q = NAME(sub)(place, NAME(rounded)(face->at));
+    if (face->axis < 3)
+        return NAME(component)(n, (int)face->axis) * NAME(component)(q, (int)face->axis);
+    return NAME(zero_within)(NAME(dot)(n, q), NAME(ON_FACE) * (REAL)face->places);
+}
+
+static REAL NAME(rise)(const glint_face *face, NAME(vec3) direction)
+{
+    NAME(vec3) n = NAME(rounded)(face->normal);
+    if (face->axis < 3)
+        return NAME(component)(n, (int)face->axis) * NAME(component)(direction, (int)face->axis);
+    return NAME(dot)(n, direction);
+}
+
+/// faces: the low one and the high one.
+static void NAME(pass_slab)(NAME(passage) * p, const glint_face *faces, NAME(vec3) origin, NAME(vec3) direction,
+                            int axis)
+{
+    REAL over_low = NAME(over_face)(&faces[0], origin), over_high = NAME(over_face)(&faces[1], origin);
+    REAL d = NAME(rise)(faces, direction);
     if (d == 0) {
-        p->hit = p->hit && !(x < low) && !(x > 1);
+        p->hit = p->hit && !(over_low < 0) && !(over_high > 0);
         return;
     }
-    REAL enter = (d > 0 ? low - x : 1 - x) / d, leave = (d > 0 ? 1 - x : low - x) / d;
+    REAL enter = -(d > 0 ? over_low : over_high) / d, leave = -(d > 0 ? over_high : over_low) / d;
     REAL outward = d > 0 ? 1 : -1;
     if (p->in.t < enter) {
         p->in = (NAME(crossing)) { .t = enter, .flat = true };
@@ -37,7 +59,7 @@ static void NAME(pass_slab)(NAME(passage) * p, NAME(vec3) f, NAME(vec3) e, int a
     }
 }
 
-static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
+static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, double places)
 {
     REAL a = e.x * e.x + e.y * e.y, b = f.x * e.x + f.y * e.y, c = f.x * f.x + f.y * f.y;
     REAL z = f.x * e.y - f.y * e.x, across = z * z;
@@ -48,7 +70,7 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
         across = NAME(length2)(NAME(cross)(f, e));
     }
     b = -b;
-    c = c - 1;
+    c = NAME(zero_within)(c - 1, NAME(ON_FACE) * (REAL)places);
     if (a == 0)
         return (NAME(passage)) { .hit = c <= 0, .in = { .t = -INFINITY }, .out = { .t = INFINITY } };
     REAL disc = b * b < a ? b * b - a * c : a - across;
@@ -58,19 +80,16 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball)
         NAME(passage)) { .hit = disc >= 0, .in = { .t = b >= 0 ? other : far }, .out = { .t = b >= 0 ? far : other } };
 }
 
-static bool NAME(starts_anew)(NAME(vec3) from, NAME(vec3) e)
+static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e, double places)
 {
     REAL toward = NAME(dot)(from, e), away2 = NAME(length2)(from),
          side = (from.x * from.x + from.y * from.y) - from.z * from.z;
-    bool on = from.z > 0 && NAME(abs)(side) <= NAME(POINT_SLACK) * away2;
-    return away2 > 16 || (toward * toward > (REAL)0.875 * (away2 * NAME(length2)(e)) && !on);
-}
-
-static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e)
-{
-    REAL move = NAME(starts_anew)(from, e) ? -NAME(dot)(from, e) / NAME(dot)(e, e) : 0;
+    REAL off = NAME(POINT_SLACK) * away2 + (NAME(ON_FACE) * (REAL)places) * from.z;
+    bool far_off = away2 > 16, on = from.z > 0 && NAME(abs)(side) <= off && !far_off;
+    bool anew = far_off || (toward * toward > (REAL)0.875 * (away2 * NAME(length2)(e)) && !on);
+    REAL move = anew ? -toward / NAME(dot)(e, e) : 0;
     NAME(vec3) f = NAME(add)(from, NAME(times)(e, move));
-    REAL a = (e.x * e.x + e.y * e.y) - e.z * e.z, c = (f.x * f.x + f.y * f.y) - f.z * f.z;
+    REAL a = (e.x * e.x + e.y * e.y) - e.z * e.z, c = on ? 0 : (f.x * f.x + f.y * f.y) - f.z * f.z;
     REAL b = f.z * e.z - (f.x * e.x + f.y * e.y);
     NAME(vec3) across = NAME(cross)(f, e);
     REAL disc = (across.x * across.x + across.y * across.y) - across.z * across.z;
@@ -86,28 +105,31 @@ static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e)
     return (NAME(passage)) { .hit = disc >= 0, .in = { .t = low + move }, .out = { .t = high + move } };
 }
 
-static NAME(passage) NAME(pass_disk)(NAME(vec3) f, NAME(vec3) e)
+static NAME(passage) NAME(pass_disk)(NAME(vec3) f, NAME(vec3) e, REAL t)
 {
-    NAME(crossing) at = { .t = -f.z / e.z, .flat = true, .face = { 0, 0, 1 } };
+    NAME(crossing) at = { .t = t, .flat = true, .face = { 0, 0, 1 } };
     REAL x = f.x + at.t * e.x, y = f.y + at.t * e.y;
     return (NAME(passage)) { .hit = x * x + y * y <= 1, .in = at, .out = at };
 }
 
-static NAME(passage) NAME(pass_solid)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e)
+static NAME(passage)
+    NAME(pass_prim)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
+    NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
+    NAME(vec3) e = NAME(into_unit)(solid, direction);
     NAME(passage) p = { .hit = true, .in = { .t = -INFINITY }, .out = { .t = INFINITY } };
     bool cylinder = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE;
     bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
     if (solid->form == GLINT_FORM_BALL || cylinder)
-        p = NAME(pass_round)(f, e, solid->form == GLINT_FORM_BALL);
+        p = NAME(pass_round)(f, e, solid->form == GLINT_FORM_BALL, solid->places);
     else if (cone)
-        p = NAME(pass_cone)(f, e);
+        p = NAME(pass_cone)(f, e, solid->places);
     else if (solid->form == GLINT_FORM_DISK)
-        p = NAME(pass_disk)(f, e);
+        p = NAME(pass_disk)(f, e, -NAME(over_face)(solid->faces, origin) / NAME(rise)(solid->faces, direction));
     if (cylinder || cone)
-        NAME(pass_slab)(&p, f, e, 2, cone ? 0 : -1);
+        NAME(pass_slab)(&p, solid->faces, origin, direction, 2);
     for (int axis = 0; axis < 3 && solid->form == GLINT_FORM_BOX; axis++)
-        NAME(pass_slab)(&p, f, e, axis, -1);
+        NAME(pass_slab)(&p, solid->faces + 2 * axis, origin, direction, axis);
     p.hit = p.hit && p.in.t <= p.out.t;
     if (solid->form != GLINT_FORM_TUBE && solid->form != GLINT_FORM_FUNNEL)
         return p;
@@ -118,13 +140,6 @@ static NAME(passage) NAME(pass_solid)(const glint_solid *solid, NAME(vec3) f, NA
     else if (p.out.flat)
         p.out = p.in;
     return p;
-}
-
-static NAME(passage)
-    NAME(pass_prim)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
-{
-    NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
-    return NAME(pass_solid)(solid, f, NAME(into_unit)(solid, direction));
 }
 
 /// The distance at which a ray meets a solid; 0 stands for a miss.
@@ -154,6 +169,14 @@ static NAME(vec3) NAME(onto_side)(uint32_t form, NAME(vec3) * k)
     return g;
 }
 
+/// Moves a point of a face square to an axis of the world exactly there.
+static NAME(vec3) NAME(onto_plane)(const glint_face *face, NAME(vec3) point)
+{
+    NAME(vec3) at = NAME(rounded)(face->at);
+    return NAME(vec)(face->axis == 0 ? at.x : point.x, face->axis == 1 ? at.y : point.y,
+                     face->axis == 2 ? at.z : point.z);
+}
+
 /// Brings a point next to a face onto it.
 static NAME(vec3) NAME(onto_face)(uint32_t form, NAME(vec3) k, const REAL face[3])
 {
@@ -167,7 +190,7 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
 {
     NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
     NAME(vec3) e = NAME(into_unit)(solid, direction);
-    NAME(passage) p = NAME(pass_solid)(solid, f, e);
+    NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
     NAME(crossing) at = p.in.t == t ? p.in : p.out;
     NAME(vec3) k = NAME(add)(f, NAME(times)(e, at.t)), g = NAME(vec)(at.face[0], at.face[1], at.face[2]);
     if (at.flat)
@@ -182,7 +205,12 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
     }
     *normal = NAME(vec)(n[0], n[1], n[2]);
     *normal = NAME(over)(*normal, NAME(square_root)(NAME(length2)(*normal)));
-    return NAME(add)(NAME(rounded)(prim->center), NAME(vec)(offset[0], offset[1], offset[2]));
+    NAME(vec3) point = NAME(add)(NAME(rounded)(prim->center), NAME(vec)(offset[0], offset[1], offset[2]));
+    if (!at.flat)
+        return point;
+    int axis = at.face[0] != 0 ? 0 : at.face[1] != 0 ? 1 : 2;
+    bool high = at.face[axis] > 0;
+    return NAME(onto_plane)(&solid->faces[(solid->form == GLINT_FORM_BOX ? 2 * axis : 0) + high], point);
 }
 
 /// `own`: the segment begins on it, within.

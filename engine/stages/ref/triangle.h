@@ -1,9 +1,5 @@
 // The reference of triangles, for one type of real; included by ref/real.h. One line of stages.h after the other.
 
-static REAL NAME(abs)(REAL x) { return NAME(max)(x, -x); }
-
-static REAL NAME(component)(NAME(vec3) v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
-
 static REAL NAME(largest)(NAME(vec3) v) { return NAME(max)(NAME(max)(NAME(abs)(v.x), NAME(abs)(v.y)), NAME(abs)(v.z)); }
 
 typedef struct NAME(seen_edges) {
@@ -67,21 +63,16 @@ static void NAME(corners_seen)(const glint_prim *prim, NAME(vec3) from, double s
         out[j] = NAME(times)(NAME(sub)(NAME(rounded)(prim->corner[j]), from), (REAL)scale);
 }
 
-/// The distance at which a ray crosses the plane of what it sees.
-static REAL NAME(way_to_plane)(NAME(seen_edges) seen, double scale)
+/// The distance at which a ray crosses the plane of a triangle, which is that of its corners or one that it shares.
+static REAL NAME(way_to_plane)(const glint_geometry_table *table, const glint_prim *prim, NAME(seen_edges) seen,
+                               NAME(vec3) origin, NAME(vec3) direction)
 {
-    return seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)scale);
+    const glint_face *face = prim->face ? &table->faces[prim->face - 1] : NULL;
+    if (face)
+        return -NAME(over_face)(face, origin) / NAME(rise)(face, direction);
+    return seen.depth / ((NAME(sum_of_edges)(seen) * seen.dz) * (REAL)table->scale);
 }
 
-/// The distance at which a ray meets a triangle; 0 stands for a miss.
-static REAL NAME(triangle_t)(const glint_prim *prim, double scale, NAME(vec3) origin, NAME(vec3) direction)
-{
-    NAME(vec3) corner[3];
-    NAME(corners_seen)(prim, origin, scale, corner);
-    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    REAL t = NAME(way_to_plane)(seen, scale);
-    return NAME(passes)(seen) && t > 0 ? t : 0;
-}
 
 static NAME(vec3) NAME(flat_normal)(const glint_prim *prim, double scale)
 {
@@ -185,15 +176,15 @@ static bool NAME(triangle_blocks)(const glint_occlude_args *args, const glint_pr
     NAME(seen_edges) seen = NAME(see_edges)(corner, d);
     REAL h = NAME(dot)(m, q);
     REAL rounding = NAME(dot)(sizes, NAME(vec)(NAME(abs)(q.x), NAME(abs)(q.y), NAME(abs)(q.z)));
-    REAL bound = ((NAME(abs)(m.x) + NAME(abs)(m.y)) + NAME(abs)(m.z)) * slack + NAME(POINT_SLACK) * rounding;
-    if (slack > 0 && NAME(abs)(h) <= bound)
-        return NAME(touched_triangle_blocks)(args, plane, seen, corner, slack, ray);
+    REAL bound = ((NAME(abs)(m.x) + NAME(abs)(m.y)) + NAME(abs)(m.z)) * NAME(abs)(slack) + NAME(POINT_SLACK) * rounding;
+    if (NAME(abs)(h) <= bound)
+        return slack > 0 && NAME(touched_triangle_blocks)(args, plane, seen, corner, slack, ray);
     bool crosses = (h < 0 && plane.light > 0) || (h > 0 && plane.light < 0);
     REAL det = NAME(sum_of_edges)(seen);
     return crosses && NAME(passes)(seen) && (det < 0 || det > 0);
 }
 
-// ---- cast, of rays that leave a triangle ----
+// ---- cast ----
 
 /// The height of a place over a triangle's plane, and what rounding may make of it.
 static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) at, REAL *rounding)
@@ -207,6 +198,31 @@ static REAL NAME(height)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) 
 static REAL NAME(spread)(NAME(parted) plane)
 {
     return (NAME(abs)(plane.m.x) + NAME(abs)(plane.m.y)) + NAME(abs)(plane.m.z);
+}
+
+/// Whether a place is in the plane as far as rounding lets us know; of a point of some surface, its own included.
+static bool NAME(in_plane)(NAME(parted) plane, const glint_prim *prim, NAME(vec3) place, bool on_surface)
+{
+    REAL rounding, h = NAME(height)(plane, prim, place, &rounding);
+    if (on_surface)
+        rounding = rounding + NAME(spread)(plane) * (NAME(POINT_SLACK) * NAME(largest)(place));
+    return NAME(abs)(h) <= rounding;
+}
+
+/// The distance at which a ray meets a triangle; 0 stands for a miss.
+static REAL NAME(triangle_t)(const glint_geometry_table *table, const glint_prim *prim, NAME(vec3) origin,
+                             NAME(vec3) direction, bool on_surface)
+{
+    const glint_occlude_args plane_of = { .geometry = table, .directional = true };
+    NAME(vec3) corner[3];
+    NAME(corners_seen)(prim, origin, table->scale, corner);
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    REAL t = NAME(way_to_plane)(table, prim, seen, origin, direction);
+    if (!NAME(passes)(seen) || !(t > 0))
+        return 0;
+    bool begins = !prim->face && t <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent) &&
+                  NAME(in_plane)(NAME(part)(&plane_of, prim, direction), prim, origin, on_surface);
+    return begins ? 0 : t;
 }
 
 /// Whether a corner of `other` is for certain on that side of the plane to which `way` points.
@@ -239,7 +255,7 @@ static bool NAME(is_shared_edge)(const glint_geometry_table *table, const glint_
     bool begins = !(NAME(abs)(h) > NAME(spread)(here) * slack + rounding);
     NAME(corners_seen)(prim, origin, table->scale, corner);
     NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
-    REAL way = NAME(way_to_plane)(seen, table->scale);
+    REAL way = NAME(way_to_plane)(table, prim, seen, origin, direction);
     bool soon = way > 0 && way <= (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
     bool still_on = way * NAME(abs)(there.light) <= NAME(spread)(there) * slack;
     bool by_edge = way > 0 && !NAME(passes)(seen);

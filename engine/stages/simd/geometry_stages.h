@@ -2,6 +2,7 @@
 
 #include "engine/stages/simd/real.h"
 #include "engine/stages/cast/camera.h"
+#include "engine/stages/cast/face.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/cast/shared_edge.h"
 #include "engine/stages/cast/solid.h"

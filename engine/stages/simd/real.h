@@ -27,6 +27,7 @@
 #undef r_pick
 #undef GLINT_PARALLEL
 #undef GLINT_POINT_SLACK
+#undef GLINT_ON_FACE
 #undef GLINT_ROUNDER
 #undef GLINT_SPHERE_CLOSE
 
@@ -58,6 +59,7 @@
 #define r_pick d_pick
 #define GLINT_PARALLEL 1e-60 // squared sine below which a ray is parallel to a plane
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_DOUBLE
+#define GLINT_ON_FACE GLINT_ON_FACE_DOUBLE
 #define GLINT_ROUNDER GLINT_ROUNDER_DOUBLE
 #define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_DOUBLE
 #else
@@ -88,6 +90,7 @@
 #define r_pick(table, index) f_from_bits(i_gather((const uint32_t *)(table), i_load(index)))
 #define GLINT_PARALLEL 1e-30
 #define GLINT_POINT_SLACK GLINT_POINT_SLACK_FLOAT
+#define GLINT_ON_FACE GLINT_ON_FACE_FLOAT
 #define GLINT_ROUNDER GLINT_ROUNDER_FLOAT
 #define GLINT_SPHERE_CLOSE GLINT_SPHERE_CLOSE_FLOAT
 #endif

@@ -52,6 +52,16 @@ INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_pri
         p[k] = r_set(prim->center[k]) + radius * n[k];
 }
 
+/// Brings points next to a plane of any normal onto it: what is left of their heights is a rounding of themselves, wherever the
+/// rays came from.
+INNER void R(onto_plane_of)(const glint_prim *prim, const vr n[3], vr p[3])
+{
+    const vr q[3] = { p[0] - r_set(prim->center[0]), p[1] - r_set(prim->center[1]), p[2] - r_set(prim->center[2]) };
+    const vr h = DOT(n, q);
+    for (int k = 0; k < 3; k++)
+        p[k] = p[k] - h * n[k];
+}
+
 /// Writes `x` in the lanes of `mask`; `whole` says that these are all.
 INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 {
@@ -69,6 +79,8 @@ typedef struct R(seen_prim) {
     R(sphere_range) range; ///< of the eye from a sphere
     real f[3];
     real normal[3]; ///< of a plane or triangle
+    int level; ///< of a plane: the axis that it is square to; 3: none
+    real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
 } R(seen_prim);
 
 static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
@@ -81,6 +93,11 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
             R(triangle_normal)(prim, args->scale, n);
         for (int k = 0; k < 3; k++)
             seen.normal[k] = (real)n[k];
+        seen.level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
+        for (int k = 0; k < 3 && args->camera; k++) {
+            seen.from[k] = (real)(k == seen.level ? prim->center[k] : args->camera->eye[k]);
+            seen.way[k] = k != seen.level;
+        }
         return seen;
     }
     seen.inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
@@ -115,7 +132,6 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
     const bool smooth = mixed && prim->kind == GLINT_PRIM_TRIANGLE && args->corner_normals && prim->item != GLINT_MISS;
     vr *d = found->direction, *p = found->point, n[3], from[3], f[3], w[3] = { r_set(0), r_set(0), r_set(0) };
     vr corner[3][3];
-    found->slack = r_set(0);
     R(load_direction)(directions, args->direction, at, i, d);
     const vr t = r_load((const real *)args->t + at + i);
     if (prim->kind == GLINT_PRIM_SPHERE) {
@@ -131,6 +147,8 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);
             n[k] = r_set(seen->normal[k]);
             p[k] = from[k] + t * d[k];
+            if (k == seen->level)
+                p[k] = r_set(prim->center[k]);
         }
         if (mixed && prim->kind == GLINT_PRIM_TRIANGLE) {
             R(corners_of)(prim, corner);
@@ -138,6 +156,10 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
             R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
     }
+    if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
+        R(onto_plane_of)(prim, n, p);
+    if (mixed && prim->kind != GLINT_PRIM_TRIANGLE)
+        found->slack = r_set(-GLINT_POINT_SLACK) * R(largest)(p);
     R(face_viewer)(n, found);
     if (smooth) {
         const vr facing[3] = { found->normal[0], found->normal[1], found->normal[2] };
