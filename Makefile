@@ -185,7 +185,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects films gallery golden install memory povray readme untrusted warnings watch)))
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden install kills memory povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -199,16 +199,16 @@ check-run: tests
 SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
 # Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
 # popen (test_api.lua, test_cost.lua, test_data.lua, test_gr.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/command/cli.sh tests/command/films.sh $(addprefix tests/lua/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
+WATCHED   := $(filter-out tests/command/cli.sh tests/command/films.sh tests/command/kills.sh $(addprefix tests/lua/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" \
+	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 \
 	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS="$(SANITIZED)"
 
 tsan: ## the tests under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
-	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" SANITIZE=thread \
+	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 SANITIZE=thread \
 	    PRELOAD=libtsan.so ITEMS="$(WATCHED)"
 
 # ---- Checks that need more than the build does; each says what is missing ----
@@ -295,7 +295,7 @@ $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/file.c tests/fuzz/fuz
 
 .PHONY: san-run
 san-run: tests
-	@T="$(T)" HARD_RAYS=20000 PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
+	@T="$(T)" HARD_RAYS=20000 TEST_LIMIT_S=$${TEST_LIMIT_S:-900} PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
 
 hard: ## the hard cases as Markdown tables: truth, engine in double and in float, textbook formula, verdict
 	@tests/deps.sh build test

@@ -1067,6 +1067,13 @@ glint_status glint_draft_finish(glint_draft *draft, glint_error *error);
 /// Removes what was not finished. NULL does nothing.
 void glint_draft_destroy(glint_draft *draft);
 
+/// Removes from a folder the hidden files of drafts whose process was killed: those of this host at once, those of others a
+/// day after they were last written. The first draft of a process in a folder does it, too. Any thread.
+void glint_drafts_collect(const char *path);
+/// Removes the hidden files of this process's drafts. For a signal's handler that ends the process next: it may be called
+/// there, and no draft can be finished afterwards.
+void glint_drafts_abandon(void);
+
 /// A finished .png or .pfm, read again. Immutable.
 typedef struct glint_picture glint_picture;
 

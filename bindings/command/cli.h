@@ -224,6 +224,8 @@ void cli_print_params(lua_State *L, FILE *out);
 // ---- signals.c ----
 
 void cli_catch_signals(glintL_run *run);
+/// For a command without a run: a signal removes the drafts and ends the process.
+void cli_leave_by_signals(void);
 void cli_release_signals(void);
 
 // ---- The sub-commands: each returns the exit code ----

@@ -4,9 +4,9 @@ local json = the.json
 
 -- The comment at the top of the file, without its dashes.
 local function comment_of(path)
-  local file <close> = io.open(path)
+  local file <close> = assert(io.open(path)) -- it has run
   local out, is_block = {}, false
-  for line in file and file:lines() or function() end do
+  for line in file:lines() do
     line = line:gsub("\r+$", "")
     local opens = #out == 0 and line:sub(1, 4) == "--[["
     if is_block or opens then

@@ -97,6 +97,8 @@ static int dispatch(cli_options *options, cli_output *output, int *signal_number
         cli_print_usage(output->data);
         return GLINTL_EXIT_DONE;
     }
+    if (options->command == CLI_COMPARE || options->command == CLI_SHEET)
+        cli_leave_by_signals();
     if (options->command == CLI_COMPARE)
         return cli_compare(options, output);
     if (options->command == CLI_SHEET)

@@ -1,6 +1,10 @@
 // glint reproduce FILE SCRIPT: renders the frame of a finished file again, by what the file says of itself, and compares.
+#include <dirent.h>
+#include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
@@ -95,6 +99,49 @@ static bool check_options(const glintL_request *request, char *message)
     return true;
 }
 
+static const char *host_name(void)
+{
+    static char host[32];
+    if (gethostname(host, sizeof host) != 0)
+        host[0] = '\0';
+    host[sizeof host - 1] = '\0';
+    for (char *c = host; *c; c++)
+        *c = *c == '/' ? '-' : *c;
+    return host;
+}
+
+static void remove_folder(const char *path)
+{
+    DIR *folder = opendir(path);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        unlinkat(dirfd(folder), entry->d_name, 0); // folders, "." among them, stay
+    if (folder)
+        closedir(folder);
+    rmdir(path);
+}
+
+// Removes the folders of processes of this host that were killed.
+static void collect_folders(const char *temporary)
+{
+    char prefix[48], path[512];
+    DIR *folder = opendir(temporary);
+    const int length = snprintf(prefix, sizeof prefix, "glint.%s.", host_name());
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        struct stat info;
+        char *end = NULL;
+        if (strncmp(entry->d_name, prefix, (size_t)length) != 0)
+            continue;
+        const long process = strtol(entry->d_name + length, &end, 10);
+        if (process <= 0 || *end != '.' || kill((pid_t)process, 0) == 0 || errno != ESRCH)
+            continue;
+        snprintf(path, sizeof path, "%.200s/%.300s", temporary, entry->d_name);
+        if (lstat(path, &info) == 0 && S_ISDIR(info.st_mode) && info.st_uid == geteuid())
+            remove_folder(path);
+    }
+    if (folder)
+        closedir(folder);
+}
+
 // Fills the request of the run. 0 or an exit code, with the message.
 static int make_request(reproduction *r, glintL_run *run, char *message)
 {
@@ -116,7 +163,9 @@ static int make_request(reproduction *r, glintL_run *run, char *message)
     cut_lines(r->options, take_option, request);
     if (!glintL_selection_parse(&request->selection, frame, message) || !check_options(request, message))
         return UNREADABLE;
-    snprintf(r->folder, sizeof r->folder, "%.200s/glint-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    temporary = temporary && *temporary ? temporary : "/tmp";
+    collect_folders(temporary);
+    snprintf(r->folder, sizeof r->folder, "%.180s/glint.%s.%ld.XXXXXX", temporary, host_name(), (long)getpid());
     if (!mkdtemp(r->folder)) {
         snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: no folder can be made", r->folder);
         r->folder[0] = '\0';
@@ -269,13 +318,10 @@ static void report(const reproduction *r, cli_output *output, const cli_options 
 
 static void clean_up(reproduction *r)
 {
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
-        if (r->made[pass])
-            unlink(r->made[pass]);
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         free(r->made[pass]);
-    }
     if (*r->folder)
-        rmdir(r->folder);
+        remove_folder(r->folder);
     glint_picture_destroy(r->picture);
     free(r->params);
     free(r->options);

@@ -14,13 +14,20 @@ static void raise_interrupted(lua_State *L, lua_Debug *where)
     luaL_error(L, "interrupted");
 }
 
+// Ends the process by the signal, when the handler returns.
+static void leave(int number)
+{
+    glint_drafts_abandon();
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
 static void stop(int number)
 {
     glintL_run *run = caught_run;
     lua_State *L = caught_state;
     if (!run || run->interrupted) {
-        signal(number, SIG_DFL);
-        raise(number); // takes effect when this returns
+        leave(number);
         return;
     }
     run->interrupted = number;
@@ -42,19 +49,27 @@ static void handle(int number, void (*handler)(int))
     sigaction(number, &action, NULL);
 }
 
-void cli_catch_signals(glintL_run *run)
+// SIGHUP stays ignored when it was: nohup.
+static void handle_all(void (*handler)(int))
 {
-    caught_run = run;
-    handle(SIGINT, stop);
-    handle(SIGTERM, stop);
-    if (signal(SIGHUP, SIG_DFL) == SIG_IGN) // nohup
+    handle(SIGINT, handler);
+    handle(SIGTERM, handler);
+    if (signal(SIGHUP, SIG_DFL) == SIG_IGN)
         signal(SIGHUP, SIG_IGN);
     else
-        handle(SIGHUP, stop);
+        handle(SIGHUP, handler);
     // A write that fails says so. Handlers, for programs that the script starts would inherit SIG_IGN.
     handle(SIGPIPE, ignore);
     handle(SIGXFSZ, ignore);
 }
+
+void cli_catch_signals(glintL_run *run)
+{
+    caught_run = run;
+    handle_all(stop);
+}
+
+void cli_leave_by_signals(void) { handle_all(leave); }
 
 void cli_release_signals(void)
 {

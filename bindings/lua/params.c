@@ -60,6 +60,8 @@ static void write_text(lua_State *L, glintL_run *run)
     }
     free(run->params_text);
     run->params_text = strdup(lua_tostring(L, -1));
+    if (!run->params_text)
+        luaL_error(L, "out of memory");
     lua_settop(L, list - 1);
 }
 

@@ -31,6 +31,15 @@ static int base64(lua_State *L)
     return 1;
 }
 
+char *glintL_close_text(FILE *out, char **text)
+{
+    const bool is_written = fflush(out) == 0 && !ferror(out);
+    if (fclose(out) == 0 && is_written && *text)
+        return *text;
+    free(*text);
+    return NULL;
+}
+
 // json(value): a number, a boolean, nil or a string as JSON spells it.
 static int json(lua_State *L)
 {
@@ -45,10 +54,8 @@ static int json(lua_State *L)
         glintL_json_string(out, lua_tostring(L, 1));
     else if (out)
         fputs(lua_isnil(L, 1) ? "null" : lua_toboolean(L, 1) ? "true" : "false", out);
-    if (!out || fclose(out) != 0) {
-        free(text);
+    if (!out || !glintL_close_text(out, &text))
         return luaL_error(L, "out of memory");
-    }
     char *spelling = lua_newuserdatauv(L, size + 1, 0); // on the collector's account before anything can raise
     memcpy(spelling, text, size + 1);
     free(text);

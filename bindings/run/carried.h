@@ -3,6 +3,8 @@
 #ifndef GLINT_L_CARRIED_H
 #define GLINT_L_CARRIED_H
 
+#include <stdio.h>
+
 #include "bindings/run/run.h"
 
 typedef struct glintL_carried {
@@ -30,5 +32,9 @@ glint_status glintL_write_text(const char *path, const void *text, size_t size, 
 void glintL_copy_value(lua_State *from, int index, lua_State *to);
 /// `out` has room for 4 bytes for each 3 of `size`, rounded up. Returns how many were written.
 size_t glintL_base64(const uint8_t *from, size_t size, char *out);
+
+/// Closes a stream that open_memstream made for `text`: the text, for the caller to free, or NULL without memory for all of
+/// it. fclose alone says nothing then, and may leave no text.
+char *glintL_close_text(FILE *out, char **text);
 
 #endif

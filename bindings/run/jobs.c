@@ -116,23 +116,25 @@ void glintL_run_default_name(const glintL_run *run, char pattern[GLINTL_PATH_SIZ
     snprintf(pattern, GLINTL_PATH_SIZE, "%.*s.png", length ? (int)length : 5, length ? run->script : "frame");
 }
 
-// Whether several frames of the whole script go to this job's pattern.
+// What the job's pictures are called, by the command line or else by the script.
+static const char *output_of(const glintL_run *run, const glintL_job *job)
+{
+    const char *text = run->request.render_text[glintL_render_find("output")];
+    return text ? text : job->render.output;
+}
+
+// Whether several frames of the whole script go to this job's pattern. Allocates nothing: its answer is a name.
 static bool is_shared(const job_walk *walk)
 {
+    const char *output = output_of(walk->run, walk->job);
     int64_t frames = 0;
-    glintL_render *other = malloc(sizeof *other);
-    if (!other || walk->run->call_count > 0 || walk->run->point_count > 1) {
-        free(other);
+    if (walk->run->call_count > 0 || walk->run->point_count > 1)
         return true;
-    }
     for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(walk->L, walk->list); i++) {
         const glintL_job *job = get_job(walk->L, walk->list, i);
-        *other = job->render;
-        glintL_run_apply(walk->run, other);
-        if (strcmp(other->output, walk->render.output) == 0)
+        if (strcmp(output_of(walk->run, job), output) == 0)
             frames += job->frames;
     }
-    free(other);
     return frames > 1 || walk->run->earlier > 0;
 }
 

@@ -18,6 +18,7 @@
 #define GLINT_L_RUN_H
 
 #include <signal.h>
+#include <stdio.h>
 
 #include "bindings/run/render_fields.h"
 #include "bindings/value/glintL.h"
@@ -415,8 +416,6 @@ void glintL_push_params(lua_State *L);
 bool glintL_push_unknown_set(lua_State *L);
 
 // ---- json.c ----
-
-#include <stdio.h>
 
 /// The shortest spelling that reads back as the same number.
 void glintL_format_number(char out[32], double value);

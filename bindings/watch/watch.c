@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "bindings/command/cli.h"
+#include "bindings/run/carried.h"
 #include "bindings/watch/watch.h"
 
 #define PREVIEW_SIDE 640
@@ -74,7 +75,7 @@ static char *make_state(const watcher *w)
         glintL_json_string(out, w->warnings);
     }
     fputc('}', out);
-    return fclose(out) == 0 ? text : NULL;
+    return glintL_close_text(out, &text);
 }
 
 static void publish(watcher *w, watch_picture *picture)
@@ -257,7 +258,8 @@ static void keep_params(watcher *w)
     lua_pushcfunction(L, params_protected);
     lua_pushlightuserdata(L, out);
     bool good = lua_pcall(L, 1, 0, 0) == LUA_OK;
-    if (fclose(out) == 0 && good) {
+    text = glintL_close_text(out, &text);
+    if (text && good) {
         free(w->params);
         w->params = text;
     } else {

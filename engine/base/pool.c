@@ -92,7 +92,9 @@ glint_status glint_pool_create(int threads, glint_pool **out, glint_error *error
     pthread_cond_init(&pool->done, NULL);
     if (start_workers(pool, threads) < threads) {
         glint_pool_destroy(pool);
-        return glint_fail(error, GLINT_ERR_NOMEM, "threads: %d threads could not be started", threads);
+        return glint_fail(error, GLINT_ERR_NOMEM,
+                          "threads: %d threads could not be started: memory is short, or there are as many as there may be",
+                          threads);
     }
     *out = pool;
     return GLINT_OK;

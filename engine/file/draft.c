@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,12 +79,8 @@ static int make_folders(char *path)
 static void make_temporary_name(const char *path, char *out, size_t room)
 {
     static atomic_uint count;
-    char host[48] = "host";
-    gethostname(host, sizeof host);
-    host[sizeof host - 1] = '\0';
-    for (char *c = host; *c; c++)
-        if (*c == '/')
-            *c = '-';
+    char host[GLINT_HOST_SIZE];
+    glint_host_name(host);
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
     unsigned number = atomic_fetch_add(&count, 1);
@@ -95,8 +92,10 @@ static int create_temporary(const char *path, char *temporary, size_t room, int 
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
         make_temporary_name(path, temporary, room);
         *file = open_again(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (*file >= 0)
+        if (*file >= 0) {
+            flock(*file, LOCK_EX | LOCK_NB); // where there are no locks, the process's number alone tells of it
             return 0;
+        }
         if (errno != EEXIST)
             break;
     }
@@ -124,7 +123,17 @@ static char *target_of(const char *path)
     return strdup(path);
 }
 
-static int open_shared_edge(glint_draft *draft)
+/// Removes what killed processes have left in the folder of `path`.
+static void collect_around(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, slash == path ? 1 : (size_t)(slash - path)) : NULL;
+    if (folder || !slash)
+        glint_drafts_collect_once(slash ? folder : ".");
+    free(folder);
+}
+
+static int open_hidden(glint_draft *draft)
 {
     size_t room = strlen(draft->target) + TEMPORARY_ROOM;
     draft->temporary = malloc(room);
@@ -139,8 +148,11 @@ static int open_shared_edge(glint_draft *draft)
     if (code) { // there is none to remove
         free(draft->temporary);
         draft->temporary = NULL;
+        return code;
     }
-    return code;
+    glint_draft_enlist(draft->temporary);
+    collect_around(draft->temporary);
+    return 0;
 }
 
 /// 0 or an errno.
@@ -163,7 +175,7 @@ static int open_draft(glint_draft *draft)
     if (exists && access(path, W_OK) != 0) // a rename does not look at this
         return errno;
     draft->target = target_of(path);
-    return draft->target ? open_shared_edge(draft) : ENOMEM;
+    return draft->target ? open_hidden(draft) : ENOMEM;
 }
 
 glint_status glint_draft_create(const char *path, glint_draft **out, glint_error *error)
@@ -198,6 +210,7 @@ glint_status glint_draft_finish(glint_draft *draft, glint_error *error)
     if (!code && draft->temporary) {
         code = rename(draft->temporary, draft->target) == 0 ? 0 : errno;
         if (!code) {
+            glint_draft_delist(draft->temporary);
             free(draft->temporary);
             draft->temporary = NULL;
         }
@@ -211,8 +224,10 @@ void glint_draft_destroy(glint_draft *draft)
         return;
     if (draft->file >= 0)
         close(draft->file);
-    if (draft->temporary)
+    if (draft->temporary) {
         unlink(draft->temporary);
+        glint_draft_delist(draft->temporary);
+    }
     free(draft->temporary);
     free(draft->target);
     free(draft->path);

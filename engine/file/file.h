@@ -16,4 +16,16 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code);
 /// GLINT_ERR_FORMAT.
 glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, glint_error *error);
 
+// ---- leftover.c ----
+
+#define GLINT_HOST_SIZE 48
+
+/// This host's name, without slashes, cut at the room there is.
+void glint_host_name(char out[GLINT_HOST_SIZE]);
+/// glint_drafts_collect, unless this process has looked through the folder lately. Any thread.
+void glint_drafts_collect_once(const char *path);
+/// Notes and forgets the hidden name of a draft, which lives in between, for glint_drafts_abandon. Any thread.
+void glint_draft_enlist(const char *temporary);
+void glint_draft_delist(const char *temporary);
+
 #endif

@@ -1,0 +1,82 @@
+#!/usr/bin/env bash
+# Every allocation of twelve commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
+# it did not and leaves nothing half done (tests/faults/every.c). STEP=7 takes each seventh. Prints TAP.
+set -u
+root=$PWD
+glint=${GLINT:-$PWD/${BUILD:-build}/glint}
+if [ -n "${PRELOAD:-}" ] || ldd "$glint" | grep -qE "lib[at]san"; then
+    echo "skip: a sanitizer has an allocator of its own"
+    exit 77
+fi
+ldd "$glint" | grep -q 'libc\.so\.6' || { echo "skip: the library that fails is written for glibc"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+mkdir out
+bad=0
+command -v cc >/dev/null || { echo "skip: no compiler here"; exit 77; }
+cc -O1 -shared -fPIC "$root/tests/faults/fail.c" -o fail.so -ldl && cc -O1 "$root/tests/faults/every.c" -o every || exit 1
+
+cat >helper.lua <<'LUA'
+local glint = require "glint"
+local lamp = glint.point_light { position = { 3, 8, 4 } }
+local gold = glint.material { diffuse = 0.6, specular = 0.4, shininess = 20 }
+return { lamp = lamp, gold = gold, scene = glint.scene {
+  camera = glint.camera { eye = { 0, 2, 9 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp,
+  glint.sphere { center = { 0, 0, 0 }, radius = 2, material = gold },
+  glint.plane { point = { 0, -2, 0 }, normal = { 0, 1, 0 } } } }
+LUA
+cat >film.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+local P = glint.params { tall = { 8, min = 1, max = 40, doc = "height of the lamp" } }
+return glint.animation { scene = S.scene, frames = 3, width = 16, height = 12, frame = function(t)
+  S.lamp.position = { 3, P.tall, 4 - t }
+end }
+LUA
+cat >still.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+return glint.animation { scene = S.scene, frames = 1, width = 16, height = 12, frame = function() end }
+LUA
+cat >loop.lua <<'LUA'
+local S = require "helper"
+for i = 1, 2 do
+  S.lamp.x = i
+  local image = S.scene:render { width = 16, height = 12, output = "out/loop" .. i .. ".png" }
+  assert(image:save("out/saved" .. i .. ".pfm"))
+end
+LUA
+cat >sweep.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+return glint.sweep { scene = S.scene, over = { { S.gold, "shininess", { 1, 20 } }, { S.lamp, "x", { 0, 3 } } },
+  size = { 16, 12 }, sheet = { label = true } }
+LUA
+"$glint" film.lua -o 'f_%d.png' -t 1 -q && "$glint" film.lua -o 'g_%d.png' -D tall=9 -t 1 -q || exit 1
+
+# each KIND NAME ARGUMENT...
+each() {
+    local kind=$1 name=$2 said
+    shift 2
+    if said=$(EVERY_STEP=${STEP:-1} ./every "$kind" "$work/fail.so" "$work" "$glint" "$@"); then
+        echo "ok - $kind: $name: $said"
+    else
+        echo "not ok - $kind: $name"
+        echo "$said"
+        bad=1
+    fi
+}
+for kind in alloc write; do
+    each $kind "a still" still.lua -o out/w.png -t 1 -q
+    each $kind "frames and passes" film.lua -o 'out/f_%d.png' --passes diffuse,depth -t 1 -q
+    each $kind "a sweep with its sheet" sweep.lua -o 'out/s_%d.png' -t 1 -q
+    each $kind "a film" film.lua -o out/film.apng -t 1 -q
+    each $kind "a sheet" sheet f_1.png f_2.png f_3.png -o out/sheet.png -q
+    each $kind "a page" sheet f_1.png f_2.png f_3.png -o out/sheet.html -q
+    each $kind "assemble" assemble f_1.png f_2.png f_3.png -o out/film.apng -q
+done
+each write "reproduce" reproduce f_2.png film.lua
+each alloc "a loop, and pictures that it saves" loop.lua -t 1 -q
+each alloc "reproduce" reproduce f_2.png film.lua
+each alloc "explain" explain film.lua --json
+each alloc "describe" describe film.lua --json
+each alloc "compare" compare f_2.png f_2.png --json
+exit $bad
