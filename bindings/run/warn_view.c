@@ -285,11 +285,14 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *shape, c
 }
 
 // Faces throw shadows, normals shade: where a light grazes a face that the normals have turned towards it, the face is dark to
-// its edge.
+// its edge. Of spheres of triangles alone: their faces are a number in the script, those of a model are as they come.
 static void look_for_bends(const look *l, const glint_shape *shape, const ball *b)
 {
     char name[160];
     bool shadows = false;
+    double center[3], radius, segments;
+    if (!glint_sphere_mesh_get(shape, center, &radius, &segments))
+        return;
     const double bend = glint_mesh_bend(shape);
     for (int i = 0; i < l->all->light_count; i++)
         shadows = shadows || (glint_light_get(l->all->lights[i])->shadows && !is_dark(glint_light_get(l->all->lights[i])));
@@ -298,7 +301,7 @@ static void look_for_bends(const look *l, const glint_shape *shape, const ball *
     describe(glint_shape_get(shape), b, name);
     glintL_run_warn(l->run,
                     "%s: smooth shading bends its faces by up to %.0f degrees, and where a light grazes them they are in "
-                    "their own shadow to the edge; give it more faces, or the lights shadows = false",
+                    "their own shadow to the edge; give it more segments, or the lights shadows = false",
                     name, bend);
 }
 
