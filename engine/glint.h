@@ -51,49 +51,50 @@ typedef struct glint_error {
 /// is its length. The same numbers give the same bits on every machine.
 
 typedef struct glint_program glint_program; ///< immutable
-typedef struct glint_builder glint_builder; ///< a program on its way; of one thread at a time
+typedef struct glint_builder glint_builder; ///< a program being made; of one thread at a time
 typedef struct glint_texture glint_texture; ///< immutable
 typedef uint32_t glint_value; ///< a value of a builder: one double for each point
 
 #define GLINT_PROGRAM_LENGTH_MAX 4096 ///< instructions of a program
 #define GLINT_PROGRAM_ROWS_MAX 256 ///< intermediate values that a program may need at the same time
-#define GLINT_PROGRAM_OUTPUTS_MAX 8
+#define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< numbers that it gives for each point
 
+/// A pattern gives a number or a colour at a point, a shader what one light leaves there.
 typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
 
 /// What a program may read of a point. Vectors are unit where they are directions.
 typedef enum glint_input {
     GLINT_INPUT_P_X, ///< the point in its shape's own space, before the shape's transform and its groups'
-    GLINT_INPUT_P_Y,
-    GLINT_INPUT_P_Z,
+    GLINT_INPUT_P_Y, ///< likewise
+    GLINT_INPUT_P_Z, ///< likewise
     GLINT_INPUT_WORLD_X, ///< the point in world space
-    GLINT_INPUT_WORLD_Y,
-    GLINT_INPUT_WORLD_Z,
+    GLINT_INPUT_WORLD_Y, ///< likewise
+    GLINT_INPUT_WORLD_Z, ///< likewise
     GLINT_INPUT_N_X, ///< the geometric normal, on the viewer's side
-    GLINT_INPUT_N_Y,
-    GLINT_INPUT_N_Z,
+    GLINT_INPUT_N_Y, ///< likewise
+    GLINT_INPUT_N_Z, ///< likewise
     GLINT_INPUT_V_X, ///< towards the eye
-    GLINT_INPUT_V_Y,
-    GLINT_INPUT_V_Z,
+    GLINT_INPUT_V_Y, ///< likewise
+    GLINT_INPUT_V_Z, ///< likewise
     GLINT_INPUT_UV_U, ///< the shape's own coordinates on its surface
-    GLINT_INPUT_UV_V,
+    GLINT_INPUT_UV_V, ///< likewise
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, world units
     GLINT_INPUT_UV_FOOTPRINT, ///< the same in units of u and v
     GLINT_INPUT_L_X, ///< towards the light; this and all that follow in shaders alone
-    GLINT_INPUT_L_Y,
-    GLINT_INPUT_L_Z,
+    GLINT_INPUT_L_Y, ///< likewise
+    GLINT_INPUT_L_Z, ///< likewise
     GLINT_INPUT_LIGHT_R, ///< colour times intensity times attenuation
-    GLINT_INPUT_LIGHT_G,
-    GLINT_INPUT_LIGHT_B,
+    GLINT_INPUT_LIGHT_G, ///< likewise
+    GLINT_INPUT_LIGHT_B, ///< likewise
     GLINT_INPUT_DISTANCE, ///< to the light, world units; infinite where it is directional
-    GLINT_INPUT_KD_R, ///< the material's diffuse, specular and shininess at the point
-    GLINT_INPUT_KD_G,
-    GLINT_INPUT_KD_B,
-    GLINT_INPUT_KS_R,
-    GLINT_INPUT_KS_G,
-    GLINT_INPUT_KS_B,
-    GLINT_INPUT_SHININESS,
-    GLINT_INPUT_COUNT
+    GLINT_INPUT_KD_R, ///< the material's diffuse reflectance at the point
+    GLINT_INPUT_KD_G, ///< likewise
+    GLINT_INPUT_KD_B, ///< likewise
+    GLINT_INPUT_KS_R, ///< its specular reflectance
+    GLINT_INPUT_KS_G, ///< likewise
+    GLINT_INPUT_KS_B, ///< likewise
+    GLINT_INPUT_SHININESS, ///< its exponent
+    GLINT_INPUT_COUNT ///< how many there are
 } glint_input;
 
 /// Operations. `true` is 1 and `false` 0; as a condition, every number but 0 is true. min and max are a < b ? a : b and
@@ -159,9 +160,10 @@ typedef enum glint_op {
     GLINT_OP_COUNT
 } glint_op;
 
-#define GLINT_OPERANDS_MAX 4
-#define GLINT_RESULTS_MAX 8
+#define GLINT_OPERANDS_MAX 4 ///< values that an operation reads
+#define GLINT_RESULTS_MAX 8 ///< values that it makes
 
+/// What is known of an operation.
 typedef struct glint_op_info {
     const char *name; ///< "add"
     uint32_t operands; ///< 1 .. GLINT_OPERANDS_MAX
@@ -178,6 +180,7 @@ void glint_op_apply(glint_op op, const double *operands, double *results);
 /// "p.x", "light.r"; static. NULL: there is no such input.
 const char *glint_input_name(glint_input input);
 
+/// Begins a program. GLINT_ERR_NOMEM.
 glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, glint_error *error);
 /// NULL does nothing. Programs that were finished stay.
 void glint_builder_destroy(glint_builder *builder);
@@ -213,7 +216,9 @@ size_t glint_builder_length(const glint_builder *builder);
 glint_status glint_builder_finish(glint_builder *builder, const glint_value *outputs, size_t count, glint_program **out,
                                   glint_error *error);
 
+/// Takes another reference; returns its argument. Any thread.
 glint_program *glint_program_retain(glint_program *program);
+/// Gives a reference back; the last one frees the program and releases its textures. NULL: nothing. Any thread.
 void glint_program_release(glint_program *program);
 /// By the kernel a frame uses, with the bits of a frame before its rounding to float.
 ///
@@ -237,12 +242,15 @@ bool glint_program_constant(const glint_program *program, double *outputs);
 /// same bits. The caller frees it. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
+/// What a texture has beyond u, v in 0 .. 1: itself again, or its border.
 typedef enum glint_wrap { GLINT_WRAP_REPEAT, GLINT_WRAP_CLAMP } glint_wrap;
+/// How a colour between texels is found.
 typedef enum glint_filter {
     GLINT_FILTER_BILINEAR, ///< between four texels; of the picture halved as often as the footprint calls for
     GLINT_FILTER_NEAREST ///< the texel in which u, v lies; of the picture as it is
 } glint_filter;
 
+/// The fields of a texture.
 typedef struct glint_texture_desc {
     const char *path; ///< a .png
     glint_wrap wrap; ///< default repeat
@@ -251,11 +259,15 @@ typedef struct glint_texture_desc {
         ///< file says (gAMA 1.0) that it is linear
 } glint_texture_desc;
 
+/// No path; repeat, bilinear, sRGB.
 glint_texture_desc glint_texture_desc_default(void);
 /// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is no whole PNG; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
+/// Takes another reference; returns its argument. Any thread.
 glint_texture *glint_texture_retain(glint_texture *texture);
+/// Gives a reference back; the last one frees the texture. NULL: nothing. Any thread.
 void glint_texture_release(glint_texture *texture);
+/// Size in pixels.
 int glint_texture_width(const glint_texture *texture);
 int glint_texture_height(const glint_texture *texture);
 
@@ -830,7 +842,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 typedef struct glint_program_use {
     const char *material; ///< its name; may be empty
     const char *field; ///< "diffuse"; "model" of a shader
-    const glint_program *program;
+    const glint_program *program; ///< the plan's
 } glint_program_use;
 
 /// Number `index` of the plan's programs, from 0, with what belongs to the plan. False, and nothing written: there are not so
