@@ -24,6 +24,7 @@ typedef struct reproduction {
     char output[300]; // its pattern
     char *made[GLINT_PASS_COUNT]; // by pass; owned
     const char *made_path; // the one to compare
+    bool lacks_memory; // a name in `made` is missing for it
     char reason[GLINTL_MESSAGE_SIZE];
 } reproduction;
 
@@ -185,6 +186,7 @@ static void take_frame(void *context, const glintL_run *run, const glintL_record
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
         free(r->made[pass]);
         r->made[pass] = record->files[pass] ? strdup(record->files[pass]) : NULL;
+        r->lacks_memory = r->lacks_memory || (record->files[pass] && !r->made[pass]);
     }
 }
 
@@ -214,22 +216,30 @@ static int render(reproduction *r, cli_options *options, glintL_run *run, char *
     r->made_path = pass < GLINT_PASS_COUNT ? r->made[pass] : NULL;
     if (r->made_path)
         return 0;
+    if (r->lacks_memory) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+        return GLINTL_EXIT_FAILED;
+    }
     snprintf(message, GLINTL_MESSAGE_SIZE, "%.200s: it has no frame %s", run->script, text_of(r, "glint:frame"));
     return GLINTL_EXIT_USAGE;
 }
 
 // ---- Comparing ----
 
-static bool same_bytes(const char *a, const char *b)
+// False with a message: one cannot be read.
+static bool compare_bytes(const char *a, const char *b, bool *equal, char *message)
 {
-    FILE *one = fopen(a, "rb"), *other = fopen(b, "rb");
+    FILE *one = fopen(a, "rb"), *other = one ? fopen(b, "rb") : NULL;
     bool same = one && other;
     int c = 0;
+    if (!same)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%.300s: %s", one ? b : a, strerror(errno));
     while (same && c != EOF) {
         c = getc(one);
         same = getc(other) == c;
     }
-    same = same && !ferror(one) && !ferror(other);
+    *equal = same && !ferror(one) && !ferror(other);
+    same = one && other;
     if (one)
         fclose(one);
     if (other)
@@ -273,7 +283,10 @@ static verdict compare(reproduction *r, glint_compare_result *result, char *mess
     glint_compare_desc desc = { .fail = 0, .warn = 0 };
     glint_picture *made = NULL;
     glint_error error;
-    if (same_bytes(r->file, r->made_path))
+    bool equal;
+    if (!compare_bytes(r->file, r->made_path, &equal, message))
+        return UNREADABLE;
+    if (equal)
         return SAME;
     if (glint_picture_read(r->made_path, false, &made, &error) ||
         glint_compare_files(r->file, r->made_path, &desc, result, &error)) {
@@ -318,9 +331,12 @@ static void report(const reproduction *r, cli_output *output, const cli_options 
 
 static void clean_up(reproduction *r)
 {
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+        if (r->made[pass])
+            unlink(r->made[pass]); // as a rule all that is in the folder, which takes memory to list
         free(r->made[pass]);
-    if (*r->folder)
+    }
+    if (*r->folder && rmdir(r->folder) != 0)
         remove_folder(r->folder);
     glint_picture_destroy(r->picture);
     free(r->params);
@@ -343,10 +359,13 @@ int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run)
     if (!code)
         code = render(&r, options, run, message);
     if (!code) {
-        verdict found = compare(&r, &result, message);
-        report(&r, output, options, found, &result);
+        const verdict found = compare(&r, &result, message);
+        if (found == UNREADABLE)
+            cli_report_error(output, 0, code = GLINTL_EXIT_FAILED, message);
+        else
+            report(&r, output, options, found, &result);
         clean_up(&r);
-        return (int)found;
+        return code ? code : (int)found;
     }
     if (run->interrupted)
         cli_report_error(output, 0, 128 + (int)run->interrupted, "interrupted");

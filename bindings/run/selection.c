@@ -65,10 +65,16 @@ bool glintL_selection_parse(glintL_selection *selection, const char *text, char 
     glintL_selection read = { 0 };
     glintL_range range;
     const char *at = text;
-    bool good;
+    bool good, full = false;
     do {
-        good = read_range(&at, &range) && glintL_selection_add(&read, range);
-    } while (good && *at == ',' && *++at);
+        good = read_range(&at, &range);
+        full = good && !glintL_selection_add(&read, range);
+    } while (good && !full && *at == ',' && *++at);
+    if (full) {
+        glintL_selection_clear(&read);
+        snprintf(message, GLINTL_MESSAGE_SIZE, "out of memory");
+        return false;
+    }
     if (!good || *at || at[-1] == ',') {
         glintL_selection_clear(&read);
         snprintf(message, GLINTL_MESSAGE_SIZE, "frames such as 1-3,5,7-20:2,90- expected, got '%.200s'", text);

@@ -336,7 +336,7 @@ static inline void make_row(const glint_tone_table *table, float gain, const flo
         for (size_t c = 0; c < 3; c++) {
             if (rgb8)
                 rgb8[3 * i + c] = code8(table, x[c]);
-            else
+            else if (rgb16)
                 rgb16[3 * i + c] = code16(table, x[c]);
         }
         above += is_clipped(table, x);
