@@ -197,19 +197,19 @@ check-run: tests
 
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
-# Not these under ThreadSanitizer: it holds signals back from a script that never pauses (cli.sh, films.sh), breaks
-# popen (test_api.lua, test_cost.lua, test_data.lua, test_gr.lua), and lets through any allocation that ought to fail (test_misuse.lua).
-WATCHED   := $(filter-out tests/command/cli.sh tests/command/films.sh tests/command/kills.sh $(addprefix tests/lua/test_,$(addsuffix .lua,api cost data gr misuse)),$(SANITIZED))
+# What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch.
+THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image pattern_frames reuse reuse_turns soft) \
+               hard/hard_limits) $(addprefix tests/lua/test_,$(addsuffix .lua,adaptive materials patterned)) tests/command/watch.sh
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-asan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 \
-	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS="$(SANITIZED)"
+	    SANITIZE=address,undefined,float-cast-overflow PRELOAD=libasan.so ITEMS='$$(TEST_BIN) $$(HARD_BIN) $$(SANITIZED)'
 
-tsan: ## the tests under ThreadSanitizer, in build-tsan/
+tsan: ## the tests with threads under ThreadSanitizer, in build-tsan/
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory san-run BUILD=build-tsan CFLAGS="-O1 -g" KERNEL_CFLAGS=-O1 SANITIZE=thread \
-	    PRELOAD=libtsan.so ITEMS="$(WATCHED)"
+	    PRELOAD=libtsan.so ITEMS='$$(THREADED)'
 
 # ---- Checks that need more than the build does; each says what is missing ----
 
@@ -295,7 +295,7 @@ $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_%.c tests/fuzz/file.c tests/fuzz/fuz
 
 .PHONY: san-run
 san-run: tests
-	@T="$(T)" HARD_RAYS=20000 TEST_LIMIT_S=$${TEST_LIMIT_S:-900} PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(TEST_BIN) $(HARD_BIN) $(ITEMS)
+	@T="$(T)" HARD_RAYS=20000 TEST_LIMIT_S=$${TEST_LIMIT_S:-900} PRELOAD=$$($(CC) -print-file-name=$(PRELOAD)) $(RUNNER) $(ITEMS)
 
 hard: ## the hard cases as Markdown tables: truth, engine in double and in float, textbook formula, verdict
 	@tests/deps.sh build test
@@ -315,10 +315,11 @@ soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases
 	@$(MAKE) --no-print-directory soak-run
 
 # Other seeds than the check's, so that both see something new.
-soak-run: $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine/test_carry
+soak-run: all $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine/test_carry
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_reuse
 	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_carry
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
+	@STEP=1 BUILD=$(BUILD) tests/command/faults.sh
 
 gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render
 	@BUILD=$(BUILD) tests/command/gallery.sh update
