@@ -198,7 +198,7 @@ check-run: tests
 # What makes sense under a sanitizer: the C tests, the Lua tests and the command line.
 SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
 # What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch.
-THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image pattern_frames reuse reuse_turns soft) \
+THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
                hard/hard_limits) $(addprefix tests/lua/test_,$(addsuffix .lua,adaptive materials patterned)) tests/command/watch.sh
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
@@ -242,7 +242,7 @@ ARM64          := build-arm64
 ARM64_SYSROOT  := $(ARM64)/sysroot
 ARM64_LIBRARY  := $(CURDIR)/$(ARM64_SYSROOT)/usr/lib/aarch64-linux-gnu
 ARM64_TESTS    := $(patsubst %,$(ARM64)/tests/engine/test_%,stages_bounce stages_cast stages_light stages_occlude stages_scatter \
-                    stages_shade soft tone)
+                    stages_shade tone)
 ARM64_EMULATOR := qemu-aarch64 -L $(CURDIR)/$(ARM64_SYSROOT)
 
 .PHONY: check-arm64 check-arm64-run
