@@ -199,7 +199,7 @@ check-run: tests
 SANITIZED := $(filter-out tests/command/povray.sh tests/command/gallery.sh tests/command/install.sh,$(SCRIPTED))
 # What has threads: tiles, index, bands of rows, the writer, what is kept from frame to frame, the server of watch.
 THREADED  := $(addprefix $(BUILD)/tests/,$(addprefix engine/test_,bands bvh carry carry_turns files image reuse reuse_turns soft) \
-               hard/hard_limits) $(addprefix tests/lua/test_,$(addsuffix .lua,adaptive patterned)) tests/command/watch.sh
+               hard/hard_limits) tests/lua/test_patterned.lua tests/command/watch.sh
 
 asan: ## the tests under AddressSanitizer and UBSan, in build-asan/
 	@tests/deps.sh build test
