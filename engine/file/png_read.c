@@ -184,14 +184,34 @@ static bool read_ihdr(const chunk *c, glint_png_head *head)
     return head->channels > 0;
 }
 
-/// What one chunk before the pixels adds to the head.
-static void read_ancillary(const chunk *c, glint_png_head *head)
+/// What the chunks before the pixels say of transparency.
+typedef struct seen_chunks {
+    int color; ///< of IHDR: 0 grey, 2 RGB, 3 palette
+    uint32_t palette; ///< entries
+    bool pixels;
+} seen_chunks;
+
+/// Whether the decoder takes a tRNS chunk: one of the length that its kind of picture has; it then becomes a channel of its own.
+static bool is_transparency(const chunk *c, const seen_chunks *seen)
 {
+    if (seen->pixels)
+        return false;
+    return seen->color == 0 ? c->size == 2 : seen->color == 2 ? c->size == 6 : 0 < c->size && c->size <= seen->palette;
+}
+
+/// What one chunk beside the pixels adds to the head.
+static void read_ancillary(const chunk *c, seen_chunks *seen, glint_png_head *head)
+{
+    if (is_type(c, "IHDR") && c->size == 13)
+        seen->color = c->body[9];
+    if (is_type(c, "PLTE"))
+        seen->palette = c->size / 3;
+    seen->pixels |= is_type(c, "IDAT");
     if (is_type(c, "gAMA") && c->size == 4)
         head->transfer = big_endian(c->body) == 100000 ? GLINT_TRANSFER_LINEAR : GLINT_TRANSFER_SRGB;
     else if (is_type(c, "acTL") && c->size == 8)
         head->is_animated = big_endian(c->body) > 1;
-    else if (is_type(c, "tRNS")) // becomes a channel of its own
+    else if (is_type(c, "tRNS") && is_transparency(c, seen))
         head->channels += head->channels == 1 || head->channels == 3;
 }
 
@@ -199,7 +219,7 @@ glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *ou
                             bool (*text)(void *user, const uint8_t *bytes, size_t size), void *user, glint_error *error)
 {
     glint_png_head head = { .transfer = GLINT_TRANSFER_SRGB };
-    bool pixels = false;
+    seen_chunks seen = { 0 };
     size_t at = FIRST_CHUNK;
     chunk c;
     if (!has_signature(data, size))
@@ -207,13 +227,12 @@ glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *ou
     while (next_chunk(data, size, &at, &c)) {
         if (!head.width && !(is_type(&c, "IHDR") && read_ihdr(&c, &head)))
             return glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no size");
-        pixels |= is_type(&c, "IDAT");
-        read_ancillary(&c, &head);
+        read_ancillary(&c, &seen, &head);
         if (text && is_type(&c, "tEXt") && !text(user, c.body, c.size))
             return glint_fail_nomem(error);
         if (is_type(&c, "IEND")) {
             *out = head;
-            return pixels && at == size ? GLINT_OK
+            return seen.pixels && at == size ? GLINT_OK
                                         : glint_fail(error, GLINT_ERR_FORMAT, "not a whole PNG: no picture in it");
         }
     }
