@@ -1,6 +1,6 @@
 /// Deflate in bands of rows: whatever was kept from the picture before, the file is that of a fresh encode.
-#include "tests/engine/image_case.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/image_case.h"
+#include "tests/engine/cases/random.h"
 
 #include "engine/file/write.h"
 

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "tests/engine/floor_scene.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/floor_scene.h"
+#include "tests/engine/cases/random.h"
 
 #define SIDE 80
 #define PI 3.14159265358979323846264338327950288L

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/film/image.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 enum { SHAPES = 24, MATERIALS = 5, LIGHTS = 3, WORLDS = 20, EDITS = 20 };
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/film/image.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 enum { MESHES = 12, LAMPS = 60, BALLS = 30, MOVES = 60 };
 

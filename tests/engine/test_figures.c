@@ -1,5 +1,5 @@
 /// Figures of finished files: drafts, files read again, the font, contact sheets, animated PNG.
-#include "tests/engine/image_case.h"
+#include "tests/engine/cases/image_case.h"
 
 #include <png.h>
 

@@ -1,5 +1,5 @@
 /// Files of images: PNG, writes that appear whole or not at all, the writer.
-#include "tests/engine/image_case.h"
+#include "tests/engine/cases/image_case.h"
 
 #include <png.h>
 #include <pthread.h>

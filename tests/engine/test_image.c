@@ -1,5 +1,5 @@
 /// Images: planes, tone, the passes as pictures, comparison.
-#include "tests/engine/image_case.h"
+#include "tests/engine/cases/image_case.h"
 
 // ---- Image --------------------------------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 /// cast and occlude where nothing is a little off: places, directions and sizes are small whole numbers times one power of
 /// two, so that rays go exactly through corners and edges, in planes and along faces and axes, and numbers are exactly 0.
 /// Every instruction set against the scalar reference.
-#include "tests/engine/stage_rays.h"
+#include "tests/engine/cases/stage_rays.h"
 
 enum { CASES = 1500, REACH = 3 };
 

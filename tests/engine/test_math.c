@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "engine/base/math.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 #define MAX_ULP 0.51 // results are sums of two doubles, relative error below 2^-60, rounded once
 #define MAX_ULP_SUBNORMAL 0.76 // rounded twice

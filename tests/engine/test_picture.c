@@ -1,5 +1,5 @@
 // What a picture may be asked to be besides its codes: alpha, outline. Against its definition, and the picture without it.
-#include "tests/engine/image_case.h"
+#include "tests/engine/cases/image_case.h"
 
 #include <stdlib.h>
 

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 enum { MOST = 1200 };
 

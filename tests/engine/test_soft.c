@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "tests/engine/floor_scene.h"
+#include "tests/engine/cases/floor_scene.h"
 
 #define SIDE 96
 

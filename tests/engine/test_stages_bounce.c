@@ -1,5 +1,5 @@
 /// Where rays go on from a surface: every instruction set against the scalar reference, and that against closed forms.
-#include "tests/engine/stage_rays.h"
+#include "tests/engine/cases/stage_rays.h"
 
 #define ALIGNED _Alignas(64)
 

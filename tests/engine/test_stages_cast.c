@@ -1,6 +1,6 @@
 /// camera, in_sight, cast and surface on every instruction set against the scalar reference, which looks at every
 /// primitive: neither the index nor a filter loses a hit or changes a bit.
-#include "tests/engine/stage_rays.h"
+#include "tests/engine/cases/stage_rays.h"
 
 enum { CASES = 300 };
 

@@ -1,5 +1,5 @@
 /// light, view and facet on every instruction set against the scalar reference, and how accurate its logarithm is.
-#include "tests/engine/stage_case.h"
+#include "tests/engine/cases/stage_case.h"
 
 #define ALIGNED _Alignas(64)
 

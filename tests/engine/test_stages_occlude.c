@@ -1,6 +1,6 @@
 /// occlude and soft_light on every instruction set against the scalar reference, which asks every primitive about every point: neither
 /// the index nor the list of a tile nor a filter loses a shadow or makes one.
-#include "tests/engine/stage_scene.h"
+#include "tests/engine/cases/stage_scene.h"
 
 enum { CASES = 3000 };
 

@@ -1,7 +1,7 @@
 /// The stage `program`: every operation and thousands of random programs on every instruction set against the scalar
 /// reference, and programs as the builder makes them against the same without anything folded, shared or fused.
 #include "tests/engine/png_case.h"
-#include "tests/engine/program_case.h"
+#include "tests/engine/cases/program_case.h"
 
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 /// Directions for indirect light: every instruction set against the scalar reference, that against closed forms; and the
 /// numbers they are made from.
 #include "engine/base/sequence.h"
-#include "tests/engine/stage_rays.h"
+#include "tests/engine/cases/stage_rays.h"
 
 #define ALIGNED _Alignas(64)
 

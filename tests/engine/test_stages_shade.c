@@ -1,5 +1,5 @@
 /// shade and resolve on every instruction set against the scalar reference, and how accurate exp2 is.
-#include "tests/engine/stage_case.h"
+#include "tests/engine/cases/stage_case.h"
 
 #define ALIGNED _Alignas(64)
 

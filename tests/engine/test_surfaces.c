@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 #include "tests/engine/quad.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 static void random_vector(double v[3], double size)
 {

@@ -11,7 +11,7 @@
 
 #include "engine/program/builder.h"
 #include "tests/engine/png_case.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 static glint_error error;
 static char path[64]; ///< of this process alone

@@ -13,7 +13,7 @@
 
 #include "engine/film/tone.h"
 #include "engine/stages/stages.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 #define ALIGNED _Alignas(64)
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])

@@ -5,7 +5,7 @@
 #define GLINT_STAGE_SCENE_H
 
 #include "engine/geometry/bvh.h"
-#include "tests/engine/stage_case.h"
+#include "tests/engine/cases/stage_case.h"
 
 enum { MOST_PRIMS = 3000, MOST_LINES = 256 };
 

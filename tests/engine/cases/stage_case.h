@@ -17,7 +17,7 @@
 
 #include "engine/glint.h"
 #include "engine/stages/stages.h"
-#include "tests/engine/random.h"
+#include "tests/engine/cases/random.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 

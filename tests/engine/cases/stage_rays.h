@@ -3,7 +3,7 @@
 #ifndef GLINT_STAGE_RAYS_H
 #define GLINT_STAGE_RAYS_H
 
-#include "tests/engine/stage_scene.h"
+#include "tests/engine/cases/stage_scene.h"
 
 typedef enum ray_kind {
     RAYS_OF_EYE, ///< cast_bundle

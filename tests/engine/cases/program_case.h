@@ -3,7 +3,7 @@
 #define GLINT_PROGRAM_CASE_H
 
 #include "engine/program/builder.h"
-#include "tests/engine/stage_case.h"
+#include "tests/engine/cases/stage_case.h"
 
 enum { RECIPE_STEPS = 60 };
 
