@@ -681,7 +681,7 @@ function glint.sweep(fields) end
 -- A function that says what a material is at a point, or what one light leaves there. It is called once a frame, with
 -- symbols in place of numbers; what it does to them is written down as a program, which runs at the speed of a kernel
 -- with the bits of plain Lua. Loops and calls are unrolled; variables outside may change from frame to frame. What is
--- not known yet cannot be asked: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, and say what to write. `if`,
+-- not known yet cannot be compared: `a < b`, `==`, `#`, `..` and math.sin of a symbol raise, and say what to write. `if`,
 -- `and` and `or` cannot raise; a function of a new form is run by plain Lua at 64 points, too, and must give what the
 -- program gives. A branch that none of them takes is not seen.
 

@@ -142,14 +142,14 @@ static bool shades(const carry *c, const glint_plan_light *light, const glint_po
         vec_sub(line, to, from);
     const double length2 = vec_dot(line, line);
     for (uint32_t i = 0; i < c->ball_count; i++) {
-        double way[3], shared_edge[3];
+        double way[3], across[3];
         vec_sub(way, c->balls[i].center, from);
         double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
         along = light->directional ? along : fmin(along, 1);
         for (int k = 0; k < 3; k++)
-            shared_edge[k] = way[k] - along * line[k];
+            across[k] = way[k] - along * line[k];
         const double far = sqrt(vec_dot(way, way)) + sqrt(length2) + sqrt(vec_dot(from, from));
-        if (!(sqrt(vec_dot(shared_edge, shared_edge)) > loosened(c->balls[i].radius + wide, far)))
+        if (!(sqrt(vec_dot(across, across)) > loosened(c->balls[i].radius + wide, far)))
             return true;
     }
     return false;

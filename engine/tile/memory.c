@@ -18,8 +18,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->vertex = glint_vertex_create()) && good;
     if (plan->runs[GLINT_STAGE_DEPTH_CUE] && !tile->depth_cue)
         good = (tile->depth_cue = glint_depth_cue_create()) && good;
-    if (plan->raster && !tile->shared_edge)
-        good = (tile->shared_edge = glint_shared_edge_create()) && good;
+    if (plan->raster && !tile->raster_rest)
+        good = (tile->raster_rest = glint_raster_rest_create()) && good;
     if (plan->tints && !tile->transparent_shadow)
         good = (tile->transparent_shadow = glint_transparent_shadow_create()) && good;
     if (plan->together && !tile->samples)
@@ -42,7 +42,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_bounce_destroy(tile->bounce);
     glint_transparent_shadow_destroy(tile->transparent_shadow);
     glint_vertex_destroy(tile->vertex);
-    glint_shared_edge_destroy(tile->shared_edge);
+    glint_raster_rest_destroy(tile->raster_rest);
     glint_visible_light_destroy(tile->visible_light);
     glint_depth_cue_destroy(tile->depth_cue);
     glint_indirect_destroy(tile->indirect);

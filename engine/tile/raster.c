@@ -5,15 +5,15 @@
 #include <stdlib.h>
 
 /// What is cast beside triangles.
-struct glint_shared_edge {
+struct glint_raster_rest {
     _Alignas(64) double t[GLINT_TILE_SAMPLES];
     _Alignas(64) uint32_t prim[GLINT_TILE_SAMPLES];
     uint16_t hits[GLINT_TILE_GROUPS];
 };
 
-struct glint_shared_edge *glint_shared_edge_create(void) { return glint_alloc(1, sizeof(struct glint_shared_edge)); }
+struct glint_raster_rest *glint_raster_rest_create(void) { return glint_alloc(1, sizeof(struct glint_raster_rest)); }
 
-void glint_shared_edge_destroy(struct glint_shared_edge *shared_edge) { free(shared_edge); }
+void glint_raster_rest_destroy(struct glint_raster_rest *rest) { free(rest); }
 
 bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -24,19 +24,17 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
 /// As between any two surfaces: the nearer one, of equal ones the one defined first.
 static void merge(glint_tile *tile, const glint_tile_frame *frame)
 {
-    const struct glint_shared_edge *shared_edge = tile->shared_edge;
+    const struct glint_raster_rest *rest = tile->raster_rest;
     const glint_precision precision = frame->plan->desc.precision;
     const glint_prim *prims = frame->geometry.prims;
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = shared_edge->hits[g]; left; left &= left - 1) {
+        for (unsigned left = rest->hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), prim = tile->at.prim[i];
-            const double mine = glint_real_at(tile->at.t, precision, i),
-                         other = glint_real_at(shared_edge->t, precision, i);
-            if (prim != GLINT_MISS &&
-                !(other < mine || (other == mine && prims[shared_edge->prim[i]].id < prims[prim].id)))
+            const double mine = glint_real_at(tile->at.t, precision, i), other = glint_real_at(rest->t, precision, i);
+            if (prim != GLINT_MISS && !(other < mine || (other == mine && prims[rest->prim[i]].id < prims[prim].id)))
                 continue;
             glint_real_put(tile->at.t, precision, i, other);
-            tile->at.prim[i] = shared_edge->prim[i];
+            tile->at.prim[i] = rest->prim[i];
             tile->at.hits[g] |= (uint16_t)(left & -left);
         }
 }
@@ -55,9 +53,9 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
     glint_cast_args others = *args;
     others.geometry = &raster->others;
     others.view = NULL;
-    others.t = tile->shared_edge->t;
-    others.prim = tile->shared_edge->prim;
-    others.hits = tile->shared_edge->hits;
+    others.t = tile->raster_rest->t;
+    others.prim = tile->raster_rest->prim;
+    others.hits = tile->raster_rest->hits;
     if (frame->plan->camera.orthographic)
         stages->cast_rays(&others);
     else

@@ -145,7 +145,7 @@ typedef struct glint_tile {
     const struct glint_batch_ray *batch_rays; ///< of a batch: the ray that found each sample; NULL: the eye's
     struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
     struct glint_depth_cue *depth_cue; ///< of tile/depth_cue.c; NULL until a frame fades
-    struct glint_shared_edge *shared_edge; ///< likewise, of tile/raster.c
+    struct glint_raster_rest *raster_rest; ///< of tile/raster.c: what is cast because it is no triangle; likewise
     struct glint_visible_light
         *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
     struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
@@ -382,8 +382,8 @@ bool glint_tile_has_shading_points(const glint_tile *tile);
 void glint_tile_vertex(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/raster.c: scan conversion.
-struct glint_shared_edge *glint_shared_edge_create(void);
-void glint_shared_edge_destroy(struct glint_shared_edge *shared_edge);
+struct glint_raster_rest *glint_raster_rest_create(void);
+void glint_raster_rest_destroy(struct glint_raster_rest *rest);
 bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *frame);
 /// `args`: as for a cast of everything.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
