@@ -185,7 +185,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden install kills memory povray readme untrusted warnings watch)))
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory povray readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -269,7 +269,7 @@ FUZZ_MAKE  := $(MAKE) --no-print-directory BUILD=$(FUZZ) PORTABLE=1 CC="$(FUZZ_C
                 SANITIZE=fuzzer-no-link,address,undefined,float-cast-overflow
 
 .PHONY: fuzz check-fuzz fuzz-programs
-check-fuzz: ## each fuzzer for FUZZ_SECONDS (60), from its corpus in tests/fuzz/corpus; installs clang through apt
+check-fuzz: ## each fuzzer for FUZZ_SECONDS (60) or FUZZ_RUNS inputs, from its corpus in tests/fuzz/corpus; installs clang through apt
 	@tests/deps.sh build fuzz
 	@$(FUZZ_MAKE) fuzz-programs
 	@T="$(T)" FUZZ=$(FUZZ) $(RUNNER) $(FUZZERS:%=fuzz:%)

@@ -201,6 +201,17 @@ static bool check_untrusted(const cli_options *options, char *message)
     return false;
 }
 
+// Standard input is there once, and has no folder.
+static bool check_input(const cli_options *options, char *message)
+{
+    if (!options->script || strcmp(options->script, "-") != 0 ||
+        (options->command & (CLI_RENDER | CLI_EXPLAIN) && !options->sweep_count && !options->dialect && !options->untrusted_s))
+        return true;
+    snprintf(message, MESSAGE, "-: a file expected; a script from standard input is for render and explain, without --sweep, "
+                               "--dialect and --untrusted");
+    return false;
+}
+
 static bool check_together(const cli_options *options, const bool used[CLI_OPTION_COUNT], char *message)
 {
     for (size_t i = 0; i < CLI_OPTION_COUNT; i++) {
@@ -270,7 +281,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
             options->json = true; // so that an error here is an event, too
     }
     if (!read_argv(words, argv, options, used, message) ||
-        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
+        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) || !check_input(options, message) ||
         !check_output(options, message) || !check_untrusted(options, message) || !complete(options, message))
         return false;
     if (words < argc && !options->arguments) {

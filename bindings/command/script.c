@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "bindings/command/untrusted.h"
+#include "bindings/run/system.h"
 
 #define UNTRUSTED_LUA_MEMORY ((size_t)64 << 20)
 
@@ -148,6 +149,17 @@ static void run_results(lua_State *L, const task *work)
     }
 }
 
+// Loads a script, from standard input where its name is "-". What it waits for without an end is no script.
+static int load_script(lua_State *L, const char *path)
+{
+    const bool is_input = strcmp(path, "-") == 0;
+    const char *other = is_input ? NULL : glintL_other_kind(path);
+    if (!other)
+        return luaL_loadfilex(L, is_input ? NULL : path, "t");
+    lua_pushfstring(L, "%s: a script expected, got a %s", path, other);
+    return LUA_ERRFILE;
+}
+
 static int run_protected(lua_State *L)
 {
     const task *work = lua_touserdata(L, 1);
@@ -157,7 +169,7 @@ static int run_protected(lua_State *L)
     if (work->run->reporter.prepare)
         work->run->reporter.prepare(work->run->reporter.context, L);
     cli_open_dialect(L, work->options);
-    if (luaL_loadfilex(L, work->options->script, "t") != LUA_OK)
+    if (load_script(L, work->options->script) != LUA_OK)
         return lua_error(L);
     work->run->since_ms = glintL_now_ms();
     lua_call(L, 0, LUA_MULTRET);

@@ -1,9 +1,17 @@
 // luaopen_glint: the module's table.
+#include "bindings/run/system.h"
 #include "bindings/value/glintL.h"
 
 static int list_fields(lua_State *L)
 {
     glintL_push_listed(L);
+    return 1;
+}
+
+// _other_kind(path): "device", "pipe", "socket" or "folder" where it is one. For scripts/lib alone.
+static int other_kind(lua_State *L)
+{
+    lua_pushstring(L, glintL_other_kind(luaL_checkstring(L, 1)));
     return 1;
 }
 
@@ -22,6 +30,8 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "version");
     lua_pushcfunction(L, list_fields); // for the test of meta/glint.lua alone
     lua_setfield(L, -2, "_fields");
+    lua_pushcfunction(L, other_kind);
+    lua_setfield(L, -2, "_other_kind");
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
     return 1;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -163,6 +164,17 @@ void glintL_cond_init(pthread_cond_t *cond)
 #else
     pthread_cond_init(cond, NULL);
 #endif
+}
+
+const char *glintL_other_kind(const char *path)
+{
+    struct stat info;
+    if (stat(path, &info) != 0 || S_ISREG(info.st_mode))
+        return NULL;
+    return S_ISDIR(info.st_mode)    ? "folder"
+           : S_ISFIFO(info.st_mode) ? "pipe"
+           : S_ISSOCK(info.st_mode) ? "socket"
+                                    : "device";
 }
 
 bool glintL_random(void *bytes, size_t size)

@@ -44,6 +44,10 @@ void glintL_cond_init(pthread_cond_t *cond);
 /// Bytes that cannot be guessed. False: there are none to be had.
 bool glintL_random(void *bytes, size_t size);
 
+/// What a path leads to that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
+/// is one, or nothing is there. Does not wait for the other end of a pipe, which opening it would.
+const char *glintL_other_kind(const char *path);
+
 /// A name for the end of a pipe, for what opens files by name.
 void glintL_end_path(int end, char out[32]);
 

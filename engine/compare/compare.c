@@ -7,8 +7,6 @@
 
 #include <math.h>
 
-#define FILE_LIMIT ((size_t)1 << 34)
-
 /// A picture of either format, one of the two pointers not NULL.
 typedef struct picture {
     int width, height, channels;
@@ -47,7 +45,7 @@ static glint_status load(const char *path, picture *out, glint_error *error)
     glint_error inner;
     glint_status status = glint_file_kind_of(path, &kind, error);
     if (!status)
-        status = glint_file_read(path, FILE_LIMIT, &bytes, error);
+        status = glint_file_read_picture(path, &bytes, error);
     if (status == GLINT_ERR_INVALID) { // here that means: the sizes differ
         status = GLINT_ERR_FORMAT;
         if (error)

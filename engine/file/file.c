@@ -1,68 +1,91 @@
 #include "engine/file/file.h"
 
 #include "engine/base/status.h"
+#include "engine/file/pfm.h"
+#include "engine/file/png.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-glint_status glint_file_fail(glint_error *error, const char *path, int code)
-{
-    glint_status status = code == ENOSPC || code == EDQUOT ? GLINT_ERR_NO_SPACE
-                          : code == ENOMEM                 ? GLINT_ERR_NOMEM
-                                                           : GLINT_ERR_IO;
-    char text[128];
-#ifdef __GLIBC__
-    const char *reason = strerror_r(code, text, sizeof text); // perhaps not in `text`
-#else
-    const char *reason = strerror_r(code, text, sizeof text) == 0 ? text : "unknown error";
-#endif
-    size_t length = strlen(path), most = 400;
-    return glint_fail(error, status, "%s%s: %s", length > most ? "..." : "",
-                      length > most ? path + length - most : path, reason);
-}
+#define PICTURE_LIMIT ((size_t)1 << 34)
+#define HEAD_BYTES ((size_t)65536) // what says how large the picture is fits into it
+#define SLACK_BYTES ((size_t)64 << 20) // of a picture, for what is no pixel
+#define STORED_TIMES 16 // a byte of pixels takes 13 where each has a chunk of its own
 
-static int read_all(int file, size_t limit, glint_bytes *out)
+/// Reads until there are `most` bytes, or the end. 0 or an errno.
+static int read_up_to(int file, size_t most, glint_bytes *out)
 {
-    struct stat info;
-    size_t chunk = fstat(file, &info) == 0 && info.st_size > 0 && (uintmax_t)info.st_size <= limit
-                       ? (size_t)info.st_size + 1
-                       : 65536;
-    for (;;) {
-        if (!glint_bytes_reserve(out, chunk))
-            return ENOMEM;
-        ssize_t done = read(file, out->data + out->size, out->capacity - out->size);
+    if (most > out->size && !glint_bytes_reserve(out, most - out->size))
+        return ENOMEM;
+    while (out->size < most) {
+        ssize_t done = read(file, out->data + out->size, most - out->size);
         if (done == 0)
             return 0;
         if (done < 0 && errno != EINTR)
             return errno;
         if (done > 0)
             out->size += (size_t)done;
-        if (out->size > limit)
-            return EFBIG;
-        chunk = out->capacity > out->size ? 1 : 65536;
     }
+    return 0;
+}
+
+/// The most bytes that a whole picture with this beginning has. 0: it begins as none.
+static size_t picture_bound(const glint_bytes *head)
+{
+    const uint64_t pfm = glint_pfm_bytes(head->data, head->size);
+    const uint64_t png = glint_png_raw_bytes(head->data, head->size);
+    if (pfm)
+        return (size_t)pfm + SLACK_BYTES;
+    if (!png)
+        return 0;
+    return png < PICTURE_LIMIT / STORED_TIMES ? (size_t)png * STORED_TIMES + SLACK_BYTES : PICTURE_LIMIT;
+}
+
+/// Reads an open file of `size` bytes, at most `limit`, into `bytes`, which is freed on failure.
+static glint_status read_whole(const char *path, int file, uint64_t size, size_t limit, glint_bytes *bytes,
+                               glint_error *error)
+{
+    const int code = size > limit ? 0 : read_up_to(file, (size_t)size, bytes);
+    if (!code && size <= limit)
+        return GLINT_OK;
+    free(bytes->data);
+    return code ? glint_file_fail(error, path, code)
+                : glint_fail(error, GLINT_ERR_FORMAT, "%.400s: larger than %zu bytes", path, limit);
 }
 
 glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, glint_error *error)
 {
     int file;
-    do
-        file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY);
-    while (file < 0 && errno == EINTR);
-    if (file < 0)
-        return glint_file_fail(error, path, errno);
+    uint64_t size;
     glint_bytes bytes = { 0 };
-    int code = read_all(file, limit, &bytes);
+    glint_status status = glint_open_file(path, &file, &size, error);
+    if (status)
+        return status;
+    status = read_whole(path, file, size, limit, &bytes, error);
     close(file);
-    if (!code) {
+    if (!status)
         *out = bytes;
-        return GLINT_OK;
+    return status;
+}
+
+glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_error *error)
+{
+    int file;
+    uint64_t size;
+    glint_bytes bytes = { 0 };
+    glint_status status = glint_open_file(path, &file, &size, error);
+    if (status)
+        return status;
+    const int code = read_up_to(file, size < HEAD_BYTES ? (size_t)size : HEAD_BYTES, &bytes);
+    const size_t limit = code ? 0 : picture_bound(&bytes);
+    if (code) {
+        free(bytes.data);
+        status = glint_file_fail(error, path, code);
+    } else if (limit) { // the beginning alone is enough for a decoder to say that it is none
+        status = read_whole(path, file, size, limit, &bytes, error);
     }
-    free(bytes.data);
-    if (code == EFBIG)
-        return glint_fail(error, GLINT_ERR_FORMAT, "%.400s: larger than %zu bytes", path, limit);
-    return glint_file_fail(error, path, code);
+    close(file);
+    if (!status)
+        *out = bytes;
+    return status;
 }

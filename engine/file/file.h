@@ -3,18 +3,19 @@
 #define GLINT_IMAGE_FILE_H
 
 #include "engine/glint.h"
+#include "engine/base/open.h"
 #include "engine/file/bytes.h"
 
 /// A whole file as one glint_draft, see glint.h. SIGXFSZ and SIGPIPE are the caller's to ignore; then EFBIG and EPIPE are
 /// reported like the others. draft.c
 glint_status glint_file_write(const char *path, const void *bytes, size_t size, glint_error *error);
 
-/// Fills `error` with "<path>: <reason>" for an errno, and returns its status: GLINT_ERR_NO_SPACE, _NOMEM or _IO.
-glint_status glint_file_fail(glint_error *error, const char *path, int code);
-
-/// Reads a whole file; *out is filled on success and its data is the caller's to free. More than `limit` bytes is
-/// GLINT_ERR_FORMAT.
+/// Reads a whole file, which glint_open_file opens; *out is filled on success and its data is the caller's to free. More
+/// than `limit` bytes is GLINT_ERR_FORMAT.
 glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, glint_error *error);
+/// The same for a picture: no more is read, and no more memory taken, than a .png or .pfm with its beginning can have. Of
+/// what begins as neither there is the beginning.
+glint_status glint_file_read_picture(const char *path, glint_bytes *out, glint_error *error);
 
 // ---- leftover.c ----
 

@@ -87,6 +87,16 @@ static bool parse_header(const uint8_t *data, size_t size, glint_pfm *pfm, bool 
            (scale < 0 || scale > 0);
 }
 
+uint64_t glint_pfm_bytes(const uint8_t *head, size_t size)
+{
+    glint_pfm pfm = { 0 };
+    bool little;
+    size_t at;
+    if (!parse_header(head, size, &pfm, &little, &at))
+        return 0;
+    return at + (uint64_t)pfm.width * (uint64_t)pfm.height * (uint64_t)pfm.channels * 4;
+}
+
 static float get_value(const uint8_t *p, bool little)
 {
     uint32_t bits = 0;

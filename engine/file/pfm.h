@@ -17,6 +17,8 @@ typedef struct glint_pfm {
     float *values; ///< interleaved, top row first; the owner calls free
 } glint_pfm;
 
+/// The bytes of a whole PFM that begins as these do; 0: they begin as none.
+uint64_t glint_pfm_bytes(const uint8_t *head, size_t size);
 /// Decodes either byte order; the scale's size is left aside. GLINT_ERR_FORMAT when the bytes are not a whole PFM.
 glint_status glint_pfm_decode(const uint8_t *data, size_t size, glint_pfm *out, glint_error *error);
 

@@ -10,8 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FILE_LIMIT ((size_t)1 << 34)
-
 typedef struct entry { ///< a text
     struct entry *next;
     char *value; ///< follows the keyword in memory
@@ -125,7 +123,7 @@ glint_status glint_picture_read(const char *path, bool pixels, glint_picture **o
         return glint_fail_nomem(error);
     glint_status status = glint_file_kind_of(path, &kind, error);
     if (!status)
-        status = glint_file_read(path, FILE_LIMIT, &bytes, error);
+        status = glint_file_read_picture(path, &bytes, error);
     if (!status) {
         status = kind == GLINT_FILE_PNG ? read_png(picture, &bytes, pixels, &inner)
                                         : read_pfm(picture, &bytes, pixels, &inner);

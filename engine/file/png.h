@@ -50,6 +50,10 @@ typedef struct glint_png {
 /// Decodes a PNG; every CRC must be right and IEND there. GLINT_ERR_FORMAT otherwise; *out is written on success.
 glint_status glint_png_decode(const uint8_t *data, size_t size, glint_png *out, glint_error *error);
 
+/// The bytes of pixels, of all its frames and before compression, that a PNG with this beginning has at most; 0: it begins
+/// as none.
+uint64_t glint_png_raw_bytes(const uint8_t *head, size_t size);
+
 /// Whether the bytes are a whole PNG (chunks from IHDR to IEND with right CRCs, nothing after) that has this text.
 bool glint_png_has_text(const uint8_t *data, size_t size, const char *keyword, const char *value);
 

@@ -46,7 +46,11 @@ static void read_header(reader *r)
     png_set_read_fn(r->png, r, give_bytes);
     png_set_user_limits(r->png, GLINT_SIDE_MAX, GLINT_SIDE_MAX);
     png_set_crc_action(r->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_keep_unknown_chunks(r->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); // texts and profiles: nothing is unpacked
     png_read_info(r->png, r->info);
+    const uint64_t height = png_get_image_height(r->png, r->info);
+    if (png_get_rowbytes(r->png, r->info) * height / DEFLATE_RATIO_MAX > r->size)
+        png_error(r->png, "too little data for its size");
     png_set_expand(r->png);
 #if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
     if (png_get_bit_depth(r->png, r->info) == 16)
@@ -67,9 +71,6 @@ static bool read_container(reader *r)
     r->out.channels = png_get_channels(r->png, r->info);
     r->out.bits = png_get_bit_depth(r->png, r->info);
     size_t row_bytes = png_get_rowbytes(r->png, r->info), height = (size_t)r->out.height;
-    // Expanding a palette or bits makes at most 32 times of what was packed.
-    if (row_bytes / 32 * height / DEFLATE_RATIO_MAX > r->size)
-        png_error(r->png, "too little data for its size");
     r->out.codes = calloc(height, row_bytes);
     if (!r->out.codes)
         png_error(r->png, "out of memory");
@@ -213,6 +214,20 @@ static void read_ancillary(const chunk *c, seen_chunks *seen, glint_png_head *he
         head->is_animated = big_endian(c->body) > 1;
     else if (is_type(c, "tRNS") && is_transparency(c, seen))
         head->channels += head->channels == 1 || head->channels == 3;
+}
+
+uint64_t glint_png_raw_bytes(const uint8_t *data, size_t size)
+{
+    glint_png_head head = { 0 };
+    uint64_t frames = 1;
+    size_t at = FIRST_CHUNK;
+    chunk c;
+    if (!has_signature(data, size) || !next_chunk(data, size, &at, &c) || !is_type(&c, "IHDR") || !read_ihdr(&c, &head))
+        return 0;
+    while (next_chunk(data, size, &at, &c) && !is_type(&c, "IDAT"))
+        if (is_type(&c, "acTL") && c.size == 8)
+            frames = 1 + (uint64_t)big_endian(c.body);
+    return ((uint64_t)head.width * (uint64_t)(head.channels * head.bits / 8) + 1) * (uint64_t)head.height * frames;
 }
 
 glint_status glint_png_scan(const uint8_t *data, size_t size, glint_png_head *out,

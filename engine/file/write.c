@@ -12,7 +12,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#define KEY_FILE_LIMIT ((size_t)1 << 34)
 
 /// What a row of codes is made from.
 typedef struct picture {
@@ -292,9 +291,7 @@ glint_status glint_image_to_bytes(const glint_image *image, const glint_write_de
 bool glint_file_has_key(const char *path, const char *key)
 {
     struct glint_bytes bytes = { 0 };
-    if (is_special_file(path)) // reading a pipe would wait, and keeps nothing
-        return false;
-    if (glint_file_read(path, KEY_FILE_LIMIT, &bytes, NULL))
+    if (glint_file_read_picture(path, &bytes, NULL)) // as of a pipe, which keeps nothing
         return false;
     bool has = glint_png_has_text(bytes.data, bytes.size, GLINT_PNG_KEY, key);
     free(bytes.data);

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FILE_LIMIT ((size_t)1 << 30)
 #define TEXELS_MAX ((size_t)1 << 25)
 #define LEVELS_MAX 17 // of 65535 texels
 
@@ -136,7 +135,7 @@ static glint_status read_picture(const glint_texture_desc *desc, glint_png *png,
 {
     glint_bytes bytes = { 0 };
     glint_error inner;
-    glint_status status = glint_file_read(desc->path, FILE_LIMIT, &bytes, error);
+    glint_status status = glint_file_read_picture(desc->path, &bytes, error);
     if (status)
         return status;
     status = decode(&bytes, png, linear, &inner);

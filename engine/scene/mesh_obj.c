@@ -1,4 +1,5 @@
 /// Wavefront .obj files, a line at a time: nothing but the vertices, normals and faces read so far is kept.
+#include "engine/base/open.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
 
@@ -9,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define LINE_MAX_BYTES ((size_t)1 << 20)
 
@@ -249,17 +251,30 @@ static glint_status make_mesh(reader *r, const glint_mesh_desc *desc, glint_shap
     return status;
 }
 
+static glint_status open_stream(reader *r)
+{
+    int file;
+    uint64_t size;
+    glint_status status = glint_open_file(r->path, &file, &size, r->error);
+    if (status)
+        return status;
+    r->file = fdopen(file, "rb");
+    if (r->file)
+        return GLINT_OK;
+    close(file);
+    return glint_fail_nomem(r->error);
+}
+
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
 {
     reader r = { .path = path, .line_room = 4096, .error = error };
     r.vertices.size = r.normals.size = 3 * sizeof(double);
     r.corners.size = r.corner_normals.size = r.sizes.size = sizeof(uint32_t);
     glint_status status = desc->has_shading ? glint_check_shading(desc->shading, error) : GLINT_OK;
+    if (!status)
+        status = open_stream(&r);
     if (status)
         return status;
-    r.file = fopen(path, "rb");
-    if (!r.file)
-        return glint_fail(error, GLINT_ERR_IO, "%s: %s", path, strerror(errno));
     r.line = malloc(r.line_room);
     r.c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     status = r.line && r.c_locale ? read_lines(&r) : glint_fail_nomem(error);

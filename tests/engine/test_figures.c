@@ -3,6 +3,7 @@
 
 #include <png.h>
 
+#include "engine/file/pfm.h"
 #include "engine/sheet/canvas.h"
 #include "engine/sheet/font.h"
 
@@ -323,6 +324,51 @@ static void put_chunk(glint_bytes *out, const char *type, const uint8_t *body, s
     assert_true(glint_bytes_append(out, sum, 4));
 }
 
+/// A PNG that says it has this size, of RGBA at 16 bits, with `size` bytes of zeros for pixels; `frames` 0: not animated.
+static glint_bytes claim(uint32_t width, uint32_t height, uint32_t frames, size_t size)
+{
+    glint_bytes file = { 0 };
+    uint8_t header[13] = { [8] = 16, 6, 0, 0, 1 }, animation[8] = { 0 }, *zeros = calloc(1, size);
+    for (int i = 0; i < 4; i++) {
+        header[i] = (uint8_t)(width >> (24 - 8 * i));
+        header[4 + i] = (uint8_t)(height >> (24 - 8 * i));
+        animation[i] = (uint8_t)(frames >> (24 - 8 * i));
+    }
+    assert_non_null(zeros);
+    assert_true(glint_bytes_append(&file, "\x89PNG\r\n\x1a\n", 8));
+    put_chunk(&file, "IHDR", header, 13);
+    if (frames)
+        put_chunk(&file, "acTL", animation, 8);
+    put_chunk(&file, "IDAT", zeros, size);
+    put_chunk(&file, "IEND", zeros, 0);
+    free(zeros);
+    return file;
+}
+
+/// What a file claims is held against its bytes before memory is taken.
+static void test_claims(void **state)
+{
+    (void)state;
+    glint_png png;
+    glint_error error;
+    glint_bytes file = claim(GLINT_SIDE_MAX, GLINT_SIDE_MAX, 0, 1000);
+    const uint64_t side = GLINT_SIDE_MAX, raw = (8 * side + 1) * side;
+    assert_int_equal(glint_png_decode(file.data, file.size, &png, &error), GLINT_ERR_FORMAT);
+    assert_non_null(strstr(error.message, "too little data for its size"));
+    assert_int_equal(glint_png_raw_bytes(file.data, file.size), raw);
+    assert_int_equal(glint_png_raw_bytes(file.data, 33), raw); // IHDR is enough
+    assert_int_equal(glint_png_raw_bytes(file.data, 32), 0);
+    file.data[18] ^= 1; // its CRC is wrong now
+    assert_int_equal(glint_png_raw_bytes(file.data, file.size), 0);
+    free(file.data);
+    file = claim(2, 3, 5, 10);
+    assert_int_equal(glint_png_raw_bytes(file.data, file.size), 6 * (2 * 8 + 1) * 3); // five frames and a picture beside
+    free(file.data);
+    const uint8_t pfm[] = "PF\n65535 2\n-1\n";
+    assert_int_equal(glint_pfm_bytes(pfm, sizeof pfm - 1), sizeof pfm - 1 + 65535 * 2 * 3 * 4);
+    assert_int_equal(glint_pfm_bytes(pfm, 5), 0);
+}
+
 static void show_frame(player *p)
 {
     glint_bytes file = { 0 };
@@ -483,7 +529,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(test_draft),          WITH_FOLDER(test_picture_alpha), WITH_FOLDER(test_picture_linear),
-        WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_font),     cmocka_unit_test(test_canvas),
+        WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),
+        cmocka_unit_test(test_font),      cmocka_unit_test(test_canvas),
         WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_refuses), WITH_FOLDER(test_apng),
         WITH_FOLDER(test_apng_refuses),
     };

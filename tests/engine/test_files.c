@@ -216,7 +216,23 @@ static void test_file_write(void **state)
 static void *drain(void *user)
 {
     glint_bytes *bytes = user;
-    return glint_file_read(in_folder("pipe"), 1 << 24, bytes, NULL) ? NULL : user;
+    FILE *pipe = fopen(in_folder("pipe"), "rb");
+    if (!pipe || !glint_bytes_reserve(bytes, 1 << 21))
+        return NULL;
+    bytes->size = fread(bytes->data, 1, bytes->capacity, pipe);
+    fclose(pipe);
+    return user;
+}
+
+static void refuses(const char *path, const char *reason)
+{
+    glint_bytes bytes = { 0 };
+    glint_error error;
+    assert_int_equal(glint_file_read(path, 1 << 24, &bytes, &error), GLINT_ERR_IO);
+    assert_non_null(strstr(error.message, reason));
+    assert_int_equal(glint_file_read_picture(path, &bytes, &error), GLINT_ERR_IO);
+    assert_non_null(strstr(error.message, reason));
+    assert_null(bytes.data);
 }
 
 static void test_file_pipe(void **state)
@@ -236,6 +252,9 @@ static void test_file_pipe(void **state)
     struct stat info;
     assert_int_equal(stat(path, &info), 0);
     assert_true(S_ISFIFO(info.st_mode));
+    refuses(path, "pipe: a file expected, got a pipe"); // without waiting for its writer
+    refuses("/dev/zero", "/dev/zero: a file expected, got a device");
+    refuses(folder, "Is a directory");
     free(bytes.data);
     free(data);
 }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# fuzz.sh NAME...: runs each fuzzer from its corpus for FUZZ_SECONDS (60), and prints a line of TAP for it. What is found is kept in
-# $FUZZ/found/NAME-*, with the program's report above its line; new inputs that reach more code, in $FUZZ/corpus/NAME.
+# fuzz.sh NAME...: runs each fuzzer from its corpus for FUZZ_SECONDS (60) or FUZZ_RUNS inputs, from FUZZ_SEED, and prints
+# a line of TAP for it. What is found is kept in $FUZZ/found/NAME-*, with the program's report above its line; new inputs that
+# reach more code, in $FUZZ/corpus/NAME.
 set -u
 seconds=${FUZZ_SECONDS:-60}
 bad=0
@@ -11,7 +12,8 @@ for name in "$@"; do
     log=$FUZZ/found/$name.log
     dictionary=tests/fuzz/$name.dict
     if "$FUZZ/tests/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=4096 \
-        ${FUZZ_SEED:+-seed=$FUZZ_SEED} $([ -e "$dictionary" ] && echo "-dict=$dictionary") -artifact_prefix="$FUZZ/found/$name-" \
+        ${FUZZ_RUNS:+-runs=$FUZZ_RUNS} ${FUZZ_SEED:+-seed=$FUZZ_SEED} \
+        $([ -e "$dictionary" ] && echo "-dict=$dictionary") -artifact_prefix="$FUZZ/found/$name-" \
         "$FUZZ/corpus/$name" "tests/fuzz/corpus/$name" >"$log" 2>&1; then
         echo "ok - $name: $(grep -E '^Done ' "$log"), $(grep -oE 'cov: [0-9]+' "$log" | tail -n 1)"
     else

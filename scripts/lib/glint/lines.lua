@@ -1,25 +1,50 @@
 -- The lines of a text file one at a time, and errors that say where: every reader of scripts/lib/glint stands on it.
 --     local source = require "glint.lines".open(path)
 --     for line in function() return source:next() end do ... end
--- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the line at hand, nothing else.
+-- An error reads FILE:LINE: WHAT expected, got WHAT. Memory: the line at hand and 64 KiB.
+local glint = require "glint"
 local lines = {}
 
 local source = {}
 source.__index = source
 
 local LONGEST = 40 -- characters of a line that an error shows
+local LINE_MAX = 1 << 20 -- bytes
+local BLOCK = 1 << 16 -- bytes that are read at once
 
 local function shown(text)
   if text == nil then return "the end of the file" end
   return #text > LONGEST and ("%q..."):format(text:sub(1, LONGEST)) or ("%q"):format(text)
 end
 
---- Opens a file. Raises when it cannot be read.
+--- Opens a file, or standard input where the path is "-". Raises when it cannot be read, at once where it is a
+--- device, a pipe or a folder.
 ---@param path string
 function lines.open(path)
-  local file, message = io.open(path, "r")
+  local kind = path ~= "-" and glint._other_kind(path)
+  if kind then error(("%s: a file expected, got a %s"):format(path, kind), 0) end
+  local file, message
+  if path == "-" then file = io.stdin else file, message = io.open(path, "rb") end
   if not file then error(message, 0) end
-  return setmetatable({ path = path, number = 0, file = file }, source)
+  return setmetatable({ path = path, number = 0, file = file, block = "", at = 1 }, source)
+end
+
+-- Where the line at hand ends, once the block has grown until it holds that. After the last block: its end.
+local function line_end(self)
+  while self.file do
+    local rest = self.block:sub(self.at)
+    if #rest > LINE_MAX then
+      self.number = self.number + 1
+      self:fail(("a line of at most %d bytes"):format(LINE_MAX), "a longer one")
+    end
+    local more, message = self.file:read(BLOCK)
+    if message then error(("%s: %s"):format(self.path, message), 0) end
+    if not more then self:close() end
+    self.block, self.at = rest .. (more or ""), 1
+    local to = self.block:find("\n", #rest + 1, true)
+    if to then return to end
+  end
+  return #self.block + 1
 end
 
 --- The next line without its end (LF or CRLF), nil after the last.
@@ -30,15 +55,10 @@ function source:next()
     self.number = self.number + 1
     return line
   end
-  if not self.file then return nil end
-  local line, message = self.file:read "l"
-  if not line then
-    self.file:close()
-    self.file = nil
-    if message then error(("%s: %s"):format(self.path, message), 0) end
-    return nil
-  end
-  self.number = self.number + 1
+  local to = self.block:find("\n", self.at, true) or line_end(self)
+  if not self.file and self.at > #self.block then return nil end
+  local line = self.block:sub(self.at, to - 1)
+  self.at, self.number = to + 1, self.number + 1
   return line:byte(-1) == 13 and line:sub(1, -2) or line
 end
 
@@ -89,8 +109,8 @@ end
 
 --- Closes the file before its end.
 function source:close()
-  if self.file then self.file:close() end
-  self.file, self.held = nil, nil
+  if self.file and self.file ~= io.stdin then self.file:close() end
+  self.file, self.held, self.block, self.at = nil, nil, "", 1
 end
 
 return lines

@@ -2,6 +2,7 @@
 -- a scene requires, runs or loads as a model is looked for in its folder, the folder above, and the working directory;
 -- what it reads through io, in the working directory first.
 local check = require "gr.check"
+local glint = require "glint"
 check.own_source()
 local files = {}
 
@@ -34,6 +35,7 @@ end
 function files.running() return running end
 
 local function can_read(path)
+  if glint._other_kind(path) then return false end -- a pipe would wait
   local file = open(path, "rb")
   local readable = file and file:read(0) ~= nil or file and file:seek "end" == 0 -- a folder opens, too
   if file then file:close() end

@@ -6,12 +6,18 @@ local files = require "gr.files"
 check.own_source()
 local obj = {}
 
-local lines, tonumber = io.lines, tonumber
+local lines, open, tonumber = io.lines, io.open, tonumber
 local raise, tointeger = check.raise, math.tointeger
+
+local MODEL_MAX = 1 << 30
 
 local function find(call, path)
   local found, places = files.find(path)
   if not found then raise("%s: '%s': no such file; looked for %s", call, path, places) end
+  local file <close> = open(found, "rb")
+  if file and file:seek "end" > MODEL_MAX then
+    raise("%s: %s: a model of at most %d bytes expected", call, found, MODEL_MAX)
+  end
   return found
 end
 

@@ -1,0 +1,14 @@
+/// Opening files that are read, and what errno says of them. Internal.
+#ifndef GLINT_BASE_OPEN_H
+#define GLINT_BASE_OPEN_H
+
+#include "engine/glint.h"
+
+/// Fills `error` with "<path>: <reason>" for an errno, and returns its status: GLINT_ERR_NO_SPACE, _NOMEM or _IO.
+glint_status glint_file_fail(glint_error *error, const char *path, int code);
+
+/// Opens a file for reading; *file is the caller's to close, *size its bytes. A device, a pipe or a folder may have no end,
+/// or keep its reader waiting: it is GLINT_ERR_IO at once.
+glint_status glint_open_file(const char *path, int *file, uint64_t *size, glint_error *error);
+
+#endif

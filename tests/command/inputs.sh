@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# What has no end, keeps its reader waiting or says that it is larger than it is, given wherever a file is read: refused at once, and
+# with little memory.
+. tests/command/prelude.sh
+cd "$work" || exit 1
+seconds=5
+memory_kib=400000 # of address space: a picture in memory is far less, what the files below claim is far more
+
+mkfifo pipe pipe.png pipe.pfm pipe.obj
+mkdir folder folder.png folder.pfm folder.obj
+for kind in png pfm obj; do
+    ln -s /dev/zero device.$kind
+    truncate -s 20G huge.$kind
+done
+truncate -s 20G huge.xyz
+cat >scene.lua <<'LUA'
+local glint = require "glint"
+return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,
+  glint.sphere { center = { 0, 0, 0 }, radius = 2 } }
+LUA
+"$glint" scene.lua --size 8x8 -o good.png -q && "$glint" scene.lua --size 8x8 -o good.pfm -q
+head -c 60 good.png >begun.png && truncate -s 15G begun.png
+head -c 12 good.pfm >begun.pfm && truncate -s 15G begun.pfm
+
+# What a run may take of memory: a sanitizer maps terabytes.
+limited() {
+    if [[ $build = *-asan ]]; then "$@"; else (ulimit -v $memory_kib && exec "$@"); fi
+}
+# refused NAME PATTERN ARGUMENTS...: an error that matches, within its time
+refused() {
+    local name=$1 pattern=$2
+    shift 2
+    limited timeout $seconds "$glint" "$@" >out 2>err </dev/null
+    local code=$?
+    [ $code -gt 0 ] && [ $code -lt 100 ] && grep -qE -- "$pattern" err
+    result $? "$name: exit $code"
+}
+# script NAME PATTERN LINE...: a script with these lines
+script() {
+    local name=$1 pattern=$2
+    shift 2
+    printf '%s\n' "$@" >try.lua
+    refused "$name" "$pattern" try.lua -o none
+}
+
+for kind in png pfm; do
+    refused "compare with a device, .$kind" "device.$kind: a file expected, got a device" compare good.$kind device.$kind
+    refused "compare with a pipe, .$kind" "pipe.$kind: a file expected, got a pipe" compare pipe.$kind good.$kind
+    refused "compare with a folder, .$kind" "folder.$kind: Is a directory" compare good.$kind folder.$kind
+    refused "compare with a huge file, .$kind" "huge.$kind: not a " compare good.$kind huge.$kind
+    refused "compare with what only begins as a picture, .$kind" "begun.$kind: larger than [0-9]+ bytes" compare begun.$kind good.$kind
+done
+for bad in device pipe folder huge begun; do
+    refused "a sheet of a $bad" "$bad.png: " sheet good.png $bad.png -o sheet.png
+    refused "a page of a $bad" "$bad.png: " sheet good.png $bad.png -o sheet.html
+    refused "a film of a $bad" "$bad.png: " assemble good.png $bad.png -o film.apng
+    refused "reproduce of a $bad" "$bad.png: " reproduce $bad.png scene.lua
+    script "a texture of a $bad" "$bad.png: " 'local glint = require "glint"' "return glint.texture { file = '$bad.png' }"
+done
+for bad in device pipe folder huge; do
+    script "a mesh of a $bad" "$bad.obj: " 'local glint = require "glint"' "return glint.mesh { file = '$bad.obj' }"
+done
+export LUA_PATH="$root/scripts/lib/?.lua;;"
+for reader in xyz pdb lammps points; do
+    for bad in pipe folder /dev/zero; do
+        script "glint.$reader of $bad" "$bad: a file expected, got a (pipe|folder|device)" "require 'glint.$reader'.frame('$bad')"
+    done
+    script "glint.$reader of a huge file" 'huge.xyz:1: a line of at most 1048576 bytes expected' \
+        "for _ in require 'glint.$reader'.frame('huge.xyz'):atoms() do end"
+done
+script "glint.nff of a pipe" "pipe: a file expected, got a pipe" "require 'glint.nff'.load 'pipe'"
+for bad in pipe device.obj folder.obj huge.obj; do
+    echo "gr.mesh('m', '$bad')" >course.lua
+    refused "a course's scene with the model $bad" "'$bad': no such file|huge.obj: a model of at most" --dialect gr course.lua
+done
+
+# ---- The script itself ----
+
+for bad in pipe folder /dev/zero huge.xyz; do
+    for command in render explain describe cost; do
+        refused "$command $bad" "(a script expected, got a (pipe|folder|device)|unexpected symbol)" $command "$bad"
+    done
+done
+refused "reproduce with a pipe for a script" "pipe: a script expected, got a pipe" reproduce good.png pipe
+limited timeout $seconds "$glint" - --size 8x8 -o piped.png -q <scene.lua >out 2>err && "$glint" compare piped.png good.png >out
+result $? "a script from standard input"
+refused "which is there once" "standard input is for render and explain" - --sweep a=1:2:2 -o none
+refused "and has no folder" "standard input is for render and explain" describe -
+printf '1\nfrom stdin\nH 1 2 3\n' >atom.xyz
+printf '%s\n' 'local frame = require "glint.xyz".frame "-"' 'local label, x = frame:atoms()()' 'assert(label == "H" and x == 1)' \
+    'return dofile "scene.lua"' >try.lua
+limited timeout $seconds "$glint" try.lua --size 8x8 -o none -q <atom.xyz >out 2>err
+result $? "atoms from standard input"
+totals
