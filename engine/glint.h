@@ -524,7 +524,7 @@ typedef struct glint_shape_desc {
     glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none
     glint_transform transform; ///< of the shape as described here; default identity; must be possible to undo
     bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
-    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius): finite, radius > 0
+    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius): finite, radius > 0; see glint_scene_cast
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
     double base[3], top[3]; ///< cylinder, cone: the middles of its ends; the cone's top is its apex; not the same place
@@ -691,7 +691,8 @@ typedef struct glint_hit {
     size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, which triangle of a mesh, from 0
 } glint_hit;
 
-/// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero.
+/// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero. Spheres and
+/// round solids below 1e-150 in the world, or of their distance from `origin`, are refused; so are they in a frame, by the eye.
 /// *hit tells whether there is one; *out is written only then.
 glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], const double direction[3], bool *hit,
                               glint_hit *out, glint_error *error);

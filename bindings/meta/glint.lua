@@ -305,7 +305,7 @@ function glint.matrix(numbers) end
 
 ---@class glint.sphere_fields: glint.shape_fields
 ---@field center glint.vec3  world units
----@field radius number  world units, > 0
+---@field radius number  world units, > 0; in a frame 1e-150 and more, of the distance from the eye too
 
 ---@class glint.sphere: glint.sphere_fields
 ---@field x number  of center

@@ -76,6 +76,8 @@ glint_status glint_scene_cast(const glint_scene *scene, const double origin[3], 
     glint_geometry_table table;
     status = glint_geometry_of(scene, &geometry, error);
     if (!status)
+        status = glint_geometry_check_reach(geometry, "origin", origin, error);
+    if (!status)
         status = glint_geometry_index(geometry, NULL, &table, error);
     if (!status) {
         g->active = 1;

@@ -8,7 +8,7 @@
 /// A shape where it stands: the map of all groups around it, NULL where there is none but the identity.
 typedef struct glint_placing {
     const glint_transform *map;
-    double cofactors[3][3], determinant; ///< of it
+    double cofactors[3][3], determinant; ///< of it, scaled by a power of two
     bool similar; ///< it keeps angles
 } glint_placing;
 

@@ -403,6 +403,8 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
     const glint_geometry *last = scene->geometry;
     glint_status status = glint_geometry_fill(geometry, scene, error);
     if (!status)
+        status = glint_geometry_check_sizes(geometry, error);
+    if (!status)
         status = find_repeats(geometry, error);
     if (status)
         return status;

@@ -53,6 +53,7 @@ struct glint_geometry {
     glint_bvh others; ///< of what is neither triangle nor plane, built on first use
     bool has_others; ///< `others` is built
     uint32_t triangle_count;
+    double thinnest; ///< least size of what is curved, world units; infinite: nothing is
     uint32_t id_count; ///< primitives that were described, repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
     glint_key where, look; ///< of the places; of materials and sides
@@ -78,6 +79,11 @@ uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 
 /// geometry/prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
+/// geometry/sizes.c: refuses what is too small or too large for the squares that the kernels take of it. Fills `thinnest`.
+glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *error);
+/// Refuses what is too small for rays from a place to meet it. who: the place, for the message.
+glint_status glint_geometry_check_reach(const glint_geometry *geometry, const char *who, const double from[3],
+                                        glint_error *error);
 /// All that a primitive's place is made of. Returns how many numbers.
 enum { GLINT_PLACE_MAX = 50 };
 int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX]);

@@ -184,22 +184,27 @@ static void bound_solid(const glint_prim *prim, const glint_placing *place, glin
                          (fmax(fabs(lower[i % 3]), fabs(upper[i % 3])) + fabs(prim->center[i % 3]));
 }
 
+/// By a power of two, so that no product of two of its numbers overflows or is lost. Returns the factor.
+static double scale_linear(double m[3][3])
+{
+    const double scale = power_of_two_scale(fmax(vec_max_abs(m[0]), fmax(vec_max_abs(m[1]), vec_max_abs(m[2]))));
+    for (int c = 0; c < 3; c++)
+        vec_scale(m[c], m[c], scale);
+    return scale;
+}
+
 /// faces: of it, not yet bounded.
 static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *map,
                        const glint_placing *place, glint_face *faces)
 {
-    double cofactors[3][3], scaled[3][3], largest = 0;
+    double cofactors[3][3], scaled[3][3];
     prim->kind = GLINT_PRIM_SOLID;
     solid->form = form;
     glint_transform_linear(map, solid->forward);
-    for (int c = 0; c < 3; c++) {
-        prim->center[c] = map->m[c][3] + 0.0;
-        largest = fmax(largest, vec_max_abs(solid->forward[c]));
-    }
-    const double scale = power_of_two_scale(largest);
     for (int c = 0; c < 3; c++)
-        vec_scale(scaled[c], solid->forward[c], scale);
-    const double determinant = glint_linear_cofactors(scaled, cofactors);
+        prim->center[c] = map->m[c][3] + 0.0;
+    memcpy(scaled, solid->forward, sizeof scaled);
+    const double scale = scale_linear(scaled), determinant = glint_linear_cofactors(scaled, cofactors);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             solid->inverse[i][j] = cofactors[j][i] / determinant * scale;
@@ -425,6 +430,7 @@ static glint_status add_shape(filler *f, glint_shape *shape, const glint_transfo
     if (status)
         return status;
     glint_transform_linear(&map, linear);
+    scale_linear(linear);
     place.determinant = glint_linear_cofactors(linear, place.cofactors);
     double factor = 1;
     place.similar = !place.map || glint_transform_similar(&map, &factor);

@@ -133,6 +133,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
     if (!status)
+        status = glint_geometry_check_reach(plan->geometry, "camera.eye", plan->camera.eye, error);
+    if (!status)
         status = glint_plan_find_patterns(plan, scene->desc.has_indirect && scene->desc.indirect_bounces > 0, error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);

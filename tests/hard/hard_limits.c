@@ -117,6 +117,8 @@ static void huge_vector(double v[3], double reach)
         v[c] = chance(0.3) ? 0 : (chance(0.5) ? -1 : 1) * log_uniform(1 / reach, reach);
 }
 
+static double largest(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
+
 /// A scene valid on input, of numbers from the smallest to the largest; some are left as they were.
 static glint_scene *extreme_scene(void)
 {
@@ -140,7 +142,7 @@ static glint_scene *extreme_scene(void)
         must(glint_material_create(&desc, &material, &error), &error);
         huge_vector(ball.c, reach);
         huge_vector(floor.p, reach);
-        ball.r = log_uniform(1 / reach, reach);
+        ball.r = log_uniform(fmax(1 / reach, 2e-150 * fmax(largest(ball.c), largest(camera.eye))), reach);
         scene_sphere(scene, &ball, material);
         if (chance(0.3))
             scene_plane(scene, &floor, material);
@@ -229,6 +231,119 @@ static void check_written(void)
     remove(path);
     glint_image_release(image);
     glint_scene_release(scene);
+}
+
+// ---- The smallest and the farthest ----
+
+/// A shape about the origin, as wide and as deep as 2 `size`, whose top a ray down the z axis meets at z = size.
+static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
+{
+    static const double x[3] = { 1, 0, 0 }, z[3] = { 0, 0, 1 };
+    glint_error error;
+    glint_shape *shape;
+    glint_shape_desc desc = glint_shape_desc_default(kind);
+    const double own = mapped ? 1 : size, by[3] = { size, size, size };
+    desc.radius = own;
+    for (int c = 0; c < 3; c++) {
+        const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // of a cylinder, its side is met
+        desc.center[c] = kind == GLINT_SHAPE_DISK ? own * z[c] : 0;
+        desc.normal[c] = z[c];
+        desc.base[c] = -own * along[c];
+        desc.top[c] = own * along[c];
+    }
+    snprintf(desc.name, sizeof desc.name, "mite");
+    if (mapped)
+        desc.transform = glint_transform_scale(by);
+    must(glint_shape_create(&desc, &shape, &error), &error);
+    return shape;
+}
+
+static bool says(const glint_error *error, const char *shape, const char *what)
+{
+    return strstr(error->message, shape) && strstr(error->message, what) && strstr(error->message, "expected");
+}
+
+static const char *const size_names[] = { [GLINT_SHAPE_SPHERE] = "sphere 'mite'",
+                                          [GLINT_SHAPE_DISK] = "disk 'mite'",
+                                          [GLINT_SHAPE_CYLINDER] = "cylinder 'mite'",
+                                          [GLINT_SHAPE_CONE] = "cone 'mite'" };
+
+/// Whether a frame of one pixel shows the scene's first object. thin: it need not.
+static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, const char *name, const char *refused)
+{
+    const glint_render_desc desc = { .width = 1, .height = 1, .samples = 1, .passes = 1u << GLINT_PASS_OBJECT_ID,
+                                     .tone = glint_tone_desc_default() };
+    glint_camera_desc camera = glint_camera_desc_default();
+    glint_error error;
+    glint_plan *plan = NULL;
+    memcpy(camera.eye, ray->o, sizeof camera.eye);
+    memset(camera.at, 0, sizeof camera.at);
+    scene_camera(scene, &camera);
+    const glint_status status = glint_plan_create(scene, &desc, &plan, &error);
+    bool right = refused && status && says(&error, name, refused);
+    if (!status && !refused) {
+        const frame_desc one_pixel = { 1, 1, GLINT_DOUBLE, desc.passes, 1, NULL };
+        glint_image *image = frame(scene, &one_pixel, NULL);
+        float id[3];
+        pixel(image, GLINT_PASS_OBJECT_ID, 0, 0, id);
+        right = id[0] == 1 || thin;
+        glint_image_release(image);
+    }
+    hard_check(right, "%s seen from %g: %s", name, ray->o[2], status ? error.message : "rendered");
+    glint_plan_destroy(plan);
+}
+
+/// Casts and renders from `distance` over the origin: met with the right t and seen, or refused by both with the reason.
+static void check_size(glint_shape_kind kind, bool mapped, double size, double distance, const char *refused)
+{
+    const hard_ray ray = { { 0, 0, distance }, { 0, 0, -1 } };
+    const char *const name = size_names[kind];
+    glint_error error;
+    glint_shape *shape = small_shape(kind, mapped, size);
+    glint_scene *scene = scene_new();
+    must(glint_scene_add_shape(scene, shape, &error), &error);
+    bool hit = false;
+    glint_hit got = { 0 };
+    const glint_status status = glint_scene_cast(scene, ray.o, ray.d, &hit, &got, &error);
+    // a cone's side and base are rounded each by itself: thinner than that, they may part
+    const bool thin = kind == GLINT_SHAPE_CONE && size < 0x1p-50 * distance;
+    const bool right = hit ? fabs(got.t / (distance - size) - 1) <= 0x1p-51 : thin;
+    const bool told = refused && status == GLINT_ERR_INVALID && says(&error, name, refused);
+    hard_check(refused ? told : !status && right, "%s of %g at %g: %s, t %g", name, size, distance,
+               status ? error.message
+               : hit  ? "hit"
+                      : "miss",
+               got.t);
+    check_frame_of(scene, &ray, thin, name, refused);
+    glint_shape_release(shape);
+    glint_scene_release(scene);
+}
+
+/// What is smaller than 1e-150 of its distance, or in the world, is refused with the reason; up to there all is met.
+static void check_small(void)
+{
+    hard_test("S25", "the smallest spheres and solids, the farthest");
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
+                                              GLINT_SHAPE_CONE };
+    for (int k = 0; k < 8; k++) {
+        const glint_shape_kind kind = kinds[k / 2];
+        const bool mapped = k % 2, ball = kind == GLINT_SHAPE_SPHERE;
+        const char *const width = ball ? "radius >= 1e-150" : "half widths 1e-150 .. 1e+150";
+        const bool wide = kind == GLINT_SHAPE_DISK || (ball && !mapped);
+        for (double size = 1e-140; size < 1e-9; size *= 1e10)
+            check_size(kind, mapped, size, 5, NULL);
+        check_size(kind, mapped, 6e-150, 5, NULL);
+        check_size(kind, mapped, 1.1e-150, 5e-150, NULL);
+        check_size(kind, mapped, 1, 0.9e150, NULL);
+        check_size(kind, mapped, 0.4e150, 5e150, NULL);
+        check_size(kind, mapped, 4e-150, 5, "no ray from");
+        check_size(kind, mapped, 1, 1.1e150, "no ray from");
+        check_size(kind, mapped, 1e-145, 1e10, "no ray from");
+        for (double size = 1e-151; size > 1e-200; size /= 1e10)
+            check_size(kind, mapped, size, 5, width);
+        check_size(kind, mapped, 1.1e150, 5e150, ball || wide ? NULL : "half widths");
+        check_size(kind, mapped, 1e160, 5e160, wide ? NULL : "half widths");
+    }
 }
 
 // ---- Sizes and counts ----
@@ -389,6 +504,7 @@ int main(int argc, char **argv)
     check_machines(soak ? 100 : 6);
     check_finite(hard_rays / 500);
     check_written();
+    check_small();
     check_sides();
     check_lights(1000000);
     check_crowd(soak ? 1000000 : 100000);

@@ -87,9 +87,10 @@ INNER void R(cut_round)(R(span) * span, const vr f[3], const vr e[3], bool ball,
     const rm ahead = r_le(zero, b), along = rm_andnot(r_le(a, zero), r_lt(a, zero));
     const vr q = r_select(ahead, b + s, b - s);
     const vr far = q / a, other = c / q;
-    // along the axis of a cylinder: all of it or nothing
-    span->t[0] = r_select(along, r_set(-HUGE_VAL), r_select(ahead, other, far));
-    span->t[1] = r_select(along, r_set(HUGE_VAL), r_select(ahead, far, other));
+    // along the axis of a cylinder: all of it or nothing. In order though they were rounded: what is seen from afar may be
+    // thinner than that
+    span->t[0] = r_select(along, r_set(-HUGE_VAL), r_min(far, other));
+    span->t[1] = r_select(along, r_set(HUGE_VAL), r_max(far, other));
     span->hit = rm_or(rm_and(along, r_le(c, zero)), rm_andnot(r_le(zero, disc), along));
 }
 

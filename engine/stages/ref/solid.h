@@ -76,8 +76,7 @@ static NAME(passage) NAME(pass_round)(NAME(vec3) f, NAME(vec3) e, bool ball, dou
     REAL disc = b * b < a ? b * b - a * c : a - across;
     REAL s = NAME(square_root)(NAME(max)(disc, 0));
     REAL q = b >= 0 ? b + s : b - s, far = q / a, other = c / q;
-    return (
-        NAME(passage)) { .hit = disc >= 0, .in = { .t = b >= 0 ? other : far }, .out = { .t = b >= 0 ? far : other } };
+    return (NAME(passage)) { .hit = disc >= 0, .in = { .t = NAME(min)(far, other) }, .out = { .t = NAME(max)(far, other) } };
 }
 
 static NAME(passage) NAME(pass_cone)(NAME(vec3) from, NAME(vec3) e, double places)
