@@ -79,10 +79,10 @@ ifneq ($(if $(PORTABLE),,$(findstring x86_64,$(shell $(CC) -dumpmachine))),x86_6
 endif
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
-COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o # the command has them, the module has not
+COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
 MODULE_OBJ   := $(filter-out $(COMMAND_OBJ),$(BINDINGS_OBJ))
 TEST_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/engine/test_*.c)))
-TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes
+TEST_TOOLS   := $(BUILD)/tests/compare16 $(BUILD)/tests/gr/codes $(if $(COMMAND_LIBS),$(BUILD)/tests/command/walls)
 HARD_BIN     := $(patsubst %.c,$(BUILD)/%,$(sort $(wildcard tests/hard/hard_*.c)))
 HARD_OBJ     := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/hard/oracle/*.c)))
 KERNEL_OBJ   := $(filter $(BUILD)/engine/stages/ref/ref.o $(BUILD)/engine/stages/simd/isa_%.o,$(ENGINE_OBJ))
@@ -175,6 +175,12 @@ $(BUILD)/tests/%: tests/%.c $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
+
+# The walls of --untrusted, attacked from the inside.
+$(BUILD)/tests/command/walls: tests/command/walls.c $(BUILD)/bindings/command/walls.o
+	@mkdir -p $(@D)
+	$(call say,CC)
+	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -MMD -MP $< $(BUILD)/bindings/command/walls.o $(LINK) $(LIBS) $(COMMAND_LIBS) -o $@
 
 # The hard cases: each hard_*.c is a program, the others are what they share. They use the public API alone.
 $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags

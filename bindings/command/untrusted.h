@@ -12,6 +12,14 @@
 /// To be called before there are threads. options->request.folder is the folder, owned by it; NULL: none.
 bool cli_untrusted_begin(cli_options *options, cli_output *output, int *code, int *signal_number);
 
+// ---- walls.c ----
+
+#define CLI_UNTRUSTED_FILE ((uint64_t)1 << 30) ///< bytes of one file
+
+/// Takes from this process what an untrusted script has no need of: descriptors but 0 (which reads nothing), 1, 2 and `data`,
+/// files but the script and options->request.folder, calls, memory. False: the message says why.
+bool cli_untrusted_walls(const cli_options *options, int data, char *message);
+
 // ---- untrusted_lua.c ----
 
 /// A state that fails for want of memory beyond memory->most, which outlives it. NULL: out of memory.

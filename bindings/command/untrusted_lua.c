@@ -9,18 +9,26 @@
 
 // ---- Memory ----
 
+// What malloc takes for a block: its size and a header, in steps of two words, four at least.
+static size_t taken(size_t size)
+{
+    const size_t word = sizeof(size_t), whole = (size + word + 2 * word - 1) & ~(2 * word - 1);
+    return size == 0 ? 0 : whole > 4 * word ? whole : 4 * word;
+}
+
 static void *allocate(void *context, void *block, size_t old_size, size_t size)
 {
     cli_lua_memory *memory = context;
     if (!block)
         old_size = 0; // it says what the block is for
-    if (size > old_size && size - old_size > memory->most - memory->used)
+    const size_t before = taken(old_size), after = taken(size);
+    if (after > before && after - before > memory->most - memory->used)
         return NULL;
     void *grown = size ? realloc(block, size) : NULL;
     if (!size)
         free(block);
     if (grown || !size)
-        memory->used += size - old_size;
+        memory->used += after - before;
     return grown;
 }
 

@@ -1,6 +1,7 @@
 // The run of a Lua state, as all files find it, and its first failure.
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 #include "bindings/run/run.h"
@@ -64,7 +65,9 @@ bool glintL_run_fail(glintL_run *run, int exit_code, int64_t index, const char *
     va_start(args, format);
     vsnprintf(run->message, sizeof run->message, format, args);
     va_end(args);
-    run->exit_code = exit_code;
+    // Of an untrusted script the limit of memory is one of those that it must keep.
+    const bool is_short = run->request.is_untrusted && strstr(run->message, "out of memory");
+    run->exit_code = is_short ? GLINTL_EXIT_USAGE : exit_code;
     run->failed_index = index;
     return false;
 }
