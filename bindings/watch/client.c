@@ -21,7 +21,8 @@ watch_client *watch_client_create(int socket)
     if (!c)
         return NULL;
     c->socket = socket;
-    c->until_ms = glintL_now_ms() + REQUEST_MS;
+    c->since_ms = glintL_now_ms();
+    c->until_ms = c->since_ms + REQUEST_MS;
     return c;
 }
 

@@ -11,6 +11,7 @@ typedef struct watch_client {
     int socket;
     bool listens; ///< to events
     bool lingers; ///< all is sent; what still comes is read, or closing would take the reply away
+    double since_ms; ///< when it came
     double until_ms; ///< when it is given up; 0: never
     size_t got, sent, size;
     char request[WATCH_REQUEST_MAX + 1];

@@ -4,7 +4,7 @@
 //   GET  /TOKEN/events      server-sent events: the state, at once and whenever it changes
 //   GET  /TOKEN/picture     the last good picture, PNG; what follows a '?' only tells pictures apart
 //   POST /TOKEN/frame       body: the number of the frame to show
-//   POST /TOKEN/set         body: name=value, as --set takes it
+//   POST /TOKEN/set         body: name=value, as --set takes it, of a parameter that the script has
 //   POST /TOKEN/reset       parameters as the command line has them
 //
 // Anything else is 404. The token is random, so that other users and pages of other sites cannot guess it.
@@ -95,16 +95,21 @@ static const char *header(const char *head, const char *name)
     return NULL;
 }
 
-// A name that another site's page has pointed to this machine is not ours.
-static bool is_own_host(const watch_server *server, const char *head)
+static bool is_own_name(const watch_server *server, const char *host)
 {
-    const char *host = header(head, "Host"), *port = strchr(server->host, ':');
-    size_t length = host ? strcspn(host, "\r\n") : 0;
-    if (!host)
-        return false;
+    const char *port = strchr(server->host, ':');
+    const size_t length = strcspn(host, "\r\n");
     return (length == strlen(server->host) && strncmp(host, server->host, length) == 0) ||
            (length == 9 + strlen(port) && strncmp(host, "localhost", 9) == 0 &&
             strncmp(host + 9, port, length - 9) == 0);
+}
+
+// A name that another site's page has pointed to this machine is not ours, nor is a page of another origin.
+static bool is_own_page(const watch_server *server, const char *head)
+{
+    const char *host = header(head, "Host"), *origin = header(head, "Origin");
+    return host && is_own_name(server, host) &&
+           (!origin || (strncmp(origin, "http://", 7) == 0 && is_own_name(server, origin + 7)));
 }
 
 static bool take_order(watch_server *server, watch_client *c, const char *what, char *body)
@@ -118,10 +123,11 @@ static bool take_order(watch_server *server, watch_client *c, const char *what, 
         orders->frame(orders->context, frame);
     } else if (strcmp(what, "set") == 0) {
         char *equals = strchr(body, '=');
-        if (!equals || equals == body || equals - body >= GLINT_NAME_SIZE)
+        if (!equals)
             return watch_client_say(c, "400 Bad Request");
         *equals = '\0';
-        orders->set(orders->context, body, equals + 1);
+        if (!orders->set(orders->context, body, equals + 1))
+            return watch_client_say(c, "404 Not Found");
     } else if (strcmp(what, "reset") == 0) {
         orders->reset(orders->context);
     } else {
@@ -136,7 +142,7 @@ static bool answer(watch_server *server, watch_client *c, char *body)
     char *path = strchr(c->request, ' '), *end = path ? strpbrk(path + 1, " \r\n") : NULL;
     if (!path || !end || *end != ' ')
         return watch_client_say(c, "400 Bad Request");
-    if (!is_own_host(server, c->request))
+    if (!is_own_page(server, c->request))
         return watch_client_say(c, "403 Forbidden");
     *path++ = *end = '\0';
     char *query = strchr(path, '?');
@@ -195,12 +201,29 @@ static bool read_client(watch_server *server, watch_client *c)
     return take_request(server, c);
 }
 
+// How much is lost when a client is let go: nothing of one that has requested nothing, or has its reply.
+static int worth(const watch_client *c) { return c->lingers ? 0 : c->size == 0 ? 1 : c->listens ? 2 : 3; }
+
+// Makes room for one more: lets the least go, of those the one that came first.
+static void make_room(watch_server *server)
+{
+    int least = 0;
+    for (int i = 1; i < server->count; i++) {
+        const watch_client *c = server->clients[i], *other = server->clients[least];
+        if (worth(c) < worth(other) || (worth(c) == worth(other) && c->since_ms < other->since_ms))
+            least = i;
+    }
+    if (server->count == CLIENTS_MAX)
+        close_client(server, least);
+}
+
 static void accept_client(watch_server *server)
 {
     int socket = glintL_accept(server->listener);
     if (socket < 0)
         return;
-    watch_client *c = server->count < CLIENTS_MAX ? watch_client_create(socket) : NULL;
+    make_room(server);
+    watch_client *c = watch_client_create(socket);
     if (c)
         server->clients[server->count++] = c;
     else

@@ -32,6 +32,7 @@ void watch_requests_close(watch_requests *requests)
 {
     glintL_wake_close(&requests->wake);
     watch_free_sets(requests->overrides, requests->override_count);
+    free(requests->names);
     pthread_mutex_destroy(&requests->lock);
 }
 
@@ -94,15 +95,35 @@ static bool put(glintL_set **sets, size_t *count, const char *name, const char *
     return true;
 }
 
-static void request_set(void *context, const char *name, const char *text)
+void watch_requests_know(watch_requests *requests, char *names)
+{
+    pthread_mutex_lock(&requests->lock);
+    free(requests->names);
+    requests->names = names;
+    pthread_mutex_unlock(&requests->lock);
+}
+
+// The lock is held.
+static bool is_name(const watch_requests *requests, const char *name)
+{
+    const size_t length = strlen(name);
+    const char *at = length && !strchr(name, '\n') ? requests->names : NULL;
+    while (at && (at = strstr(at, name)) && !(at[-1] == '\n' && at[length] == '\n'))
+        at += length;
+    return at != NULL;
+}
+
+static bool request_set(void *context, const char *name, const char *text)
 {
     watch_requests *requests = context;
     pthread_mutex_lock(&requests->lock);
-    if (put(&requests->overrides, &requests->override_count, name, text, false)) {
+    const bool is_known = is_name(requests, name);
+    if (is_known && put(&requests->overrides, &requests->override_count, name, text, false)) {
         requests->script = true;
         post(requests, false);
     }
     pthread_mutex_unlock(&requests->lock);
+    return is_known;
 }
 
 static void request_reset(void *context)

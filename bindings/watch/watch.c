@@ -241,10 +241,23 @@ static void take_renderer(watcher *w, quality now)
     w->now = now;
 }
 
+// Prints the parameters as JSON, and returns their names, each between two line breaks.
 static int params_protected(lua_State *L)
 {
+    luaL_Buffer names;
     cli_print_params(L, lua_touserdata(L, 1));
-    return 0;
+    glintL_push_params(L);
+    luaL_buffinit(L, &names);
+    luaL_addchar(&names, '\n');
+    for (lua_Integer i = 1, count = luaL_len(L, 2); i <= count; i++) {
+        lua_rawgeti(L, 2, i);
+        lua_getfield(L, -1, "name");
+        lua_remove(L, -2);
+        luaL_addvalue(&names);
+        luaL_addchar(&names, '\n');
+    }
+    luaL_pushresult(&names);
+    return 1;
 }
 
 static void keep_params(watcher *w)
@@ -253,17 +266,21 @@ static void keep_params(watcher *w)
     size_t size = 0;
     lua_State *L = w->script.state;
     FILE *out = open_memstream(&text, &size);
-    if (!out || !L)
+    if (!out)
         return;
     lua_pushcfunction(L, params_protected);
     lua_pushlightuserdata(L, out);
-    bool good = lua_pcall(L, 1, 0, 0) == LUA_OK;
+    const bool good = lua_pcall(L, 1, 1, 0) == LUA_OK;
+    char *names = good ? strdup(lua_tostring(L, -1)) : NULL;
+    lua_pop(L, 1);
     text = glintL_close_text(out, &text);
-    if (text && good) {
+    if (text && names) {
         free(w->params);
         w->params = text;
+        watch_requests_know(&w->requests, names);
     } else {
         free(text);
+        free(names);
     }
 }
 
@@ -331,7 +348,7 @@ static bool render(watcher *w, quality now, bool run_again)
         good = run_script(w, now);
         has_jobs = good && w->script.has_jobs;
         w->calls = w->run->count;
-        if (good || w->script.state)
+        if (good) // else the page keeps its controls, to set right what is wrong
             keep_params(w);
     } else {
         begin_run(w, now);

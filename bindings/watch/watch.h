@@ -65,7 +65,7 @@ typedef struct watch_server watch_server;
 typedef struct watch_orders {
     void *context;
     void (*frame)(void *context, int64_t frame);
-    void (*set)(void *context, const char *name, const char *text);
+    bool (*set)(void *context, const char *name, const char *text); ///< false: the script has no such parameter
     void (*reset)(void *context);
 } watch_orders;
 
@@ -103,7 +103,8 @@ typedef struct watch_requests {
     char changed[GLINTL_PATH_SIZE]; ///< a file that has; "": none
     double since_ms; ///< of the first request that waits
     int64_t wanted; ///< frame to show
-    glintL_set *overrides; ///< owned with their texts
+    char *names; ///< of the script's parameters, each between two line breaks; owned. NULL: not known yet
+    glintL_set *overrides; ///< owned with their texts; of such names alone
     size_t override_count;
     atomic_bool supersedes; ///< the running script is of no use any more
     glint_renderer *rendering; ///< what may be cancelled; else NULL
@@ -114,6 +115,8 @@ bool watch_requests_open(watch_requests *requests, char message[GLINTL_MESSAGE_S
 void watch_requests_close(watch_requests *requests);
 void watch_requests_change(void *requests, const char *path); ///< of watch_files
 watch_orders watch_requests_orders(watch_requests *requests);
+/// Takes the names of the parameters that the page may set; `names` is owned from then on.
+void watch_requests_know(watch_requests *requests, char *names);
 typedef struct watch_request {
     bool run_again; ///< the script; else only another frame is shown
     double since_ms; ///< when it was made

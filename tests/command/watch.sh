@@ -161,9 +161,10 @@ url=$(sed -n 's/.*"url":"http:\/\/\([^"]*\)".*/\1/p' events)
 host=${url%%/*} path=/${url#*/}
 port=${host#*:}
 
-ask() { # METHOD PATH [BODY] [HOST]: prints the reply
+ask() { # METHOD PATH [BODY] [HOST] [ORIGIN]: prints the reply
     exec 5<>"/dev/tcp/127.0.0.1/$port" || return
-    printf '%s %s HTTP/1.1\r\nHost: %s\r\nContent-Length: %d\r\n\r\n%s' "$1" "$2" "${4:-$host}" "${#3}" "$3" >&5
+    printf '%s %s HTTP/1.1\r\nHost: %s\r\nOrigin: %s\r\nContent-Length: %d\r\n\r\n%s' \
+        "$1" "$2" "${4:-$host}" "${5:-http://$host}" "${#3}" "$3" >&5
     timeout 5 cat <&5
     exec 5<&- 5>&-
 }
@@ -178,6 +179,13 @@ check "nothing else" is 404 "$(status GET "${path}scene.lua" "")"
 check "no way up" is 404 "$(status GET "${path}../../etc/passwd" "")"
 check "no other name for this machine" is 403 "$(status GET "$path" "" "evil.example:$port")"
 check "localhost is its name" is 200 "$(status GET "$path" "" "localhost:$port")"
+for origin in "http://evil.example" "http://$host.evil.example" "https://$host" "http://127.0.0.1:1" null; do
+    check "no order from $origin" is 403 "$(status POST "${path}frame" 2 "$host" "$origin")"
+    check "nothing for $origin" is 403 "$(status GET "$path" "" "$host" "$origin")"
+done
+for origin in "http://$host" "http://localhost:$port"; do
+    check "its own origin $origin" is 200 "$(status GET "$path" "" "$host" "$origin")"
+done
 check "no other method" is 405 "$(status PUT "$path" "")"
 exec 7<>"/dev/tcp/127.0.0.1/$port"
 printf 'hello\r\n\r\n' >&7
@@ -195,6 +203,11 @@ check "a frame beyond the end" is 200 "$(status POST "${path}frame" 9)"
 check "shows the last" await '"index":5' 1
 check "a parameter is asked for" is 200 "$(status POST "${path}set" shade=0.25)"
 check "and shown" await '"index":5' 2
+for name in nothing shad shadee "shade
+turns" ""; do
+    check "no parameter '$name'" is 404 "$(status POST "${path}set" "$name=1")"
+done
+check "none was kept" test -z "$(grep 'no such parameter' events)"
 ask POST "${path}set" shade=7 >/dev/null
 check "a value out of range is told" await "shade: number 0 .. 1 expected, got '7'" 1
 ask POST "${path}reset" "" >/dev/null
@@ -218,9 +231,11 @@ sleep 0.1
 save 0.4
 check "a page that has gone does no harm" await '"event":"picture"' $((before + 1))
 # Those that connect and say nothing do not keep others out.
-for fd in 10 11 12 13; do eval "exec $fd<>/dev/tcp/127.0.0.1/$port"; done
-check "silent ones do not block" is 200 "$(status GET "$path" "")"
-for fd in 10 11 12 13; do eval "exec $fd<&- $fd>&-"; done
+for fd in {20..119}; do eval "exec $fd<>/dev/tcp/127.0.0.1/$port"; done
+for fd in {20..50}; do printf 'GET %s' "$path" >&$fd; done 2>/dev/null # half a request
+check "silent ones do not keep others out" is 200 "$(status GET "$path" "")"
+check "nor those that speak slowly" is 200 "$(status GET "$path" "")"
+for fd in {20..119}; do eval "exec $fd<&- $fd>&-"; done
 
 timeout 10 "$glint" watch scene.lua --http "$port" >out2 2>err2 </dev/null
 check "a port in use ends with 2" is 2 $?

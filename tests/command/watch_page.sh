@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The page of glint watch in headless Chromium, spoken to over its debugging pipe (messages end in a zero byte): the
-# picture shows, a save replaces it, an error covers it and goes, frames scrub, sliders set parameters. Skips aloud
-# where there is no Chromium.
+# picture shows, a save replaces it, an error covers it and goes, a warning stands below, frames scrub, sliders set parameters,
+# one out of range is told. Skips aloud where there is no Chromium.
 set -u
 glint=${GLINT:-$PWD/${BUILD:-build}/glint}
 chromium=$(command -v chromium || command -v chromium-browser || command -v google-chrome) || {
@@ -87,11 +87,12 @@ save 0.7
 check "a save replaces it" becomes "get('picture').src !== '$before' && document.images[0].naturalWidth === 640"
 check "no error covers it" becomes "get('error').hidden"
 save 0.7 "local x = = 1"
-check "an error covers the picture" becomes "!get('error').hidden && get('error').textContent.includes('unexpected symbol')"
+check "an error covers the picture and says where" becomes "!get('error').hidden && get('error').textContent.includes('scene.lua:3: unexpected symbol')"
 check "the last good one stays" becomes "document.images[0].naturalWidth === 640"
 save 0.7 'error "<b id=hacked>"'
 check "an error is text, not markup" becomes "get('error').textContent.includes('<b id=hacked>') && !get('hacked')"
 save 0.7 "local bright = glint.material { diffuse = 2 }"
+check "an error goes with the next good save" becomes "get('error').hidden && !get('note').textContent.includes('last good')"
 check "a warning stands below" becomes "!get('warnings').hidden && get('warnings').textContent.includes('diffuse above 1')"
 save 0.6
 check "and goes" becomes "get('warnings').hidden"
@@ -102,6 +103,17 @@ check "a choice for words" becomes "document.querySelector('[name=model]').tagNa
 before=$(now "get('picture').src")
 run "{ const s = document.querySelector('[name=shade]'); s.value = 0.9; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); }"
 check "the slider renders" becomes "get('picture').src !== '$before' && state.params.find(p => p.name === 'shade').value === 0.9"
+before=$(now "get('picture').src")
+run "order('set', 'shade=7')" # which the slider itself does not let through
+check "a parameter out of range is an error" becomes "!get('error').hidden && get('error').textContent.includes('shade: number 0 .. 1 expected, got')"
+check "over the last good picture" becomes "get('picture').src === '$before' && document.images[0].naturalWidth === 640"
+check "whose controls stay" becomes "document.querySelector('[name=shade]').type === 'range' && document.querySelector('[name=model]')"
+run "{ const s = document.querySelector('[name=shade]'); s.value = 0.3; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); }"
+check "the slider puts it right" becomes "get('error').hidden && get('picture').src !== '$before' && state.params.find(p => p.name === 'shade').value === 0.3"
+before=$(now "get('picture').src")
+run "fetch('set', { method: 'POST', body: 'shadow=1' }).then(r => document.title = r.status)"
+check "a name that is no parameter is refused" becomes "document.title === '404'"
+check "and changes nothing" becomes "get('error').hidden && get('picture').src === '$before'"
 run "get('reset').click()"
 check "reset puts it back" becomes "document.querySelector('[name=shade]').value === '0.6'"
 run "{ const s = get('slider'); s.value = 7; s.dispatchEvent(new Event('input')); }"
