@@ -56,6 +56,8 @@ int cli_output_close(cli_output *output)
     char message[GLINTL_MESSAGE_SIZE];
     errno = 0;
     bool failed = output->data_failed || ferror(output->data);
+    if (failed && !output->data_failed) // its errno is gone; one more byte meets the same
+        fputc('\n', output->data);
     if ((fflush(output->data) != 0 || failed) && !output->data_failed) {
         output->data_failed = true;
         output->data_errno = errno;

@@ -420,6 +420,16 @@ events() {
     "$GLINT" ten.lua --json -o none >/dev/full 2>err
     check "stdout is full" test $? -eq 75
     says "stdout is full" 'stdout: No space'
+    "$GLINT" cost one.lua --size 40x24 --quick --json >/dev/full 2>err
+    check "stdout is full for a study" test $? -eq 75
+    says "stdout is full for a study" 'stdout: No space'
+    for file in index.html plot.svg; do
+        mkdir report
+        ln -s /dev/full report/$file
+        exits 75 "a report whose $file has no space" cost one.lua --size 40x24 --quick --report report -q
+        says "a report whose $file has no space" "--report: report/$file: No space left on device"
+        rm -r report
+    done
     "$GLINT" --version >/dev/full 2>err
     check "stdout is full for --version" test $? -eq 75
     "$GLINT" ten.lua --json -o none 2>err | true
