@@ -4,6 +4,9 @@
 
 #include <pthread.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
 #include <zlib.h>
 #ifdef GLINT_HAVE_ISAL
 #include <isa-l.h>
@@ -58,39 +61,103 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 #define TEXT(x) TEXT_OF(x)
 #define NAME_OF_FAST "isal " TEXT(ISAL_MAJOR_VERSION) "." TEXT(ISAL_MINOR_VERSION) "." TEXT(ISAL_PATCH_VERSION)
 
-#define PLACES 32 // to choose from
-#define PLACE_STEP ((size_t)1 << 16)
+#define STREAM_BYTES (sizeof(struct isal_zstream) + ISAL_DEF_LVL1_DEFAULT)
 
-/// CRC-32C of four bytes from 0, as the crc32 instruction has it.
-static uint32_t crc32c(uint32_t bytes)
+// Level 1 files the third position of its input in the bucket of its hash table that its own stream's address gives, instead of
+// the bucket of the bytes there (ISA-L 2.30 on x86, icf body without history): the bytes written would depend on where the
+// stream lies. So it lies where the address gives the right bucket.
+#if defined __x86_64__ && defined MAP_FIXED_NOREPLACE
+#define BUCKET_BITS 13
+#define PLACE_SHIFT 16 // of an address, to what is hashed
+#define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
+#define PLACE_BITS 29
+#define PLACES_TRIED 64 // each thread of each writer has one
+
+/// CRC-32C of four bytes from 0, as the crc32 instruction has it: linear over the bits. Its last bits are the bucket.
+static uint32_t bucket_of(uint32_t bytes)
 {
     for (int i = 0; i < 32; i++)
         bytes = bytes >> 1 ^ (bytes & 1 ? 0x82f63b78 : 0);
-    return bytes;
+    return bytes & ((1u << BUCKET_BITS) - 1);
 }
 
-/// Level 1 files the third position of its input under a hash of its own stream's address instead of one of the bytes
-/// there (ISA-L 2.30, icf body without history). That shows where one of the first three positions has the same hash, by at
-/// least three bits of it: the bytes written would depend on where the stream lies.
-static bool shows_place(uintptr_t place, const uint8_t *data, size_t size)
+/// Places relative to the first: for each bit of a bucket one that gives a bucket in which that bit is the highest, and some that
+/// give bucket 0.
+typedef struct places {
+    uint32_t place[BUCKET_BITS], bucket[BUCKET_BITS];
+    uint32_t zero[PLACE_BITS];
+    int zero_count;
+} places;
+
+/// Takes out of a bucket the bits that a place can give. Returns that place; *bucket keeps the others.
+static uint32_t place_for(const places *p, uint32_t *bucket)
 {
-    uint32_t bytes;
-    for (size_t i = 0; i < 3 && i + sizeof bytes <= size; i++) {
-        memcpy(&bytes, data + i, sizeof bytes);
-        if (((crc32c(bytes) ^ crc32c((uint32_t)(place >> 16))) & 7) == 0)
-            return true;
+    uint32_t place = 0;
+    for (int bit = BUCKET_BITS - 1; bit >= 0; bit--)
+        if (*bucket >> bit & 1 && p->bucket[bit]) {
+            *bucket ^= p->bucket[bit];
+            place ^= p->place[bit];
+        }
+    return place;
+}
+
+/// Gaussian elimination over the bits of a place.
+static places find_places(void)
+{
+    places p = { .zero_count = 0 };
+    for (int i = 0; i < PLACE_BITS; i++) {
+        uint32_t bucket = bucket_of(UINT32_C(1) << i);
+        const uint32_t place = UINT32_C(1) << i ^ place_for(&p, &bucket);
+        if (bucket) {
+            const int highest = 31 - __builtin_clz(bucket);
+            p.bucket[highest] = bucket;
+            p.place[highest] = place;
+        } else {
+            p.zero[p.zero_count++] = place;
+        }
     }
-    return false;
+    return p;
 }
 
-static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+/// Memory for a stream whose address gives the bucket of these bytes; NULL where the system has no such place.
+static void *map_stream(uint32_t bytes)
 {
-    uint8_t *memory = malloc(sizeof(struct isal_zstream) + ISAL_DEF_LVL1_DEFAULT + (PLACES - 1) * PLACE_STEP);
-    if (!memory)
-        return 0;
-    struct isal_zstream *stream = (struct isal_zstream *)memory;
-    for (size_t i = 1; i < PLACES && shows_place((uintptr_t)stream, data, size); i++)
-        stream = (struct isal_zstream *)(memory + i * PLACE_STEP);
+    const places p = find_places();
+    uint32_t bucket = bucket_of(bytes) ^ bucket_of(FIRST_PLACE);
+    uint32_t place = FIRST_PLACE ^ place_for(&p, &bucket);
+    for (int i = 1; bucket == 0 && i <= PLACES_TRIED; i++) {
+        void *want = (void *)((uintptr_t)place << PLACE_SHIFT);
+        void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
+        if (got == want)
+            return got;
+        if (got != MAP_FAILED)
+            munmap(got, STREAM_BYTES);
+        place ^= p.zero[__builtin_ctz((unsigned)i)]; // each combination once
+    }
+    return NULL;
+}
+
+static void *make_stream(const uint8_t *data, size_t size, bool *mapped)
+{
+    uint32_t third = 0;
+    if (size >= 2 + sizeof third)
+        memcpy(&third, data + 2, sizeof third);
+    void *memory = map_stream(third);
+    *mapped = memory != NULL;
+    return memory ? memory : malloc(STREAM_BYTES);
+}
+#else
+static void *make_stream(const uint8_t *data, size_t size, bool *mapped)
+{
+    (void)data;
+    (void)size;
+    *mapped = false;
+    return malloc(STREAM_BYTES);
+}
+#endif
+
+static size_t fast_band_at(struct isal_zstream *stream, const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
     isal_deflate_stateless_init(stream);
     stream->hist_bits = 0; // the whole window: init leaves what was in memory
     stream->level = 1;
@@ -103,8 +170,20 @@ static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *ou
     stream->avail_in = (uint32_t)size;
     stream->next_out = out;
     stream->avail_out = (uint32_t)(room < UINT32_MAX ? room : UINT32_MAX);
-    size_t written = isal_deflate_stateless(stream) == COMP_OK ? stream->total_out : 0;
-    free(memory);
+    return isal_deflate_stateless(stream) == COMP_OK ? stream->total_out : 0;
+}
+
+static size_t fast_band(const uint8_t *data, size_t size, bool last, uint8_t *out, size_t room)
+{
+    bool mapped;
+    void *stream = make_stream(data, size, &mapped);
+    if (!stream)
+        return 0;
+    const size_t written = fast_band_at(stream, data, size, last, out, room);
+    if (mapped)
+        munmap(stream, STREAM_BYTES);
+    else
+        free(stream);
     return written;
 }
 #else

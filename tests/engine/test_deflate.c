@@ -1,0 +1,109 @@
+/// The encoder's bytes depend on the picture alone, wherever its memory lies: a bucket of ISA-L's hash table depends on the stream's
+/// address, and deflate.c takes addresses that all give the right one.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "engine/file/deflate.c" // its functions of one place are its own
+
+#if defined GLINT_HAVE_ISAL && defined __x86_64__ && defined MAP_FIXED_NOREPLACE
+#define OTHER_PLACES 32768 // each bucket about four times
+#define BAND_BYTES ((size_t)30000)
+
+static void put(uint8_t *at, const char *bytes) { memcpy(at, bytes, strlen(bytes)); }
+
+/// Zeros, and bytes that come again: where the bucket of the second position is the wrong one, they are not found again.
+static uint8_t *make_band(void)
+{
+    uint8_t *data = calloc(1, BAND_BYTES);
+    put(data, "abcdefgh");
+    put(data + 20000, "Xbcdefghi");
+    return data;
+}
+
+/// A stream at one of many scattered addresses, given back by munmap; NULL where something else is.
+static void *stream_at(uint64_t number)
+{
+    void *want = (void *)(uintptr_t)(UINT64_C(0x100000000000) + ((number * 0x9e3779b1 & 0x1fffffff) << 16));
+    void *got = mmap(want, STREAM_BYTES, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0);
+    return got == MAP_FAILED ? NULL : got;
+}
+
+/// The bytes that a band gives with its stream here.
+static glint_bytes band_at(const uint8_t *data, void *stream)
+{
+    glint_bytes out = { 0 };
+    assert_true(glint_bytes_reserve(&out, room_for(BAND_BYTES)));
+    out.size = fast_band_at(stream, data, BAND_BYTES, false, out.data, room_for(BAND_BYTES));
+    assert_true(out.size > 0);
+    return out;
+}
+
+static bool same_at(const uint8_t *data, void *stream, const glint_bytes *want)
+{
+    glint_bytes got = band_at(data, stream);
+    const bool same = got.size == want->size && memcmp(got.data, want->data, got.size) == 0;
+    free(got.data);
+    return same;
+}
+
+static void test_fast_places(void **state)
+{
+    (void)state;
+    uint8_t *data = make_band();
+    void *stream[PLACES_TRIED];
+    bool mapped;
+    for (int i = 0; i < PLACES_TRIED; i++) { // each has a place of its own
+        stream[i] = make_stream(data, BAND_BYTES, &mapped);
+        assert_true(mapped);
+    }
+    glint_bytes want = band_at(data, stream[0]);
+    for (int i = 1; i < PLACES_TRIED; i++)
+        assert_true(same_at(data, stream[i], &want));
+    for (int i = 0; i < PLACES_TRIED; i++)
+        munmap(stream[i], STREAM_BYTES);
+    size_t different = 0; // else this would be no test
+    for (uint64_t number = 0; number < OTHER_PLACES; number++) {
+        void *other = stream_at(number);
+        if (!other)
+            continue;
+        different += !same_at(data, other, &want);
+        munmap(other, STREAM_BYTES);
+    }
+    print_message("%zu of %d places elsewhere give other bytes\n", different, OTHER_PLACES);
+    assert_true(different > 0);
+    free(want.data);
+    free(data);
+}
+
+/// Whatever the bytes, the address gives their bucket.
+static void test_buckets(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 1000; i++) {
+        const uint32_t bytes = i * 0x9e3779b1;
+        void *stream = map_stream(bytes);
+        assert_non_null(stream);
+        assert_int_equal(bucket_of((uint32_t)((uintptr_t)stream >> PLACE_SHIFT)), bucket_of(bytes));
+        munmap(stream, STREAM_BYTES);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_fast_places), cmocka_unit_test(test_buckets) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
+#else
+int main(void)
+{
+    print_message("no place matters to the encoder here\n");
+    return 77;
+}
+#endif
