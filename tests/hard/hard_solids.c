@@ -3,6 +3,8 @@
 #include "tests/hard/oracle/aim_solid.h"
 #include "tests/hard/oracle/solid_cases.h"
 
+#include <string.h>
+
 #define ROUNDING 8 ///< of 2^-53: what the engine's arithmetic may be off by, times the map's condition and the distance
 
 // ---- Judging ----
@@ -87,6 +89,16 @@ static void known(const solid_case *c)
     glint_scene_release(scene);
 }
 
+static void report(const char *name, const tally *sum)
+{
+    if (hard_table)
+        printf("| %s | %llu | %llu | %llu | %llu |\n", name, (unsigned long long)sum->rays,
+               (unsigned long long)sum->hits, (unsigned long long)sum->close, (unsigned long long)sum->wrong);
+    hard_right(sum->rays - sum->wrong);
+    hard_check(sum->hits >= sum->rays / 4, "only %llu hits of %llu rays", (unsigned long long)sum->hits,
+               (unsigned long long)sum->rays);
+}
+
 static void fuzz(int kind, uint64_t count)
 {
     tally sum = { 0 };
@@ -107,12 +119,107 @@ static void fuzz(int kind, uint64_t count)
         }
         glint_scene_release(scene);
     }
+    report(solid_names[kind], &sum);
+}
+
+// ---- Disks nearly edge-on ----
+
+/// The engine's t is within GRAZING 2^-53 (1 + R / L) / c of itself, where the ray meets the plane at a cosine c, L after its
+/// start, and R is the size of what was subtracted: the lengths of o, p, o - p and the radius. The normal, n.(o - p) and n.d are
+/// three roundings or fewer of what they are made of, which R has twice, and the last two are over c.
+#define GRAZING 2
+
+typedef struct grazed {
+    hard_ray ray;
+    hard_plane plane;
+    double radius;
+} grazed;
+
+/// A disk, and a ray that comes to its plane at a cosine of 1e-16 .. 1e-2, at a place within it, on its rim or past it.
+static grazed graze(void)
+{
+    grazed g;
+    double across[3], toward[3], length = 0;
+    const double cosine = log_uniform(1e-16, 1e-2), turn = uniform(0, 6.3), at = chance(0.5) ? 0 : log_uniform(1, 1e5),
+                 rim = chance(0.3) ? 1 + (chance(0.5) ? -1 : 1) * log_uniform(1e-16, 1e-1) : uniform(0, 1.3);
+    g.radius = log_uniform(1e-3, 1e3);
+    random_direction(g.plane.n);
+    random_direction(toward);
+    for (int c = 0; c < 3; c++)
+        across[c] = g.plane.n[(c + 1) % 3] * toward[(c + 2) % 3] - g.plane.n[(c + 2) % 3] * toward[(c + 1) % 3];
+    for (int c = 0; c < 3; c++)
+        length = hypot(length, across[c]);
+    const double reach = g.radius * log_uniform(1e-2, 1e4), scale = chance(0.2) ? log_uniform(1e-30, 1e30) : 1;
+    for (int c = 0; c < 3; c++) {
+        const double x = across[c] / length,
+                     y = (g.plane.n[(c + 1) % 3] * across[(c + 2) % 3] - g.plane.n[(c + 2) % 3] * across[(c + 1) % 3]) /
+                         length;
+        g.plane.p[c] = g.radius * at * uniform(-1, 1);
+        const double p = g.plane.p[c] + g.radius * rim * (cos(turn) * x + sin(turn) * y);
+        const double way = x + g.plane.n[c] * cosine;
+        g.ray.o[c] = p - reach * way;
+        g.ray.d[c] = (p - g.ray.o[c]) * scale;
+    }
+    return g;
+}
+
+static double length_of(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
+
+/// What the engine says against the bound; *share: how much of it the error of t is.
+static const char *judge_grazed(const grazed *g, bool hit, const glint_hit *got, tally *sum, double *share)
+{
+    const truth want = true_plane(&g->ray, &g->plane);
+    const double way = want.t * length_of(g->ray.d), off[3] = { g->ray.o[0] - g->plane.p[0], g->ray.o[1] - g->plane.p[1],
+                                                                g->ray.o[2] - g->plane.p[2] };
+    const double numbers = length_of(off) + length_of(g->ray.o) + length_of(g->plane.p) + g->radius;
+    const double bound = GRAZING * 0x1p-53 * (1 + numbers / way) / want.cosine;
+    double from_center = 0, places = 0;
+    for (int c = 0; c < 3; c++) {
+        from_center = hypot(from_center, off[c] + want.t * g->ray.d[c]);
+        places += fabs(g->plane.n[c]) * (2 * fabs(g->plane.p[c]) + g->radius);
+    }
+    *share = 0;
+    sum->rays++;
+    // of places that near to the plane, the engine does not tell on which side they are; likewise at the rim
+    if (!want.hit || !(bound < 0.25) || way * want.cosine < 1.01 * 0x1p-50 * places ||
+        fabs(from_center - g->radius) < bound * way + 8 * 0x1p-53 * numbers) {
+        sum->close++;
+        return NULL;
+    }
+    sum->hits += hit;
+    if (hit != (from_center < g->radius))
+        return "wrong decision";
+    *share = hit ? fabs(got->t / want.t - 1) / bound : 0;
+    return *share <= 1 ? NULL : "t too far off";
+}
+
+static void fuzz_grazing(uint64_t count)
+{
+    tally sum = { 0 };
+    double worst = 0, share;
+    hard_test("fuzz", "disks at grazing rays");
+    for (uint64_t i = 0; i < count; i++) {
+        const grazed g = graze();
+        hard_solid s = { .desc = glint_shape_desc_default(GLINT_SHAPE_DISK) };
+        glint_hit got = { 0 };
+        s.desc.radius = g.radius;
+        memcpy(s.desc.center, g.plane.p, sizeof s.desc.center);
+        memcpy(s.desc.normal, g.plane.n, sizeof s.desc.normal);
+        glint_scene *scene = solid_alone(&s, NULL);
+        const bool hit = cast(scene, &g.ray, &got);
+        const char *wrong = judge_grazed(&g, hit, &got, &sum, &share);
+        glint_scene_release(scene);
+        worst = fmax(worst, share);
+        sum.wrong += wrong != NULL;
+        if (wrong) {
+            const solid_truth want = oracle_solid(&g.ray, &s, ROUNDING);
+            complain(&s, &g.ray, &want, hit, &got, wrong);
+        }
+    }
+    report("disk, grazing", &sum);
     if (hard_table)
-        printf("| %s | %llu | %llu | %llu | %llu |\n", solid_names[kind], (unsigned long long)sum.rays,
-               (unsigned long long)sum.hits, (unsigned long long)sum.close, (unsigned long long)sum.wrong);
-    hard_right(sum.rays - sum.wrong);
-    hard_check(sum.hits >= sum.rays / 4, "only %llu hits of %llu rays", (unsigned long long)sum.hits,
-               (unsigned long long)sum.rays);
+        printf("\nOf disks at grazing rays the worst t is %.2f of the bound, %d 2^-53 (1 + R / L) / cosine.\n", worst,
+               GRAZING);
 }
 
 int main(int argc, char **argv)
@@ -123,6 +230,7 @@ int main(int argc, char **argv)
                "| aimed at | rays | hits | too close to tell | wrong |\n| --- | --- | --- | --- | --- |\n");
     for (int kind = 0; kind < SOLID_KINDS; kind++)
         fuzz(kind, hard_rays / 40);
+    fuzz_grazing(hard_rays / 10);
     for (int i = 0; i < solid_case_count; i++)
         known(&solid_cases[i]);
     return hard_end();

@@ -218,6 +218,20 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
 
 // ---- Triangles ----
 
+/// Whether the engine takes a place for one of the plane, which a ray that starts there does not meet: n . q is less than
+/// ON_PLANE of what it is made of, n = f x g. Its rounding is half of that.
+#define ON_PLANE (17 * (quad)0x1p-53)
+
+static bool is_on_plane(const quad f[3], const quad g[3], const quad n[3], const quad q[3])
+{
+    quad sizes = 0;
+    for (int c = 0; c < 3; c++) {
+        const int i = (c + 1) % 3, k = (c + 2) % 3;
+        sizes += (size_of(f[i] * g[k]) + size_of(f[k] * g[i])) * size_of(q[c]);
+    }
+    return size_of(dot(n, q)) < ON_PLANE * sizes;
+}
+
 static solid_truth of_triangle(const hard_ray *ray, const double corner[3][3], double rounding)
 {
     solid_truth out = { 0 };
@@ -247,7 +261,7 @@ static solid_truth of_triangle(const hard_ray *ray, const double corner[3][3], d
     const quad t = det == 0 ? 0 : dot(n, p[0]) / dot(n, d);
     out.hit = det != 0 && least >= 0 && t > 0;
     const quad moved = det == 0 ? 0 : 4 * off * (reach / length + size_of(t)) / size_of(det);
-    out.close = size_of(least) < off || size_of(det) < 64 * off || size_of(t) < moved;
+    out.close = size_of(least) < off || size_of(det) < 64 * off || size_of(t) < moved || is_on_plane(f, g, n, p[0]);
     out.t = (double)t;
     out.least = (double)(t - moved);
     out.most = (double)(t + moved);
