@@ -76,7 +76,10 @@ typedef enum glint_input {
     GLINT_INPUT_V_X, ///< towards the eye
     GLINT_INPUT_V_Y, ///< likewise
     GLINT_INPUT_V_Z, ///< likewise
-    GLINT_INPUT_UV_U, ///< the shape's own coordinates on its surface
+    /// The shape's own coordinates on its surface: of a plane or disk lengths along two tangents, of a box 0 .. 1 on each
+    /// face, of a sphere, cylinder or cone 0 .. 1 around and along, of a mesh those of its corners, between them by
+    /// barycentric coordinates over triangles
+    GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< likewise
     GLINT_INPUT_FOOTPRINT, ///< width of a pixel at the point, world units
     GLINT_INPUT_UV_FOOTPRINT, ///< the same in units of u and v
@@ -595,6 +598,11 @@ typedef struct glint_mesh_desc {
     /// A number of a normal, from 0, for each entry of `corners`; GLINT_NO_NORMAL: none there. NULL: normals belong to
     /// vertices, one each
     const uint32_t *normal_corners;
+    const double *uv; ///< coordinates on a picture, u and v each; finite; NULL: none
+    size_t uv_count; ///< 0 without `uv`
+    /// A number of such a pair, from 0, for each entry of `corners`; GLINT_NO_UV: none there, and no program reads the
+    /// coordinates of this mesh. NULL: they belong to vertices, a pair each
+    const uint32_t *uv_corners;
     bool has_shading; ///< false: phong where there are normals, faceted where there are none
     /// Phong and gouraud without normals: those of the faces around a vertex are averaged by area
     glint_shading shading;
@@ -605,6 +613,7 @@ typedef struct glint_mesh_desc {
 } glint_mesh_desc;
 
 #define GLINT_NO_NORMAL 0xffffffffu
+#define GLINT_NO_UV 0xffffffffu
 
 /// No faces, two-sided, where it is described.
 glint_mesh_desc glint_mesh_desc_default(void);
@@ -612,8 +621,8 @@ glint_mesh_desc glint_mesh_desc_default(void);
 /// "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle of no area within a larger
 /// face is left out.
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
-/// Reads a Wavefront .obj file: v, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative).
-/// Texture coordinates, groups, materials, lines and points are passed over. `desc` gives the fields that are not in the
+/// Reads a Wavefront .obj file: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative).
+/// Groups, materials, lines and points are passed over. `desc` gives the fields that are not in the
 /// file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT with the number of the line when it is not as it should be.
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 /// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,

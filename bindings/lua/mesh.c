@@ -1,4 +1,5 @@
 // The constructors glint.mesh and glint.sphere_mesh.
+#include <stdio.h>
 #include <string.h>
 
 #include "bindings/run/run.h"
@@ -29,6 +30,7 @@ static const glintL_field FIELDS[] = {
     { .name = "vertices", .kind = GLINTL_OTHER },
     { .name = "faces", .kind = GLINTL_OTHER },
     { .name = "normals", .kind = GLINTL_OTHER },
+    { .name = "uv", .kind = GLINTL_OTHER },
     { .name = "format", .kind = GLINTL_OTHER },
     EVERY_MESH,
     { .name = NULL },
@@ -49,13 +51,16 @@ enum {
     VERTICES,
     FACES,
     NORMALS,
+    UV,
     OTHER,
     MATERIAL,
     VERTEX_BUFFER,
     CORNER_BUFFER,
     SIZE_BUFFER,
     NORMAL_BUFFER,
-    NUMBER_BUFFER
+    UV_BUFFER,
+    NUMBER_BUFFER,
+    UV_NUMBER_BUFFER
 };
 
 static void fetch(lua_State *L, const char *name, int place)
@@ -65,7 +70,16 @@ static void fetch(lua_State *L, const char *name, int place)
     lua_replace(L, place);
 }
 
-// ---- Vertices and normals ----
+// ---- Vertices, normals and coordinates ----
+
+// Numbers that each entry of a list has: x, y, z, or u, v.
+typedef struct entry_kind {
+    const char *name, *form;
+    int size;
+} entry_kind;
+
+static const entry_kind VERTEX = { "vertices", "{x, y, z}", 3 }, NORMAL = { "normals", "{x, y, z}", 3 },
+                        PAIR = { "uv", "{u, v}", 2 };
 
 static void read_number(lua_State *L, int list, size_t i, const char *name, double *out)
 {
@@ -84,43 +98,60 @@ static double *new_numbers(lua_State *L, size_t count, int buffer)
     return out;
 }
 
-static double *read_point_list(lua_State *L, int place, const char *name, int buffer, size_t *count)
+// The entry on top of the stack.
+static void read_entry(lua_State *L, const char *path, const entry_kind *kind, double *out)
+{
+    const int entry = lua_gettop(L);
+    if (kind->size == 3) {
+        glintL_read_three(L, entry, path, kind->form, out);
+        return;
+    }
+    for (int i = 0; i < 2; i++) {
+        if (!lua_istable(L, entry) || lua_rawlen(L, entry) != 2 || lua_rawgeti(L, entry, i + 1) != LUA_TNUMBER)
+            glintL_refuse(L, entry, path, kind->form);
+        out[i] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+    }
+}
+
+static double *read_point_list(lua_State *L, int place, const entry_kind *kind, int buffer, size_t *count)
 {
     char path[64];
-    const size_t entries = glintL_check_list(L, place, name, false);
+    const size_t entries = glintL_check_list(L, place, kind->name, false), size = (size_t)kind->size;
     const bool flat = lua_rawgeti(L, place, 1) == LUA_TNUMBER;
     lua_pop(L, 1);
-    if (flat && entries % 3 != 0)
-        glintL_error(L, "mesh.%s: 3 numbers each expected, got %I numbers", name, (LUAI_UACINT)entries);
-    *count = flat ? entries / 3 : entries;
-    double *out = new_numbers(L, 3 * *count, buffer);
+    if (flat && entries % size != 0)
+        glintL_error(L, "mesh.%s: %d numbers each expected, got %I numbers", kind->name, kind->size,
+                     (LUAI_UACINT)entries);
+    *count = flat ? entries / size : entries;
+    double *out = new_numbers(L, size * *count, buffer);
     for (size_t i = 0; i < entries; i++) {
         if (flat) {
-            read_number(L, place, i + 1, name, &out[i]);
+            read_number(L, place, i + 1, kind->name, &out[i]);
             continue;
         }
-        lua_rawgeti(L, place, (lua_Integer)i + 1);
-        lua_pushfstring(L, "mesh.%s[%I]", name, (LUAI_UACINT)i + 1);
-        strncpy(path, lua_tostring(L, -1), sizeof path - 1);
+        strncpy(path, lua_pushfstring(L, "mesh.%s[%I]", kind->name, (LUAI_UACINT)i + 1), sizeof path - 1);
         path[sizeof path - 1] = 0;
-        glintL_read_three(L, -2, path, "{x, y, z}", out + 3 * i);
-        lua_pop(L, 2);
+        lua_pop(L, 1);
+        lua_rawgeti(L, place, (lua_Integer)i + 1);
+        read_entry(L, path, kind, out + size * i);
+        lua_pop(L, 1);
     }
     return out;
 }
 
-static double *read_packed_points(lua_State *L, const arguments *a, int place, const char *name, int buffer,
+static double *read_packed_points(lua_State *L, const arguments *a, int place, const entry_kind *kind, int buffer,
                                   size_t *count)
 {
     size_t bytes;
     const char *packed = lua_tolstring(L, place, &bytes);
-    const size_t size = a->format == 1 ? sizeof(float) : sizeof(double);
-    if (bytes % (3 * size) != 0)
-        glintL_error(L, "mesh.%s: %d bytes each (x, y, z in %s) expected, got %I bytes", name, (int)(3 * size),
-                     FORMATS[a->format - 1], (LUAI_UACINT)bytes);
-    *count = bytes / (3 * size);
-    double *out = new_numbers(L, 3 * *count, buffer);
-    for (size_t i = 0; i < 3 * *count; i++) {
+    const size_t size = a->format == 1 ? sizeof(float) : sizeof(double), each = (size_t)kind->size * size;
+    if (bytes % each != 0)
+        glintL_error(L, "mesh.%s: %d bytes each (%s in %s) expected, got %I bytes", kind->name, (int)each,
+                     kind->size == 3 ? "x, y, z" : "u, v", FORMATS[a->format - 1], (LUAI_UACINT)bytes);
+    *count = bytes / each;
+    double *out = new_numbers(L, bytes / size, buffer);
+    for (size_t i = 0; i < bytes / size; i++) {
         float f;
         memcpy(size == sizeof f ? (void *)&f : (void *)&out[i], packed + i * size, size);
         if (size == sizeof f)
@@ -129,22 +160,26 @@ static double *read_packed_points(lua_State *L, const arguments *a, int place, c
     return out;
 }
 
-static double *read_points(lua_State *L, const arguments *a, int place, const char *name, int buffer, size_t *count)
+static double *read_points(lua_State *L, const arguments *a, int place, const entry_kind *kind, int buffer,
+                           size_t *count)
 {
+    char path[32] = "mesh.", expected[64];
     if (lua_istable(L, place))
-        return read_point_list(L, place, name, buffer, count);
+        return read_point_list(L, place, kind, buffer, count);
     if (lua_type(L, place) == LUA_TSTRING)
-        return read_packed_points(L, a, place, name, buffer, count);
-    char path[32] = "mesh.";
-    strcat(path, name);
-    glintL_refuse(L, place, path, "list of {x, y, z}, flat table or packed string");
+        return read_packed_points(L, a, place, kind, buffer, count);
+    strcat(path, kind->name);
+    snprintf(expected, sizeof expected, "list of %s, flat table or packed string", kind->form);
+    glintL_refuse(L, place, path, expected);
     return NULL;
 }
 
 static void read_format(lua_State *L, arguments *a)
 {
     static const glintL_field field = { .name = "format", .kind = GLINTL_ENUM, .offset = AT(format), .names = FORMATS };
-    const bool packed = lua_type(L, VERTICES) == LUA_TSTRING || lua_type(L, NORMALS) == LUA_TSTRING;
+    bool packed = false;
+    for (int place = VERTICES; place <= UV; place++)
+        packed = packed || (place != FACES && lua_type(L, place) == LUA_TSTRING);
     fetch(L, "format", OTHER);
     if (packed) {
         glintL_read_field(L, OTHER, "mesh", &field, a);
@@ -273,25 +308,23 @@ static void read_faces(lua_State *L, arguments *a)
         read_polygons(L, a, entries);
 }
 
-// ---- Normals: one a vertex, or one a corner in the order of the faces ----
+// ---- Normals and coordinates: one a vertex, or one a corner in the order of the faces ----
 
-static void read_normals(lua_State *L, arguments *a)
+// Where entries belong to corners, their numbers: 0, 1, 2 ...; NULL: they belong to vertices.
+static const uint32_t *number_corners(lua_State *L, const arguments *a, const char *name, size_t count, int buffer)
 {
     size_t corners = 0;
-    if (lua_isnil(L, NORMALS))
-        return;
-    a->desc.normals = read_points(L, a, NORMALS, "normals", NORMAL_BUFFER, &a->desc.normal_count);
     for (size_t i = 0; i < a->desc.face_count; i++)
         corners += a->desc.face_sizes[i];
-    if (a->desc.normal_count == a->desc.vertex_count)
-        return;
-    if (a->desc.normal_count != corners)
-        glintL_error(L, "mesh.normals: one a vertex (%I) or one a corner of a face (%I) expected, got %I",
-                     (LUAI_UACINT)a->desc.vertex_count, (LUAI_UACINT)corners, (LUAI_UACINT)a->desc.normal_count);
-    uint32_t *numbers = new_indices(L, corners, NUMBER_BUFFER);
+    if (count == a->desc.vertex_count)
+        return NULL;
+    if (count != corners)
+        glintL_error(L, "mesh.%s: one a vertex (%I) or one a corner of a face (%I) expected, got %I", name,
+                     (LUAI_UACINT)a->desc.vertex_count, (LUAI_UACINT)corners, (LUAI_UACINT)count);
+    uint32_t *numbers = new_indices(L, corners, buffer);
     for (size_t i = 0; i < corners; i++)
         numbers[i] = (uint32_t)i;
-    a->desc.normal_corners = numbers;
+    return numbers;
 }
 
 static void read_arrays(lua_State *L, arguments *a)
@@ -299,10 +332,18 @@ static void read_arrays(lua_State *L, arguments *a)
     fetch(L, "vertices", VERTICES);
     fetch(L, "faces", FACES);
     fetch(L, "normals", NORMALS);
+    fetch(L, "uv", UV);
     read_format(L, a);
-    a->desc.vertices = read_points(L, a, VERTICES, "vertices", VERTEX_BUFFER, &a->desc.vertex_count);
+    a->desc.vertices = read_points(L, a, VERTICES, &VERTEX, VERTEX_BUFFER, &a->desc.vertex_count);
     read_faces(L, a);
-    read_normals(L, a);
+    if (!lua_isnil(L, NORMALS)) {
+        a->desc.normals = read_points(L, a, NORMALS, &NORMAL, NORMAL_BUFFER, &a->desc.normal_count);
+        a->desc.normal_corners = number_corners(L, a, "normals", a->desc.normal_count, NUMBER_BUFFER);
+    }
+    if (!lua_isnil(L, UV)) {
+        a->desc.uv = read_points(L, a, UV, &PAIR, UV_BUFFER, &a->desc.uv_count);
+        a->desc.uv_corners = number_corners(L, a, "uv", a->desc.uv_count, UV_NUMBER_BUFFER);
+    }
 }
 
 // ---- Objects ----
@@ -319,7 +360,7 @@ static glintL_box *begin(lua_State *L)
 {
     lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
-    lua_settop(L, NUMBER_BUFFER);
+    lua_settop(L, UV_NUMBER_BUFFER);
     return box;
 }
 
@@ -336,7 +377,7 @@ static int finish(lua_State *L, glintL_box *box, glint_shape *shape)
 
 static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_error *error)
 {
-    static const char *const arrays[] = { "vertices", "faces", "normals", "format" };
+    static const char *const arrays[] = { "vertices", "faces", "normals", "uv", "format" };
     if (lua_type(L, OTHER) != LUA_TSTRING)
         glintL_refuse(L, OTHER, "mesh.file", "name of a file");
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {

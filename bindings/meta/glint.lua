@@ -362,11 +362,12 @@ function glint.spheres(fields) end
 --- Polygons that share vertices, from tables or from a Wavefront .obj file; copied once. Give `file`, or `vertices` and
 --- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
----@field file? string  an .obj file (v, vn, f); relative to the working directory
+---@field file? string  an .obj file (v, vt, vn, f); relative to the working directory
 ---@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
 ---@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
 ---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
----@field format? "f32"|"f64"  of packed vertices and normals; required there and refused otherwise
+---@field uv? number[][]|number[]|string  u, v for s.uv and textures, one pair a vertex, or one a corner in the order of the faces; a file has them as `vt`
+---@field format? "f32"|"f64"  of packed vertices, normals and uv; required there and refused otherwise
 ---@field shading? glint.shading  Default "phong" with normals, else "faceted"
 
 ---@class glint.mesh: glint.shape_fields

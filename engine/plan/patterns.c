@@ -89,15 +89,16 @@ static glint_key numbers_key(const glint_plan_pattern *pattern)
     return pattern->made >> GLINT_FIELD_AMBIENT & 1 ? glint_key_add(key, desc->ambient, sizeof desc->ambient) : key;
 }
 
-/// The derivatives of a bump by the point in the shape's own space and in the world.
+/// The derivatives of a bump by the point in the shape's own space, in the world and, where it reads it, on the surface.
 static glint_status find_slope(glint_plan_patterns *patterns, glint_plan_pattern *pattern, glint_error *error)
 {
-    static const glint_input by[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y,     GLINT_INPUT_P_Z,
-                                      GLINT_INPUT_WORLD_X, GLINT_INPUT_WORLD_Y, GLINT_INPUT_WORLD_Z };
+    static const glint_input by[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y,     GLINT_INPUT_P_Z,  GLINT_INPUT_WORLD_X,
+                                      GLINT_INPUT_WORLD_Y, GLINT_INPUT_WORLD_Z, GLINT_INPUT_UV_U, GLINT_INPUT_UV_V };
     const glint_program *bump = pattern->program[GLINT_FIELD_BUMP];
     if (!bump)
         return GLINT_OK;
-    glint_status status = glint_program_slope(bump, by, sizeof by / sizeof *by, &pattern->slope, error);
+    const size_t count = sizeof by / sizeof *by - (bump->inputs & GLINT_READS_UV ? 0 : 2);
+    glint_status status = glint_program_slope(bump, by, count, &pattern->slope, error);
     if (!status && pattern->slope->code.row_count > patterns->row_count)
         patterns->row_count = pattern->slope->code.row_count;
     return status;
@@ -230,6 +231,7 @@ static void place_init(glint_pattern_place *place, const glint_part *part)
     surface_init(place, desc);
     vec_copy(place->lower, desc->min);
     vec_copy(place->upper, desc->max);
+    place->first_prim = part->first_prim;
 }
 
 static glint_key place_key(const glint_pattern_place *place, uint32_t part, glint_key key)
@@ -243,16 +245,32 @@ static glint_key place_key(const glint_pattern_place *place, uint32_t part, glin
     key = glint_key_add(key, place->along, sizeof place->along);
     key = glint_key_add(key, place->side, sizeof place->side);
     key = glint_key_add(key, &place->radius, sizeof place->radius);
+    if (place->mesh)
+        key = glint_key_add(key, &place->mesh->uv_key, sizeof place->mesh->uv_key);
     return glint_key_add(key, place->upper, sizeof place->upper);
 }
 
 static bool reads_uv(const glint_plan_pattern *own)
 {
-    const uint32_t uv = 1u << GLINT_INPUT_UV_U | 1u << GLINT_INPUT_UV_V | 1u << GLINT_INPUT_UV_FOOTPRINT;
     uint32_t reads = 0;
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         reads |= own->program[field] ? own->program[field]->inputs : 0;
-    return reads & uv;
+    return reads & GLINT_READS_UV;
+}
+
+/// Sees to it that a program finds coordinates on all of a mesh.
+static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *shape, glint_error *error)
+{
+    const char *name = shape->desc.name, *before = name[0] ? " '" : "", *after = name[0] ? "'" : "";
+    place->mesh = shape->mesh;
+    if (!shape->mesh->uv)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "s.uv: mesh%s%s%s has no coordinates on its surface: uv, or vt in its file, expected", before,
+                          name, after);
+    if (shape->mesh->uv_missing)
+        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no coordinates (vt)", before, name,
+                          after, shape->mesh->uv_missing);
+    return GLINT_OK;
 }
 
 /// The places of the shapes whose materials have programs.
@@ -268,13 +286,14 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
             glint_plan_pattern *own = &patterns->of[glint_list_find(&geometry->materials, part->shape->materials[k])];
             if (!own->any)
                 continue;
-            if (part->shape->mesh && reads_uv(own))
-                return glint_fail(error, GLINT_ERR_INVALID, "s.uv: a mesh has no coordinates on its surface%s%s%s",
-                                  part->shape->desc.name[0] ? ", as '" : "", part->shape->desc.name,
-                                  part->shape->desc.name[0] ? "'" : "");
             if (!begun)
                 place_init(&patterns->places[i], part);
             begun = true;
+            glint_status status = part->shape->mesh && reads_uv(own)
+                                      ? take_mesh_uv(&patterns->places[i], part->shape, error)
+                                      : GLINT_OK;
+            if (status)
+                return status;
             own->places = place_key(&patterns->places[i], i, own->places);
         }
     }

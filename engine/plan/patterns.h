@@ -21,6 +21,9 @@ typedef enum glint_field {
     GLINT_FIELD_COUNT
 } glint_field;
 
+/// Bits of the inputs that say where a point is on a picture.
+#define GLINT_READS_UV (1u << GLINT_INPUT_UV_U | 1u << GLINT_INPUT_UV_V | 1u << GLINT_INPUT_UV_FOOTPRINT)
+
 #define GLINT_FIELDS_PLANES ((1u << GLINT_FIELD_PLANES) - 1) ///< bits of those that have planes
 
 /// "diffuse", "model"
@@ -31,7 +34,7 @@ static inline int glint_field_channels(int field) { return field < GLINT_FIELD_S
 /// A material's programs.
 typedef struct glint_plan_pattern {
     const glint_program *program[GLINT_FIELD_COUNT]; ///< owned references; NULL: a number, or nothing
-    glint_program *slope; ///< of the bump: its derivatives by p and world; NULL: there is none
+    glint_program *slope; ///< of the bump: its derivatives by p, world and, where it reads them, u and v; NULL: there is none
     glint_material_desc desc; ///< resolved; its own programs mean nothing
     uint32_t made; ///< fields that programs give, a bit each, and what follows from these
     uint32_t reads; ///< inputs of the programs that are run at surfaces, a bit each
@@ -55,6 +58,8 @@ typedef struct glint_pattern_place {
     ///< base, its axis divided by its squared length, and two unit vectors across it
     double shrink; ///< own lengths over the world's
     double radius, length; ///< cylinder and cone
+    const struct glint_mesh *mesh; ///< whose coordinates are read; its triangles are primitives from `first_prim` on
+    uint32_t first_prim; ///< by id
 } glint_pattern_place;
 
 typedef struct glint_plan_patterns {

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-#define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals
+#define MOST ((size_t)INT32_MAX - 1) ///< vertices, faces, triangles, normals, pairs of coordinates
 
 glint_mesh_desc glint_mesh_desc_default(void)
 {
@@ -19,6 +19,8 @@ void glint_mesh_free(glint_mesh *mesh)
     free(mesh->triangles);
     free(mesh->normals);
     free(mesh->triangle_normals);
+    free(mesh->uv);
+    free(mesh->triangle_uv);
     free(mesh->faces);
     free(mesh->shading_points);
     free(mesh);
@@ -71,37 +73,57 @@ static void triangle_normal(const builder *b, uint32_t i, uint32_t j, uint32_t k
 
 static bool is_zero(const double v[3]) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
+/// Another size for an array that is there. Returns false, with the array as it was, when memory is out.
+static bool resize(void **array, size_t bytes)
+{
+    void *made = *array ? realloc(*array, bytes) : NULL;
+    if (*array && !made)
+        return false;
+    *array = made;
+    return true;
+}
+
+/// Makes room for as many triangles again.
+static bool grow(builder *b)
+{
+    glint_mesh *mesh = b->mesh;
+    const size_t room = b->room * 2;
+    void *of_corners[] = { mesh->triangles, mesh->triangle_normals, mesh->triangle_uv }, *faces = mesh->faces;
+    bool good = resize(&faces, room * sizeof *mesh->faces);
+    for (int i = 0; i < 3; i++)
+        good = good && resize(&of_corners[i], room * sizeof *mesh->triangles);
+    mesh->triangles = of_corners[0];
+    mesh->triangle_normals = of_corners[1];
+    mesh->triangle_uv = of_corners[2];
+    mesh->faces = faces;
+    b->room = good ? room : b->room;
+    return good;
+}
+
+/// A number of a corner, or that of what stands for `none`: it is behind the others, and 0.
+static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
+{
+    return number == none ? (uint32_t)count : number;
+}
+
 static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
 {
     glint_mesh *mesh = b->mesh;
     if (mesh->triangle_count == MOST)
         return glint_fail(b->error, GLINT_ERR_INVALID, "faces: at most %zu triangles expected", MOST);
-    if (mesh->triangle_count == b->room) {
-        const size_t room = b->room * 2;
-        void *triangles = realloc(mesh->triangles, room * sizeof *mesh->triangles);
-        if (!triangles)
-            return glint_fail_nomem(b->error);
-        mesh->triangles = triangles;
-        void *normals = mesh->triangle_normals ? realloc(mesh->triangle_normals, room * sizeof *mesh->triangles) : NULL;
-        if (mesh->triangle_normals && !normals)
-            return glint_fail_nomem(b->error);
-        mesh->triangle_normals = normals;
-        void *faces = mesh->faces ? realloc(mesh->faces, room * sizeof *mesh->faces) : NULL;
-        if (mesh->faces && !faces)
-            return glint_fail_nomem(b->error);
-        mesh->faces = faces;
-        b->room = room;
-    }
+    if (mesh->triangle_count == b->room && !grow(b))
+        return glint_fail_nomem(b->error);
     if (mesh->faces)
         mesh->faces[mesh->triangle_count] = (uint32_t)(b->face.number - 1);
     const uint32_t place[3] = { i, j, k };
     for (int c = 0; c < 3; c++) {
         mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
-        if (!mesh->triangle_normals)
-            continue;
-        const uint32_t normal = b->desc->normal_corners[first_corner + place[c]];
-        mesh->triangle_normals[mesh->triangle_count][c] =
-            normal == GLINT_NO_NORMAL ? (uint32_t)b->desc->normal_count : normal; // the last is 0
+        if (mesh->triangle_normals)
+            mesh->triangle_normals[mesh->triangle_count][c] = number_or(
+                b->desc->normal_corners[first_corner + place[c]], GLINT_NO_NORMAL, b->desc->normal_count);
+        if (mesh->triangle_uv)
+            mesh->triangle_uv[mesh->triangle_count][c] =
+                number_or(b->desc->uv_corners[first_corner + place[c]], GLINT_NO_UV, b->desc->uv_count);
     }
     mesh->triangle_count++;
     return GLINT_OK;
@@ -241,6 +263,11 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
     if (desc->normals && !desc->normal_corners && desc->normal_count != desc->vertex_count)
         return glint_fail(error, GLINT_ERR_INVALID, "normals: one a vertex (%zu) expected, got %zu", desc->vertex_count,
                           desc->normal_count);
+    if (desc->uv && (desc->uv_count < 1 || desc->uv_count > MOST))
+        return glint_fail(error, GLINT_ERR_INVALID, "uv: 1 .. %zu expected, got %zu", MOST, desc->uv_count);
+    if (desc->uv && !desc->uv_corners && desc->uv_count != desc->vertex_count)
+        return glint_fail(error, GLINT_ERR_INVALID, "uv: one a vertex (%zu) expected, got %zu", desc->vertex_count,
+                          desc->uv_count);
     glint_status status = glint_check_transform("transform", &desc->transform, error);
     return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
 }
@@ -261,6 +288,12 @@ static glint_status check_vertices(const glint_mesh_desc *desc, glint_error *err
                               "normals[%zu]: three finite numbers, not all 0, expected, got {%.15g, %.15g, %.15g}",
                               i + 1, v[0], v[1], v[2]);
     }
+    for (size_t i = 0; desc->uv && i < desc->uv_count; i++) {
+        const double *v = desc->uv + 2 * i;
+        if (!isfinite(v[0]) || !isfinite(v[1]))
+            return glint_fail(error, GLINT_ERR_INVALID, "uv[%zu]: two finite numbers expected, got {%.15g, %.15g}",
+                              i + 1, v[0], v[1]);
+    }
     return GLINT_OK;
 }
 
@@ -278,6 +311,12 @@ static glint_status check_face(const builder *b, size_t first_corner)
         if (normal != GLINT_NO_NORMAL && desc->normals && normal >= desc->normal_count)
             return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: normal 1 .. %zu expected, got %llu",
                               b->face.number, desc->normal_count, (unsigned long long)normal + 1);
+        const uint32_t uv = desc->uv && desc->uv_corners ? desc->uv_corners[first_corner + i] : 0;
+        if (uv == GLINT_NO_UV && desc->uv && !b->mesh->uv_missing)
+            b->mesh->uv_missing = b->face.number;
+        if (uv != GLINT_NO_UV && desc->uv && uv >= desc->uv_count)
+            return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: uv 1 .. %zu expected, got %llu",
+                              b->face.number, desc->uv_count, (unsigned long long)uv + 1);
     }
     return GLINT_OK;
 }
@@ -290,7 +329,9 @@ static glint_status copy_vertices(const glint_mesh_desc *desc, glint_mesh *mesh,
     mesh->vertices = malloc(desc->vertex_count * sizeof *mesh->vertices);
     if (desc->normals)
         mesh->normals = malloc((desc->normal_count + 1) * sizeof *mesh->normals);
-    if (!mesh->vertices || (desc->normals && !mesh->normals))
+    if (desc->uv)
+        mesh->uv = calloc(desc->uv_count + 1, sizeof *mesh->uv);
+    if (!mesh->vertices || (desc->normals && !mesh->normals) || (desc->uv && !mesh->uv))
         return glint_fail_nomem(error);
     for (size_t i = 0; i < desc->vertex_count; i++)
         for (int c = 0; c < 3; c++)
@@ -299,7 +340,17 @@ static glint_status copy_vertices(const glint_mesh_desc *desc, glint_mesh *mesh,
         vec_normalize(mesh->normals[i], desc->normals + 3 * i);
     if (desc->normals)
         vec_scale(mesh->normals[desc->normal_count], desc->vertices, 0);
+    if (desc->uv)
+        memcpy(mesh->uv, desc->uv, desc->uv_count * sizeof *mesh->uv);
     return GLINT_OK;
+}
+
+static void sign_uv(glint_mesh *mesh, size_t uv_count)
+{
+    mesh->uv_key = glint_key_add((glint_key) { 0 }, mesh->uv, uv_count * sizeof *mesh->uv);
+    if (mesh->triangle_uv)
+        mesh->uv_key =
+            glint_key_add(mesh->uv_key, mesh->triangle_uv, mesh->triangle_count * sizeof *mesh->triangle_uv);
 }
 
 static bool has_polygons(const glint_mesh_desc *desc)
@@ -314,15 +365,17 @@ static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_er
 {
     const bool polygons = has_polygons(desc);
     builder b = { .desc = desc, .mesh = mesh, .room = desc->face_count, .error = error };
-    const bool numbered = desc->normals && desc->normal_corners;
+    const bool numbered = desc->normals && desc->normal_corners, mapped = desc->uv && desc->uv_corners;
     glint_status status = copy_vertices(desc, mesh, error);
     if (status)
         return status;
     mesh->triangles = malloc(b.room * sizeof *mesh->triangles);
     mesh->triangle_normals = numbered ? malloc(b.room * sizeof *mesh->triangles) : NULL;
+    mesh->triangle_uv = mapped ? malloc(b.room * sizeof *mesh->triangles) : NULL;
     mesh->faces = polygons ? malloc(b.room * sizeof *mesh->faces) : NULL;
     mesh->face_count = desc->face_count;
-    if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (polygons && !mesh->faces))
+    if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (mapped && !mesh->triangle_uv) ||
+        (polygons && !mesh->faces))
         return glint_fail_nomem(error);
     size_t first = 0;
     for (size_t i = 0; i < desc->face_count && !status; i++) {
@@ -335,6 +388,8 @@ static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_er
         first += b.face.size;
     }
     free(b.face.left);
+    if (!status && mesh->uv)
+        sign_uv(mesh, desc->uv_count);
     return status;
 }
 

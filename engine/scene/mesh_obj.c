@@ -1,4 +1,4 @@
-/// Wavefront .obj files, a line at a time: nothing but the vertices, normals and faces read so far is kept.
+/// Wavefront .obj files, a line at a time: nothing but the vertices, normals, coordinates and faces read so far is kept.
 #include "engine/base/open.h"
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
@@ -26,7 +26,8 @@ typedef struct reader {
     locale_t c_locale; ///< decimal points whatever the script's locale
     char *line;
     size_t line_room, number; ///< number: of the line at hand, from 1
-    array vertices, normals, corners, corner_normals, sizes;
+    array vertices, normals, uv, corners, corner_normals, sizes;
+    array corner_uv; ///< of the corners up to the last that named one
     bool has_normals; ///< a face named one
     glint_error *error;
 } reader;
@@ -114,13 +115,26 @@ static bool ends_word(char c) { return !c || is_blank(c); }
 
 // ---- What a line says ----
 
-/// Three numbers; a fourth, the weight or a colour after them, is passed over.
-static glint_status read_three(reader *r, const char *at, array *into)
+/// Notes that the corner at hand has the coordinates `uv`; GLINT_NO_UV: that all before it have what they have.
+static glint_status append_uv(reader *r, uint32_t uv)
 {
-    double v[3];
-    for (int i = 0; i < 3; i++) {
+    const uint32_t none = GLINT_NO_UV;
+    glint_status status = GLINT_OK;
+    while (r->corner_uv.count < r->corners.count && !status)
+        status = append(r, &r->corner_uv, &none);
+    return status || uv == GLINT_NO_UV ? status : append(r, &r->corner_uv, &uv);
+}
+
+/// Three numbers, of coordinates two, of which the second may be missing; one more, the weight or a colour after them, is
+/// passed over.
+static glint_status read_numbers(reader *r, const char *at, int count, array *into)
+{
+    double v[3] = { 0 };
+    for (int i = 0; i < count; i++) {
         char *end;
         at = skip_blanks(at);
+        if (count == 2 && i == 1 && (!*at || *at == '#'))
+            break;
         v[i] = strtod_l(at, &end, r->c_locale);
         if (end == at || !ends_word(*end))
             return complain(r, "a number", at);
@@ -131,7 +145,7 @@ static glint_status read_three(reader *r, const char *at, array *into)
     return append(r, into, v);
 }
 
-/// A number of a vertex or normal, from 1, or from the end where negative; 0-based in *out.
+/// A number of a vertex, normal or pair of coordinates, from 1, or from the end where negative; 0-based in *out.
 static glint_status read_index(reader *r, const char **at, size_t count, const char *what, uint32_t *out)
 {
     char *end, expected[96];
@@ -146,6 +160,22 @@ static glint_status read_index(reader *r, const char **at, size_t count, const c
     return GLINT_OK;
 }
 
+/// vt of a corner; where the file has none so far, its form alone is checked.
+static glint_status read_uv_number(reader *r, const char **at, const char *start)
+{
+    uint32_t uv;
+    char *end;
+    strtoll(*at, &end, 10);
+    if (end == *at)
+        return complain(r, "v, v/vt, v//vn or v/vt/vn", start);
+    if (r->uv.count == 0) {
+        *at = end;
+        return GLINT_OK;
+    }
+    glint_status status = read_index(r, at, r->uv.count, "texture coordinate", &uv);
+    return status ? status : append_uv(r, uv);
+}
+
 /// v, v/vt, v//vn or v/vt/vn.
 static glint_status read_corner(reader *r, const char **at)
 {
@@ -154,14 +184,9 @@ static glint_status read_corner(reader *r, const char **at)
     glint_status status = read_index(r, at, r->vertices.count, "vertex", &vertex);
     if (!status && **at == '/') {
         ++*at;
-        if (**at != '/') { // where on a texture: checked for its form alone
-            char *end;
-            strtoll(*at, &end, 10);
-            if (end == *at)
-                return complain(r, "v, v/vt, v//vn or v/vt/vn", start);
-            *at = end;
-        }
-        if (**at == '/') {
+        if (**at != '/')
+            status = read_uv_number(r, at, start);
+        if (!status && **at == '/') {
             ++*at;
             status = read_index(r, at, r->normals.count, "normal", &normal);
             r->has_normals = true;
@@ -196,17 +221,18 @@ static bool is_word(const char *line, const char *word)
 
 static glint_status read_statement(reader *r)
 {
-    static const char *const passed_over[] = { "vt",        "vp",     "g",        "o",        "s",
-                                               "usemtl",    "mtllib", "l",        "p",        "bevel",
-                                               "lod",       "mg",     "c_interp", "d_interp", "shadow_obj",
-                                               "trace_obj", "usemap", "maplib",   NULL };
+    static const char *const passed_over[] = { "vp",     "g",        "o",        "s",          "usemtl",    "mtllib",
+                                               "l",      "p",        "bevel",    "lod",        "mg",        "c_interp",
+                                               "d_interp", "shadow_obj", "trace_obj", "usemap", "maplib", NULL };
     const char *at = skip_blanks(r->line);
     if (!*at || *at == '#')
         return GLINT_OK;
     if (is_word(at, "v"))
-        return read_three(r, at + 1, &r->vertices);
+        return read_numbers(r, at + 1, 3, &r->vertices);
     if (is_word(at, "vn"))
-        return read_three(r, at + 2, &r->normals);
+        return read_numbers(r, at + 2, 3, &r->normals);
+    if (is_word(at, "vt"))
+        return read_numbers(r, at + 2, 2, &r->uv);
     if (is_word(at, "f") || is_word(at, "fo"))
         return read_face(r, at + (at[1] == 'o' ? 2 : 1));
     for (int i = 0; passed_over[i]; i++)
@@ -245,7 +271,13 @@ static glint_status make_mesh(reader *r, const glint_mesh_desc *desc, glint_shap
     mesh.normals = r->has_normals ? r->normals.items : NULL;
     mesh.normal_count = r->has_normals ? r->normals.count : 0;
     mesh.normal_corners = r->has_normals ? r->corner_normals.items : NULL;
-    glint_status status = glint_mesh_create(&mesh, out, &inner);
+    glint_status status = r->corner_uv.count ? append_uv(r, GLINT_NO_UV) : GLINT_OK;
+    if (status)
+        return status;
+    mesh.uv = r->corner_uv.count ? r->uv.items : NULL;
+    mesh.uv_count = r->corner_uv.count ? r->uv.count : 0;
+    mesh.uv_corners = r->corner_uv.items;
+    status = glint_mesh_create(&mesh, out, &inner);
     if (status)
         glint_fail(r->error, status, "%s: %s", r->path, inner.message);
     return status;
@@ -269,7 +301,8 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
 {
     reader r = { .path = path, .line_room = 4096, .error = error };
     r.vertices.size = r.normals.size = 3 * sizeof(double);
-    r.corners.size = r.corner_normals.size = r.sizes.size = sizeof(uint32_t);
+    r.uv.size = 2 * sizeof(double);
+    r.corners.size = r.corner_normals.size = r.corner_uv.size = r.sizes.size = sizeof(uint32_t);
     glint_status status = desc->has_shading ? glint_check_shading(desc->shading, error) : GLINT_OK;
     if (!status)
         status = open_stream(&r);
@@ -288,6 +321,8 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
     free(r.normals.items);
     free(r.corners.items);
     free(r.corner_normals.items);
+    free(r.uv.items);
+    free(r.corner_uv.items);
     free(r.sizes.items);
     return status;
 }

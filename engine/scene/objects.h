@@ -2,6 +2,7 @@
 #ifndef GLINT_OBJECTS_H
 #define GLINT_OBJECTS_H
 
+#include "engine/base/hash.h"
 #include "engine/base/list.h"
 #include "engine/glint.h"
 
@@ -28,6 +29,10 @@ typedef struct glint_mesh {
     size_t vertex_count, triangle_count;
     double (*normals)[3]; ///< unit, or 0: none; NULL: there are none
     uint32_t (*triangle_normals)[3]; ///< numbers of normals; NULL: those of the vertices
+    double (*uv)[2]; ///< coordinates on a picture; NULL: there are none
+    uint32_t (*triangle_uv)[3]; ///< numbers of these; NULL: those of the vertices
+    glint_key uv_key; ///< of both
+    size_t uv_missing; ///< the first face that has a corner without, from 1; 0: none
     uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
     size_t face_count;
     uint32_t (*shading_points)

@@ -7,16 +7,21 @@
 #include <string.h>
 
 /// The gradient of a height by the world's axes, of a lane of the results: by the shape's own axes through its map, and by
-/// the world's.
-static void gradient_of(const glint_pattern_place *place, double slopes[GLINT_BUMP_SLOPES][GLINT_PROGRAM_LANES],
+/// the world's. on_surface: its slopes by u and v count, too.
+static void gradient_of(const struct glint_pattern *pattern, const glint_pattern_place *place, bool on_surface,
                         uint32_t lane, double out[3])
 {
+    double own[3];
     for (int c = 0; c < 3; c++) {
-        double own = slopes[c][lane];
-        if (place->mapped)
-            own = (place->inverse[0][c] * slopes[0][lane] + place->inverse[1][c] * slopes[1][lane]) +
-                  place->inverse[2][c] * slopes[2][lane];
-        out[c] = own + slopes[3 + c][lane];
+        own[c] = pattern->slopes[c][lane];
+        for (int k = 0; k < 2 && on_surface; k++)
+            own[c] += pattern->slopes[6 + k][lane] * pattern->inputs.uv_slope[k][c][lane];
+    }
+    for (int c = 0; c < 3; c++) {
+        const double by_axes = place->mapped ? (place->inverse[0][c] * own[0] + place->inverse[1][c] * own[1]) +
+                                                   place->inverse[2][c] * own[2]
+                                             : own[c];
+        out[c] = by_axes + pattern->slopes[3 + c][lane];
     }
 }
 
@@ -43,7 +48,8 @@ static const glint_pattern_place *place_of(const glint_tile_frame *frame, uint32
     return &frame->plan->patterns->places[geometry->prim_part[frame->geometry.prims[prim].id]];
 }
 
-static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_lanes *entry, uint32_t k)
+static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_lanes *entry, uint32_t k,
+                       bool on_surface)
 {
     const glint_precision precision = frame->plan->desc.precision;
     for (unsigned left = entry->lanes; left; left &= left - 1) {
@@ -51,7 +57,7 @@ static void turn_lanes(glint_tile *tile, const glint_tile_frame *frame, const gl
         double n[3], gradient[3];
         for (int c = 0; c < 3; c++)
             n[c] = glint_real_at(tile->surface.normal[c], precision, i);
-        gradient_of(place_of(frame, tile->at.prim[i]), tile->pattern->slopes, k * GLINT_GROUP + lane, gradient);
+        gradient_of(tile->pattern, place_of(frame, tile->at.prim[i]), on_surface, k * GLINT_GROUP + lane, gradient);
         if (!turn(n, gradient, glint_has_lane(tile->hit.back, i)))
             continue;
         for (int c = 0; c < 3; c++)
@@ -64,18 +70,19 @@ static void bump_material(glint_tile *tile, const glint_tile_frame *frame, const
                           const glint_plan_pattern *own, const glint_pattern_lanes *entries, uint32_t count)
 {
     struct glint_pattern *pattern = tile->pattern;
+    const uint32_t uv = own->program[GLINT_FIELD_BUMP]->inputs & GLINT_READS_UV;
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
     for (uint32_t k = 0; k < count; k++) {
         wanted[k] = entries[k].lanes;
-        glint_pattern_gather(&pattern->inputs, frame, points, own->slope->inputs, entries[k].group, entries[k].lanes,
-                             k);
+        glint_pattern_gather(&pattern->inputs, frame, points, own->slope->inputs | uv, entries[k].group,
+                             entries[k].lanes, k);
     }
     glint_program_args args = { .group_count = count, .wanted = wanted };
-    for (int k = 0; k < GLINT_BUMP_SLOPES; k++)
+    for (uint32_t k = 0; k < own->slope->code.output_count; k++)
         args.result[k] = pattern->slopes[k];
     glint_pattern_call(pattern, frame, &own->slope->code, &args);
     for (uint32_t k = 0; k < count; k++)
-        turn_lanes(tile, frame, &entries[k], k);
+        turn_lanes(tile, frame, &entries[k], k, uv);
 }
 
 static bool is_bumped(const glint_plan_pattern *own, uint32_t fields)

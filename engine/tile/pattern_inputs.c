@@ -1,7 +1,7 @@
 #include "engine/tile/pattern_inputs.h"
 #include "engine/base/vec.h"
-#include "engine/program/builder.h"
 #include "engine/tile/batch.h"
+#include "engine/tile/surface_uv.h"
 
 #define BITS(first, count) (((1u << (count)) - 1) << (first))
 #define READS_P BITS(GLINT_INPUT_P_X, 3)
@@ -9,7 +9,7 @@
 #define READS_N BITS(GLINT_INPUT_N_X, 3)
 #define READS_V BITS(GLINT_INPUT_V_X, 3)
 #define READS_UV_FOOTPRINT BITS(GLINT_INPUT_UV_FOOTPRINT, 1)
-#define READS_UV (BITS(GLINT_INPUT_UV_U, 2) | READS_UV_FOOTPRINT)
+#define READS_UV GLINT_READS_UV
 #define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
 
 /// A call's group: where it is in the tile, and where in the rows.
@@ -198,75 +198,24 @@ static void gather_footprints(const gathering *g, unsigned lanes)
 
 // ---- Coordinates on the surface ----
 
-#define TURN 0x1.921fb54442d18p+2 // 2 pi
-
-/// The angle of x, z around an axis, 0 .. 1: from -z on by -x, z and x.
-static double around(double x, double z)
-{
-    const double operands[GLINT_OPERANDS_MAX] = { x, z };
-    double angle[GLINT_RESULTS_MAX];
-    glint_fold(GLINT_OP_ATAN2, NULL, operands, angle);
-    return 0.5 + angle[0] / TURN;
-}
-
-/// Of a ball: u eastwards, v from the south pole at y = -1 to the north. Returns its width in units of them.
-static double ball_uv(const double d[3], double uv[2])
-{
-    const double radius = sqrt(vec_dot(d, d)), operands[GLINT_OPERANDS_MAX] = { fmin(fmax(-d[1] / radius, -1), 1) };
-    double angle[GLINT_RESULTS_MAX];
-    glint_fold(GLINT_OP_ACOS, NULL, operands, angle);
-    uv[0] = around(d[0], d[2]);
-    uv[1] = angle[0] / (TURN / 2);
-    return radius * (TURN / 2);
-}
-
-/// Of a box: 0 .. 1 on each face, as seen from outside with y upwards; above and below with -z and z upwards.
-static double box_uv(const glint_pattern_place *place, const double p[3], int axis, bool upper, double uv[2])
-{
-    const int across = axis == 0 ? 2 : 0, up = axis == 1 ? 2 : 1;
-    const bool turned = axis == 0 ? upper : axis == 2 && !upper;
-    const double *low = place->lower, *high = place->upper;
-    uv[0] = (turned ? high[across] - p[across] : p[across] - low[across]) / (high[across] - low[across]);
-    uv[1] = (axis == 1 && upper ? high[up] - p[up] : p[up] - low[up]) / (high[up] - low[up]);
-    return fmin(high[across] - low[across], high[up] - low[up]);
-}
-
-/// Of a plane or disk: lengths from its point. Of a cylinder or cone: around, and from base to top.
-static double axis_uv(const glint_pattern_place *place, const double p[3], double uv[2])
-{
-    double d[3];
-    vec_sub(d, p, place->origin);
-    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]);
-    if (place->length == 0) {
-        uv[0] = x;
-        uv[1] = y;
-        return 1;
-    }
-    uv[0] = around(x, -y);
-    uv[1] = vec_dot(d, place->along);
-    return fmin(TURN * place->radius, place->length);
-}
-
-/// Those of one lane; the point in the shape's own space is there. Returns how wide one unit of them is, in that space.
-static double uv_at(const gathering *g, const glint_pattern_place *place, uint32_t lane, double uv[2])
+/// What those of one lane depend on; the point in the shape's own space is there.
+static glint_uv_point uv_point_of(const gathering *g, const glint_pattern_place *place, uint32_t lane)
 {
     const glint_prim *prim = &g->frame->geometry.prims[g->points->prim[g->at + lane]];
-    double p[3], d[3], own[3];
-    bool upper;
+    glint_uv_point point = { .triangle = prim->id - place->first_prim };
+    double d[3];
     for (int c = 0; c < 3; c++)
-        p[c] = row(g, GLINT_INPUT_P_X + c)[lane];
-    if (place->kind == GLINT_SHAPE_BOX) {
-        const int axis = face_of(g, place, lane, &upper);
-        return box_uv(place, p, axis, upper, uv);
-    }
+        point.p[c] = row(g, GLINT_INPUT_P_X + c)[lane];
+    if (place->kind == GLINT_SHAPE_BOX)
+        point.axis = face_of(g, place, lane, &point.upper);
     if (place->kind != GLINT_SHAPE_SPHERE && place->kind != GLINT_SHAPE_SPHERES)
-        return axis_uv(place, p, uv);
+        return point;
     for (int c = 0; c < 3; c++)
         d[c] = glint_real_at(g->points->point[c], g->frame->plan->desc.precision, (uint32_t)g->at + lane) -
                prim->center[c];
     for (int c = 0; c < 3; c++)
-        own[c] = place->mapped ? vec_dot(place->inverse[c], d) : d[c];
-    return ball_uv(own, uv);
+        point.from_center[c] = place->mapped ? vec_dot(place->inverse[c], d) : d[c];
+    return point;
 }
 
 static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
@@ -275,12 +224,15 @@ static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
         const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
         unsigned one;
         const glint_pattern_place *place = next_place(g, lanes & -lanes, &one);
-        double uv[2];
-        const double unit = uv_at(g, place, lane, uv);
-        row(g, GLINT_INPUT_UV_U)[lane] = uv[0];
-        row(g, GLINT_INPUT_UV_V)[lane] = uv[1];
+        const glint_uv_point point = uv_point_of(g, place, lane);
+        glint_surface_uv uv;
+        glint_surface_uv_at(place, &point, &uv);
+        row(g, GLINT_INPUT_UV_U)[lane] = uv.at[0];
+        row(g, GLINT_INPUT_UV_V)[lane] = uv.at[1];
+        for (int k = 0; k < 6; k++)
+            g->inputs->uv_slope[k / 3][k % 3][g->to + lane] = uv.slope[k / 3][k % 3];
         if (reads & READS_UV_FOOTPRINT)
-            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * place->shrink / unit;
+            row(g, GLINT_INPUT_UV_FOOTPRINT)[lane] = row(g, GLINT_INPUT_FOOTPRINT)[lane] * place->shrink / uv.unit;
     }
 }
 

@@ -6,6 +6,7 @@
 
 typedef struct glint_pattern_inputs {
     _Alignas(64) double row[GLINT_INPUT_COUNT][GLINT_PROGRAM_LANES];
+    double uv_slope[2][3][GLINT_PROGRAM_LANES]; ///< with u and v: how they grow along the axes of the shape's own space
 } glint_pattern_inputs;
 
 /// Fills the inputs in `reads`, a bit each, for some lanes of a group: lanes 16 k and on of the rows. Other lanes hold

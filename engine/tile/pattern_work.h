@@ -4,7 +4,7 @@
 
 #include "engine/tile/pattern_inputs.h"
 
-#define GLINT_BUMP_SLOPES 6 ///< by the point in the shape's own space, and in the world
+#define GLINT_BUMP_SLOPES 8 ///< by the point in the shape's own space, in the world, and on the surface
 
 #define GLINT_SHADER_TERMS 6 ///< diffuse, specular
 

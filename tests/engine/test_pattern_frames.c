@@ -194,15 +194,16 @@ static double uniform(double low, double high)
 
 static uint32_t draw(uint32_t below) { return (uint32_t)uniform(0, below) % below; }
 
-/// A program of one or three numbers, of the point, the normal and the view, some of them odd.
+/// A program of one or three numbers, of the point, the normal, the view and the surface, some of them odd.
 static glint_program *random_program(size_t count, double low, double high)
 {
     glint_value out[3];
     begin_program(GLINT_PROGRAM_PATTERN);
     for (size_t i = 0; i < count; i++) {
-        const glint_input inputs[] = { GLINT_INPUT_P_X,     GLINT_INPUT_P_Y, GLINT_INPUT_P_Z,
-                                       GLINT_INPUT_WORLD_Y, GLINT_INPUT_N_X, GLINT_INPUT_V_Z };
-        const glint_value x = mul(in(inputs[draw(6)]), num(uniform(1, 5))), y = in(inputs[draw(6)]);
+        const glint_input inputs[] = { GLINT_INPUT_P_X, GLINT_INPUT_P_Y,  GLINT_INPUT_P_Z,  GLINT_INPUT_WORLD_Y,
+                                       GLINT_INPUT_N_X, GLINT_INPUT_V_Z,  GLINT_INPUT_UV_U, GLINT_INPUT_UV_V,
+                                       GLINT_INPUT_UV_FOOTPRINT };
+        const glint_value x = mul(in(inputs[draw(9)]), num(uniform(1, 5))), y = in(inputs[draw(9)]);
         const glint_value wave = op(GLINT_OP_SIN, op(GLINT_OP_ADD, x, y, 0), 0, 0);
         out[i] = op(GLINT_OP_MULADD, wave, num((high - low) / 2), num((high + low) / 2));
         if (draw(6) == 0) // below 0, and NaN
@@ -292,15 +293,53 @@ static void random_shape(world *w, glint_material *material)
     add_shape(w, &desc, material);
 }
 
+#define SHEET 6 // quads along a side of a mesh
+
+/// A bent sheet of quads, whose coordinates belong to vertices, or to corners and are torn.
+static glint_shape *new_sheet(const glint_mesh_desc *like, bool torn, double first)
+{
+    double vertices[SHEET + 1][SHEET + 1][3], uv[4 * SHEET * SHEET][2];
+    uint32_t corners[4 * SHEET * SHEET], sizes[SHEET * SHEET], numbers[4 * SHEET * SHEET];
+    glint_mesh_desc desc = *like;
+    glint_shape *shape;
+    for (int i = 0; i <= SHEET; i++)
+        for (int j = 0; j <= SHEET; j++) {
+            const double at[3] = { 2.0 * i / SHEET - 1, 0.3 * sin(i) * cos(j), 2.0 * j / SHEET - 1 };
+            memcpy(vertices[i][j], at, sizeof at);
+        }
+    for (uint32_t k = 0; k < SHEET * SHEET; k++) {
+        const uint32_t at = k / SHEET * (SHEET + 1) + k % SHEET;
+        const uint32_t around[4] = { at, at + 1, at + SHEET + 2, at + SHEET + 1 };
+        sizes[k] = 4;
+        memcpy(corners + 4 * (size_t)k, around, sizeof around);
+    }
+    for (uint32_t i = 0; i < 4 * SHEET * SHEET; i++) {
+        numbers[i] = (7 * i) % (4 * SHEET * SHEET);
+        uv[i][0] = i == 0 ? first : sin(i);
+        uv[i][1] = 1.5 * cos(3 * i);
+    }
+    desc.vertices = &vertices[0][0][0];
+    desc.vertex_count = (SHEET + 1) * (SHEET + 1);
+    desc.corners = corners;
+    desc.face_sizes = sizes;
+    desc.face_count = SHEET * SHEET;
+    desc.uv = &uv[0][0];
+    desc.uv_count = torn ? 4 * SHEET * SHEET : desc.vertex_count;
+    desc.uv_corners = torn ? numbers : NULL;
+    OK(glint_mesh_create(&desc, &shape, &error));
+    return shape;
+}
+
 static void random_mesh(world *w, glint_material *material)
 {
     glint_mesh_desc desc = glint_mesh_desc_default();
-    glint_shape *shape;
-    const double center[3] = { uniform(-2, 2), 1, uniform(-2, 2) };
+    const double to[3] = { uniform(-2, 2), 1, uniform(-2, 2) }, by[3] = { uniform(0.8, 1.5), 1, -1 };
+    const glint_transform move = glint_transform_translate(to), size = glint_transform_scale(by);
+    desc.transform = draw(2) ? move : glint_transform_product(&move, &size);
     desc.has_shading = true;
     desc.shading = (glint_shading)draw(4);
     desc.material = material;
-    OK(glint_sphere_mesh_create(center, 1, 12, &desc, &shape, &error));
+    glint_shape *shape = new_sheet(&desc, draw(2), 0.5);
     OK(glint_scene_add_shape(w->scene, shape, &error));
     glint_shape_release(shape);
 }
@@ -664,6 +703,43 @@ static void test_reuse(void **state)
     }
 }
 
+/// One number among the coordinates of a mesh, whose surface stays as it is.
+static void test_reuse_uv(void **state)
+{
+    (void)state;
+    const double eye[3] = { 0, 3, 2 }, at[3] = { 0, 0, 0 };
+    world w = new_world(eye, at, 64, 48);
+    glint_mesh_desc mesh = glint_mesh_desc_default();
+    glint_material_desc desc = glint_material_desc_default();
+    begin_program(GLINT_PROGRAM_PATTERN);
+    const glint_value u = op(GLINT_OP_ABS, in(GLINT_INPUT_UV_U), 0, 0);
+    desc.program.diffuse = end_program(&u, 1);
+    mesh.material = new_material(&desc);
+    glint_program_release(desc.program.diffuse);
+    glint_renderer_desc options = { .threads = 2 };
+    glint_renderer *renderer;
+    OK(glint_renderer_create(&options, &renderer, &error));
+    glint_image *before = NULL;
+    for (int turn = 0; turn < 6; turn++) {
+        glint_shape *sheet = new_sheet(&mesh, turn >= 3, turn / 2);
+        OK(glint_scene_add_shape(w.scene, sheet, &error));
+        glint_image *reused = render_with(renderer, &w, NULL), *fresh = render(&w, NULL, 2);
+        check_same(reused, fresh, "reused", turn);
+        const size_t bytes = sizeof(float) * 64 * 48;
+        const bool same = before && memcmp(before->plane[GLINT_PASS_ALBEDO][0], fresh->plane[GLINT_PASS_ALBEDO][0], bytes) == 0;
+        assert_int_equal(same, turn == 1 || turn == 5);
+        OK(glint_scene_remove_shape(w.scene, sheet, &error));
+        glint_shape_release(sheet);
+        glint_image_release(reused);
+        glint_image_release(before);
+        before = fresh;
+    }
+    glint_image_release(before);
+    glint_renderer_destroy(renderer);
+    glint_material_release(mesh.material);
+    release_world(&w);
+}
+
 /// NaN and numbers below 0 are taken as 0, and counted, with a place.
 static void test_odd(void **state)
 {
@@ -767,6 +843,6 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_floor), cmocka_unit_test(test_same_bits),
                                         cmocka_unit_test(test_bump),  cmocka_unit_test(test_shader),
                                         cmocka_unit_test(test_reuse), cmocka_unit_test(test_stages),
-                                        cmocka_unit_test(test_odd) };
+                                        cmocka_unit_test(test_odd),   cmocka_unit_test(test_reuse_uv) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
