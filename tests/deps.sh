@@ -35,6 +35,7 @@ chromium        command:chromium
 '
 rock_required='
 luarocks        command:luarocks
+zip             command:zip
 '
 
 bench_required='

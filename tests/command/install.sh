@@ -62,6 +62,18 @@ END
 check "the same scene from Lua" eval '(cd "$work" && "$prefix/bin/glint" same.lua --quiet)'
 check "has the same pixels" "$prefix/bin/glint" compare "$work/c_example.png" "$work/same.png" --fail 0 --warn 0
 
+# The same bytes wherever it is built: the folder is in nothing, and objects with their notes for debuggers are equal.
+check "the folder of the build is in no object" eval '! grep -qF "$root/" "$build/glint" "$build/glint.so" "$build/libglint.a"'
+objects="build/engine/base/pool.o build/engine/file/png.o build/bindings/command/output.o build/libglint.map"
+for folder in one another/folder; do
+    mkdir -p "$work/$folder" && cp -r Makefile engine bindings scripts "$work/$folder/"
+    mkdir "$work/$folder/tests" && cp tests/deps.sh "$work/$folder/tests/"
+    check "objects built in $folder" env -u BUILD ${MAKE:-make} -s --no-print-directory -C "$work/$folder" $objects
+done
+for object in $objects; do
+    check "$object is the same from two folders" cmp "$work/one/$object" "$work/another/folder/$object"
+done
+
 check "make uninstall" quiet_make uninstall PREFIX="$prefix"
 check "nothing is left" test -z "$(find "$prefix" -type f -o -type l)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# luarocks make for Lua 5.4 into a folder of its own: the module loads in plain Lua and renders, the command runs, and
-# removing the rock leaves neither.
+# The rock of `make dist` into a folder of its own, or without git and zip what `luarocks make` builds here: the module loads in
+# plain Lua and renders, the command runs, and removing the rock leaves neither.
 . tests/command/prelude.sh
 rocks() { HOME=$work MAKEFLAGS=-j2 luarocks --lua-version 5.4 --tree "$work/tree" "$@"; }
 
@@ -12,7 +12,14 @@ version=$(sed -n 's/^.define GLINT_VERSION "\(.*\)"/\1/p' engine/glint.h)
 rockspec=bindings/glint-$version-1.rockspec
 check "the rockspec has the engine's version" grep -qx "version = \"$version-1\"" "$rockspec"
 unset LUA_PATH LUA_CPATH MAKEFLAGS MFLAGS
-check "luarocks make" rocks make "$rockspec"
+if command -v zip >/dev/null && git rev-parse --git-dir >/dev/null 2>&1; then
+    check "make dist" make -s BUILD="$work/build" dist
+    check "the archive is the same again" eval 'sum=$(cksum <"$work/build/dist/glint-$version.tar.gz") &&
+        make -s BUILD="$work/build" dist && [ "$(cksum <"$work/build/dist/glint-$version.tar.gz")" = "$sum" ]'
+    check "luarocks install" rocks install "$work/build/dist/glint-$version-1.src.rock"
+else
+    check "luarocks make" rocks make "$rockspec"
+fi
 check "the rock is there" grep -q "$version-1 (installed)" <(rocks list --porcelain 2>/dev/null | sed 's/\t/ /g; s/ installed / (installed) /')
 
 cat >"$work/scene.lua" <<'END'

@@ -116,8 +116,10 @@ script 'local t = {}; for i = 1, 1e9 do t[i] = ("x"):rep(1e5) .. i end'
 refused "memory" "not enough memory" -o a.png
 script 'local t = { ("x"):rep(6e7) }; t[2] = ("y"):rep(6e7)'
 refused "memory in two strings" "not enough memory" -o a.png
-script 'function after() image = nil end'
-refused "memory for a picture" "out of memory" -o a.png --size 40000x40000
+if [ $slack_ms -eq 1000 ]; then # a sanitizer maps terabytes, so that there is no limit
+    script
+    refused "memory for a picture" "out of memory" -o a.png --size 40000x40000
+fi
 if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then
     script # without a picture: what a run itself takes
     /usr/bin/time -o used -f %M "$glint" --untrusted scene.lua -o none -q >out 2>err
