@@ -18,18 +18,34 @@ static inline vr R(face_height)(const glint_face *face, const vr place[3])
     return R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(face->places));
 }
 
-/// How fast a ray rises over a face.
-static inline vr R(face_rise)(const glint_face *face, const vr d[3])
+/// A pair of parallel faces that are square to axis k, a constant.
+INNER vr R(over_level_slab)(const glint_face *low, const int k, const vr *place, const vr d[3], vr height[2])
 {
-    const vr n[3] = { r_set(face->normal[0]), r_set(face->normal[1]), r_set(face->normal[2]) };
-    if (face->axis == 0)
-        return n[0] * d[0];
-    if (face->axis == 1)
-        return n[1] * d[1];
-    if (face->axis == 2)
-        return n[2] * d[2];
+    const vr n = r_set(low->normal[k]);
+    for (int i = 0; i < 2 && place; i++)
+        height[i] = n * (place[k] - r_set(low[i].at[k]));
+    return n * d[k];
+}
+
+/// How fast rays rise over a pair of faces, low[0] and low[1], which have one normal; and the heights of their start, `place`,
+/// over them. place: NULL: these are not wanted.
+INNER vr R(over_slab)(const glint_face *low, const vr *place, const vr d[3], vr height[2])
+{
+    if (low->axis < 3)
+        return low->axis == 0   ? R(over_level_slab)(low, 0, place, d, height)
+               : low->axis == 1 ? R(over_level_slab)(low, 1, place, d, height)
+                                : R(over_level_slab)(low, 2, place, d, height);
+    const vr n[3] = { r_set(low->normal[0]), r_set(low->normal[1]), r_set(low->normal[2]) };
+    for (int i = 0; i < 2 && place; i++) {
+        const double *at = low[i].at;
+        const vr q[3] = { place[0] - r_set(at[0]), place[1] - r_set(at[1]), place[2] - r_set(at[2]) };
+        height[i] = R(unless_within)(DOT(n, q), r_set(GLINT_ON_FACE) * r_set(low[i].places));
+    }
     return DOT(n, d);
 }
+
+/// The same of one face, for callers that need no more.
+static inline vr R(face_rise)(const glint_face *face, const vr d[3]) { return R(over_slab)(face, NULL, d, NULL); }
 
 /// Where rays meet the plane.
 static inline vr R(face_way)(const glint_face *face, const vr o[3], const vr d[3])

@@ -12,7 +12,7 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
         const glint_solid *solid = &table->solids[prim->item];
         R(solid_start) start;
         R(start_at)(solid, prim, o, &start);
-        const R(span) span = R(span_along)(solid, &start, d);
+        const R(span) span = R(span_along)(solid, &start, d, true);
         *t = span.t[1];
         if (is_open(solid))
             return rm_and(rm_and(span.hit, span.second), r_lt(r_set(0), *t));

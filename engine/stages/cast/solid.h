@@ -7,8 +7,8 @@ typedef struct R(span) {
     vr t[2];
     rm hit;
     rm second; ///< t[1] is where the ray leaves: of an open form, through the side
-    rm flat[2]; ///< by way of a face of the slab, not of the curved side
-    vr face[2][3]; ///< the outward normal of that face
+    rm flat[2]; ///< by way of a face of a slab, not of the curved side
+    vr face[2]; ///< which: 1 + its axis where the shape is the unit one, below 0 the one whose outward normal points down it
 } R(span);
 
 static inline void R(to_unit)(const glint_solid *solid, const vr v[3], vr out[3])
@@ -28,41 +28,95 @@ static inline void R(unit_offset)(const glint_solid *solid, const glint_prim *pr
 
 /// What rays know of a solid by where they start.
 typedef struct R(solid_start) {
-    vr f[3]; ///< from the centre, where the shape is the unit one; of a box 0
-    vr height[6]; ///< over its faces
+    vr f[3]; ///< from the centre, where the shape is the unit one; of a box nothing
+    const vr *place; ///< where they start
+    const real *height; ///< over the faces, of rays that start at one place; NULL: they are found as slabs are cut
 } R(solid_start);
 
 static inline void R(start_at)(const glint_solid *solid, const glint_prim *prim, const vr place[3],
                                R(solid_start) * start)
 {
-    const int slabs = glint_slab_count(solid->form);
-    for (int k = 0; k < 3; k++)
-        start->f[k] = r_set(0);
+    start->place = place;
+    start->height = NULL;
     if (solid->form != GLINT_FORM_BOX)
         R(unit_offset)(solid, prim, place, start->f);
-    for (int i = 0; i < 2 * slabs; i++)
-        start->height[i] = R(face_height)(&solid->faces[i], place);
 }
 
-/// Cuts the span by what is between a pair of faces; `axis`: of the unit shape. faces: whether span->face is wanted, a constant.
-INNER void R(cut_by_slab)(R(span) * span, const vr height[2], vr rise, int axis, const bool faces)
+static inline real R(first_lane)(vr x)
 {
-    const vr zero = r_set(0), below = height[0], above = height[1];
-    const rm rising = r_lt(zero, rise), parallel = rm_andnot(r_le(rise, zero), r_lt(rise, zero));
-    const vr enter = -r_select(rising, below, above) / rise, leave = -r_select(rising, above, below) / rise;
-    const rm later = rm_andnot(r_lt(span->t[0], enter), parallel);
-    const rm sooner = rm_andnot(r_lt(leave, span->t[1]), parallel);
-    span->t[0] = r_select(later, enter, span->t[0]);
-    span->t[1] = r_select(sooner, leave, span->t[1]);
-    span->flat[0] = rm_or(span->flat[0], later);
-    span->flat[1] = rm_or(span->flat[1], sooner);
-    for (int k = 0; faces && k < 3; k++) {
-        const vr one = r_set(k == axis), out = r_select(rising, one, zero - one),
-                 in = r_select(rising, zero - one, one);
-        span->face[0][k] = r_select(later, in, span->face[0][k]);
-        span->face[1][k] = r_select(sooner, out, span->face[1][k]);
+    _Alignas(64) real lanes[VR];
+    r_store(lanes, x);
+    return lanes[0];
+}
+
+/// The same of rays that all start at the eye, of a box too: what solid_start holds, in numbers.
+static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, const double eye[3], real f[3],
+                            real height[6])
+{
+    const vr place[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    vr offset[3];
+    R(unit_offset)(solid, prim, place, offset);
+    for (int k = 0; k < 3; k++)
+        f[k] = R(first_lane)(offset[k]);
+    for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
+        height[i] = R(first_lane)(R(face_height)(&solid->faces[i], place));
+}
+
+/// Cuts the span by what is between a pair of faces; `axis`: of the unit shape. flats: span->flat is wanted; faces, a constant:
+/// so is span->face.
+INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3], int slab,
+                          int axis, const bool flats, const bool faces)
+{
+    vr height[2];
+    const vr zero = r_set(0),
+             rise = R(over_slab)(solid->faces + 2 * slab, start->height ? NULL : start->place, d, height), fall = -rise;
+    const vr below = start->height ? r_set(start->height[2 * slab]) : height[0],
+             above = start->height ? r_set(start->height[2 * slab + 1]) : height[1];
+    const rm rising = r_lt(zero, rise), parallel = r_eq(rise, zero);
+    vr enter = r_select(rising, below, above) / fall, leave = r_select(rising, above, below) / fall;
+    if (rm_bits(parallel)) {
+        enter = r_select(parallel, r_set(-HUGE_VAL), enter);
+        leave = r_select(parallel, r_set(HUGE_VAL), leave);
+        span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(below, zero), r_lt(zero, above))));
     }
-    span->hit = rm_andnot(span->hit, rm_and(parallel, rm_or(r_lt(below, zero), r_lt(zero, above))));
+    if (flats || faces) {
+        const rm later = r_lt(span->t[0], enter), sooner = r_lt(leave, span->t[1]);
+        const vr up = r_set(axis + 1), down = r_set(-axis - 1);
+        span->flat[0] = rm_or(span->flat[0], later);
+        span->flat[1] = rm_or(span->flat[1], sooner);
+        span->face[0] = faces ? r_select(later, r_select(rising, down, up), span->face[0]) : zero;
+        span->face[1] = faces ? r_select(sooner, r_select(rising, up, down), span->face[1]) : zero;
+    }
+    span->t[0] = r_max(enter, span->t[0]);
+    span->t[1] = r_min(leave, span->t[1]);
+}
+
+/// Whether no ray can meet what is left ahead of it.
+INNER bool R(is_spent)(R(span) * span)
+{
+    span->hit = rm_and(span->hit, rm_and(r_le(span->t[0], span->t[1]), r_lt(r_set(0), span->t[1])));
+    return rm_bits(span->hit) == 0;
+}
+
+/// Cuts a cylinder's or cone's span by its ends.
+INNER void R(cut_by_ends)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3],
+                          const bool faces, const bool whole)
+{
+    if (whole || !R(is_spent)(span))
+        R(cut_by_slab)(span, solid, start, d, 0, 2, faces || is_open(solid), faces);
+}
+
+/// Both ends of the span are the one place where rays meet a disk.
+INNER void R(cut_by_disk)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3],
+                          const vr e[3])
+{
+    const vr height = start->height ? r_set(start->height[0]) : R(face_height)(solid->faces, start->place);
+    const vr t = -height / R(face_rise)(solid->faces, d);
+    const vr x = start->f[0] + t * e[0], y = start->f[1] + t * e[1];
+    span->t[0] = span->t[1] = t;
+    span->flat[0] = span->flat[1] = rm_from_bits((1u << VR) - 1);
+    span->face[0] = span->face[1] = r_set(3);
+    span->hit = r_le(x * x + y * y, r_set(1));
 }
 
 /// a t^2 - 2 b t + c <= 0 for a ball (three axes) or cylinder (two). places: of the solid.
@@ -141,8 +195,9 @@ INNER void R(open_ends)(R(span) * span)
 }
 
 /// The span of rays that start at `start` along d, in the world, and e, where the shape is the unit one; a box has no use for e.
+/// faces, whole: constants. Not whole: where no ray meets the solid ahead, the span but for `hit` is of no use.
 INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], const vr e[3],
-                         const bool faces)
+                         const bool faces, const bool whole)
 {
     const vr zero = r_set(0), *f = start->f;
     const rm none = rm_from_bits(0), all = rm_from_bits((1u << VR) - 1);
@@ -151,7 +206,7 @@ INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start,
              .hit = all,
              .second = all,
              .flat = { none, none },
-             .face = { { zero, zero, zero }, { zero, zero, zero } } };
+             .face = { zero, zero } };
     switch (solid->form) {
     case GLINT_FORM_BALL:
         R(cut_round)(&span, f, e, true, solid->places);
@@ -159,23 +214,22 @@ INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start,
     case GLINT_FORM_CYLINDER:
     case GLINT_FORM_TUBE:
         R(cut_round)(&span, f, e, false, solid->places);
-        R(cut_by_slab)(&span, start->height, R(face_rise)(solid->faces, d), 2, faces);
+        R(cut_by_ends)(&span, solid, start, d, faces, whole);
         break;
     case GLINT_FORM_CONE:
     case GLINT_FORM_FUNNEL:
         R(cut_cone)(&span, f, e, solid->places);
-        R(cut_by_slab)(&span, start->height, R(face_rise)(solid->faces, d), 2, faces);
+        R(cut_by_ends)(&span, solid, start, d, faces, whole);
         break;
     case GLINT_FORM_BOX:
-        for (int axis = 0; axis < 3; axis++)
-            R(cut_by_slab)(&span, start->height + 2 * axis, R(face_rise)(solid->faces + 2 * axis, d), axis, faces);
+        for (int axis = 0; axis < 3; axis++) {
+            R(cut_by_slab)(&span, solid, start, d, axis, axis, faces, faces);
+            if (!whole && axis < 2 && R(is_spent)(&span))
+                break;
+        }
         break;
-    default: // a disk: one place
-        span.t[0] = span.t[1] = -start->height[0] / R(face_rise)(solid->faces, d);
-        span.flat[0] = span.flat[1] = all;
-        span.face[0][2] = span.face[1][2] = r_set(1);
-        const vr x = f[0] + span.t[0] * e[0], y = f[1] + span.t[0] * e[1];
-        span.hit = r_le(x * x + y * y, r_set(1));
+    default:
+        R(cut_by_disk)(&span, solid, start, d, e);
         break;
     }
     span.hit = rm_and(span.hit, r_le(span.t[0], span.t[1]));
@@ -184,17 +238,17 @@ INNER R(span) R(span_of)(const glint_solid *solid, const R(solid_start) * start,
     return span;
 }
 
-INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * start, const vr d[3])
+INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], const bool whole)
 {
     vr e[3] = { d[0], d[1], d[2] };
     if (solid->form != GLINT_FORM_BOX)
         R(to_unit)(solid, d, e);
-    return R(span_of)(solid, start, d, e, false);
+    return R(span_of)(solid, start, d, e, false, whole);
 }
 
 static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
-    const R(span) span = R(span_along)(solid, start, d);
+    const R(span) span = R(span_along)(solid, start, d, false);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
     return rm_and(span.hit, r_lt(r_set(0), *t));
 }
@@ -236,32 +290,41 @@ static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr fac
     }
 }
 
-/// Where a ray meets the solid, and the unit normal there.
-static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const vr from[3], const vr d[3],
-                                    vr t, vr n[3], vr p[3])
+/// Brings a point next to the unit shape's surface onto it. which: the face, as in span; flat: it is one. g: the outward normal
+/// there; face: that of the face.
+INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr face[3])
 {
-    vr e[3], k[3], side[3], g[3], on_side[3], face[3];
-    R(solid_start) start;
-    R(start_at)(solid, prim, from, &start);
-    if (solid->form == GLINT_FORM_BOX)
-        R(unit_offset)(solid, prim, from, start.f);
+    const bool round = form != GLINT_FORM_BOX && form != GLINT_FORM_DISK;
+    vr on_side[3] = { k[0], k[1], k[2] }, side[3];
+    if (round)
+        R(onto_side)(form, on_side, side);
+    for (int c = 0; c < 3; c++) {
+        const rm up = r_eq(which, r_set(c + 1)), down = r_eq(which, r_set(-c - 1));
+        g[c] = face[c] = r_select(up, r_set(1), r_select(down, r_set(-1), r_set(0)));
+        k[c] = r_select(rm_or(up, down), face[c], k[c]);
+        if (round) {
+            g[c] = r_select(flat, face[c], side[c]);
+            k[c] = r_select(flat, k[c], on_side[c]);
+        }
+    }
+    if (form == GLINT_FORM_DISK)
+        k[2] = r_set(0);
+    else if (form == GLINT_FORM_CONE) // which has its apex at 0
+        k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
+}
+
+/// Where rays that start at `start`, of a box with its f, meet the solid, and the unit normal there.
+static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, const R(solid_start) * start,
+                             const vr d[3], vr t, vr n[3], vr p[3])
+{
+    vr e[3], k[3], g[3], face[3];
     R(to_unit)(solid, d, e);
-    const R(span) span = R(span_of)(solid, &start, d, e, true);
+    const R(span) span = R(span_of)(solid, start, d, e, true, true);
     const rm entering = r_eq(t, span.t[0]);
     const rm flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
     for (int c = 0; c < 3; c++)
-        on_side[c] = k[c] = start.f[c] + t * e[c];
-    R(onto_side)(solid->form, on_side, side);
-    for (int c = 0; c < 3; c++) {
-        face[c] = r_select(entering, span.face[0][c], span.face[1][c]);
-        const rm this_axis = rm_or(r_lt(face[c], r_set(0)), r_lt(r_set(0), face[c]));
-        g[c] = r_select(flat, face[c], side[c]);
-        k[c] = r_select(flat, r_select(this_axis, face[c], k[c]), on_side[c]);
-    }
-    if (solid->form == GLINT_FORM_DISK)
-        k[2] = r_set(0);
-    else if (solid->form == GLINT_FORM_CONE) // which has its apex at 0
-        k[2] = r_select(rm_and(flat, r_lt(g[2], r_set(0))), r_set(0), k[2]);
+        k[c] = start->f[c] + t * e[c];
+    R(onto_unit)(solid->form, r_select(entering, span.face[0], span.face[1]), flat, k, g, face);
     for (int c = 0; c < 3; c++) {
         n[c] = (r_set(solid->inverse[0][c]) * g[0] + r_set(solid->inverse[1][c]) * g[1]) +
                r_set(solid->inverse[2][c]) * g[2];
@@ -281,7 +344,7 @@ static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, cons
 {
     R(solid_start) start;
     R(start_at)(solid, prim, point, &start);
-    const R(span) span = R(span_along)(solid, &start, d);
+    const R(span) span = R(span_along)(solid, &start, d, false);
     const vr zero = r_set(0), end = r_set(directional ? HUGE_VAL : 1), unit = r_set(directional ? 1 : scale);
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));

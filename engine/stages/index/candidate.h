@@ -204,13 +204,6 @@ static inline void R(make_plane_filter)(const R(tile_cast) * tile, R(candidate) 
     candidate->limit = 1e-5f * tile->longest;
 }
 
-static inline real R(first_lane)(vr x)
-{
-    _Alignas(64) real lanes[VR];
-    r_store(lanes, x);
-    return lanes[0];
-}
-
 /// What the decision needs.
 static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candidate) * candidate)
 {
@@ -226,13 +219,7 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
         return;
     }
     if (prim->kind == GLINT_PRIM_SOLID) {
-        const glint_solid *solid = &args->geometry->solids[prim->item];
-        R(solid_start) start = { .f = { r_set(0), r_set(0), r_set(0) } };
-        R(start_at)(solid, prim, origin, &start);
-        for (int k = 0; k < 3; k++)
-            candidate->f[k] = R(first_lane)(start.f[k]);
-        for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-            candidate->height[i] = R(first_lane)(start.height[i]);
+        R(start_at_eye)(&args->geometry->solids[prim->item], prim, eye, candidate->f, candidate->height);
         return;
     }
     R(offset)(origin, prim, f);
@@ -288,9 +275,7 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     vr corner[3][3];
     if (candidate->prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &table->solids[candidate->prim->item];
-        R(solid_start) start = { .f = { f[0], f[1], f[2] } };
-        for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-            start.height[i] = r_set(candidate->height[i]);
+        const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
         return R(meet_solid)(solid, &start, d, t);
     }
     if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)

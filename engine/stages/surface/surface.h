@@ -77,7 +77,8 @@ typedef struct R(seen_prim) {
     const glint_prim *prim;
     real inverse_radius; ///< of a sphere, in its own units
     R(sphere_range) range; ///< of the eye from a sphere
-    real f[3];
+    real f[3]; ///< of a sphere, scaled; of a solid, where it is the unit one
+    real height[6]; ///< of the eye over a solid's faces
     real normal[3]; ///< of a plane or triangle
     int level; ///< of a plane: the axis that it is square to; 3: none
     real from[3], way[3]; ///< of a plane: points are at from + way (t direction): on that axis the plane's own place
@@ -98,6 +99,8 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
             seen.from[k] = (real)(k == seen.level ? prim->center[k] : args->camera->eye[k]);
             seen.way[k] = k != seen.level;
         }
+        if (prim->kind == GLINT_PRIM_SOLID && args->camera)
+            R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen.f, seen.height);
         return seen;
     }
     seen.inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
@@ -123,6 +126,18 @@ INNER void R(face_viewer)(const vr n[3], R(found) * found)
     found->back = r_lt(r_set(0), found->away);
     for (int k = 0; k < 3; k++)
         found->normal[k] = r_select(found->back, -n[k], n[k]);
+}
+
+INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) * seen, const vr from[3],
+                            const vr d[3], vr t, vr n[3], vr p[3])
+{
+    const glint_solid *solid = &args->solids[seen->prim->item];
+    R(solid_start) start = { .place = from, .height = args->camera ? seen->height : NULL };
+    for (int k = 0; k < 3; k++)
+        start.f[k] = r_set(seen->f[k]);
+    if (!args->camera)
+        R(unit_offset)(solid, seen->prim, from, start.f);
+    R(solid_surface)(solid, seen->prim, &start, d, t, n, p);
 }
 
 INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,
@@ -154,7 +169,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             R(corners_of)(prim, corner);
             R(triangle_point)(corner, args->scale, from, d, w, p, &found->slack);
         } else if (mixed && prim->kind == GLINT_PRIM_SOLID)
-            R(solid_surface)(&args->solids[prim->item], prim, from, d, t, n, p);
+            R(find_on_solid)(args, seen, from, d, t, n, p);
     }
     if (prim->kind == GLINT_PRIM_PLANE && seen->level == 3)
         R(onto_plane_of)(prim, n, p);
