@@ -285,6 +285,68 @@ static void total(void)
     }
 }
 
+/// A prism of total reflections as above, of any length, size, index and angle, anywhere and turned anyhow. *out: what comes
+/// through, of which the truth is transmission^2.
+static bool random_prism(double *out, double *truth)
+{
+    static const double white[3] = { 1, 1, 1 };
+    const double ior = uniform(1.2, 2.5), sine = uniform(0.05, 0.95), inside = sine / ior,
+                 rise = inside / sqrt(1 - inside * inside), size = log_uniform(1e-6, 1e6);
+    const int reflections = 1 + (int)(random_bits() % 40);
+    double axis[3], by[3];
+    if (ior * ior * (1 - inside * inside) < 1.001 || rise * reflections < 1e-2)
+        return false; // next to the critical angle
+    *truth = uniform(0.1, 1);
+    random_direction(axis);
+    for (int c = 0; c < 3; c++)
+        by[c] = chance(0.5) ? 0 : size * uniform(-100, 100);
+    const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), move = glint_transform_translate(by),
+                          map = glint_transform_product(&move, &turn);
+    glint_shape_desc rod = glint_shape_desc_default(GLINT_SHAPE_BOX);
+    glint_scene *scene = scene_new();
+    glint_shape *shape;
+    glint_error error;
+    rod.min[0] = rod.min[1] = 0;
+    rod.min[2] = -size;
+    rod.max[0] = size * reflections / rise;
+    rod.max[1] = rod.max[2] = size;
+    rod.transform = map;
+    rod.material = point_glass(0, 0, *truth, ior, false);
+    must(glint_shape_create(&rod, &shape, &error), &error);
+    must(glint_scene_add_shape(scene, shape, &error), &error);
+    glint_material_release(rod.material);
+    glint_shape_release(shape);
+    scene_light_up(scene, 0, white);
+    // it enters half way up
+    const double from[3] = { -size * sqrt(1 - sine * sine), size * (0.5 - sine), 0 }, d[3] = { sqrt(1 - sine * sine), sine, 0 };
+    hard_ray ray;
+    for (int i = 0; i < 3; i++) {
+        ray.o[i] = map.m[i][0] * from[0] + map.m[i][1] * from[1] + map.m[i][2] * from[2] + map.m[i][3];
+        ray.d[i] = map.m[i][0] * d[0] + map.m[i][1] * d[1] + map.m[i][2] * d[2];
+    }
+    *out = point_seen(scene, &ray, GLINT_DOUBLE, reflections + 2, GLINT_PASS_TRANSMISSION);
+    *truth *= *truth;
+    glint_scene_release(scene);
+    return true;
+}
+
+static void prisms(uint64_t count)
+{
+    hard_test("fuzz", "prisms of total reflection");
+    hard_values shown = { 0, 0, 0, HARD_BLANK, HARD_BLANK };
+    char what[80];
+    for (uint64_t i = 0; i < count;) {
+        double got, truth;
+        if (!random_prism(&got, &truth))
+            continue;
+        i++;
+        shown.in_double += !hard_check(fabs(got - truth) <= 0x1p-22, "%.9g, truth %.9g", got, truth);
+    }
+    shown.in_float = HARD_BLANK;
+    snprintf(what, sizeof what, "of %llu prisms, dimmed by their total reflections", (unsigned long long)count);
+    hard_row("total", what, &shown, shown.in_double == 0);
+}
+
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
@@ -294,5 +356,6 @@ int main(int argc, char **argv)
     mirrors();
     depth();
     total();
+    prisms(hard_rays / 5000);
     return hard_end();
 }

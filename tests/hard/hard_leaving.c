@@ -42,11 +42,19 @@ static bool from_outside(const hard_ray *ray, const glint_hit *hit)
 
 static glint_light_desc random_light(const hard_ray *ray, const glint_hit *hit)
 {
-    glint_light_desc light = glint_light_desc_default(chance(0.7) ? GLINT_LIGHT_POINT : GLINT_LIGHT_DIRECTIONAL);
+    static const glint_light_kind kinds[] = { GLINT_LIGHT_POINT, GLINT_LIGHT_POINT, GLINT_LIGHT_DIRECTIONAL,
+                                              GLINT_LIGHT_SPHERE, GLINT_LIGHT_DISK };
+    glint_light_desc light = glint_light_desc_default(kinds[random_bits() % 5]);
     double away = 0, side[3];
     random_direction(side);
     for (int c = 0; c < 3; c++)
         away = fmax(away, fabs(ray->o[c] - hit->point[c]));
+    if (light.kind == GLINT_LIGHT_SPHERE || light.kind == GLINT_LIGHT_DISK) {
+        light.radius = away * log_uniform(1e-9, 10); // it may reach to the shape, and into it
+        light.samples = 4;
+        light.has_radiance = chance(0.5);
+        light.radiance = 1;
+    }
     for (int c = 0; c < 3; c++) { // in front of the point, at times by very little
         light.position[c] = hit->point[c] + away * log_uniform(1e-9, 1e3) * (hit->normal[c] + side[c]);
         light.direction[c] = -(hit->normal[c] + side[c]);
