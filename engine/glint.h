@@ -302,6 +302,7 @@ typedef struct glint_material_programs {
     glint_program *bump; ///< pattern of one number, the height over the surface in world units: light, mirrors and glass see
         ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the
         ///< surface's own n, too, is there light
+    glint_program *opacity; ///< pattern of one number: where it is below 0.5, or NaN, the surface is not there for any ray
     glint_program *shader; ///< in place of `model`: the diffuse term of each light, and the specular one if it has six outputs
 } glint_material_programs;
 
@@ -332,6 +333,8 @@ typedef struct glint_material_desc {
     glint_distribution distribution; ///< default GGX
     bool has_f0; ///< false: f0 = ((ior - 1) / (ior + 1))^2
     double f0[3]; ///< what is reflected head-on, 0 .. 1; coloured for metals
+    double opacity; ///< 0 .. 1, default 1; below 0.5 no ray of a frame meets the surface, neither of the eye, of mirrors and of
+        ///< glass, nor of shadows and indirect light. What stands behind is where it would be without. glint_scene_cast meets it
     glint_material_programs program;
     char name[GLINT_NAME_SIZE];
 } glint_material_desc;

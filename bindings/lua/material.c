@@ -46,6 +46,7 @@ static const glintL_field FIELDS[] = {
     { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness) },
     { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
     { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0) },
+    { .name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity), .program_offset = AT(program.opacity) },
     { .name = "bump", .kind = GLINTL_PROGRAM, .program_offset = AT(program.bump) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },

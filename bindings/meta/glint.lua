@@ -82,6 +82,7 @@ function vector:reflect(n) end
 ---@field roughness? number|glint.pattern  of "cook_torrance", 0 .. 1; the distribution's width is its square. Below 1e-9 as 1e-9. Default 0.3
 ---@field distribution? "ggx"|"beckmann"  of "cook_torrance": the slopes of its facets. Default "ggx"
 ---@field f0? glint.color  of "cook_torrance", 0 .. 1: what it reflects head-on; coloured for metals. Follows `ior` until set; nil: follows again
+---@field opacity? number|glint.pattern  0 .. 1: where it is below 0.5, or NaN, the surface is not there, for no ray of a frame; scene:cast meets it. Default 1
 ---@field bump? glint.pattern  height over the surface, world units: light, mirrors and glass see the normals that it would have. Default nil
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
@@ -753,7 +754,7 @@ function triple:unpack() end
 ---@field shininess number  of shaders: the material's
 
 --- A colour or a number at each point. Of a material's fields diffuse, specular, mirror, transmission, shininess,
---- roughness and bump take one. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
+--- roughness, bump and opacity take one. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
 --- calls the function. NaN and what is below 0 count as 0.
 ---@class glint.pattern
 local pattern = {}

@@ -36,7 +36,7 @@ static glint_status run_patterns(glint_material_desc *desc, const double inputs[
             *fields[i].program = NULL;
         }
     desc->roughness = fmin(desc->roughness, 1);
-    desc->program.bump = NULL;
+    desc->program.bump = desc->program.opacity = NULL;
     return status;
 }
 

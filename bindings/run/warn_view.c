@@ -132,7 +132,8 @@ static bool has(lua_State *L, const char *type, const void *object, const void *
 static bool shows_through(lua_State *L, const glint_material *material)
 {
     const glint_material_desc *desc = material ? glint_material_get(material) : NULL;
-    return desc && (desc->fresnel || has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
+    return desc && (desc->fresnel || desc->program.opacity || desc->opacity < 0.5 ||
+                    has(L, GLINTL_MATERIAL, material, desc, 0, "transmission") ||
                     has(L, GLINTL_MATERIAL, material, desc, 0, "mirror"));
 }
 
@@ -195,7 +196,7 @@ static void move_ball(const glint_transform *t, ball *b)
     b->is_sphere = b->is_sphere && keeps_angles;
 }
 
-// Whether a mirror or something transparent is among a shape's materials, or those of a group; counts what it looks at.
+// Whether a mirror or something transparent or with holes is among a shape's materials, or those of a group; counts what it looks at.
 static bool any_shows_through(lua_State *L, const glint_shape *shape, int *count)
 {
     glint_material *const *list;

@@ -124,6 +124,7 @@ static bool any(const double c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 
 static bool is_mirror(const glint_material_desc *d) { return glint_material_mirrors(d); }
 static bool is_transparent(const glint_material_desc *d) { return glint_material_transmits(d); }
+static bool is_cut_out(const glint_material_desc *d) { return d->program.opacity || d->opacity < 0.5; }
 static bool is_absorbing(const glint_material_desc *d) { return is_transparent(d) && any(d->absorption); }
 
 static bool shines_as(const glint_material_desc *d, glint_model model)
@@ -283,6 +284,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->patterns)
         patterns(e);
+    if (glint_plan_cuts(plan))
+        materials(e, "cut-out", is_cut_out);
     if (plan->highlights) {
         materials(e, "Phong highlight", is_phong);
         materials(e, "normalised Phong highlight", is_even_phong);

@@ -15,6 +15,7 @@ typedef enum input {
     INPUT_VISIBLE_LIGHT_PLACES, ///< where lights are seen
     INPUT_LOOKS, ///< which material each has, and its sides
     INPUT_PATTERNS, ///< programs that give numbers of materials, and where the shapes' own spaces are
+    INPUT_CUT_OUTS, ///< programs that say where surfaces have holes, and materials that are not there
     INPUT_BUMPS, ///< programs that turn normals
     INPUT_HIGHLIGHTS, ///< what kind of highlight each material has
     INPUT_LIGHT_PLACES, ///< kind, position, fall-off
@@ -35,7 +36,7 @@ typedef enum input {
 
 static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_CAMERA] = READS(VIEW),
-    [GLINT_STAGE_CAST] = READS(PLACES),
+    [GLINT_STAGE_CAST] = READS(PLACES) | READS(CUT_OUTS),
     [GLINT_STAGE_VISIBLE_LIGHT] = READS(VISIBLE_LIGHT_PLACES),
     [GLINT_STAGE_SURFACE] = READS(LOOKS),
     [GLINT_STAGE_PATTERN] = READS(PATTERNS),
@@ -122,6 +123,14 @@ static glint_key programs_key(const glint_plan *plan, uint32_t fields, glint_key
     return key;
 }
 
+static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
+{
+    for (uint32_t i = 0; i < plan->material_count; i++)
+        ADD(key, plan->patterns->of[i].cut);
+    ADD(key, plan->geometry->look); // which material a surface has
+    return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
+}
+
 static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     const glint_shade_material *m = &plan->materials[i];
@@ -196,6 +205,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
         ADD(key, geometry->look);
     if (which & READS(PATTERNS))
         key = programs_key(plan, GLINT_FIELDS_PLANES, key);
+    if (which & READS(CUT_OUTS) && glint_plan_cuts(plan))
+        key = cut_outs_key(plan, key);
     if (which & READS(BUMPS))
         key = programs_key(plan, 1u << GLINT_FIELD_BUMP, key);
     if (which & READS(HIGHLIGHTS))
@@ -250,8 +261,8 @@ static glint_key vertex_key(const glint_plan *plan)
         key = c->orthographic ? glint_key_add(key, c->forward, sizeof c->forward)
                               : glint_key_add(glint_key_add(key, c->eye, sizeof c->eye), c->forward, sizeof c->forward);
     return add_inputs(plan,
-                      READS(PLACES) | READS(LOOKS) | READS(HIGHLIGHTS) | READS(LIGHT_PLACES) | READS(SHADOWS) |
-                          READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS),
+                      READS(PLACES) | READS(LOOKS) | READS(CUT_OUTS) | READS(HIGHLIGHTS) | READS(LIGHT_PLACES) |
+                          READS(SHADOWS) | READS(LIGHT_COLORS) | READS(MATERIALS) | READS(TINTS),
                       key);
 }
 

@@ -15,7 +15,7 @@ const char *glint_field_name(int field)
 {
     static const char *const names[GLINT_FIELD_COUNT] = { "diffuse",   "ambient",      "specular",
                                                           "mirror",    "transmission", "shininess",
-                                                          "roughness", "bump",         "model" };
+                                                          "roughness", "bump",         "opacity",  "model" };
     return names[field];
 }
 
@@ -36,6 +36,8 @@ static const glint_program *program_of(const glint_material_programs *programs, 
         return programs->roughness;
     case GLINT_FIELD_BUMP:
         return programs->bump;
+    case GLINT_FIELD_OPACITY:
+        return programs->opacity;
     case GLINT_FIELD_SHADER:
         return programs->shader;
     default:
@@ -122,11 +124,14 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
             patterns->row_count = program->code.row_count;
         if (field < GLINT_FIELD_PLANES)
             pattern->reads |= program->inputs;
+        if (field < GLINT_FIELD_PLANES || field == GLINT_FIELD_OPACITY)
+            patterns->reads |= program->inputs;
     }
+    pattern->cut = pattern->program[GLINT_FIELD_OPACITY] || desc->opacity < 0.5;
+    patterns->cut_outs = patterns->cut_outs || pattern->cut;
     pattern->made = made_by(pattern, indirect);
     if (pattern->any)
         pattern->numbers = numbers_key(pattern);
-    patterns->reads |= pattern->reads;
     patterns->bumps = patterns->bumps || pattern->program[GLINT_FIELD_BUMP];
     patterns->shaders = patterns->shaders || pattern->program[GLINT_FIELD_SHADER];
     patterns->any = patterns->any || pattern->made & GLINT_FIELDS_PLANES;
@@ -307,7 +312,7 @@ static bool has_any(const glint_material_desc *desc)
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         if (program_of(&desc->program, field))
             return true;
-    return false;
+    return desc->opacity < 0.5;
 }
 
 glint_status glint_plan_find_patterns(glint_plan *plan, bool indirect, glint_error *error)

@@ -17,6 +17,7 @@ typedef enum glint_field {
     GLINT_FIELD_ROUGHNESS,
     GLINT_FIELD_PLANES, ///< how many have planes
     GLINT_FIELD_BUMP = GLINT_FIELD_PLANES,
+    GLINT_FIELD_OPACITY,
     GLINT_FIELD_SHADER,
     GLINT_FIELD_COUNT
 } glint_field;
@@ -39,6 +40,7 @@ typedef struct glint_plan_pattern {
     uint32_t made; ///< fields that programs give, a bit each, and what follows from these
     uint32_t reads; ///< inputs of the programs that are run at surfaces, a bit each
     bool any; ///< it has programs
+    bool cut; ///< there are holes in its surfaces, or may be
     bool ambient_follows; ///< ambient is diffuse
     glint_key numbers; ///< of the description, that are read beside the programs
     glint_key places; ///< of the shapes that show it
@@ -71,7 +73,7 @@ typedef struct glint_plan_patterns {
     uint32_t reads; ///< of all materials
     uint32_t material_count;
     bool any; ///< some material has planes
-    bool bumps, shaders;
+    bool bumps, cut_outs, shaders;
     double pixel; ///< width of a pixel, in an orthographic view; in a perspective one at distance 1
     bool parallel; ///< the view is orthographic
 } glint_plan_patterns;

@@ -79,7 +79,7 @@ static void choose_visibility(glint_plan *plan)
         needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
     plan->raster = plan->geometry->triangle_count > 0 && requested != GLINT_VISIBILITY_CAST &&
                    (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
-    plan->needs_index = !plan->raster || needs_index;
+    plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
 
 /// Whether the samples of a tile can be shaded in one: what was found for each fits the tile, and light comes from

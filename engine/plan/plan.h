@@ -181,6 +181,8 @@ static inline const double *glint_plan_diffuse(const glint_plan *plan, uint32_t 
 
 /// Whether some material turns normals.
 static inline bool glint_plan_bumps(const glint_plan *plan) { return plan->patterns && plan->patterns->bumps; }
+/// Whether some surface has holes.
+static inline bool glint_plan_cuts(const glint_plan *plan) { return plan->patterns && plan->patterns->cut_outs; }
 
 /// The stages of an instruction set by name; NULL: the environment's GLINT_ISA, else the best.
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error);

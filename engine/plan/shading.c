@@ -287,12 +287,12 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
     return area ? (size_t)samples * turns : is_cap(plan, desc);
 }
 
-/// Caps are of spheres and planes, which let no light through.
+/// Caps are of spheres and planes, which let no light through and have no holes.
 static bool allows_caps(const glint_plan *plan)
 {
     const glint_geometry_table *table = &plan->geometry->table;
     const glint_list *list = &plan->geometry->materials;
-    bool opaque = true;
+    bool opaque = !glint_plan_cuts(plan);
     for (size_t i = 0; i < list->count; i++)
         opaque = opaque && !glint_material_transmits(&((const glint_material *)list->items[i])->desc);
     return opaque && !table->triangles && !table->solids;

@@ -281,7 +281,7 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
     const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
                        reuse->scale == geometry->table.scale && // another underflows elsewhere
                        reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
-    if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic)
+    if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic && !glint_plan_cuts(plan))
         carry_changes(&c, places, count);
     free(reuse->places);
     reuse->places = places;

@@ -7,7 +7,7 @@
 glint_material_desc glint_material_desc_default(void)
 {
     return (glint_material_desc) {
-        .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32, .roughness = 0.3, .ior = 1.5
+        .model = GLINT_MODEL_PHONG, .diffuse = { 0.8, 0.8, 0.8 }, .shininess = 32, .roughness = 0.3, .ior = 1.5, .opacity = 1
     };
 }
 
@@ -45,6 +45,8 @@ static glint_status check(const glint_material_desc *desc, glint_error *error)
         status = glint_check_color("absorption", desc->absorption, error);
     if (!status)
         status = glint_check_range("roughness", desc->roughness, 0, 1, "number 0 .. 1", error);
+    if (!status)
+        status = glint_check_range("opacity", desc->opacity, 0, 1, "number 0 .. 1", error);
     if (!status && desc->distribution > GLINT_DISTRIBUTION_BECKMANN)
         status = glint_fail(error, GLINT_ERR_INVALID, "distribution: no such distribution");
     if (!status && desc->has_f0)
@@ -72,6 +74,7 @@ static const program_field program_fields[] = {
     { "shininess", AT(program.shininess), AT(shininess), 1, 0 },
     { "roughness", AT(program.roughness), AT(roughness), 1, 0 },
     { "bump", AT(program.bump), 0, 1, 0 },
+    { "opacity", AT(program.opacity), AT(opacity), 1, 0 },
     { "model", AT(program.shader), 0, 0, 0 },
 };
 

@@ -1,6 +1,7 @@
 /// The walk of a batch of rays: into the arrays, through the stages, and where they go on.
 #include "engine/tile/batch.h"
 #include "engine/base/vec.h"
+#include "engine/tile/cut_out.h"
 
 #include <string.h>
 
@@ -79,6 +80,8 @@ static bool cast(glint_batch *batch, const glint_tile_frame *frame)
         args.direction[c] = tile->rays.direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
+    if (glint_plan_cuts(frame->plan))
+        glint_tile_see_through(tile, frame);
     if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
         glint_tile_see_lights(tile, frame, tile->active);
     unsigned any = 0;

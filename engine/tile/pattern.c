@@ -3,6 +3,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
+#include "engine/tile/cut_out.h"
 #include "engine/tile/pattern_work.h"
 
 #include <stdlib.h>
@@ -16,7 +17,8 @@ struct glint_pattern *glint_pattern_create(const glint_plan *plan)
     const glint_plan_patterns *patterns = plan->patterns;
     pattern->planes_each = (size_t)patterns->plane_count * GLINT_TILE_SAMPLES;
     pattern->rows = glint_alloc((size_t)patterns->row_count * GLINT_PROGRAM_LANES, sizeof *pattern->rows);
-    bool good = pattern->rows != NULL;
+    pattern->cut_out = patterns->cut_outs ? glint_cut_out_create() : NULL;
+    bool good = pattern->rows && (pattern->cut_out || !patterns->cut_outs);
     for (int walk = 0; walk < GLINT_WALK_COUNT; walk++) {
         const size_t samples = walk == GLINT_WALK_EYE && plan->together ? (size_t)plan->desc.samples : 1;
         pattern->planes[walk] = glint_alloc(samples * pattern->planes_each, sizeof *pattern->planes[walk]);
@@ -35,8 +37,10 @@ void glint_pattern_destroy(struct glint_pattern *pattern)
         free(pattern->planes[walk]);
         free(pattern->normals[walk]);
     }
-    if (pattern)
+    if (pattern) {
+        glint_cut_out_destroy(pattern->cut_out);
         free(pattern->rows);
+    }
     free(pattern);
 }
 

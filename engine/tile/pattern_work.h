@@ -22,6 +22,7 @@ struct glint_pattern {
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
     double *normals[GLINT_WALK_COUNT]; ///< of bumped surfaces, before; NULL: there are none
+    struct glint_cut_out *cut_out; ///< memory of tile/cut_out.c; NULL: no surface has holes
     size_t planes_each; ///< floats of a sample's planes
     glint_pattern_lanes lanes[GLINT_TILE_SAMPLES];
 };

@@ -3,6 +3,7 @@
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
 #include "engine/stages/simd/coefficients.h"
+#include "engine/tile/cut_out.h"
 
 #include <math.h>
 #include <string.h>
@@ -122,6 +123,8 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);
+    if (glint_plan_cuts(frame->plan))
+        glint_tile_see_through(tile, frame);
     tile->counts.primary += count_active(tile);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_CAST, false);
 }
@@ -319,7 +322,8 @@ static uint16_t facing_lanes(const glint_tile *tile, const glint_plan *plan, con
 }
 
 /// One ray to the middle of an area light decides for all samples of the call.
-static void occlude_middle(const glint_tile *tile, const glint_tile_frame *frame, const glint_occlude_args *samples)
+static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                           const glint_occlude_args *samples)
 {
     uint16_t lit[GLINT_TILE_GROUPS] = { 0 }, open[GLINT_TILE_GROUPS];
     glint_occlude_args args = *samples;
@@ -333,6 +337,8 @@ static void occlude_middle(const glint_tile *tile, const glint_tile_frame *frame
     for (uint32_t g = 0; g < args.group_count; g++)
         lit[g] = facing_lanes(tile, frame->plan, samples->position, g, lit[g]);
     frame->stages->geometry[frame->plan->desc.precision].occlude(&args);
+    if (glint_plan_cuts(frame->plan))
+        glint_tile_open_holes(tile, frame, light, true, lit, open);
     for (uint32_t s = 0; s < samples->sample_count; s++)
         for (uint32_t g = 0; g < args.group_count; g++)
             samples->open[s][g] = samples->lit[s][g] & open[g];
@@ -382,9 +388,11 @@ void glint_tile_occlude(glint_tile *tile, const glint_tile_frame *frame, uint32_
         args.overlaps = &tile->counts.work.overlaps;
     }
     if (light->hard)
-        occlude_middle(tile, frame, &args);
+        occlude_middle(tile, frame, light, &args);
     else
         frame->stages->geometry[plan->desc.precision].occlude(&args);
+    for (uint32_t i = 0; i < count && !light->hard && glint_plan_cuts(plan); i++)
+        glint_tile_open_holes(tile, frame, &plan->lights[first + slot[i]], false, args.lit[i], args.open[i]);
     if (light->cap)
         weaken(tile, frame, light, slot[0]);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, false);

@@ -326,6 +326,9 @@ void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transpare
 void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
 uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
+/// Where sample i's ray to a light goes, from its point: directional: the way there.
+void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                             uint32_t i, double out[3]);
 /// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
 bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot);
 /// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely, or not

@@ -8,8 +8,10 @@
 #include "engine/base/vec.h"
 #include "engine/stages/light/cone_sample.h"
 #include "engine/tile/batch.h"
+#include "engine/tile/cut_out.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define CROSSINGS_MAX 4096 ///< surfaces that one ray crosses; a point behind more is dark
 
@@ -28,6 +30,7 @@ struct glint_transparent_shadow {
     uint16_t hits[GLINT_TILE_GROUPS], back[GLINT_TILE_GROUPS], dark[GLINT_TILE_GROUPS];
     uint16_t active[GLINT_TILE_GROUPS]; ///< rays not ended yet
     uint16_t inward[GLINT_TILE_GROUPS];
+    uint16_t holes[GLINT_TILE_GROUPS]; ///< rays that have come to one; 0 in frames without
     uint16_t arrived[GLINT_TILE_GROUPS]; ///< through something
     uint16_t dim[GLINT_TILE_GROUPS]; ///< points inside what absorbs
     double color[3][GLINT_TILE_SAMPLES];
@@ -83,16 +86,14 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
     return false;
 }
 
-/// Finds where sample i's ray goes to, from its first point.
-static void find_target(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
-                        const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i)
+void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                             uint32_t i, double out[3])
 {
     const glint_precision precision = frame->plan->desc.precision;
     const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
     double point[3], normal[3];
     for (int c = 0; c < 3; c++)
-        transparent_shadow->target[c][i] =
-            light_sample ? light_sample->position[c][i % GLINT_GROUP] : light->position[c];
+        out[c] = light_sample ? light_sample->position[c][i % GLINT_GROUP] : light->position[c];
     if (!light_sample || light_sample->emission != GLINT_EMIT_CONE)
         return;
     for (int c = 0; c < 3; c++) {
@@ -101,8 +102,17 @@ static void find_target(struct glint_transparent_shadow *transparent_shadow, con
     }
     const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
     const glint_cone_sample sample = glint_cone_at(light_sample, light->scale, slack, point, normal, i % GLINT_GROUP);
+    vec_copy(out, sample.place);
+}
+
+/// Finds where sample i's ray goes to, from its first point.
+static void find_target(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                        const glint_tile_frame *frame, const glint_plan_light *light, uint32_t i)
+{
+    double target[3];
+    glint_tile_light_target(tile, frame, light, i, target);
     for (int c = 0; c < 3; c++)
-        transparent_shadow->target[c][i] = sample.place[c];
+        transparent_shadow->target[c][i] = target[c];
 }
 
 /// Starts sample i's ray at a point of primitive `prim`.
@@ -217,7 +227,7 @@ static void cast(struct glint_transparent_shadow *transparent_shadow, glint_tile
     stages->surface(&surfaces);
 }
 
-/// What programs give of the transmission of the surfaces that are met.
+/// What programs give of the surfaces that are met: their transmission, and where they have holes.
 static void find_transmission(struct glint_transparent_shadow *transparent_shadow, glint_tile *tile,
                               const glint_tile_frame *frame)
 {
@@ -234,7 +244,10 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
         points.normal[c] = transparent_shadow->normal[c];
         points.direction[c] = transparent_shadow->direction[c];
     }
-    glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
+    if (transparent_shadow->planes)
+        glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
+    if (glint_plan_cuts(frame->plan))
+        glint_tile_find_holes(tile, frame, &points, transparent_shadow->holes);
 }
 
 /// Takes the colour of one surface, and of the distance up to it. Returns whether any light is left.
@@ -273,7 +286,7 @@ static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile
     const glint_precision precision = frame->plan->desc.precision;
     unsigned any = 0;
     cast(transparent_shadow, tile, frame);
-    if (transparent_shadow->planes)
+    if (transparent_shadow->planes || glint_plan_cuts(frame->plan))
         find_transmission(transparent_shadow, tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         unsigned on = 0;
@@ -285,8 +298,9 @@ static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                 (!light->directional && !(glint_real_at(transparent_shadow->t, precision, i) < 1))) {
                 if (transparent_shadow->crossed[i])
                     arrive(transparent_shadow, frame, light, i);
-            } else if (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
-                       cross(transparent_shadow, frame->plan, i, length_of(transparent_shadow, precision, i))) {
+            } else if ((transparent_shadow->holes[g] & bit) ||
+                       (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
+                        cross(transparent_shadow, frame->plan, i, length_of(transparent_shadow, precision, i)))) {
                 aim(transparent_shadow, frame, light, (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i,
                     transparent_shadow->prim[i], !(transparent_shadow->back[g] & bit));
                 on |= bit;
@@ -340,6 +354,7 @@ void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *fra
     struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
     const glint_plan_light *light = &frame->plan->lights[index];
     begin(transparent_shadow, tile, frame, light, slot);
+    memset(transparent_shadow->holes, 0, sizeof transparent_shadow->holes);
     transparent_shadow->planes = frame->plan->patterns && frame->plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0
                                      ? glint_pattern_planes(tile->pattern, GLINT_WALK_SHADOW)
                                      : NULL;

@@ -44,6 +44,7 @@ picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
 picture lamps
 picture lampshade
+picture lantern --frames 1
 picture lobes --size 400x160
 picture mesh_and_sphere --size 400x200
 picture mirror_and_glass --size 320x180 --samples 9

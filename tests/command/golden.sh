@@ -55,5 +55,11 @@ picture lobes scripts/lobes.lua
 picture roughness scripts/roughness.lua
 picture shading_0001 scripts/shading.lua -f 1
 picture shading_0005 scripts/shading.lua -f 5
+picture chessboard_0001 scripts/chessboard.lua -f 1
+picture wood_and_marble scripts/wood_and_marble.lua
+picture bricks_0001 scripts/bricks.lua -f 1
+picture shaders scripts/shaders.lua
+picture toon_teapot_0001 scripts/toon_teapot.lua -f 1
+picture lantern_0001 scripts/lantern.lua -f 1
 picture gr_scene scripts/gr_scene.lua --dialect gr
 exit $bad

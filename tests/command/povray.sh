@@ -48,7 +48,7 @@ done
 for light in spot fade area; do
     compare phong $light perspective
 done
-for surfaces in mirror glass absorbing inside fresnel solids open faceted smooth stretched prism nested; do
+for surfaces in mirror glass absorbing inside fresnel solids open faceted smooth stretched prism nested checker; do
     compare phong point perspective $surfaces
 done
 compare phong point orthographic

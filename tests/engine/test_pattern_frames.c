@@ -237,7 +237,8 @@ static glint_program *random_shader(void)
 static void release_programs(const glint_material_programs *p)
 {
     glint_program *const programs[] = { p->diffuse,   p->specular,  p->mirror, p->transmission,
-                                        p->shininess, p->roughness, p->bump,   p->shader };
+                                        p->shininess, p->roughness, p->bump,   p->opacity,
+                                        p->shader };
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         glint_program_release(programs[i]);
 }
@@ -269,6 +270,8 @@ static glint_material *random_material(bool bouncing)
         desc.program.transmission = random_program(draw(2) ? 3 : 1, 0, 0.6);
     if (draw(3) == 0)
         desc.program.bump = random_program(1, 0, 0.2);
+    if (draw(5) == 0)
+        desc.program.opacity = random_program(1, 0.1, 1);
     if (draw(4) == 0)
         desc.program.shader = random_shader();
     glint_material *material = new_material(&desc);
@@ -607,14 +610,14 @@ static glint_program *wave_program(const wave *v)
 }
 
 /// The programs of one material's fields, in their order.
-enum { WAVES = 7 };
+enum { WAVES = 8 };
 
 static void set_waves(glint_material *material, const wave waves[WAVES])
 {
     glint_material_desc desc = *glint_material_get(material);
     glint_program **const programs[WAVES] = { &desc.program.diffuse,     &desc.program.specular,  &desc.program.mirror,
                                               &desc.program.shininess,   &desc.program.roughness, &desc.program.bump,
-                                              &desc.program.transmission };
+                                              &desc.program.transmission, &desc.program.opacity };
     for (int i = 0; i < WAVES; i++)
         *programs[i] = wave_program(&waves[i]);
     OK(glint_material_set(material, &desc, &error));
@@ -671,7 +674,7 @@ static void test_reuse(void **state)
         const double eye[3] = { 1, 4, 9 }, at[3] = { 0, 0.5, 0 };
         world w = new_world(eye, at, 48, 36);
         wave waves[WAVES] = { { 0.3, 3, 0.05, false }, { 0.3, 5, 0.1, false }, { 0.1, 2, 0, true }, { 5, 3, 9, false },
-                              { 0.2, 3, 0.1, false },  { 0.1, 6, 0, false },   { 0.1, 3, 0, false } };
+                              { 0.2, 3, 0.1, false },  { 0.1, 6, 0, false },   { 0.1, 3, 0, false },  { 0.3, 4, 0.2, false } };
         glint_material_desc desc = glint_material_desc_default();
         desc.model = round % 2 ? GLINT_MODEL_COOK_TORRANCE : GLINT_MODEL_PHONG;
         desc.normalized = round == 2;

@@ -23,6 +23,7 @@
 --                an ellipsoid is sphere { 0, 1 scale s translate c }
 --   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
 --                float there; a normal that looks away from the eye is turned, here one that looks through its face
+--   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
 --   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
 local model, light, projection, width, height, surfaces = table.unpack(arg)
@@ -104,6 +105,7 @@ for i, sphere in ipairs(w.spheres) do
   local ambient, diffuse, pigment, interior = w.ambient, w.diffuse, "rgb " .. vector(sphere[3]), ""
   local finish = highlight(s) .. (s.mirror and (" reflection { rgb %.17g }"):format(s.mirror) or "")
   if s.fresnel then finish = finish .. " reflection { rgb 0, rgb 1 fresnel on } conserve_energy" end
+  if s.checker then pigment = ("checker rgb %s, rgb %s"):format(vector(sphere[3]), vector(s.checker)) end
   if s.transmission then
     ambient, diffuse, pigment = 0, 0, ("rgb 0 transmit %.17g"):format(s.transmission)
     local a = s.absorption

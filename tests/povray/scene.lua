@@ -4,7 +4,7 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "faceted", "smooth", "stretched", "prism", "nested" } },
+     "faceted", "smooth", "stretched", "prism", "nested", "checker" } },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -42,7 +42,12 @@ end
 local function material(surface, fields)
   if surface.transmission then fields.ambient, fields.diffuse = 0, 0 end
   for name, value in pairs(surface) do
-    if name ~= "lift" then fields[name] = value end
+    if name ~= "lift" and name ~= "checker" then fields[name] = value end
+  end
+  if surface.checker then
+    local even, odd = glint.vector(fields.diffuse), w.diffuse * glint.vector(surface.checker)
+    fields.diffuse = glint.pattern(function(p) return glint.select(glint.checker(p), odd, even) end)
+    fields.ambient = nil -- follows
   end
   return glint.material(fields)
 end
@@ -63,13 +68,15 @@ local function shape(s, sphere, surface, coat)
   return glint[s.kind] { base = s.base, top = s.top, radius = s.radius, capped = not s.open, material = coat }
 end
 
-local scene = glint.scene { camera = glint.camera(camera), ambient = 1, background = w.background }
+-- Where materials have patterns, all of them have an ambient that follows the diffuse reflectance: less light for that.
+local follows = P.surfaces == "checker"
+local scene = glint.scene { camera = glint.camera(camera), ambient = follows and w.ambient / w.diffuse or 1, background = w.background }
 for _, light in ipairs(lights[P.light]()) do scene:add(light) end
 for i, sphere in ipairs(w.spheres) do
   local c, surface = sphere[3], (w.surfaces[P.surfaces] or {})[i] or {}
   scene:add(shape((w.shapes[P.surfaces] or {})[i], sphere, surface, material(surface, {
     model = P.model, shininess = w.shininess, specular = w.specular,
-    ambient = { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] },
+    ambient = not follows and { w.ambient * c[1], w.ambient * c[2], w.ambient * c[3] } or nil,
     diffuse = { w.diffuse * c[1], w.diffuse * c[2], w.diffuse * c[3] },
   })))
 end

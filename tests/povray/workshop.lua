@@ -64,6 +64,7 @@ return {
   surfaces = { -- what becomes of some of the spheres, by number; `lift`: POV-Ray sees no hit nearer than 1e-3, and glass that
     -- stands on the ground shows that, enlarged
     plain = {},
+    checker = { [2] = { checker = { 0.1, 0.2, 0.3 } }, [3] = { checker = { 0.1, 0.1, 0.1 } }, [4] = { checker = { 0.9, 0.9, 0.8 } } },
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
     prism = { [2] = { transmission = 0.9, ior = 1.5, specular = 0 }, [3] = { transmission = 0.8, ior = 1.7, mirror = 0.1, specular = 0 } },
