@@ -205,10 +205,12 @@ static bool check_untrusted(const cli_options *options, char *message)
 static bool check_input(const cli_options *options, char *message)
 {
     if (!options->script || strcmp(options->script, "-") != 0 ||
-        (options->command & (CLI_RENDER | CLI_EXPLAIN) && !options->sweep_count && !options->dialect && !options->untrusted_s))
+        (options->command & (CLI_RENDER | CLI_EXPLAIN) && !options->sweep_count && !options->dialect &&
+         !options->untrusted_s))
         return true;
-    snprintf(message, MESSAGE, "-: a file expected; a script from standard input is for render and explain, without --sweep, "
-                               "--dialect and --untrusted");
+    snprintf(message, MESSAGE,
+             "-: a file expected; a script from standard input is for render and explain, without --sweep, --dialect and "
+             "--untrusted");
     return false;
 }
 
@@ -281,8 +283,9 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
             options->json = true; // so that an error here is an event, too
     }
     if (!read_argv(words, argv, options, used, message) ||
-        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) || !check_input(options, message) ||
-        !check_output(options, message) || !check_untrusted(options, message) || !complete(options, message))
+        !read_words(words - optind, argv + optind, options, message) || !check_together(options, used, message) ||
+        !check_input(options, message) || !check_output(options, message) || !check_untrusted(options, message) ||
+        !complete(options, message))
         return false;
     if (words < argc && !options->arguments) {
         options->arguments = argv + words + 1;

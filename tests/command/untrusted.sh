@@ -132,7 +132,7 @@ if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then
         result $? "64 MiB of Lua within 10 %: $(tail -n 1 used) of $most KiB: $line"
     done
 else
-    skip "no /usr/bin/time to measure memory with"
+    skip "memory is measured without a sanitizer, by /usr/bin/time"
 fi
 script 'local function deep(n) return 1 + deep(n + 1) end deep(1)'
 refused "a deep stack" "\(stack overflow\|not enough memory\)" -o a.png # their limits are near each other
