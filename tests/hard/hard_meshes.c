@@ -1,5 +1,5 @@
-/// Triangles: rays at the edges and corners that two or more share, triangles of no area, and texture coordinates, of which
-/// there are none. The textbook's triangle is Moller and Trumbore's.
+/// Triangles: rays at the edges and corners that two or more share, and triangles of no area; coordinates on a ball's surface
+/// at its poles. The textbook's triangle is Moller and Trumbore's.
 #include "tests/hard/oracle/shell.h"
 
 #include <string.h>
@@ -209,13 +209,78 @@ static void in_plane(uint64_t rays)
              shown.in_double == 0);
 }
 
+static glint_value op(glint_builder *b, glint_op which, glint_value x, glint_value y)
+{
+    const glint_value operands[GLINT_OPERANDS_MAX] = { x, y, y };
+    glint_value out[GLINT_RESULTS_MAX];
+    glint_error error;
+    must(glint_builder_op(b, which, operands, out, &error), &error);
+    return out[0];
+}
+
+/// 1 where u and v are 0 .. 1, and where a checker of 1e10 squares a unit is 0 or 1; what is NaN is neither.
+static glint_program *proper_coordinates(void)
+{
+    glint_builder *b;
+    glint_program *program;
+    glint_error error;
+    glint_value zero, one, many, good;
+    must(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error), &error);
+    must(glint_builder_number(b, 0, &zero, &error), &error);
+    must(glint_builder_number(b, 1, &one, &error), &error);
+    must(glint_builder_number(b, 1e10, &many, &error), &error);
+    good = one;
+    for (int k = 0; k < 2; k++) {
+        glint_value x;
+        must(glint_builder_input(b, (glint_input)(GLINT_INPUT_UV_U + k), &x, &error), &error);
+        good = op(b, GLINT_OP_AND, good, op(b, GLINT_OP_AND, op(b, GLINT_OP_LESSEQ, zero, x), op(b, GLINT_OP_LESSEQ, x, one)));
+        const glint_value odd = op(b, GLINT_OP_PARITY, op(b, GLINT_OP_MUL, x, many), zero);
+        good = op(b, GLINT_OP_AND, good, op(b, GLINT_OP_OR, op(b, GLINT_OP_EQUAL, odd, zero), op(b, GLINT_OP_EQUAL, odd, one)));
+    }
+    must(glint_builder_finish(b, &good, 1, &program, &error), &error);
+    glint_builder_destroy(b);
+    return program;
+}
+
+/// G3: rays along a ball's axis, and closer and closer to it.
+static void poles(int steps)
+{
+    hard_values shown = { 0 };
+    glint_material_desc desc = glint_material_desc_default();
+    glint_error error;
+    glint_material *material;
+    hard_test("G3", "coordinates on a ball at its poles");
+    desc.program.diffuse = proper_coordinates();
+    must(glint_material_create(&desc, &material, &error), &error);
+    glint_program_release(desc.program.diffuse);
+    for (int i = 0; i < 4 * steps; i++) {
+        const hard_sphere ball = { { 0.1, 0.2, 0.3 }, 1.7 };
+        const double side = i % 2 ? 1 : -1, off = i < 4 ? 0 : ldexp(i % 4 < 2 ? 1 : -1, -i / 4);
+        const hard_ray ray = { .o = { 0.1 + off, 0.2 + 9 * side, 0.3 - off }, .d = { 0, -side, 0 } };
+        glint_scene *scene = scene_new();
+        scene_sphere(scene, &ball, material);
+        for (int precision = 0; precision < 2; precision++) {
+            float good[3];
+            glint_image *image = frame_of_ray(scene, &ray, (glint_precision)precision, 1u << GLINT_PASS_ALBEDO);
+            pixel(image, GLINT_PASS_ALBEDO, 0, 0, good);
+            glint_image_release(image);
+            const bool wrong = !hard_check(good[0] == 1, "step %d: u or v is not within 0 .. 1", i);
+            *(precision == GLINT_DOUBLE ? &shown.in_double : &shown.in_float) += wrong;
+        }
+        glint_scene_release(scene);
+    }
+    glint_material_release(material);
+    shown.naive_double = shown.naive_float = HARD_BLANK;
+    hard_row("G3", "coordinates on a ball at and by its poles: not within 0 .. 1", &shown, shown.in_double + shown.in_float == 0);
+}
+
 int main(int argc, char **argv)
 {
     hard_begin(argc, argv);
-    hard_columns("Triangles.");
+    hard_columns("Triangles, and coordinates on surfaces.");
     seams(hard_rays / 100);
     no_area(1000);
     in_plane(hard_rays / 50);
-    hard_absent("G3", "there are no textures, and so no texture coordinates");
+    poles(60);
     return hard_end();
 }
