@@ -38,6 +38,11 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
+# Of OpenEXR its core in C alone.
+ifeq ($(call have,'OpenEXR >= 3.1'),yes)
+  EXR_LIBS := $(filter -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR))
+  DEFINES += -DGLINT_HAVE_OPENEXR $(patsubst -I%,-isystem %,$(filter -I%OpenEXR,$(shell pkg-config --cflags-only-I OpenEXR)))
+endif
 ifeq ($(call have,libseccomp),yes)
   COMMAND_LIBS := $(shell pkg-config --libs libseccomp)
   DEFINES += -DGLINT_HAVE_SECCOMP
@@ -69,7 +74,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
 LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) -lm -pthread
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(EXR_LIBS) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) -Wl,--as-needed
 
@@ -194,7 +199,7 @@ $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
 SCRIPTED := $(wildcard tests/lua/test_*.lua tests/hard/*.lua tests/lua/check_*.lua \
-              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory povray readme untrusted warnings watch)))
+              $(addprefix tests/command/,$(addsuffix .sh,cli completion effects faults films gallery golden inputs install kills memory parts povray python readme untrusted warnings watch)))
 RUNNER = BUILD=$(BUILD) LUA=$(LUA) MAKE="$(MAKE)" tests/run.sh
 
 check: ## every test; T=name runs those whose name has it
@@ -422,6 +427,26 @@ demo-run: all
 # The modules in Lua: gr.lua is `require "gr"`, glint/xyz.lua is `require "glint.xyz"`.
 LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua scripts/lib/*/*.lua)))
 
+# The pages by topic, and the examples with what they read. Links from page to page follow the names they have there.
+docdir   := $(datadir)/doc/glint
+examples := $(datadir)/glint/examples
+PAGES    := README.md:README.md lua-and-command.md:bindings/README.md engine.md:engine/README.md examples.md:scripts/README.md \
+            farms.md:scripts/farm/README.md python.md:scripts/python.md CHANGELOG.md:.github/CHANGELOG.md
+EXAMPLES := $(sort $(patsubst scripts/%,%,$(wildcard scripts/*.lua scripts/*.c scripts/data/* scripts/farm/*.sh)))
+page_to   = $(firstword $(subst :, ,$(1)))
+
+$(BUILD)/doc/data.md: scripts/lib/page.awk $(wildcard scripts/lib/glint/*.lua)
+	@mkdir -p $(@D)
+	@awk -f $^ > $@
+
+.PHONY: pages
+pages: $(BUILD)/doc/data.md ## the installed manual by topic, in build/doc/
+	@for page in $(PAGES); do \
+	    sed -e 's|](\(\.\./\)*bindings/README\.md|](lua-and-command.md|g' -e 's|](engine/README\.md|](engine.md|g' \
+	        -e 's|](scripts/README\.md|](examples.md|g' -e 's|](farm/README\.md|](farms.md|g' \
+	        -e 's|](\.github/CHANGELOG\.md|](CHANGELOG.md|g' -e 's,](\([a-z_]*\.\(lua\|c\)\)),](../../glint/examples/\1),g' \
+	        -e 's|!\[[^]]*\]([^)]*)||g' "$${page#*:}" > "$(BUILD)/doc/$${page%%:*}" || exit 1; done
+
 # What is installed: mode, from, to.
 define INSTALLED
 755 $(BUILD)/glint $(bindir)/glint
@@ -437,12 +462,16 @@ define INSTALLED
 644 $(BUILD)/completion/fish $(datadir)/fish/vendor_completions.d/glint.fish
 $(foreach module,$(LUA_LIBRARY),644 scripts/lib/$(module) $(luasharedir)/$(module)
 )
+$(foreach page,$(PAGES) data.md,644 $(BUILD)/doc/$(call page_to,$(page)) $(docdir)/$(call page_to,$(page))
+)
+$(foreach file,$(EXAMPLES),$(if $(filter %.sh,$(file)),755,644) scripts/$(file) $(examples)/$(file)
+)
 endef
 export INSTALLED
 
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
-	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' $< > $@
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
 $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
@@ -450,7 +479,7 @@ $(BUILD)/completion/%: $(BUILD)/glint
 
 # What debuggers need is four fifths of the command and the archive; STRIP=: leaves it there.
 STRIP ?= strip
-install: all shared $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
+install: all shared pages $(BUILD)/glint.pc $(addprefix $(BUILD)/completion/,bash zsh fish) ## PREFIX=/usr/local, DESTDIR=
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  INSTALL	$(DESTDIR)$$to"; install -D -m "$$mode" "$$from" "$(DESTDIR)$$to" || exit 1; \
 	    case $$to in *.a) $(STRIP) --strip-debug "$(DESTDIR)$$to" ;; \
@@ -480,7 +509,7 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 	@printf '%s\n' "$$INSTALLED" | while read -r mode from to; do \
 	    [ -z "$$mode" ] || { echo "  REMOVE	$(DESTDIR)$$to"; rm -f "$(DESTDIR)$$to" || exit 1; }; done
 	@rm -f $(addprefix "$(DESTDIR)$(libdir)"/,$(SONAME) libglint.so)
-	@for folder in $(datadir)/glint $(luasharedir)/glint $(luasharedir)/gr; do \
+	@for folder in $(examples)/data $(examples)/farm $(examples) $(datadir)/glint $(docdir) $(luasharedir)/glint $(luasharedir)/gr; do \
 	    if [ -d "$(DESTDIR)$$folder" ]; then rmdir "$(DESTDIR)$$folder" || exit 1; fi; done
 
 deps: ## installs what the build and the tests need, through apt

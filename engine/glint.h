@@ -807,6 +807,9 @@ typedef struct glint_render_desc {
     bool alpha;
     glint_outline_color outline; ///< in files alone: planes and codes are without; the pass is kept. Default none
     glint_tone_desc tone;
+    /// x, y, width and height, in pixels, of the part of the frame that is rendered, with the bits that the whole has there;
+    /// the image has the part's size. Whole numbers within the frame; all 0 (default): the whole
+    double region[4];
 } glint_render_desc;
 
 /// 1280 x 720, 1 sample, double, passes = beauty, codes = false.
@@ -921,6 +924,7 @@ typedef struct glint_frame_stats {
     glint_ray_counts rays; ///< as cast; reused stages cast none
     glint_work work; ///< 0 unless the renderer counts it; what is reused took none
     uint64_t refined; ///< pixels that got all samples, where `adaptive` chooses; else 0
+    uint64_t pixels; ///< rendered: of a region those of the tiles that it touches; `clipped` and `nonfinite` are of these
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
     uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
@@ -944,6 +948,9 @@ int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
 /// Whether the pass was kept; beauty alone may exist as codes only.
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
+/// Whether codes are there and all are 0, but for alpha; without codes, whether no value of beauty is above 0. Looks no
+/// further than the first that is. False where there is neither.
+bool glint_image_is_black(const glint_image *image);
 /// Reads one pixel of a kept pass; (0, 0) is the top left. One-channel passes give the same number three times.
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error);
@@ -964,13 +971,23 @@ typedef struct glint_text {
 
 /// One pass as a file. Pointers are borrowed for the call.
 typedef struct glint_write_desc {
-    const char *path; ///< ends in .png or .pfm
-    glint_pass pass; ///< one the image has
-    glint_tone_desc tone; ///< .png; depth, normal and object_id are scaled for viewing, see README
-    glint_encode encode; ///< default GLINT_ENCODE_FAST
-    const glint_text *text; ///< .png
+    /// Ends in .png; in .pfm or .npy for the linear float32 of one pass (.npy: NumPy's, height x width or height x width x 3,
+    /// top row first); or in .exr for those of all passes of the image, as channels of one file: R, G, B, A, depth.Z,
+    /// normal.X ... diffuse.B
+    const char *path;
+    glint_pass pass; ///< one the image has; an .exr has all
+    /// .png; depth, normal and object_id are scaled for viewing, see README. Of an .exr 16 `bits` make light and normals half,
+    /// 8 leave them float; the rest is float either way
+    glint_tone_desc tone;
+    glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
+    const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts
 } glint_write_desc;
+
+/// "OpenEXR 3.1.5"; NULL: this build cannot write .exr.
+const char *glint_exr_library(void);
+/// Names and versions of the libraries that are in use, the last one NULL. Static strings.
+const char *const *glint_libraries(void);
 
 /// Writes one pass to a file that appears whole or not at all: temporary name beside it, fsync, rename. An existing
 /// file that is not a regular one (a pipe, /dev/full) is written in place. Missing folders are made.
@@ -985,6 +1002,8 @@ glint_status glint_image_to_bytes(const glint_image *image, const glint_write_de
 /// Identifies a finished frame: 32 hex digits over engine version, everything the plan reads, `desc`'s tone, encode,
 /// encoder version and pass. Threads, instruction set, shard and path are not in it.
 void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
+/// The key of the whole frame that a region is a part of; without a region the frame's own.
+void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char key[33]);
 
 /// Whether `path` is a whole PNG (every chunk's CRC right, IEND at the end) whose tEXt "glint:key" equals key.
 bool glint_file_has_key(const char *path, const char *key);
@@ -1119,6 +1138,19 @@ const char *glint_picture_text(const glint_picture *picture, const char *keyword
 /// Row `y`, from 0 at the top, as 3 * width sRGB codes of 8 bits, for viewing: grey becomes RGB, 16 bits and linear codes
 /// are rounded, what shows through alpha is a grey of `backdrop`, 0 .. 255. Needs the pixels.
 void glint_picture_row(const glint_picture *picture, int y, int backdrop, uint8_t *rgb);
+
+/// A finished part of a picture.
+typedef struct glint_picture_part {
+    const glint_picture *picture; ///< read with its pixels, of a .png with three or four channels
+    int x, y; ///< where its top left pixel is in the whole
+} glint_picture_part;
+
+/// Writes the picture of width x height pixels that the parts make, as glint_image_write would have written the whole:
+/// `desc` has path (.png), transfer and bits of the tone, encode and text; its pass means nothing. Parts may overlap where they
+/// agree. GLINT_ERR_INVALID names by its number, from 1, a part that lies outside, is of other bits or channels than
+/// the first, or disagrees with one before it, and the first pixel that none has.
+glint_status glint_picture_join(const glint_picture_part *parts, size_t count, int width, int height, const glint_write_desc *desc,
+                               glint_error *error);
 
 /// One picture of a contact sheet. Strings are borrowed.
 typedef struct glint_sheet_cell {

@@ -21,7 +21,8 @@ typedef enum cli_command {
     CLI_REPRODUCE = 128,
     CLI_NEW = 256,
     CLI_WATCH = 512,
-    CLI_COMPLETION = 1024
+    CLI_COMPLETION = 1024,
+    CLI_JOIN = 2048
 } cli_command;
 
 typedef enum cli_words { ///< that follow a command's name
@@ -37,7 +38,7 @@ typedef struct cli_command_name {
     const char *synopsis; ///< what follows it on the command line
     const char *help; ///< a line for people
 } cli_command_name;
-#define CLI_COMMAND_COUNT 11
+#define CLI_COMMAND_COUNT 12
 extern const cli_command_name cli_command_list[CLI_COMMAND_COUNT];
 
 typedef struct cli_sweep { ///< --sweep name=from:to:count
@@ -51,7 +52,7 @@ typedef struct cli_sweep { ///< --sweep name=from:to:count
 
 typedef struct cli_options {
     cli_command command;
-    bool json, quiet, help, version;
+    bool json, quiet, help, version, verbose;
     const char *script; ///< NULL: none given
     char **arguments; ///< words of a command that takes files; after `--` those of the script
     int argument_count;
@@ -101,7 +102,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 56
+#define CLI_OPTION_COUNT 58
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.
@@ -241,5 +242,7 @@ int cli_sheet(const cli_options *options, cli_output *output);
 int cli_assemble(cli_options *options, cli_output *output, glintL_run *run);
 int cli_reproduce(cli_options *options, cli_output *output, glintL_run *run);
 int cli_new(const cli_options *options, cli_output *output);
+int cli_join(const cli_options *options, cli_output *output);
+int cli_version(const cli_options *options, cli_output *output);
 
 #endif

@@ -19,17 +19,34 @@ bool cli_add_set(glintL_request *request, const char *name, const char *text)
     return true;
 }
 
+// What other programs call an option.
+static const char *const MEANINGS[][2] = {
+    { "width", "size" }, { "height", "size" }, { "resolution", "size" }, { "param", "set" }, { "parameter", "set" },
+    { "spp", "samples" }, { "antialias", "samples" }, { "aa", "samples" }, { "jobs", "threads" }, { "cores", "threads" },
+    { "name", "output" }, { "overwrite", "force" }, { "silent", "quiet" }, { "crop", "region" }, { "gamma", "transfer" }, { "depth", "bits" },
+};
+
+// The option that a misspelt name means, or NULL.
+static const char *nearest_option(const char *name)
+{
+    const char *near = NULL;
+    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
+        near = glintL_nearer(name, near, cli_option_list[i].name);
+    for (size_t i = 0; i < sizeof MEANINGS / sizeof *MEANINGS; i++)
+        if (glintL_nearer(name, near, MEANINGS[i][0]) == MEANINGS[i][0])
+            return MEANINGS[i][1];
+    return near;
+}
+
 static bool complain_unknown(const char *text, char *message)
 {
     char name[64];
-    const char *near = NULL;
     if (strncmp(text, "--", 2) != 0 || strlen(text) > 60) {
         snprintf(message, MESSAGE, "%.100s: no such option; --help lists them", text);
         return false;
     }
     snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 2, "="), text + 2);
-    for (size_t i = 0; i < CLI_OPTION_COUNT; i++)
-        near = glintL_nearer(name, near, cli_option_list[i].name);
+    const char *near = nearest_option(name);
     if (near)
         snprintf(message, MESSAGE, "--%s: no such option; did you mean '--%s'?", name, near);
     else
@@ -115,6 +132,7 @@ const cli_command_name cli_command_list[CLI_COMMAND_COUNT] = {
       "compare pictures: 0 same, 1 warn, 2 differ, 3 size, 4 file" },
     { "sheet", CLI_SHEET, CLI_FILES, "FILES -o SHEET", "a contact sheet, .png or .html, of finished frames" },
     { "assemble", CLI_ASSEMBLE, CLI_FILES, "FILES -o FILM", "a film of finished frames" },
+    { "join", CLI_JOIN, CLI_FILES, "PARTS -o PICTURE", "one picture of the parts that --region has rendered" },
     { "reproduce", CLI_REPRODUCE, CLI_FILE_SCRIPT, "FILE SCRIPT",
       "render a finished frame again: 0 same bytes, 3 same pixels, 4 another picture, 5 file" },
     { "new", CLI_NEW, CLI_FILES, "NAME", "write a scene to begin with" },
@@ -221,6 +239,10 @@ static bool check_together(const cli_options *options, const bool used[CLI_OPTIO
             snprintf(message, MESSAGE, "--%s: it means nothing to this command", cli_option_list[i].name);
             return false;
         }
+    }
+    if (options->verbose && !options->version) {
+        snprintf(message, MESSAGE, "--verbose: it means something with --version alone");
+        return false;
     }
     if (options->has_frames && options->command == CLI_RENDER && (options->start || options->end || options->jump)) {
         snprintf(message, MESSAGE, "--frames: either it or --start, --end and --jump, not both");

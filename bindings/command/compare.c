@@ -66,7 +66,8 @@ static void print_for_people(FILE *out, char **files, const glint_compare_result
         fprintf(out, " at %d, %d, channel %d", result->max_x, result->max_y, result->max_channel);
     fputc('\n', out);
     print_share(out, result->failed, result->pixels, desc->fail);
-    print_share(out, result->warned, result->pixels, desc->warn);
+    if (desc->warn != desc->fail) // else it is the same line
+        print_share(out, result->warned, result->pixels, desc->warn);
 }
 
 int cli_compare(const cli_options *options, cli_output *output)

@@ -239,6 +239,21 @@ void cli_warn_clipped(glintL_run *run)
                         100 * clipped);
 }
 
+// What became of a name without a place for the number that -o has given to several frames.
+static void print_numbering(const glintL_run *run)
+{
+    const char *name = run->request.render_text[glintL_render_find("output")];
+    const char *dot = name ? strrchr(name, '.') : NULL;
+    if (!dot || run->count < 2 || run->done == 0 || glintL_name_has_number(name) ||
+        glintL_film_kind_of(name, run->request.apng) != GLINTL_FILM_NONE)
+        return;
+    const int stem = (int)(dot - name);
+    fprintf(stderr,
+            "-o %s names %" PRId64 " frames, so each has its number in its name: %.*s_####%s; -o %.*s.mp4, .webm, .gif "
+            "or .apng makes a film\n",
+            name, run->count, stem, name, dot, stem, name);
+}
+
 void cli_report_end(cli_output *output)
 {
     const glintL_run *run = output->run;
@@ -253,6 +268,8 @@ void cli_report_end(cli_output *output)
     if (output->progress)
         cli_progress_clear(output->progress);
     print_kept(output);
+    if (!output->json)
+        print_numbering(run);
     if (!output->json)
         fprintf(stderr, "%" PRId64 " frame%s in %.2f s, %" PRId64 " kept\n", run->done, run->done == 1 ? "" : "s",
                 seconds, run->kept);

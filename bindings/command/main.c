@@ -89,20 +89,20 @@ static int run_scripted(cli_options *options, cli_output *output, int *signal_nu
 
 static int dispatch(cli_options *options, cli_output *output, int *signal_number)
 {
-    if (options->version) {
-        fputs("glint " GLINT_VERSION "\n", output->data);
-        return GLINTL_EXIT_DONE;
-    }
+    if (options->version)
+        return cli_version(options, output);
     if (options->help && !options->script) {
         cli_print_usage(output->data);
         return GLINTL_EXIT_DONE;
     }
-    if (options->command == CLI_COMPARE || options->command == CLI_SHEET)
+    if (options->command == CLI_COMPARE || options->command == CLI_SHEET || options->command == CLI_JOIN)
         cli_leave_by_signals();
     if (options->command == CLI_COMPARE)
         return cli_compare(options, output);
     if (options->command == CLI_SHEET)
         return cli_sheet(options, output);
+    if (options->command == CLI_JOIN)
+        return cli_join(options, output);
     if (options->command == CLI_NEW)
         return cli_new(options, output);
     if (options->command == CLI_COMPLETION)

@@ -10,7 +10,7 @@
 
 #define SCRIPTED (CLI_RENDER | CLI_EXPLAIN | CLI_DESCRIBE | CLI_COST)
 #define SHOWN (SCRIPTED | CLI_WATCH)
-#define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW)
+#define FILES (CLI_COMPARE | CLI_SHEET | CLI_ASSEMBLE | CLI_REPRODUCE | CLI_NEW | CLI_JOIN)
 #define ALL (SHOWN | FILES | CLI_COMPLETION)
 #define MESSAGE GLINTL_MESSAGE_SIZE
 
@@ -244,8 +244,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "frame", 0, "N", LOOKED, read_frame, .help = "frame to look at" },
     { "sweep", 0, "NAME=A:B:N", CLI_RENDER, read_sweep, .help = "the script for N values of a parameter",
       .repeats = true },
-    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE, read_text,
-      .help = "%04d or #### is the number; .png, .pfm, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,
+    { "output", 'o', "PATTERN", CLI_RENDER | CLI_EXPLAIN | CLI_SHEET | CLI_ASSEMBLE | CLI_JOIN, read_text,
+      .help = "%04d or #### is the number; .png, .pfm, .npy, .exr, a film or none", AT(output), .suggest = CLI_SUGGEST_FILES,
       .group = "files" },
     { "passes", 0, "LIST", SCRIPTED, read_render, .help = "also write these:", .suggest = CLI_SUGGEST_PASSES },
     { "force", 0, NULL, CLI_RENDER | CLI_SHEET | CLI_ASSEMBLE, read_flag,
@@ -265,6 +265,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       .expected = "number 0.001 .. 1000000" },
     { "set", 'D', "NAME=VALUE", SHOWN, read_set, .help = "a parameter of the script", .repeats = true,
       .group = "picture" },
+    { "region", 0, "RECT", CLI_RENDER | CLI_EXPLAIN, read_render, .help = "X,Y,W,H: this part of the frame" },
     { "size", 0, "WxH", SHOWN, read_size, .help = "pixels across and down",
       .suggest = "640x360 1280x720 1920x1080 3840x2160" },
     GLINTL_RENDER_LIST(FIELD, OPTION) { "adaptive", 0, "X", SHOWN, read_render,
@@ -308,6 +309,7 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
     { "warnings", 0, "show|error|none", CLI_RENDER | CLI_WATCH, read_warnings, .help = "what a warning does" },
     { "help", 'h', NULL, ALL, read_flag, .help = "help, with a script its parameters", AT(help) },
     { "version", 0, NULL, ALL, read_flag, .help = "print the version", AT(version) },
+    { "verbose", 0, NULL, ALL, read_flag, .help = "with --version: libraries, kernels, limits", AT(verbose) },
 };
 
 void cli_option_value(const cli_option *option, char out[CLI_VALUE_SIZE])

@@ -34,19 +34,45 @@ static void set_arguments(lua_State *L, const cli_options *options)
     lua_setglobal(L, "arg");
 }
 
-// The script's folder and its lib/ come first. A ';' or '?' in the folder's name would be misread: then it stays out.
+// Puts templates before those of package.path, which is at 1, or after them. A ';' or '?' in a folder's name would be misread:
+// then it stays out.
+static void add_path(lua_State *L, const char *folder, const char *templates, bool first)
+{
+    if (strpbrk(folder, ";?"))
+        return;
+    luaL_gsub(L, templates, "@", folder);
+    lua_getfield(L, 1, "path");
+    lua_pushfstring(L, "%s;%s", lua_tostring(L, first ? -2 : -1), lua_tostring(L, first ? -1 : -2));
+    lua_setfield(L, 1, "path");
+    lua_pop(L, 2);
+}
+
+// The modules that were installed with this command lie beside it: PREFIX/bin and PREFIX/share. Another version's, elsewhere,
+// come after them; what the user's LUA_PATH has, before.
+static void add_own_modules(lua_State *L)
+{
+    char path[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+    if (length <= 0)
+        return;
+    path[length] = '\0';
+    char *slash = strrchr(path, '/');
+    if (!slash)
+        return;
+    slash[1] = '\0';
+    snprintf(probe, sizeof probe, "%s../share/lua/5.4/glint/particles.lua", path);
+    if (access(probe, R_OK) == 0)
+        add_path(L, path, "@../share/lua/5.4/?.lua", !getenv("LUA_PATH_5_4") && !getenv("LUA_PATH"));
+}
+
+// The script's folder and its lib/ come first.
 static void set_path(lua_State *L, const char *script)
 {
     const char *base = cli_base_name(script);
     lua_getglobal(L, "package");
-    lua_getfield(L, -1, "path");
-    const char *old = lua_tostring(L, -1);
+    add_own_modules(L);
     lua_pushlstring(L, script, (size_t)(base - script));
-    const char *folder = base > script ? lua_tostring(L, -1) : "./";
-    if (!strpbrk(folder, ";?")) {
-        lua_pushfstring(L, "%s?.lua;%slib/?.lua;%s", folder, folder, old);
-        lua_setfield(L, 1, "path");
-    }
+    add_path(L, base > script ? lua_tostring(L, -1) : "./", "@?.lua;@lib/?.lua", true);
     lua_settop(L, 0);
 }
 

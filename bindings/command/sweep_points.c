@@ -42,6 +42,31 @@ int64_t cli_sweep_points(const cli_options *options)
     return points;
 }
 
+// Rounds to 15 digits of `scale`, so that 0.1:0.9:9 has 0.3 and not 0.30000000000000004.
+static double shorten(double value, double scale)
+{
+    char text[400];
+    const int decimals = 14 - (int)floor(log10(scale));
+    if (decimals < 1 || decimals > 330 || value == floor(value))
+        return value;
+    snprintf(text, sizeof text, "%.*f", decimals, value);
+    return strtod(text, NULL);
+}
+
+// The ends exactly, and between them whole numbers where steps are whole: 1:50:50 has 28.
+static double value_at(const cli_sweep *sweep, int64_t step)
+{
+    const double last = (double)(sweep->count - 1), at = (double)step;
+    if (step == 0)
+        return sweep->from;
+    if (step == sweep->count - 1)
+        return sweep->to;
+    double value = (sweep->from * (last - at) + sweep->to * at) / last;
+    if (!isfinite(value))
+        value = sweep->from * ((last - at) / last) + sweep->to * (at / last);
+    return shorten(value, fmax(fabs(sweep->from), fabs(sweep->to)));
+}
+
 void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
 {
     int64_t rest = point - 1;
@@ -49,12 +74,7 @@ void cli_sweep_to(cli_options *options, glintL_run *run, int64_t point)
     for (size_t i = 0; i < options->sweep_count; i++) {
         cli_sweep *sweep = &options->sweeps[i];
         int64_t step = rest % sweep->count;
-        double value = sweep->from;
-        if (step > 0 && step == sweep->count - 1)
-            value = sweep->to; // exactly
-        else if (step > 0)
-            value = sweep->from + (sweep->to - sweep->from) * ((double)step / (double)(sweep->count - 1));
-        glintL_format_number(sweep->text, value);
+        glintL_format_number(sweep->text, value_at(sweep, step));
         run->request.sets[first_set + i] = (glintL_set) { .name = sweep->name, .text = sweep->text };
         rest /= sweep->count;
     }

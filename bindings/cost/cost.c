@@ -232,7 +232,7 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
                              .render = study->own,
                              .scene = &study->scene,
                              .has_neighbour = run->kept_neighbour != NULL,
-                             .is_pfm = glintL_name_is_pfm(study->own->output) };
+                             .is_pfm = glintL_name_is_linear(study->own->output) };
     if (!cost_scene_open(&study->scene, run->kept_scene))
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
     else

@@ -194,7 +194,7 @@ static glint_status time_run(cost_study *study, cost_case *c, const glint_plan *
 // How a case is rendered when it is timed.
 cost_shot cost_own_shot(const cost_study *study)
 {
-    const bool codes = !glintL_name_is_pfm(study->own->output);
+    const bool codes = !glintL_name_is_linear(study->own->output);
     return (cost_shot) { .passes = codes ? 0 : 1u << GLINT_PASS_BEAUTY, .codes = codes, .seed = -1 };
 }
 

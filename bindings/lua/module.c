@@ -1,6 +1,64 @@
 // luaopen_glint: the module's table.
+#include <lualib.h>
+#include <string.h>
+
 #include "bindings/run/system.h"
 #include "bindings/value/glintL.h"
+
+typedef struct members { // of the module's table, which is at `index`
+    lua_State *L;
+    int index;
+} members;
+
+static bool has_member(const void *context, const char *name)
+{
+    const members *all = context;
+    lua_pushstring(all->L, name);
+    const bool found = lua_rawget(all->L, all->index) != LUA_TNIL;
+    lua_pop(all->L, 1);
+    return found;
+}
+
+// A table has no order: of two that are as near, the first in the alphabet.
+static const char *nearest_member(lua_State *L, const char *name)
+{
+    const char *near = NULL;
+    lua_pushnil(L);
+    while (lua_next(L, 1)) {
+        lua_pop(L, 1);
+        const char *known = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "_"; // the table keeps it
+        const bool is_near = *known != '_' && glintL_nearer(name, near, known) == known;
+        if (is_near || (near && glintL_nearer(name, known, near) == known && strcmp(known, near) < 0))
+            near = known;
+    }
+    return near ? near : glintL_meaning(name, has_member, &(members) { L, 1 });
+}
+
+// Whether `require "glint.<name>"` would find a module.
+static bool is_module(lua_State *L, const char *name)
+{
+    bool found = false;
+    if (lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE) == LUA_TTABLE &&
+        lua_getfield(L, -1, LUA_LOADLIBNAME) == LUA_TTABLE && lua_getfield(L, -1, "searchpath") == LUA_TFUNCTION) {
+        lua_pushfstring(L, "glint.%s", name);
+        if (lua_getfield(L, -3, "path") == LUA_TSTRING && lua_pcall(L, 2, 1, 0) == LUA_OK)
+            found = lua_isstring(L, -1);
+    }
+    lua_settop(L, 2);
+    return found;
+}
+
+// 1: the module's table, 2: what it lacks.
+static int refuse_member(lua_State *L)
+{
+    lua_settop(L, 2);
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return glintL_bad_key(L, "glint", 2);
+    const char *name = lua_tostring(L, 2);
+    if (is_module(L, name))
+        return glintL_error(L, "glint.%s: it is a module of its own; local %s = require \"glint.%s\"", name, name, name);
+    return glintL_no_such_field(L, "glint", name, nearest_member(L, name));
+}
 
 static int list_fields(lua_State *L)
 {
@@ -34,5 +92,11 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "_other_kind");
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
+    lua_createtable(L, 0, 2);
+    lua_pushcfunction(L, refuse_member);
+    lua_setfield(L, -2, "__index");
+    lua_pushboolean(L, false);
+    lua_setfield(L, -2, "__metatable");
+    lua_setmetatable(L, -2);
     return 1;
 }

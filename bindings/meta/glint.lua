@@ -580,8 +580,9 @@ function glint.scene(fields) end
 ---@field alpha? boolean  transparent background: a .png is RGBA, and passes hold light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
----@field output? string  file name, .png or .pfm; %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
+---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
+---@field region? integer[]|string  { x, y, width, height } or "x,y,width,height": this part of the frame alone, in pixels from the top left, with the bits of the whole. Default: all
 
 ---@class glint.save_options
 ---@field bits? 8|16  a channel of a .png. Default 8
@@ -607,7 +608,7 @@ local image = {}
 ---@return number b
 function image:pixel(x, y, pass) end
 
---- Writes a .png or .pfm, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be
+--- Writes a .png, .pfm, .npy or .exr, whole or not at all. Missing folders are made. Wrong use raises; a file that cannot be
 --- written gives nil and a message.
 ---@param path string
 ---@param options? glint.save_options

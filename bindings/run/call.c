@@ -183,6 +183,8 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     work->build_ms = build_ms;
     bool open = is_open(run, render);
     bool good = render_call(run, work, open);
+    if (good)
+        glintL_look_for_black(run, scene, work);
     if (good && fill_handle(L, first, scene, work, open, &error))
         good = glintL_run_fail(run, GLINTL_EXIT_FAILED, run->count, "%s", error.message);
     if (good && open)
@@ -230,7 +232,7 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index)
     if (run->keeps_scene && run->count == run->explain_frame - 1) {
         glint_error error;
         glint_render_desc desc = render.desc;
-        desc.codes = !glintL_name_is_pfm(render.output);
+        desc.codes = !glintL_name_is_linear(render.output);
         desc.passes = desc.codes ? 0 : 1u << GLINT_PASS_BEAUTY;
         if (glint_plan_create(scene, &desc, &run->kept_neighbour, &error))
             return glintL_error(L, PATH "%s", error.message);

@@ -94,6 +94,7 @@ static void shrink(glintL_run *run, glint_render_desc *desc)
     double scale = longest > run->preview_side ? run->preview_side / longest : 1;
     run->was_shrunk = run->was_shrunk || scale < 1 || desc->samples > 1;
     desc->samples = 1;
+    memset(desc->region, 0, sizeof desc->region);
     desc->width = scale < 1 ? fmax(1, floor(desc->width * scale + 0.5)) : desc->width;
     desc->height = scale < 1 ? fmax(1, floor(desc->height * scale + 0.5)) : desc->height;
 }
@@ -294,6 +295,8 @@ static bool run_frame(job_walk *walk, int64_t n, int64_t number)
     if (!good)
         glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "%s", error.message);
     good = good && glintL_work_run(walk->run, work, walk->run->request.force);
+    if (good)
+        glintL_look_for_black(walk->run, scene_of(walk), work);
     glintL_work_destroy(work);
     return good;
 }

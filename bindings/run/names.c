@@ -66,20 +66,29 @@ bool glintL_name_is_plain(const char *name, size_t length)
     return good;
 }
 
-// The dot of ".png" or ".pfm"; NULL: another ending, or no name before it.
+// The dot of ".png", ".pfm", ".npy" or ".exr"; NULL: another ending, or no name before it.
 static const char *ending(const char *path)
 {
+    static const char *const known[] = { ".png", ".pfm", ".npy", ".exr" };
     size_t length = strlen(path);
     if (length < 5 || path[length - 5] == '/')
         return NULL;
-    const char *dot = path + length - 4;
-    return strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".pfm") == 0 ? dot : NULL;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcasecmp(path + length - 4, known[i]) == 0)
+            return path + length - 4;
+    return NULL;
 }
 
-bool glintL_name_is_pfm(const char *path)
+bool glintL_name_is_linear(const char *path)
 {
     const char *dot = ending(path);
-    return dot && strcasecmp(dot, ".pfm") == 0;
+    return dot && strcasecmp(dot, ".png") != 0;
+}
+
+bool glintL_name_is_exr(const char *path)
+{
+    const char *dot = ending(path);
+    return dot && strcasecmp(dot, ".exr") == 0;
 }
 
 glintL_film_kind glintL_film_kind_of(const char *path, bool apng)
@@ -117,7 +126,9 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE])
     if (!wrong && is_film && glintL_name_has_number(pattern))
         wrong = "a film's name without a place for the frame number";
     if (!wrong && !is_film && !ending(pattern) && !glintL_name_is_special(pattern))
-        wrong = "a file name ending in .png or .pfm, or a film's in .mp4, .webm, .gif or .apng";
+        wrong = "a file name ending in .png, .pfm, .npy or .exr, or a film's in .mp4, .webm, .gif or .apng";
+    if (!wrong && glintL_name_is_exr(pattern) && !glint_exr_library())
+        wrong = "a file name ending in .png, .pfm or .npy, as this build has no OpenEXR (libopenexr-dev),";
     if (!wrong && strlen(pattern) >= GLINTL_PATH_SIZE - 64)
         wrong = "a shorter file name";
     if (wrong)

@@ -65,6 +65,7 @@ bool glintL_provenance_take(glintL_provenance *out, const glintL_run *run, const
     add(out, "glint:options", out->options);
     add(out, "glint:sweep", out->sweep);
     add(out, "glint:encoder", glint_encoder_name(work->render.encode));
+    add(out, "glint:whole", file->whole);
     return true;
 }
 

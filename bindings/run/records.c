@@ -68,7 +68,8 @@ void glintL_run_reset(glintL_run *run)
     run->total = run->todo = run->done = run->kept = 0;
     run->clipped = run->pixels = run->nonfinite = 0;
     run->earlier = run->failed_index = 0;
-    run->is_stopped = run->in_frame = run->was_shrunk = false;
+    run->is_stopped = run->in_frame = run->was_shrunk = run->has_light = run->told_of_view = false;
+    run->black[0] = '\0';
     run->since_ms = glintL_now_ms();
     run->exit_code = GLINTL_EXIT_DONE;
     run->message[0] = '\0';
@@ -177,7 +178,7 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->build_ms = work->build_ms;
     record->stats = work->stats;
     record->film = work->film;
-    record->pixel_count = work->render.desc.width * work->render.desc.height;
+    record->pixel_count = (double)work->stats.pixels; // of a frame that is kept none, and nothing is counted
     for (int i = 0; i < work->file_count; i++) {
         char *copy = strdup(work->files[i].path);
         if (!copy)

@@ -26,6 +26,7 @@
     OPTION(outline, ENUM, CHOICE, desc.outline, 0, 0, outlines, "", "lines where objects end or have an edge")          \
     OPTION(visibility, ENUM, CHOICE, desc.visibility, 0, 0, visibilities, "",                                           \
            "how it is found what the eye sees; same pictures")                                                          \
-    FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)
+    FIELD(adaptive, NUMBER, REAL, desc.adaptive, 0, 3, NULL)                                                            \
+    FIELD(region, STRING, REGION, desc.region, 0, 0, NULL)
 
 #endif

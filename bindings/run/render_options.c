@@ -18,7 +18,8 @@ typedef enum sort {
     BITS,
     FLAG, // a bool
     OUTPUT,
-    PASSES
+    PASSES,
+    REGION // four doubles; all 0: none
 } sort;
 
 typedef struct detail {
@@ -101,6 +102,9 @@ static void describe(const detail *what, char out[256])
     case OUTPUT:
         snprintf(out, 256, "file name");
         break;
+    case REGION:
+        snprintf(out, 256, "region X,Y,WIDTH,HEIGHT in whole pixels, from the top left,");
+        break;
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
             used += (size_t)snprintf(out + used, 256 - used, "%s%s", pass ? ", " : "list of ", glint_pass_name(pass));
@@ -166,8 +170,23 @@ static bool add_pass(uint32_t *passes, const char *name, size_t length)
     return true;
 }
 
+// "normals" is no pass; did you mean ...
+static void complain_pass(const char *name, size_t length, char message[GLINTL_MESSAGE_SIZE])
+{
+    char copy[64], allowed[256];
+    const char *near = NULL;
+    snprintf(copy, sizeof copy, "%.*s", length < sizeof copy ? (int)length : (int)sizeof copy - 1, name);
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        near = glintL_nearer(copy, near, glint_pass_name((glint_pass)pass));
+    describe(&(detail) { .sort = PASSES }, allowed);
+    if (near)
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is no pass; did you mean '%s'?", copy, near);
+    else
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s' is no pass; %s expected", copy, allowed);
+}
+
 // "ambient,depth"; "" and "none": no files beside the beauty.
-static bool read_passes(const char *text, uint32_t *out)
+static bool read_passes(const char *text, uint32_t *out, char message[GLINTL_MESSAGE_SIZE])
 {
     uint32_t passes = 0;
     if (*text && strcmp(text, "none") != 0) {
@@ -175,14 +194,35 @@ static bool read_passes(const char *text, uint32_t *out)
             at += strspn(at, " ");
             size_t length = strcspn(at, ", ");
             const char *after = at + length + strspn(at + length, " ");
-            if ((*after && *after != ',') || !add_pass(&passes, at, length))
+            if ((*after && *after != ',') || !add_pass(&passes, at, length)) {
+                complain_pass(at, *after && *after != ',' ? strcspn(at, ",") : length, message);
                 return false;
+            }
             if (!*after)
                 break;
             at = after + 1;
         }
     }
     *out = passes;
+    return true;
+}
+
+// "X,Y,W,H"; whether it is within the frame is seen when that is planned.
+static bool set_region(double region[4], const char *text)
+{
+    double read[4];
+    const char *at = text;
+    for (int i = 0; i < 4; i++) {
+        char *end;
+        const long value = strtol(at, &end, 10);
+        if (end == at || *at < '0' || *at > '9' || value > GLINT_SIDE_MAX || *end != (i < 3 ? ',' : '\0'))
+            return false;
+        read[i] = (double)value;
+        at = end + 1;
+    }
+    if (!(read[2] >= 1 && read[3] >= 1))
+        return false;
+    memcpy(region, read, sizeof read);
     return true;
 }
 
@@ -201,8 +241,10 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
         good = set_choice(render, what, text);
     else if (what->sort == FLAG)
         good = set_flag(render, what, text);
+    else if (what->sort == REGION)
+        good = set_region(render->desc.region, text);
     else if (what->sort == PASSES)
-        good = read_passes(text, &render->file_passes);
+        return read_passes(text, &render->file_passes, message);
     if (!good) {
         describe(what, allowed);
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
@@ -237,18 +279,45 @@ static int refuse(lua_State *L, int index, const char *path, int field)
 static void read_pass_list(lua_State *L, int index, const char *path, int field, glintL_render *render)
 {
     char full[128];
+    char message[GLINTL_MESSAGE_SIZE];
     uint32_t passes = 0;
-    size_t length;
+    size_t length = 0;
     snprintf(full, sizeof full, "%s%s", path, glintL_render_fields[field].name);
     size_t count = glintL_check_list(L, index, full, false);
     for (size_t i = 1; i <= count; i++) {
         lua_rawgeti(L, index, (lua_Integer)i);
         const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : NULL;
-        if (!name || !add_pass(&passes, name, length))
+        if (!name)
             refuse(L, -1, path, field);
+        if (!add_pass(&passes, name, length)) {
+            complain_pass(name, length, message);
+            glintL_error(L, "%s: %s", full, message);
+        }
         lua_pop(L, 1);
     }
     render->file_passes = passes;
+}
+
+// {x, y, width, height}
+static void read_region(lua_State *L, int index, const char *path, int field, glintL_render *render)
+{
+    char text[128] = "", full[128];
+    size_t used = 0;
+    snprintf(full, sizeof full, "%s%s", path, glintL_render_fields[field].name);
+    if (glintL_check_list(L, index, full, false) != 4)
+        refuse(L, index, path, field);
+    for (int i = 1; i <= 4; i++) {
+        lua_Integer value = 0;
+        int is_whole = 0;
+        if (lua_rawgeti(L, index, i) == LUA_TNUMBER)
+            value = lua_tointegerx(L, -1, &is_whole);
+        if (!is_whole)
+            refuse(L, -1, path, field);
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%lld", i > 1 ? "," : "", (long long)value);
+        lua_pop(L, 1);
+    }
+    if (!set_region(render->desc.region, text))
+        refuse(L, index, path, field);
 }
 
 void glintL_render_read(lua_State *L, int index, const char *path, int field, glintL_render *render)
@@ -271,6 +340,10 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
     }
     if (what->sort == PASSES && lua_istable(L, index)) {
         read_pass_list(L, index, path, field, render);
+        return;
+    }
+    if (what->sort == REGION && lua_istable(L, index)) {
+        read_region(L, index, path, field, render);
         return;
     }
     if (lua_type(L, index) != LUA_TSTRING)
@@ -296,6 +369,19 @@ static void push_passes(lua_State *L, uint32_t passes)
     }
 }
 
+static void push_region(lua_State *L, const double region[4])
+{
+    if (region[2] == 0) {
+        lua_pushnil(L);
+        return;
+    }
+    lua_createtable(L, 4, 0);
+    for (int i = 0; i < 4; i++) {
+        lua_pushinteger(L, (lua_Integer)region[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
 bool glintL_render_spell(const glintL_render *render, int field, char out[64])
 {
     const detail *what = &details[field];
@@ -318,6 +404,10 @@ bool glintL_render_spell(const glintL_render *render, int field, char out[64])
         memcpy(&value, at, sizeof value);
         snprintf(out, 64, "%s", what->names[value]);
         return true;
+    case REGION:
+        snprintf(out, 64, "%.0f,%.0f,%.0f,%.0f", render->desc.region[0], render->desc.region[1],
+                 render->desc.region[2], render->desc.region[3]);
+        return render->desc.region[2] > 0;
     default:
         return false;
     }
@@ -356,6 +446,9 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
             lua_pushstring(L, at);
         else
             lua_pushnil(L);
+        break;
+    case REGION:
+        push_region(L, render->desc.region);
         break;
     }
 }

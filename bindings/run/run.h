@@ -100,7 +100,8 @@ bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_name_has_number(const char *pattern);
 /// The file of a frame's pass. False: too long.
 bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
-bool glintL_name_is_pfm(const char *path);
+bool glintL_name_is_linear(const char *path); ///< .pfm, .npy, .exr: light as it is, without codes and key
+bool glintL_name_is_exr(const char *path); ///< one file has all passes
 /// By the ending; `apng`: a .png is a film, too.
 glintL_film_kind glintL_film_kind_of(const char *path, bool apng);
 bool glintL_name_is_special(const char *path); ///< an existing pipe or device
@@ -162,6 +163,7 @@ typedef struct glintL_record {
 typedef struct glintL_file {
     glint_pass pass;
     char key[33]; ///< "": the format carries none
+    char whole[33]; ///< the key of the frame that this is a region of; "": it is none
     char path[GLINTL_PATH_SIZE];
 } glintL_file;
 
@@ -238,6 +240,9 @@ struct glintL_run {
     bool in_frame; ///< a frame function runs
     bool no_sheets; ///< frames alone are wanted
 
+    bool has_light; ///< a picture was seen that is not black
+    bool told_of_view; ///< a warning said where something is that does not show
+    char black[GLINTL_MESSAGE_SIZE]; ///< what is said of the first black one; "": none
     char **said; ///< warnings given, each once; owned
     size_t said_count;
 
@@ -295,6 +300,13 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
 void glintL_report_observed(lua_State *L, glintL_run *run, const char *script);
 void glintL_report_unseen(lua_State *L, glintL_run *run);
 
+// ---- warn_black.c ----
+
+/// Looks whether the picture of a frame, just rendered of `scene`, is black, and why.
+void glintL_look_for_black(glintL_run *run, const glint_scene *scene, const glintL_work *work);
+/// The warning, when no picture has shown anything.
+void glintL_report_black(glintL_run *run);
+
 // ---- work.c ----
 
 /// Plans a frame. `keep_image`: the script will look at the linear picture.
@@ -319,7 +331,7 @@ void glintL_find_source(lua_State *L, glintL_run *run);
 
 // ---- provenance.c ----
 
-#define GLINTL_TEXT_COUNT 10
+#define GLINTL_TEXT_COUNT 11
 
 /// The texts of a file: what it was made by, and what is needed to make it again.
 typedef struct glintL_provenance {

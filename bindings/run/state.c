@@ -6,6 +6,9 @@
 
 #include "bindings/run/run.h"
 
+#define CALLERS_MAX 8 // lines of a traceback
+#define LEVELS_MAX 200 // of the stack that are looked at: a recursion without end has as many as there can be
+
 static const char RUN; // its address is the registry's key of the run
 
 double glintL_now_ms(void)
@@ -41,10 +44,35 @@ glintL_run *glintL_get_run(lua_State *L)
     return box ? *box : NULL;
 }
 
+// Appends to the message on top the lines of Lua that led to where it says it arose.
+static int add_callers(lua_State *L)
+{
+    lua_Debug where;
+    int shown = 0;
+    luaL_checkstack(L, 4, "message");
+    for (int level = 0; shown < CALLERS_MAX && level < LEVELS_MAX && lua_getstack(L, level, &where); level++) {
+        lua_getinfo(L, "Sl", &where);
+        if (where.currentline <= 0)
+            continue;
+        const char *line = lua_pushfstring(L, "%s:%d", where.short_src, where.currentline);
+        const char *said = strstr(lua_tostring(L, -2), line);
+        const char after = said ? said[strlen(line)] : ' ';
+        if (said && (after < '0' || after > '9')) { // it is in the message
+            lua_pop(L, 1);
+            continue;
+        }
+        lua_pushfstring(L, "%s\n  called from %s", lua_tostring(L, -2), line);
+        lua_replace(L, -3);
+        lua_pop(L, 1);
+        shown++;
+    }
+    return 1;
+}
+
 int glintL_message_handler(lua_State *L)
 {
     if (lua_type(L, 1) == LUA_TSTRING)
-        return 1;
+        return add_callers(L);
     // Hooks, which end a script that goes on for ever, may be off here.
     if (!glintL_get_run(L)->request.is_untrusted && luaL_callmeta(L, 1, "__tostring") && lua_type(L, -1) == LUA_TSTRING)
         return 1;

@@ -277,6 +277,7 @@ static void look_for_inner_light(const look *l, const glint_shape_desc *shape, c
         if (light->kind != GLINT_LIGHT_POINT || is_dark(light) || dot(off, off) >= sphere->radius * sphere->radius)
             continue;
         describe(shape, sphere, name);
+        l->run->told_of_view = true;
         glintL_run_warn(
             l->run,
             "frame %lld: a point_light%s%s%s is inside %s, which lets none of its light out; move it, or set "
@@ -427,6 +428,7 @@ void glintL_report_unseen(lua_State *L, glintL_run *run)
         count += name != NULL;
         lua_pop(L, 1);
     }
+    run->told_of_view = run->told_of_view || count > 0;
     if (count > 1)
         glintL_run_warn(run,
                         "%s and %d more are outside the view in every frame, with their shadows; move them, or the "

@@ -3,6 +3,7 @@
 //   a shininess without a specular colour, a parameter that is not read       here
 //   a light inside a closed sphere, an object outside the view, a smooth
 //   mesh of few faces                                                         warn_view.c
+//   pictures that are all black                                               warn_black.c, at the end
 //   a picture that is clipped                                                 events.c, at the end
 //
 // --warnings=error makes the first of them end the run with 2.
@@ -225,4 +226,5 @@ void glintL_report_observed(lua_State *L, glintL_run *run, const char *script)
     report_dull(L, run);
     report_params(L, run, script);
     glintL_report_unseen(L, run);
+    glintL_report_black(run);
 }

@@ -12,7 +12,12 @@ static glint_status fail(glint_error *error, glint_status status, const char *wh
     return status;
 }
 
-static bool ends_in_pfm(const glintL_render *render) { return glintL_name_is_pfm(render->output); }
+// A .png of depth is scaled by the nearest point of the whole frame.
+static bool is_depth_of_part(const glintL_render *render)
+{
+    return render->desc.region[2] > 0 && render->file_passes >> GLINT_PASS_DEPTH & 1 &&
+           !glintL_name_is_linear(render->output);
+}
 
 glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
                                 bool keep_image, glintL_work **out, glint_error *error)
@@ -20,14 +25,19 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     glintL_work *work = calloc(1, sizeof *work);
     if (!work)
         return fail(error, GLINT_ERR_NOMEM, "out of memory", "", "");
-    bool is_pfm = writes && ends_in_pfm(render);
+    bool is_linear = writes && glintL_name_is_linear(render->output);
+    if (writes && is_depth_of_part(render)) {
+        free(work);
+        return fail(error, GLINT_ERR_INVALID, "region: depth in a .png is scaled by the whole frame's nearest point, which "
+                    "a part does not know; ", "", ".pfm, .npy or .exr expected");
+    }
     work->index = index;
     work->render = *render;
     glint_render_desc *desc = &work->render.desc;
     desc->passes = writes || keep_image ? render->file_passes : 0;
-    if (keep_image || is_pfm)
+    if (keep_image || is_linear)
         desc->passes |= 1u << GLINT_PASS_BEAUTY;
-    desc->codes = writes ? !is_pfm : !keep_image; // a run that writes nothing makes the codes all the same: to time it
+    desc->codes = writes ? !is_linear : !keep_image; // a run that writes nothing makes the codes all the same: to time it
     glint_status status = glint_plan_create(scene, desc, &work->plan, error);
     if (status) {
         free(work);
@@ -62,6 +72,8 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
     work->film = naming->film;
     if (!naming->pattern)
         return GLINT_OK;
+    if (glintL_name_is_exr(naming->pattern))
+        passes = 1u << GLINT_PASS_BEAUTY; // that file has them all
     for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
         glintL_file *file = &work->files[work->file_count];
         if (!(passes >> pass & 1))
@@ -69,10 +81,12 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
         file->pass = (glint_pass)pass;
         if (!glintL_name_file(naming, work->index, file->pass, file->path))
             return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
-        file->key[0] = '\0';
-        if (!glintL_name_is_pfm(file->path) && !glintL_name_is_special(file->path)) {
+        file->key[0] = file->whole[0] = '\0';
+        if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
             glint_write_desc desc = write_desc(work, file);
             glint_frame_key(work->plan, &desc, file->key);
+            if (work->render.desc.region[2] > 0)
+                glint_whole_key(work->plan, &desc, file->whole);
         }
         work->file_count++;
     }

@@ -7,7 +7,6 @@
 
 #include "bindings/value/glintL.h"
 
-#define WORD_MAX 32 // longer names have no near ones
 #define SPELT_MAX 40 // longest part of a script's string shown in a message
 
 // Pushes "file:line: " of the nearest Lua code that runs, or "".
@@ -129,72 +128,13 @@ int glintL_refuse(lua_State *L, int index, const char *path, const char *expecte
     return glintL_error(L, "%s%s%s expected, got %s", path, *path ? ": " : "", expected, got);
 }
 
-// ---- Names ----
-
-static int least(int a, int b) { return a < b ? a : b; }
-
-// Edits that turn one word into the other: a letter added, left out, changed, or two neighbours swapped.
-static int distance(const char *a, const char *b)
-{
-    int rows[3][WORD_MAX + 1], *before = rows[0], *above = rows[1], *row = rows[2];
-    int na = (int)strlen(a), nb = (int)strlen(b);
-    for (int j = 0; j <= nb; j++)
-        above[j] = j;
-    for (int i = 1; i <= na; i++) {
-        row[0] = i;
-        for (int j = 1; j <= nb; j++) {
-            int ca = tolower((unsigned char)a[i - 1]), cb = tolower((unsigned char)b[j - 1]);
-            row[j] = least(least(above[j], row[j - 1]) + 1, above[j - 1] + (ca != cb));
-            if (i > 1 && j > 1 && ca == tolower((unsigned char)b[j - 2]) && cb == tolower((unsigned char)a[i - 2]))
-                row[j] = least(row[j], before[j - 2] + 1);
-        }
-        int *spare = before;
-        before = above;
-        above = row;
-        row = spare;
-    }
-    return above[nb];
-}
-
-// How far a known name is from the misspelt one; WORD_MAX when it is not near.
-static int farness(const char *name, const char *known)
-{
-    size_t length = strlen(name);
-    if (length > WORD_MAX || strlen(known) > WORD_MAX)
-        return WORD_MAX;
-    int edits = distance(name, known);
-    if (edits <= (length < 5 ? 1 : (int)length / 3))
-        return edits;
-    if (length >= 3 && strncmp(name, known, length) == 0) // the beginning of it
-        return WORD_MAX - 1;
-    return WORD_MAX;
-}
-
-const char *glintL_nearer(const char *name, const char *best, const char *candidate)
-{
-    int limit = best ? farness(name, best) : WORD_MAX;
-    return farness(name, candidate) < limit ? candidate : best;
-}
-
-int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near)
-{
-    const char *dot = *path ? "." : "";
-    char shown[WORD_MAX + 1];
-    snprintf(shown, sizeof shown, "%s", name);
-    for (char *c = shown; *c; c++)
-        *c = iscntrl((unsigned char)*c) ? '?' : *c;
-    if (near)
-        return glintL_error(L, "%s%s%s: no such field; did you mean '%s'?", path, dot, shown, near);
-    return glintL_error(L, "%s%s%s: no such field", path, dot, shown);
-}
+// ---- Numbers, vectors and lists ----
 
 int glintL_bad_key(lua_State *L, const char *path, int index)
 {
     const char *got = glintL_push_spelling(L, index);
     return glintL_error(L, "%s%sname of a field expected, got %s", path, *path ? ": " : "", got);
 }
-
-// ---- Numbers, vectors and lists ----
 
 double glintL_read_number(lua_State *L, int index, const char *path)
 {

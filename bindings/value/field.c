@@ -10,22 +10,22 @@
 #define PATH_SIZE 192 // a path longer than this is cut in messages
 #define PI 0x1.921fb54442d18p+1
 
-// ---- Misspelt names ----
-
-const char *glintL_nearest(const char *name, const glintL_field *fields)
-{
-    const char *best = NULL;
-    for (const glintL_field *field = fields; field->name; field++)
-        best = glintL_nearer(name, best, field->name);
-    return best;
-}
-
 const glintL_field *glintL_find_field(const glintL_field *fields, const char *name)
 {
     for (const glintL_field *field = fields; field->name; field++)
         if (strcmp(field->name, name) == 0)
             return field;
     return NULL;
+}
+
+static bool has_field(const void *fields, const char *name) { return glintL_find_field(fields, name) != NULL; }
+
+const char *glintL_nearest(const char *name, const glintL_field *fields)
+{
+    const char *best = NULL;
+    for (const glintL_field *field = fields; field->name; field++)
+        best = glintL_nearer(name, best, field->name);
+    return best ? best : glintL_meaning(name, has_field, fields);
 }
 
 // ---- One value in ----

@@ -59,7 +59,7 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
 /// (unless allow_array, when integer keys are left to the caller) and a missing required field.
 void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
                        bool allow_array);
-/// The nearest of `fields` to a misspelt name, or NULL when none is near.
+/// The nearest of `fields` to a misspelt name, else what it means among them, or NULL.
 const char *glintL_nearest(const char *name, const glintL_field *fields);
 const glintL_field *glintL_find_field(const glintL_field *fields, const char *name);
 void glintL_read_vector(lua_State *L, int index, const char *path, double out[3]);
@@ -69,6 +69,9 @@ double glintL_read_number(lua_State *L, int index, const char *path); ///< any n
 void glintL_read_three(lua_State *L, int index, const char *path, const char *expected, double out[3]);
 /// Which of `best` (NULL: none yet) and `candidate` the misspelt `name` is nearer to; NULL when neither is near.
 const char *glintL_nearer(const char *name, const char *best, const char *candidate);
+/// What `name` is called here where other programs call it so ("color" of a material: "diffuse"), of those that `has`
+/// knows; or NULL.
+const char *glintL_meaning(const char *name, bool (*has)(const void *context, const char *known), const void *context);
 /// Raises "<path>.<name>: no such field", with "; did you mean '...'?" unless `near` is NULL.
 int glintL_no_such_field(lua_State *L, const char *path, const char *name, const char *near);
 /// The value at `index` for messages when it is where a field's name should be: raises.

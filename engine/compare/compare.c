@@ -43,7 +43,7 @@ static glint_status load(const char *path, picture *out, glint_error *error)
     glint_file_kind kind;
     glint_bytes bytes = { 0 };
     glint_error inner;
-    glint_status status = glint_file_kind_of(path, &kind, error);
+    glint_status status = glint_file_kind_read(path, &kind, error);
     if (!status)
         status = glint_file_read_picture(path, &bytes, error);
     if (status == GLINT_ERR_INVALID) { // here that means: the sizes differ

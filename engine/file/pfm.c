@@ -17,8 +17,10 @@ static void put_little_endian(float value, uint8_t *out)
 }
 
 /// Programs that read pictures trip over infinity in a colour, and over NaN.
-static float nearest_number(float value)
+float glint_pfm_value(int channels, float value)
 {
+    if (channels == 1)
+        return value;
     if (isnan(value))
         return 0;
     return isinf(value) ? copysignf(FLT_MAX, value) : value;
@@ -36,7 +38,7 @@ bool glint_pfm_encode(int width, int height, int channels, float *const plane[],
     for (int y = height - 1; y >= 0; y--)
         for (size_t i = (size_t)y * (size_t)width, end = i + (size_t)width; i < end; i++)
             for (int c = 0; c < channels; c++, at += 4)
-                put_little_endian(channels == 3 ? nearest_number(plane[c][i]) : plane[c][i], at);
+                put_little_endian(glint_pfm_value(channels, plane[c][i]), at);
     out->size += (size_t)length + row * (size_t)height;
     return true;
 }

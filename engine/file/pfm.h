@@ -5,8 +5,11 @@
 #include "engine/glint.h"
 #include "engine/file/bytes.h"
 
-/// Appends a whole little-endian PFM to `out`. With three channels an infinite value is written as the largest float of
-/// its sign, and NaN as 0; one channel is a distance and may be infinite.
+/// What files of floats hold of a value: of three channels an infinite one is the largest float of its sign, and NaN is 0;
+/// one channel is a distance and may be infinite.
+float glint_pfm_value(int channels, float value);
+
+/// Appends a whole little-endian PFM to `out`.
 ///
 /// plane     channels (1 or 3) pointers to width * height values, top row first.
 /// False: out of memory.

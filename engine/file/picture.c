@@ -121,7 +121,7 @@ glint_status glint_picture_read(const char *path, bool pixels, glint_picture **o
     glint_picture *picture = calloc(1, sizeof *picture);
     if (!picture)
         return glint_fail_nomem(error);
-    glint_status status = glint_file_kind_of(path, &kind, error);
+    glint_status status = glint_file_kind_read(path, &kind, error);
     if (!status)
         status = glint_file_read_picture(path, &bytes, error);
     if (!status) {

@@ -1,8 +1,10 @@
 #include "engine/file/write.h"
 
 #include "engine/base/status.h"
+#include "engine/file/exr.h"
 #include "engine/file/file.h"
 #include "engine/film/image.h"
+#include "engine/file/npy.h"
 #include "engine/file/pfm.h"
 #include "engine/file/png.h"
 #include "engine/film/tone.h"
@@ -31,19 +33,36 @@ static bool is_special_file(const char *path)
     return path && stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+/// False: an ending of none.
+static bool kind_by_ending(const char *path, glint_file_kind *kind)
+{
+    static const char *const endings[] = {
+        [GLINT_FILE_PNG] = ".png", [GLINT_FILE_PFM] = ".pfm", [GLINT_FILE_NPY] = ".npy", [GLINT_FILE_EXR] = ".exr"
+    };
+    const char *ending = path ? strrchr(path, '.') : NULL;
+    for (size_t i = 0; ending && i < sizeof endings / sizeof *endings; i++)
+        if (strcasecmp(ending, endings[i]) == 0) {
+            *kind = (glint_file_kind)i;
+            return true;
+        }
+    *kind = GLINT_FILE_PNG;
+    return is_special_file(path);
+}
+
 glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error)
 {
-    const char *ending = path ? strrchr(path, '.') : NULL;
-    if (ending && strcasecmp(ending, ".png") == 0)
-        *kind = GLINT_FILE_PNG;
-    else if (ending && strcasecmp(ending, ".pfm") == 0)
-        *kind = GLINT_FILE_PFM;
-    else if (is_special_file(path))
-        *kind = GLINT_FILE_PNG;
-    else
-        return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png or .pfm expected, got '%.400s'",
-                          path ? path : "");
-    return GLINT_OK;
+    if (kind_by_ending(path, kind))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png, .pfm, .npy or .exr expected, got '%.400s'",
+                      path ? path : "");
+}
+
+glint_status glint_file_kind_read(const char *path, glint_file_kind *kind, glint_error *error)
+{
+    if (kind_by_ending(path, kind) && (*kind == GLINT_FILE_PNG || *kind == GLINT_FILE_PFM))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "path: name ending in .png or .pfm expected, got '%.400s'",
+                      path ? path : "");
 }
 
 // ---- Rows of codes ------------------------------------------------------------------------------------------------
@@ -257,11 +276,15 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
     if (kind == GLINT_FILE_PNG)
         return encode_png(image, desc, bands, out, reused, error);
+    if (kind == GLINT_FILE_EXR)
+        return glint_exr_encode(image, desc->tone.bits == 16, desc->text, desc->text_count, out, error);
     float *const *plane = image->plane[desc->pass];
     if (!plane[0])
         return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image",
                           glint_pass_name(desc->pass));
-    return glint_pfm_encode(image->width, image->height, channels, plane, out) ? GLINT_OK : glint_fail_nomem(error);
+    const bool done = kind == GLINT_FILE_NPY ? glint_npy_encode(image->width, image->height, channels, plane, out)
+                                             : glint_pfm_encode(image->width, image->height, channels, plane, out);
+    return done ? GLINT_OK : glint_fail_nomem(error);
 }
 
 glint_status glint_image_write(const glint_image *image, const glint_write_desc *desc, glint_error *error)

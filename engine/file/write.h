@@ -6,13 +6,16 @@
 #include "engine/file/bands.h"
 #include "engine/file/bytes.h"
 
-typedef enum glint_file_kind { GLINT_FILE_PNG, GLINT_FILE_PFM } glint_file_kind;
+typedef enum glint_file_kind { GLINT_FILE_PNG, GLINT_FILE_PFM, GLINT_FILE_NPY, GLINT_FILE_EXR } glint_file_kind;
 
 /// By the ending of `path`, upper or lower case; GLINT_ERR_INVALID names the path and what is allowed.
 glint_status glint_file_kind_of(const char *path, glint_file_kind *kind, glint_error *error);
 
+/// The same for a file that is read: .png and .pfm are.
+glint_status glint_file_kind_read(const char *path, glint_file_kind *kind, glint_error *error);
+
 /// Appends the bytes glint_image_write would write to `out`, which may have grown on failure. bands and reused are
-/// those of glint_bands_deflate; *reused is not written for PFM.
+/// those of glint_bands_deflate; *reused is written for PNG alone.
 glint_status glint_image_encode(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
                                 glint_bytes *out, double *reused, glint_error *error);
 

@@ -100,6 +100,56 @@ glint_status glint_image_create_for(const glint_render_desc *desc, glint_image *
     return status;
 }
 
+static void copy_rows(const void *from, size_t stride, void *to, size_t row, size_t count)
+{
+    for (size_t y = 0; from && y < count; y++)
+        memcpy((uint8_t *)to + y * row, (const uint8_t *)from + y * stride, row);
+}
+
+glint_status glint_image_crop(const glint_image *image, int x, int y, int width, int height, glint_image **out,
+                              glint_error *error)
+{
+    uint32_t passes = 0;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
+    glint_status status =
+        create(width, height, passes, image->alpha, image->codes ? &image->code_tone : NULL, out, error);
+    if (status)
+        return status;
+    const size_t first = (size_t)y * (size_t)image->width + (size_t)x, bytes = glint_image_pixel_bytes(image);
+    const size_t stride = (size_t)image->width, row = (size_t)width, rows = (size_t)height;
+    (*out)->outline = image->outline;
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < 3; c++)
+            if (image->plane[pass][c])
+                copy_rows(image->plane[pass][c] + first, stride * sizeof(float), (*out)->plane[pass][c],
+                          row * sizeof(float), rows);
+    if (image->codes)
+        copy_rows((const uint8_t *)image->codes + first * bytes, stride * bytes, (*out)->codes, row * bytes, rows);
+    return GLINT_OK;
+}
+
+static bool is_black_code(const glint_image *image, size_t i)
+{
+    const size_t at = i * (size_t)image->channels;
+    if (image->code_tone.bits == 16) {
+        const uint16_t *code = (const uint16_t *)image->codes + at;
+        return !(code[0] | code[1] | code[2]);
+    }
+    const uint8_t *code = (const uint8_t *)image->codes + at;
+    return !(code[0] | code[1] | code[2]);
+}
+
+bool glint_image_is_black(const glint_image *image)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    float *const *light = image->plane[GLINT_PASS_BEAUTY];
+    bool black = image->codes || light[0];
+    for (size_t i = 0; i < pixels && black; i++)
+        black = image->codes ? is_black_code(image, i) : !(light[0][i] > 0 || light[1][i] > 0 || light[2][i] > 0);
+    return black;
+}
+
 size_t glint_image_bytes(const glint_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;

@@ -50,6 +50,10 @@ glint_status glint_image_create(int width, int height, uint32_t passes, const gl
 /// The same for a frame that is rendered so.
 glint_status glint_image_create_for(const glint_render_desc *desc, glint_image **out, glint_error *error);
 
+/// A part of an image as an image of its own.
+glint_status glint_image_crop(const glint_image *image, int x, int y, int width, int height, glint_image **out,
+                              glint_error *error);
+
 /// Bytes of one pixel's codes.
 static inline size_t glint_image_pixel_bytes(const glint_image *image)
 {

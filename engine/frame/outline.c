@@ -3,6 +3,7 @@
 
 typedef struct outliner {
     const glint_plan *plan;
+    glint_extent extent;
     glint_image *image;
     double offset[2]; ///< of the sample that the planes hold
 } outliner;
@@ -49,7 +50,8 @@ static bool is_break(const point *p, const point *q)
 /// Whether there is an edge between two pixels, and the line is on p, which is hit.
 static bool draws(const outliner *o, const point *p, int x, int y)
 {
-    if (x < 0 || y < 0 || x >= o->image->width || y >= o->image->height)
+    const glint_extent *e = &o->extent;
+    if (x < e->x || y < e->y || x >= e->x + e->width || y >= e->y + e->height)
         return false;
     const point q = point_at(o, x, y);
     const float *id = o->image->plane[GLINT_PASS_OBJECT_ID][0];
@@ -63,19 +65,19 @@ static bool draws(const outliner *o, const point *p, int x, int y)
 static void draw_row(void *context, size_t index, int worker)
 {
     const outliner *o = context;
-    const int y = (int)index;
-    float *line = o->image->plane[GLINT_PASS_OUTLINE][0] + index * (size_t)o->image->width;
+    const int y = o->extent.y + (int)index;
+    float *line = o->image->plane[GLINT_PASS_OUTLINE][0] + (size_t)y * (size_t)o->image->width;
     (void)worker;
-    for (int x = 0; x < o->image->width; x++) {
+    for (int x = o->extent.x; x < o->extent.x + o->extent.width; x++) {
         const point p = point_at(o, x, y);
         line[x] = is_hit(&p) && (draws(o, &p, x + 1, y) || draws(o, &p, x, y + 1) || draws(o, &p, x - 1, y) ||
                                  draws(o, &p, x, y - 1));
     }
 }
 
-void glint_outline(const glint_plan *plan, glint_pool *pool, glint_image *image)
+void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image)
 {
-    outliner o = { .plan = plan, .image = image };
+    outliner o = { .plan = plan, .extent = *extent, .image = image };
     glint_plan_sample_offset(plan, 0, o.offset);
-    glint_pool_run(pool, (size_t)image->height, draw_row, &o);
+    glint_pool_run(pool, (size_t)extent->height, draw_row, &o);
 }

@@ -19,7 +19,7 @@
 #define GLINT_OUTLINE_SMOOTH 0.95 ///< cosine of 18 degrees
 #define GLINT_OUTLINE_STEP 0.7 ///< sine of 44 degrees
 
-/// Fills the image's plane. Any number of threads gives the same.
-void glint_outline(const glint_plan *plan, glint_pool *pool, glint_image *image);
+/// Fills the image's plane where it is rendered. Any number of threads gives the same.
+void glint_outline(const glint_plan *plan, const glint_extent *extent, glint_pool *pool, glint_image *image);
 
 #endif

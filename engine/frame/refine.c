@@ -8,6 +8,7 @@
 
 typedef struct chooser {
     const glint_image *base;
+    const glint_extent *extent;
     glint_refine *refine;
     uint32_t least; ///< sum of differences of codes that is not enough
 } chooser;
@@ -17,7 +18,7 @@ typedef struct chooser {
 /// Pixels that are compared at a time: the compiler makes vectors of loops of so many.
 #define RUN 16
 
-/// A row of the base, and its codes as numbers, channel by channel.
+/// What is rendered of a row of the base, and its codes as numbers, channel by channel.
 typedef struct row_view {
     const float *id, *normal[3], *code[CHANNELS_MAX];
     size_t channels;
@@ -26,7 +27,8 @@ typedef struct row_view {
 static row_view view_row(const chooser *c, size_t y, float *memory)
 {
     const glint_image *base = c->base;
-    const size_t width = (size_t)base->width, channels = (size_t)base->channels, first = y * width;
+    const size_t width = (size_t)c->extent->width, channels = (size_t)base->channels;
+    const size_t first = y * (size_t)base->width + (size_t)c->extent->x;
     const uint16_t *codes = (const uint16_t *)base->codes + first * channels;
     row_view row = { .id = base->plane[GLINT_PASS_OBJECT_ID][0] + first, .channels = channels };
     for (size_t k = 0; k < 3; k++)
@@ -79,33 +81,45 @@ static void mark(const chooser *c, const row_view *a, size_t p, const row_view *
 
 /// Compares a row's pixels with each other and with those of the row below; marks of the latter are put aside, so that no
 /// two rows write to one place.
-static void choose_row(void *context, size_t y, int worker)
+static void choose_row(void *context, size_t index, int worker)
 {
     const chooser *c = context;
-    const size_t width = (size_t)c->base->width, row = y * width, length = CHANNELS_MAX * width;
+    const size_t width = (size_t)c->extent->width, length = CHANNELS_MAX * width, stride = (size_t)c->base->width;
+    const size_t y = (size_t)c->extent->y + index, row = y * stride + (size_t)c->extent->x;
     float *memory = c->refine->rows + (size_t)worker * 2 * length;
     const row_view here = view_row(c, y, memory);
     uint8_t *own = c->refine->chosen + row;
     memset(own, 0, width);
-    if (y == 0)
-        memset(c->refine->below, 0, width);
+    if (index == 0)
+        memset(c->refine->below + row, 0, width);
     mark(c, &here, 0, &here, 1, width - 1, own, own);
-    if (y + 1 == (size_t)c->base->height)
+    if (index + 1 == (size_t)c->extent->height)
         return;
     const row_view next = view_row(c, y + 1, memory + length);
-    uint8_t *below = c->refine->below + row + width;
+    uint8_t *below = c->refine->below + row + stride;
     memset(below, 0, width);
     mark(c, &here, 0, &next, 0, width, own, below);
     mark(c, &here, 0, &next, 1, width - 1, own, below);
     mark(c, &here, 1, &next, 0, width - 1, own, below);
 }
 
-glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, double threshold, glint_pool *pool,
-                                 glint_error *error)
+/// Brings the marks of two rows together, and counts them.
+static void count_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
+{
+    refine->count = 0;
+    for (int y = extent->y; y < extent->y + extent->height; y++) {
+        const size_t row = (size_t)y * stride + (size_t)extent->x;
+        for (size_t i = row; i < row + (size_t)extent->width; i++)
+            refine->count += refine->chosen[i] |= refine->below[i];
+    }
+}
+
+glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
+                                 double threshold, glint_pool *pool, glint_error *error)
 {
     const size_t pixels = (size_t)base->width * (size_t)base->height;
     const size_t rows = 2 * CHANNELS_MAX * (size_t)base->width * (size_t)glint_pool_threads(pool);
-    chooser c = { .base = base, .refine = refine, .least = (uint32_t)(threshold * 65535) };
+    chooser c = { .base = base, .extent = extent, .refine = refine, .least = (uint32_t)(threshold * 65535) };
     if (refine->capacity < pixels || refine->row_capacity < rows) {
         glint_refine_clear(refine);
         refine->chosen = malloc(pixels);
@@ -116,10 +130,8 @@ glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, 
         refine->capacity = pixels;
         refine->row_capacity = rows;
     }
-    glint_pool_run(pool, (size_t)base->height, choose_row, &c);
-    refine->count = 0;
-    for (size_t i = 0; i < pixels; i++)
-        refine->count += refine->chosen[i] |= refine->below[i];
+    glint_pool_run(pool, (size_t)extent->height, choose_row, &c);
+    count_chosen(refine, extent, (size_t)base->width);
     return GLINT_OK;
 }
 

@@ -25,9 +25,10 @@ typedef struct glint_refine {
     uint64_t count; ///< pixels chosen
 } glint_refine;
 
-/// Chooses. `base` was rendered as glint_plan_base describes. Any number of threads gives the same.
-glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, double threshold, glint_pool *pool,
-                                 glint_error *error);
+/// Chooses among the pixels of `extent`. `base` was rendered as glint_plan_base describes. Any number of threads gives the
+/// same.
+glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
+                                 double threshold, glint_pool *pool, glint_error *error);
 void glint_refine_clear(glint_refine *refine);
 
 #endif

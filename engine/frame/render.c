@@ -34,6 +34,7 @@ struct glint_renderer {
     /// Pictures given before, whose memory is used again once no other reference holds them.
     glint_image *spare[GLINT_SPARE_IMAGES];
     glint_key last_key;
+    double last_region[4];
     glint_frame_stats last_stats;
     glint_refine refine;
     /// Makes the pictures that adaptive sampling looks at, with the pool and the tiles of this one; NULL until a frame
@@ -46,7 +47,7 @@ struct glint_renderer {
 typedef struct frame {
     glint_renderer *renderer;
     glint_tile_frame shared;
-    uint32_t across;
+    glint_extent extent;
 } frame;
 
 glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
@@ -127,8 +128,8 @@ static void render_item(void *context, size_t index, int worker)
     frame *f = context;
     glint_renderer *renderer = f->renderer;
     if (!glint_tile_cancelled(&f->shared))
-        glint_tile_render(renderer->tiles[worker], &f->shared, (uint32_t)(index % f->across),
-                          (uint32_t)(index / f->across));
+        glint_tile_render(renderer->tiles[worker], &f->shared, f->extent.tile_x + (uint32_t)(index % f->extent.across),
+                          f->extent.tile_y + (uint32_t)(index / f->extent.across));
     atomic_fetch_add(&renderer->tiles_done, 1);
 }
 
@@ -154,7 +155,8 @@ static void stamp_rows(glint_image *image, uint32_t across)
     }
 }
 
-static void collect_stats(glint_renderer *renderer, const glint_plan *plan, double wall_ms, glint_frame_stats *stats)
+static void collect_stats(glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, double wall_ms,
+                          glint_frame_stats *stats)
 {
     glint_tile_counts sum = { 0 };
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
@@ -193,6 +195,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
                                        .refraction = sum.refraction,
                                        .indirect = sum.indirect };
     stats->work = sum.work;
+    stats->pixels = (uint64_t)extent->width * (uint64_t)extent->height;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
     if (odd.count) {
@@ -214,13 +217,13 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, doub
 }
 
 /// What needs all tiles.
-static void finish(glint_renderer *renderer, const glint_plan *plan, glint_image *image)
+static void finish(glint_renderer *renderer, const glint_plan *plan, const glint_extent *extent, glint_image *image)
 {
     glint_tile_counts *counts = &renderer->tiles[0]->counts;
     if (!plan->runs[GLINT_STAGE_OUTLINE] || atomic_load(renderer->stop))
         return;
     const uint64_t start = glint_tile_now_ns();
-    glint_outline(plan->base ? plan->base : plan, renderer->pool, image);
+    glint_outline(plan->base ? plan->base : plan, extent, renderer->pool, image);
     counts->ns[GLINT_STAGE_OUTLINE] += glint_tile_now_ns() - start;
     counts->runs[GLINT_STAGE_OUTLINE]++;
 }
@@ -293,17 +296,18 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
                             .time_stages = renderer->time_stages,
                             .count_work = renderer->count_work } };
     const double begin = now_ms();
-    f.across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
-    const uint32_t down = ((uint32_t)plan->desc.height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
-    glint_status status = prepare(renderer, plan, &f.shared, (size_t)f.across * down, error);
+    f.extent = glint_plan_extent(&plan->desc);
+    const uint32_t across = ((uint32_t)plan->desc.width + GLINT_TILE_WIDTH - 1) / GLINT_TILE_WIDTH;
+    const size_t tiles = across * glint_image_stamps(image), rendered = (size_t)f.extent.across * f.extent.down;
+    glint_status status = prepare(renderer, plan, &f.shared, tiles, error);
     if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
-        memset(image->film, 0, (size_t)f.across * down * sizeof *image->film);
+        memset(image->film, 0, tiles * sizeof *image->film);
     if (!status)
         status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)
         return status;
     if (renderer->reuse.tile_count && !image->film &&
-        !(image->film = calloc((size_t)f.across * down, sizeof *image->film)))
+        !(image->film = calloc(tiles, sizeof *image->film)))
         return glint_fail_nomem(error);
     for (int i = 0; i < glint_pool_threads(renderer->pool); i++) {
         renderer->tiles[i]->counts = (glint_tile_counts) { 0 };
@@ -311,16 +315,16 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
             return glint_fail_nomem(error);
     }
     atomic_store(&renderer->tiles_done, 0);
-    atomic_store(&renderer->tile_count, (size_t)f.across * down);
+    atomic_store(&renderer->tile_count, rendered);
     const double start = now_ms();
-    glint_pool_run(renderer->pool, (size_t)f.across * down, render_item, &f);
-    finish(renderer, plan, image);
-    collect_stats(renderer, plan, now_ms() - start + renderer->raster.ms, stats);
+    glint_pool_run(renderer->pool, rendered, render_item, &f);
+    finish(renderer, plan, &f.extent, image);
+    collect_stats(renderer, plan, &f.extent, now_ms() - start + renderer->raster.ms, stats);
     stats->build_ms = start - begin - renderer->raster.ms;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)
-        stamp_rows(image, f.across);
+        stamp_rows(image, across);
     return GLINT_OK;
 }
 
@@ -334,12 +338,14 @@ static glint_key picture_key(const glint_plan *plan)
 static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats)
 {
     const glint_image *last = renderer->last;
-    if (!last || !last->codes != !plan->desc.codes || !glint_key_equal(renderer->last_key, picture_key(plan)))
+    if (!last || !last->codes != !plan->desc.codes || !glint_key_equal(renderer->last_key, picture_key(plan)) ||
+        memcmp(renderer->last_region, plan->desc.region, sizeof renderer->last_region) != 0)
         return false;
     *out = glint_image_retain(renderer->last);
     if (stats) {
         *stats = (glint_frame_stats) { .stage_count = renderer->last_stats.stage_count };
         stats->clipped = renderer->last_stats.clipped;
+        stats->pixels = renderer->last_stats.pixels;
         stats->nonfinite = renderer->last_stats.nonfinite;
         stats->refined = renderer->last_stats.refined;
         for (int i = 0; i < stats->stage_count; i++) {
@@ -359,6 +365,7 @@ static void remember(glint_renderer *renderer, const glint_plan *plan, glint_ima
     glint_image_release(renderer->last);
     renderer->last = within_budget && renderer->reuse.on ? glint_image_retain(image) : NULL;
     renderer->last_key = picture_key(plan);
+    memcpy(renderer->last_region, plan->desc.region, sizeof renderer->last_region);
     renderer->last_stats = *stats;
 }
 
@@ -389,6 +396,9 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
 
 // ---- Adaptive sampling ----
 
+static glint_status render_frame(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
+                                 glint_frame_stats *stats, glint_error *error);
+
 /// A renderer that keeps its own, half of what may be kept, and shares the rest.
 static glint_status open_base(glint_renderer *renderer, glint_error *error)
 {
@@ -413,7 +423,7 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
 /// Adds what the base took, and the choice.
 static void add_stats(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
 {
-    const double pixels = plan->desc.width * plan->desc.height;
+    const double pixels = (double)to->pixels;
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
     to->build_ms += base->build_ms;
     to->render_ms += base->render_ms + base->tone_ms;
@@ -447,11 +457,12 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
     glint_frame_stats first;
     glint_status status = open_base(renderer, error);
     if (!status)
-        status = glint_render(renderer->base, plan->base, &base, &first, error);
+        status = render_frame(renderer->base, plan->base, &base, &first, error);
     if (status)
         return status;
     const double start = now_ms();
-    status = glint_refine_choose(&renderer->refine, base, plan->desc.adaptive, renderer->pool, error);
+    const glint_extent extent = glint_plan_extent(&plan->desc);
+    status = glint_refine_choose(&renderer->refine, base, &extent, plan->desc.adaptive, renderer->pool, error);
     const double choose_ms = now_ms() - start;
     if (!status)
         status = run(renderer, plan, image, base, table, stats, error);
@@ -464,8 +475,9 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
     return GLINT_OK;
 }
 
-glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
-                          glint_error *error)
+/// In an image of the whole frame's size, of which the plan's extent is rendered.
+static glint_status render_frame(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
+                                 glint_frame_stats *stats, glint_error *error)
 {
     const glint_render_desc *desc = &plan->desc;
     glint_image *image = NULL;
@@ -495,4 +507,18 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
         *stats = counted;
     *out = image;
     return GLINT_OK;
+}
+
+glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glint_image **out, glint_frame_stats *stats,
+                          glint_error *error)
+{
+    const double *r = plan->desc.region;
+    glint_image *whole = NULL;
+    if (r[2] == 0)
+        return render_frame(renderer, plan, out, stats, error);
+    glint_status status = render_frame(renderer, plan, &whole, stats, error);
+    if (!status)
+        status = glint_image_crop(whole, (int)r[0], (int)r[1], (int)r[2], (int)r[3], out, error);
+    glint_image_release(whole);
+    return status;
 }

@@ -3,6 +3,7 @@
 #include "engine/base/status.h"
 #include "engine/film/tone.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
@@ -33,6 +34,24 @@ glint_render_desc glint_render_desc_default(void)
                                  .tone = glint_tone_desc_default() };
 }
 
+static glint_status check_region(const glint_render_desc *desc, glint_error *error)
+{
+    const double *r = desc->region;
+    const double side[2] = { desc->width, desc->height };
+    bool good = true;
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0 && r[3] == 0)
+        return GLINT_OK;
+    for (int i = 0; i < 2; i++)
+        good = good && r[i] >= 0 && r[i + 2] >= 1 && r[i] + r[i + 2] <= side[i] && r[i] == floor(r[i]) &&
+               r[i + 2] == floor(r[i + 2]);
+    if (good)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID,
+                      "region: whole numbers x, y, width and height within the frame of %.0f x %.0f expected, got %g, "
+                      "%g, %g, %g",
+                      side[0], side[1], r[0], r[1], r[2], r[3]);
+}
+
 static glint_status check_render_desc(const glint_render_desc *desc, glint_error *error)
 {
     glint_status status = glint_check_whole("width", desc->width, 1, GLINT_SIDE_MAX, error);
@@ -42,6 +61,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
         status = glint_fail(error, GLINT_ERR_INVALID,
                             "width: at most 2147483647 pixels in an image expected, got %.0f x %.0f", desc->width,
                             desc->height);
+    if (!status)
+        status = check_region(desc, error);
     if (!status)
         status = glint_check_whole("samples", desc->samples, 1, 65536, error);
     if (!status)
@@ -220,10 +241,34 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
+#define APRON 2 ///< pixels around a region that its own are compared with, those of these among them
+
+/// Along one axis: `of` pixels in tiles of `size`.
+static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,
+                       int *pixels)
+{
+    const int low = count > 0 ? (int)fmax(from - APRON, 0) : 0;
+    const int high = (int)(count > 0 ? fmin(from + count + APRON, of) : of);
+    *first = (uint32_t)(low / size);
+    *tiles = (uint32_t)((high + size - 1) / size) - *first;
+    *pixel = (int)*first * size;
+    *pixels = (int)fmin(*pixel + (double)*tiles * size, of) - *pixel;
+}
+
+glint_extent glint_plan_extent(const glint_render_desc *desc)
+{
+    glint_extent e;
+    const double *r = desc->region;
+    find_range(r[0], r[2], desc->width, GLINT_TILE_WIDTH, &e.tile_x, &e.across, &e.x, &e.width);
+    find_range(r[1], r[3], desc->height, GLINT_TILE_HEIGHT, &e.tile_y, &e.down, &e.y, &e.height);
+    return e;
+}
+
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
+    const glint_extent extent = glint_plan_extent(&plan->desc);
     const uint64_t each = (uint64_t)plan->desc.samples + (plan->base ? 1 : 0);
-    const uint64_t samples = (uint64_t)plan->desc.width * (uint64_t)plan->desc.height * each;
+    const uint64_t samples = (uint64_t)extent.width * (uint64_t)extent.height * each;
     const uint64_t sides = 2 * (uint64_t)plan->geometry->table.shading_point_count;
     glint_ray_counts rays = { 0 };
     if (plan->runs[GLINT_STAGE_CAMERA])
@@ -238,7 +283,7 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
     return rays;
 }
 
-void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
+static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
@@ -247,6 +292,18 @@ void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char 
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
     key = glint_key_add_string(key, GLINT_VERSION);
-    key = glint_key_add_string(key, glint_encoder_name(desc->encode));
+    return glint_key_add_string(key, glint_encoder_name(desc->encode));
+}
+
+void glint_whole_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
+{
+    glint_key_hex(whole_key(plan, desc), hex);
+}
+
+void glint_frame_key(const glint_plan *plan, const glint_write_desc *desc, char hex[33])
+{
+    glint_key key = whole_key(plan, desc);
+    if (plan->desc.region[2] > 0)
+        key = glint_key_add(key, plan->desc.region, sizeof plan->desc.region);
     glint_key_hex(key, hex);
 }

@@ -193,6 +193,16 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 /// The base frame of adaptive sampling, of one sample a pixel: the passes of `desc`, and the geometry and codes that are compared.
 glint_render_desc glint_plan_base(const glint_render_desc *desc);
 
+/// What of a frame is rendered: a rectangle of tiles, and its pixels.
+typedef struct glint_extent {
+    uint32_t tile_x, tile_y, across, down; ///< the first tile, and how many
+    int x, y, width, height; ///< pixels
+} glint_extent;
+
+/// All of a frame; of a region the tiles that have a pixel of it or one at most two away, as outlines and adaptive sampling
+/// look at neighbours.
+glint_extent glint_plan_extent(const glint_render_desc *desc);
+
 /// Where sample `k` of a pixel lies in it: 0 .. 1 across and down.
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
 

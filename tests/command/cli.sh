@@ -261,6 +261,16 @@ io.stderr:write(math.type(P.a), " ", math.type(P.b), " ", P.s, "\n") return requ
     for wrong in radius radius=1 radius=1:2 radius=1:2:0 radius=a:2:3 =1:2:3 radius=1:2:3x; do
         exits 2 "--sweep $wrong" ten.lua --sweep "$wrong"
     done
+    script steps 'local glint = require "glint" io.stderr:write(glint.params { n = 1.0 }.n, " ") return require("scene").scene'
+    run steps.lua --sweep n=1:50:50 -o none --size 1x1 -q
+    check "--sweep has whole steps" test "$(cat err)" = "$(seq -s ' ' 50) "
+    run steps.lua --sweep n=0.1:0.9:9 -o none --size 1x1 -q
+    says "--sweep has short steps" '^0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 $'
+    run steps.lua --sweep n=-1e308:1e308:5 -o none --size 1x1 -q
+    says "--sweep over all numbers" '^-1e\+308 -5e\+307 0 5e\+307 1e\+308 $'
+    check "--sweep has exact ends" eval 'run steps.lua --sweep n=0.30000000000000004:0.7000000000000001:3 -o e%d.png --size 1x1 -q &&
+        grep -aq "n=0.30000000000000004" e1.png && grep -aq "n=0.7000000000000001" e3.png'
+    rm -f e[123].png
     exits 2 "--sweep and --set of one" ten.lua --sweep radius=1:2:3 --set radius=2
     run ten.lua --help
     check "--help exits 0" test "$status" -eq 0
@@ -284,6 +294,38 @@ options() {
     exits 2 "no script" --json
     exits 2 "unknown option" ten.lua --thraeds 2
     says "unknown option names the nearest" "did you mean '--threads'"
+    exits 2 "an option by another program's name" ten.lua --widht 300
+    says "names what it is called here" "--widht: no such option; did you mean '--size'"
+    exits 2 "a pass that is none" ten.lua --passes diffuse,normals
+    says "names it and the nearest" "^glint: error: --passes: 'normals' is no pass; did you mean 'normal'\\?$"
+    exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
+    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo expected$"
+    exits 0 "--version --verbose" --version --verbose
+    prints "libraries" '^libraries: Lua 5\.4.*libpng [0-9].*xxhash [0-9]'
+    prints "kernels" '^kernels: ref generic.*; in use: [a-z0-9]+, [0-9]+ threads$'
+    prints "limits" '^limits: 65535 pixels a side'
+    exits 2 "--verbose alone" ten.lua --verbose
+    exits 0 "one frame of ten, under a name without a number" ten.lua -f 1 -o terms.png
+    says "says its name" '^-o terms.png names 10 frames, so each has its number in its name: terms_####.png; -o terms.mp4, .* makes a film$'
+    check "which is stable" test -e terms_0001.png
+    exits 0 "a name with a number" ten.lua -f 1 -o 'terms_%04d.png'
+    check "has nothing said of it" eval '! grep -q "names 10" err'
+    exits 0 "a still" one.lua -o still.png
+    check "neither" eval '! grep -q "names" err'
+    rm -f terms_0001.png still.png
+    script deep 'local function inner() return nil + 1 end
+local function outer() inner() end
+outer()'
+    exits 2 "an error in a function" deep.lua
+    check "has the lines that led there" test "$(sed -n 2,9p err)" = "  called from deep.lua:2
+  called from deep.lua:3"
+    says "and where it is" '^glint: error: deep.lua:1: attempt to perform arithmetic'
+    script called 'local glint = require "glint"
+local function paint(c) return glint.material { diffuse = c } end
+paint "rde"'
+    exits 2 "a wrong value in a function" called.lua
+    says "is where it was given" "^glint: error: called.lua:2: .*did you mean 'red'"
+    says "and called" '^  called from called.lua:3$'
     exits 2 "unknown letter" ten.lua -Z
     exits 2 "unknown command" explian ten.lua
     says "unknown command names the nearest" "did you mean 'explain'"
@@ -651,6 +693,8 @@ comparing() {
     run one.lua --size 41x24
     exits 0 "compare same" compare ten_0001.png ten_0001.png
     exits 2 "compare differ" compare ten_0001.png ten_0002.png
+    check "compare says a line once" test -z "$(sort out | uniq -d)"
+    check "and how many pixels" test "$(grep -c 'pixels (' out)" -eq 1
     exits 1 "compare warn" compare ten_0001.png ten_0002.png --fail 1 --warn 0.001
     exits 3 "compare size" compare ten_0001.png one.png
     exits 4 "compare no file" compare ten_0001.png nothing.png

@@ -72,7 +72,7 @@ check "the options of the manual page" diff <("${LUA:-lua5.4}" "$work/heads.lua"
 # Every choice is accepted by the command.
 cat >"$work/scene.lua" <<'END'
 local glint = require "glint"
-return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = 1 }
 END
 cat >"$work/gr.lua" <<'END'
 gr.render(gr.node 'root', 'empty', 8, 8, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})

@@ -47,9 +47,28 @@ if command -v parallel >/dev/null; then
     check "GNU parallel: a name with blanks" "$root/scripts/farm/parallel.sh" 2 film.lua -f 1-2 -o 'two words/%04d.png'
     check "GNU parallel: and its files" test -s 'two words/0002.png'
     check "GNU parallel: a failure shows" eval "! '$root/scripts/farm/parallel.sh' 2 nowhere.lua"
+    # One big frame, of which a part is killed and run again.
+    export GLINT
+    check "GNU parallel: one frame in 6 parts" parallel --jobs 2 -N0 "$root/scripts/farm/part.sh" 6 160x90 parts film.lua -f 3 \
+        ::: 1 2 3 4 5 6
+    rm parts/0003/0004.png
+    FARM_PACE=5 PART=4 "$root/scripts/farm/part.sh" 6 160x90 parts film.lua -f 3 2>/dev/null &
+    victim=$!
+    sleep 0.5
+    kill -KILL $victim
+    wait $victim 2>/dev/null
+    check "a killed part has left nothing" test ! -e parts/0003/0004.png
+    check "join names it" eval "! '$GLINT' join 'parts/0003/####.png' -o joined.png 2>why && grep -q 'missing: 4' why"
+    check "the part again" env PART=4 "$root/scripts/farm/part.sh" 6 160x90 parts film.lua -f 3
+    check "the parts join" "$GLINT" join 'parts/0003/####.png' -o joined.png
+    check "the frame of one machine" cmp one/0003.png joined.png
 else
-    echo "ok - GNU parallel # skip parallel is not installed"
+    skip "GNU parallel is not installed"
 fi
+for wrong in '0 6' '7 6' '1 99' 'x 6'; do
+    check "part.sh refuses part and parts $wrong" eval \
+        "! PART=${wrong% *} '$root/scripts/farm/part.sh' ${wrong#* } 160x90 parts film.lua 2>/dev/null"
+done
 
 # ---- Slurm ----
 
@@ -104,6 +123,12 @@ check "the task was requeued" grep -q "shard $killed/$shards on node2, restart 1
 check "and kept what was finished" grep -Eq '^frames? [0-9-]+: kept' "$work/logs/$id-$killed.txt"
 check "the pictures of one machine, complete" same film
 check "the whole job keeps them" all_kept film
+
+# One big frame as an array.
+parts=$(sbatch --parsable --array=1-6 --output="$work/logs/%A-%a.txt" "$root/scripts/farm/part.sh" 6 160x90 array film.lua -f 3)
+check "the parts of a frame end" ended "$parts"
+check "they join" "$GLINT" join 'array/0003/####.png' -o array.png
+check "to the frame of one machine" cmp one/0003.png array.png
 
 # One shard again, as the page says.
 rm film/0009.png

@@ -12,6 +12,36 @@ check "the module, in plain Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" "${LUA
     'assert(require("glint").version)'
 check "the modules in Lua" env LUA_CPATH="$prefix/lib/lua/5.4/?.so" LUA_PATH="$prefix/share/lua/5.4/?.lua" \
     "${LUA:-lua5.4}" -e 'assert(require("glint.particles").new and require("glint.xyz").frames)'
+cat >"$work/own.lua" <<'END'
+local particles, xyz = require "glint.particles", require "glint.xyz"
+io.stderr:write(assert(package.searchpath("glint.particles", package.path)), "\n")
+assert(particles.new and xyz.frames)
+END
+own() { # the module that the command finds lies beside it: PREFIX, whether or not another glint is installed
+    env -C "$work" -u LUA_PATH -u LUA_PATH_5_4 "$1/bin/glint" own.lua 2>&1 | head -n 1 | grep -Fq "$1/bin/../share/lua/5.4/glint/particles.lua"
+}
+check "the command finds its own modules" own "$prefix"
+cp -r "$prefix" "$work/else where"
+check "from any place" own "$work/else where"
+check "LUA_PATH comes first" eval '(cd "$work" && mkdir -p mine/glint && echo "return { new = true }" >mine/glint/particles.lua &&
+    LUA_PATH="$work/mine/?.lua;;" "$prefix/bin/glint" own.lua 2>&1 | head -n 1 | grep -q mine/glint)'
+check "an example, with its data" env -C "$work" "$prefix/bin/glint" "$prefix/share/glint/examples/molecule.lua" --size 32x24 -q
+for name in $(sed -nE '/share\/glint\/examples/,/share\/doc/p' bindings/glint.1 | grep -oE '[a-z_]+\.lua'); do
+    check "the example $name of the manual page" test -s "$prefix/share/glint/examples/$name"
+done
+for page in $(sed -nE '/share\/doc\/glint/,$p' bindings/glint.1 | grep -oE '[a-z\\-]+\.md' | tr -d '\\'); do
+    check "the page $page" test -s "$prefix/share/doc/glint/$page"
+done
+for module in scripts/lib/glint/*.lua; do
+    name=$(basename "$module" .lua)
+    check "the page of glint.$name" grep -qx "## glint.$name" "$prefix/share/doc/glint/data.md"
+    for f in $(grep -oE "^function $name[.:][a-z_]+" "$module" | sed 's/^function //'); do
+        check "data.md has $f" grep -Fq "### \`$f(" "$prefix/share/doc/glint/data.md"
+    done
+done
+check "links of the pages lead somewhere" eval '(cd "$prefix/share/doc/glint" &&
+    for link in $(grep -ohE "\]\([a-zA-Z_/.-]+\.(md|lua|c)" lua-and-command.md examples.md farms.md python.md | cut -c 3-); do
+        [ -e "$link" ] || { echo "$link"; exit 1; }; done)'
 echo 'gr.render(gr.node "root", "empty", 8, 6, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})' >"$work/gr.lua"
 check "the dialect" env -C "$work" "$prefix/bin/glint" --dialect gr gr.lua
 check "the dialect, in plain Lua" env -C "$work" LUA_CPATH="$prefix/lib/lua/5.4/?.so" \
@@ -75,7 +105,7 @@ for object in $objects; do
 done
 
 check "make uninstall" quiet_make uninstall PREFIX="$prefix"
-check "nothing is left" test -z "$(find "$prefix" -type f -o -type l)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint"
+check "nothing is left" test -z "$(find "$prefix" -type f -o -type l)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint" -a ! -e "$prefix/share/doc/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
 check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
 totals

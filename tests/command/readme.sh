@@ -59,7 +59,7 @@ check_paths() {
 }
 
 for page in README.md bindings/README.md engine/README.md engine/stages/README.md tests/README.md scripts/README.md \
-    .github/CONTRIBUTING.md; do
+    scripts/python.md .github/CONTRIBUTING.md; do
     run_page "$page"
     check_paths "$page"
 done

@@ -12,7 +12,7 @@ scene() {
         echo 'local lamp = glint.point_light { position = { 0, 8, 4 }, name = "lamp" }'
         printf '%s\n' "$@"
         echo 'local view = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }'
-        echo 'local scene = glint.scene { camera = view, ambient = 0.1, lamp, table.unpack(objects or {}) }'
+        echo 'local scene = glint.scene { camera = view, ambient = 0.1, background = 0.1, lamp, table.unpack(objects or {}) }'
         echo 'return glint.animation { scene = scene, frames = 4, width = 32, height = 18, frame = frame or function() end }'
     } >scene.lua
 }
@@ -220,7 +220,7 @@ test $? -eq 2 && grep -q 'frames of film.apng are kept in film.apng.frames' err 
 result $? "the frames of a film that it ends are kept, and it says where"
 cat >sweep.lua <<'END'
 local glint = require "glint"
-local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = 1 }
 return glint.sweep { scene = scene, over = { { scene, "ambient", { 0.1, 0.2 } } }, width = 8, height = 8, sheet = {},
                      output = "sweep_%04d.png" }
 END
@@ -252,6 +252,42 @@ for script in "$root"/scripts/*.lua; do
     run "$script" --size $size --samples 1 --warnings=error $dialect
     result $? "$name"
 done
+# ---- Black pictures ----
+
+black() { # LINE: the objects, and what changes the rest
+    {
+        echo 'local glint = require "glint"'
+        echo 'local camera, ambient = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, 0'
+        echo 'local function ball(x, y, z, r, name) return glint.sphere { center = { x, y, z }, radius = r, name = name } end'
+        echo 'local function lamp(x, y, z, i) return glint.point_light { position = { x, y, z }, intensity = i } end'
+        echo "local objects = { $1 }"
+        echo 'local scene = glint.scene { camera = camera, ambient = ambient, table.unpack(objects) }'
+        echo 'return glint.animation { scene = scene, frames = 3, width = 32, height = 18, frame = function(_, n) if change then change(objects, n) end end }'
+    } >scene.lua
+}
+black ''
+warns "black: no shape" "frame 1: the picture is black: the scene has no shape; add one"
+black 'ball(0, 0, 0, 1)'
+warns "black: no light" "frame 1: the picture is black: the scene has no light, and its ambient is 0; add glint.point_light"
+black 'ball(0, 0, 0, 1), lamp(0, 0, 9, 0)'
+warns "black: dark lights" "frame 1: the picture is black: no light of the scene is brighter than 0"
+black "ball(0, 0, 0, 20, 'room'), lamp(0, 0, 40, 1)"
+warns "black: the eye inside a sphere" "frame 1: the picture is black: the camera's eye is inside 'room', which no light reaches"
+black 'ball(0, 0, 40, 1), lamp(0, 0, 20, 1)'
+warns "black: the camera looks away" "frame 2: the picture is black: the camera looks past all shapes" -f 2
+black 'ball(0, 0, 0, 1), lamp(0, 0, -9, 1)'
+warns "black: lit from behind" "frame 1: the picture is black: what the camera sees gets no light"
+black 'ball(0, 0, 0, 1), lamp(0, 0, 9, 1)'
+silent "not a picture with light"
+sed -i '1i function change(objects, n) objects[2].intensity = n - 1 end' scene.lua
+silent "nor a film that fades in"
+echo 'local glint = require "glint"
+glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1 }:render { width = 9, height = 9 }' >scene.lua
+warns "black: of a loop" "frame 1: the picture is black: the scene has no shape"
+run scene.lua --warnings=error
+[ $? -eq 2 ]
+result $? "black: an error on request"
+
 for step in ambient diffuse specular; do
     run "$root/scripts/workshop.lua" --size 64x36 --samples 1 --warnings=error --set step=$step
     result $? "workshop.lua, step $step"

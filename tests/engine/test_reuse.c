@@ -56,6 +56,7 @@ typedef enum kind {
     BITS, ///< a mask of `high` bits
     DEPTH, ///< 8 or 16
     TRANSFORM,
+    REGION, ///< x, y, width, height; or none
     FIXED ///< not a field to set here: a name, a kind, what is set another way
 } kind;
 
@@ -136,6 +137,7 @@ static const field render_fields[] = {
     R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
+    R(region, REGION, 0, 0),
 #undef R
 };
 
@@ -148,6 +150,16 @@ static void set_transform(glint_transform *out)
     const glint_transform turn = glint_transform_rotate(axis, uniform(0, 360)), scale = glint_transform_scale(by);
     const uint32_t which = draw(3);
     *out = which == 0 ? glint_transform_identity() : which == 1 ? turn : glint_transform_product(&turn, &scale);
+}
+
+/// Within the smallest frame, or none.
+static void set_region(double out[4])
+{
+    const double region[4] = { draw(30), draw(20), 1 + draw(30), 1 + draw(20) };
+    for (int i = 0; i < 4; i++)
+        out[i] = draw(2) ? region[i] : 0;
+    for (int i = 0; i < 4; i++)
+        out[i] = out[2] > 0 && out[3] > 0 ? out[i] : 0;
 }
 
 static void set_field(const field *f, void *desc)
@@ -178,6 +190,9 @@ static void set_field(const field *f, void *desc)
         break;
     case TRANSFORM:
         set_transform(at);
+        break;
+    case REGION:
+        set_region(at);
         break;
     default:
         whole = f->kind == CHOICE  ? (int32_t)draw((uint32_t)f->high)

@@ -1,0 +1,60 @@
+// glint --version, and with --verbose what this build is made of and where its limits are.
+#include <lua.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/command/cli.h"
+
+static const char *const KERNELS[] = { "ref", "generic", "sse2", "avx2", "avx512" };
+
+// Whether the build has a kernel and the machine runs it.
+static bool has_kernel(const char *name)
+{
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    glint_renderer *renderer = NULL;
+    desc.isa = name;
+    desc.threads = 1;
+    const bool has = glint_renderer_create(&desc, &renderer, NULL) == GLINT_OK;
+    glint_renderer_destroy(renderer);
+    return has;
+}
+
+static void print_kernels(FILE *out)
+{
+    glint_renderer_desc desc = glint_renderer_desc_default();
+    glint_renderer *renderer = NULL;
+    glint_error error = { .message = "none" };
+    fputs("kernels:", out);
+    for (size_t i = 0; i < sizeof KERNELS / sizeof *KERNELS; i++)
+        if (has_kernel(KERNELS[i]))
+            fprintf(out, " %s", KERNELS[i]);
+    if (glint_renderer_create(&desc, &renderer, &error) == GLINT_OK)
+        fprintf(out, "; in use: %s, %d threads\n", glint_renderer_isa(renderer), glint_renderer_threads(renderer));
+    else
+        fprintf(out, "; %s\n", error.message);
+    glint_renderer_destroy(renderer);
+}
+
+int cli_version(const cli_options *options, cli_output *output)
+{
+    FILE *out = output->data;
+    fputs("glint " GLINT_VERSION "\n", out);
+    if (!options->verbose)
+        return GLINTL_EXIT_DONE;
+    fputs("libraries: " LUA_RELEASE, out);
+    for (const char *const *library = glint_libraries(); *library; library++)
+        fprintf(out, ", %s", *library);
+    fprintf(out, "\nwrites: .png .pfm .npy%s; deflates by %s (fast), %s (small)\n", glint_exr_library() ? " .exr" : "",
+            glint_encoder_name(GLINT_ENCODE_FAST), glint_encoder_name(GLINT_ENCODE_SMALL));
+#ifdef GLINT_HAVE_SECCOMP
+    fputs("--untrusted: yes, by seccomp\n", out);
+#else
+    fputs("--untrusted: no, this build has no libseccomp\n", out);
+#endif
+    print_kernels(out);
+    fprintf(
+        out,
+        "limits: %d pixels a side, 2147483647 a frame, 65536 samples a pixel, %d frames a job, 2^30 spheres a shape\n",
+        GLINT_SIDE_MAX, GLINTL_FRAMES_MAX);
+    return GLINTL_EXIT_DONE;
+}

@@ -1,0 +1,150 @@
+// A run whose pictures are all black: why, and what helps. The first of them is looked into, once it is seen to be black; a
+// picture with light in it ends the search, so that a run of others pays for nothing.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+#define RAYS_ACROSS 25 // that look for something to see
+#define RAYS_DOWN 15
+
+static bool is_dark(const double c[3]) { return !(c[0] > 0 || c[1] > 0 || c[2] > 0); }
+
+static bool gives_light(const glint_light_desc *light)
+{
+    const double strength = light->has_radiance ? light->radiance : light->intensity;
+    const bool colored = !is_dark(light->color) || (light->has_diffuse && !is_dark(light->diffuse)) ||
+                         (light->has_specular && !is_dark(light->specular));
+    return strength > 0 && (colored || !is_dark(light->ambient));
+}
+
+static bool any_light(const glint_scene *scene)
+{
+    for (size_t i = 0; i < glint_scene_light_count(scene); i++)
+        if (gives_light(glint_light_get(glint_scene_light_at(scene, i))))
+            return true;
+    return !is_dark(glint_scene_get(scene)->ambient);
+}
+
+// ---- What the camera looks at ----
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static bool normalize(double v[3])
+{
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return length > 0 && isfinite(length);
+}
+
+// The view's axes, the sides as long as half a picture is wide and high at distance 1. False: up is along the view.
+static bool find_axes(const glint_camera_desc *camera, double aspect, double forward[3], double right[3], double up[3])
+{
+    const double high = camera->projection == GLINT_PERSPECTIVE ? tan(camera->fov_y_rad / 2) : camera->height / 2;
+    for (int i = 0; i < 3; i++)
+        forward[i] = camera->has_direction ? camera->direction[i] : camera->at[i] - camera->eye[i];
+    cross(forward, camera->up, right);
+    if (!normalize(forward) || !normalize(right))
+        return false;
+    cross(right, forward, up);
+    for (int i = 0; i < 3; i++) {
+        right[i] *= high * aspect;
+        up[i] *= high;
+    }
+    return true;
+}
+
+// The hit of the ray nearest to the picture's middle, of a grid of them. False: none hits.
+static bool find_hit(const glint_scene *scene, const glint_camera_desc *camera, double aspect, glint_hit *hit)
+{
+    double forward[3], right[3], up[3], best = HUGE_VAL;
+    if (!find_axes(camera, aspect, forward, right, up))
+        return true; // not known
+    for (int i = 0; i < RAYS_ACROSS * RAYS_DOWN; i++) {
+        const double sx = 2 * (i % RAYS_ACROSS + 0.5) / RAYS_ACROSS - 1,
+                     sy = 2 * (i / RAYS_ACROSS + 0.5) / RAYS_DOWN - 1;
+        double origin[3], direction[3];
+        glint_hit found;
+        bool is_hit = false;
+        for (int c = 0; c < 3; c++) {
+            const double aside = sx * right[c] + sy * up[c];
+            const bool parallel = camera->projection != GLINT_PERSPECTIVE;
+            origin[c] = camera->eye[c] + (parallel ? aside : 0);
+            direction[c] = forward[c] + (parallel ? 0 : aside);
+        }
+        if (sx * sx + sy * sy < best && !glint_scene_cast(scene, origin, direction, &is_hit, &found, NULL) && is_hit) {
+            best = sx * sx + sy * sy;
+            *hit = found;
+        }
+    }
+    return best < HUGE_VAL;
+}
+
+// Whether the ray from the eye to the hit leaves a closed shape there.
+static bool is_inside(const glint_camera_desc *camera, const glint_hit *hit)
+{
+    const glint_shape_kind kind = glint_shape_get(hit->shape)->kind;
+    double out = 0;
+    for (int c = 0; c < 3; c++)
+        out += (hit->point[c] - camera->eye[c]) * hit->normal[c];
+    return out > 0 && (kind == GLINT_SHAPE_SPHERE || kind == GLINT_SHAPE_SPHERES || kind == GLINT_SHAPE_BOX ||
+                       kind == GLINT_SHAPE_CYLINDER || kind == GLINT_SHAPE_CONE);
+}
+
+// ---- The cause ----
+
+static void explain(const glint_scene *scene, const glintL_work *work, char *out, size_t room)
+{
+    const glint_camera *camera = glint_scene_get(scene)->camera;
+    const double aspect = work->render.desc.width / work->render.desc.height;
+    glint_hit hit = { .shape = NULL };
+    if (work->stats.nonfinite > 0)
+        snprintf(out, room, "%llu pixels are not finite; lights, reflectances or lengths are too large for that",
+                 (unsigned long long)work->stats.nonfinite);
+    else if (glint_scene_shape_count(scene) == 0)
+        snprintf(out, room,
+                 "the scene has no shape; add one, such as glint.sphere { center = { 0, 0, 0 }, radius = 1 }");
+    else if (!any_light(scene))
+        snprintf(
+            out, room,
+            glint_scene_light_count(scene)
+                ? "no light of the scene is brighter than 0, and its ambient is 0; set intensity = 1, or ambient = 0.1"
+                : "the scene has no light, and its ambient is 0; add glint.point_light { position = { 5, 9, 5 } }, or "
+                  "ambient = 0.1");
+    else if (!camera || !find_hit(scene, glint_camera_get(camera), aspect, &hit))
+        snprintf(out, room, "the camera looks past all shapes; point its `at` to one of them, or move its eye away");
+    else if (hit.shape && is_inside(glint_camera_get(camera), &hit))
+        snprintf(out, room,
+                 "the camera's eye is inside %s%s%s, which no light reaches; move the eye out, or a light in",
+                 *glint_shape_get(hit.shape)->name ? "'" : "a closed shape", glint_shape_get(hit.shape)->name,
+                 *glint_shape_get(hit.shape)->name ? "'" : "");
+    else
+        snprintf(out, room,
+                 "what the camera sees gets no light: lights are behind it, shut in or in shadow, or materials are "
+                 "black; with ambient = 0.1 it shows where things are");
+}
+
+void glintL_look_for_black(glintL_run *run, const glint_scene *scene, const glintL_work *work)
+{
+    if (run->has_light || !work->image || run->request.warnings == GLINTL_WARNINGS_NONE)
+        return;
+    if (!glint_image_is_black(work->image)) {
+        run->has_light = true;
+    } else if (!*run->black) {
+        const int used =
+            snprintf(run->black, sizeof run->black, "frame %lld: the picture is black: ", (long long)work->index);
+        explain(scene, work, run->black + used, sizeof run->black - (size_t)used);
+    }
+}
+
+void glintL_report_black(glintL_run *run)
+{
+    if (*run->black && !run->has_light && !run->told_of_view)
+        glintL_run_warn(run, "%s", run->black);
+}

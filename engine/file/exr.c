@@ -1,0 +1,228 @@
+#include "engine/file/exr.h"
+
+#include "engine/base/status.h"
+#include "engine/film/image.h"
+#include "engine/file/pfm.h"
+
+#include <pthread.h>
+#include <stdio.h>
+
+#ifdef GLINT_HAVE_OPENEXR
+#include <openexr.h>
+
+#define CHANNELS_MAX (3 * GLINT_PASS_COUNT)
+#define FIRST_ROOM ((size_t)1 << 20)
+
+static char library_name[48];
+
+static void make_library_name(void)
+{
+    int major, minor, patch;
+    const char *extra;
+    exr_get_library_version(&major, &minor, &patch, &extra);
+    snprintf(library_name, sizeof library_name, "OpenEXR %d.%d.%d", major, minor, patch);
+}
+
+const char *glint_exr_library(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, make_library_name);
+    return library_name;
+}
+
+typedef struct channel {
+    char name[32];
+    const float *plane;
+    int of; ///< channels of its pass
+    bool half;
+} channel;
+
+typedef struct exr_file {
+    exr_context_t context;
+    glint_bytes bytes;
+    bool no_memory;
+    channel list[CHANNELS_MAX];
+    int count, width, height;
+} exr_file;
+
+// ---- Channels -----------------------------------------------------------------------------------------------------
+
+static void name_channel(glint_pass pass, int c, char out[32])
+{
+    const bool is_place = pass == GLINT_PASS_NORMAL;
+    const char letter = is_place ? "XYZ"[c] : "RGB"[c];
+    if (pass == GLINT_PASS_BEAUTY)
+        snprintf(out, 32, "%c", letter);
+    else if (pass == GLINT_PASS_ALPHA)
+        snprintf(out, 32, "A");
+    else if (glint_pass_channels(pass) == 3)
+        snprintf(out, 32, "%s.%c", glint_pass_name(pass), letter);
+    else
+        snprintf(out, 32, "%s.%s", glint_pass_name(pass),
+                 pass == GLINT_PASS_DEPTH       ? "Z"
+                 : pass == GLINT_PASS_OBJECT_ID ? "ID"
+                                                : "Y");
+}
+
+static void list_channels(exr_file *file, const glint_image *image, bool half)
+{
+    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int c = 0; c < 3; c++) {
+            if (!image->plane[pass][c])
+                continue;
+            channel *added = &file->list[file->count++];
+            name_channel((glint_pass)pass, c, added->name);
+            added->plane = image->plane[pass][c];
+            added->of = glint_pass_channels((glint_pass)pass);
+            added->half = half && (added->of == 3 || pass == GLINT_PASS_ALPHA);
+        }
+}
+
+static const channel *find_channel(const exr_file *file, const char *name)
+{
+    const channel *found = file->list;
+    while (strcmp(found->name, name) != 0)
+        found++;
+    return found;
+}
+
+// ---- The file, in memory --------------------------------------------------------------------------------------------
+
+static int64_t put_bytes(exr_const_context_t context, void *user, const void *bytes, uint64_t size, uint64_t offset,
+                         exr_stream_error_func_ptr_t fail)
+{
+    exr_file *file = user;
+    const size_t end = (size_t)(offset + size), used = file->bytes.size;
+    if (end > file->bytes.capacity && !glint_bytes_reserve(&file->bytes, end - used + FIRST_ROOM)) {
+        file->no_memory = true;
+        fail(context, EXR_ERR_OUT_OF_MEMORY, "out of memory");
+        return -1;
+    }
+    if (offset > used)
+        memset(file->bytes.data + used, 0, (size_t)offset - used);
+    memcpy(file->bytes.data + offset, bytes, (size_t)size);
+    file->bytes.size = end > used ? end : used;
+    return (int64_t)size;
+}
+
+/// The library would print; its code says enough.
+static void drop_message(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context, (void)code, (void)message;
+}
+
+static exr_result_t write_head(exr_file *file, const glint_text *text, size_t text_count)
+{
+    int part = 0;
+    exr_result_t result = exr_add_part(file->context, "glint", EXR_STORAGE_SCANLINE, &part);
+    if (!result)
+        result =
+            exr_initialize_required_attr_simple(file->context, part, file->width, file->height, EXR_COMPRESSION_ZIP);
+    for (int i = 0; i < file->count && !result; i++)
+        result =
+            exr_add_channel(file->context, part, file->list[i].name,
+                            file->list[i].half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (size_t i = 0; i < text_count && !result; i++)
+        if (*text[i].value)
+            result = exr_attr_set_string(file->context, part, text[i].keyword, text[i].value);
+    return result ? result : exr_write_header(file->context);
+}
+
+/// The rows from y on that a chunk has, as floats, channel after channel of the encoder's order.
+static void fill_chunk(const exr_file *file, exr_encode_pipeline_t *pipe, int y, float *room)
+{
+    const size_t width = (size_t)file->width;
+    for (int c = 0; c < pipe->channel_count; c++) {
+        exr_coding_channel_info_t *info = &pipe->channels[c];
+        const channel *from = find_channel(file, info->channel_name);
+        const size_t count = (size_t)info->height * width;
+        for (size_t i = 0; i < count; i++)
+            room[i] = glint_pfm_value(from->of, from->plane[(size_t)y * width + i]);
+        info->user_data_type = EXR_PIXEL_FLOAT;
+        info->user_bytes_per_element = sizeof(float);
+        info->user_pixel_stride = sizeof(float);
+        info->user_line_stride = (int32_t)(width * sizeof(float));
+        info->encode_from_ptr = (const uint8_t *)room;
+        room += count;
+    }
+}
+
+static exr_result_t write_rows(exr_file *file, float *room, int lines)
+{
+    exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t result = EXR_ERR_SUCCESS;
+    for (int y = 0; y < file->height && !result; y += lines) {
+        exr_chunk_info_t chunk;
+        result = exr_write_scanline_chunk_info(file->context, 0, y, &chunk);
+        if (!result)
+            result = y ? exr_encoding_update(file->context, 0, &chunk, &pipe)
+                       : exr_encoding_initialize(file->context, 0, &chunk, &pipe);
+        if (result)
+            break;
+        fill_chunk(file, &pipe, y, room);
+        if (y == 0)
+            result = exr_encoding_choose_default_routines(file->context, 0, &pipe);
+        if (!result)
+            result = exr_encoding_run(file->context, 0, &pipe);
+    }
+    exr_encoding_destroy(file->context, &pipe);
+    return result;
+}
+
+static exr_result_t write_file(exr_file *file, const glint_text *text, size_t text_count)
+{
+    int32_t lines = 1;
+    exr_result_t result = write_head(file, text, text_count);
+    if (!result)
+        result = exr_get_scanlines_per_chunk(file->context, 0, &lines);
+    if (result)
+        return result;
+    float *room = malloc((size_t)lines * (size_t)file->width * (size_t)file->count * sizeof *room);
+    result = room ? write_rows(file, room, lines) : EXR_ERR_OUT_OF_MEMORY;
+    free(room);
+    return result;
+}
+
+glint_status glint_exr_encode(const glint_image *image, bool half, const glint_text *text, size_t text_count,
+                              glint_bytes *out, glint_error *error)
+{
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_file *file = calloc(1, sizeof *file);
+    if (!file)
+        return glint_fail_nomem(error);
+    file->width = image->width;
+    file->height = image->height;
+    list_channels(file, image, half);
+    how.user_data = file;
+    how.write_fn = put_bytes;
+    how.error_handler_fn = drop_message;
+    exr_result_t result = exr_start_write(&file->context, "memory.exr", EXR_WRITE_FILE_DIRECTLY, &how);
+    if (!result) {
+        result = write_file(file, text, text_count);
+        const exr_result_t last = exr_finish(&file->context);
+        result = result ? result : last;
+    }
+    const bool appended = !result && glint_bytes_append(out, file->bytes.data, file->bytes.size);
+    const bool no_memory = file->no_memory || result == EXR_ERR_OUT_OF_MEMORY || (!result && !appended);
+    free(file->bytes.data);
+    free(file);
+    if (appended)
+        return GLINT_OK;
+    return no_memory
+               ? glint_fail_nomem(error)
+               : glint_fail(error, GLINT_ERR_IO, "%s: %s", glint_exr_library(), exr_get_default_error_message(result));
+}
+
+#else
+
+const char *glint_exr_library(void) { return NULL; }
+
+glint_status glint_exr_encode(const glint_image *image, bool half, const glint_text *text, size_t text_count,
+                              glint_bytes *out, glint_error *error)
+{
+    (void)image, (void)half, (void)text, (void)text_count, (void)out;
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED,
+                      "path: this build has no OpenEXR (libopenexr-dev); a name ending in .pfm or .npy expected");
+}
+
+#endif
