@@ -10,8 +10,19 @@
 -- picture costs light and shading (and shadows, unless --set shadows=false): --json shows "cast":"reused".
 --     glint scripts/photometric.lua --set lights=96 --set shadows=false
 --     glint scripts/photometric.lua --set specular=0.4          surfaces that are not matt
--- For a scene of your own put its shapes in place of `objects`; a camera along -z keeps the axes.
+-- --set layout=diligent writes what programs for the DiLiGenT benchmark read (B. Shi et al., "A Benchmark Dataset and
+-- Evaluation for Non-Lambertian and Uncalibrated Photometric Stereo", PAMI 2019), a folder for each object in each
+-- material:
+--     001.png 002.png ...       16 bits, linear; filenames.txt has their names, a line each
+--     light_directions.txt      x y z, a light a line, in the axes above
+--     light_intensities.txt     its red, green and blue
+--     Normal_gt.npy, .png       the truth, 0 where nothing is; depth_gt.npy. Normal_gt.mat is to be made of the first
+--     mask.png                  255 where the object is, 0 elsewhere; one channel
+--     glint scripts/photometric.lua --set layout=diligent --set objects=balls,solids --set materials=matt,gold
+-- A run that was interrupted goes on from there, and --shard cuts the job for several machines.
+-- For a scene of your own put its shapes among `OBJECTS`; a camera along -z keeps the axes.
 local glint = require "glint"
+local png = require "glint.png"
 
 local P = glint.params {
   lights = { 24, min = 1, max = 999, doc = "directions of light" },
@@ -20,23 +31,61 @@ local P = glint.params {
   specular = { 0, min = 0, max = 1, doc = "strength of a highlight; 0: matt surfaces" },
   exact = { false, doc = "write .pfm (float32) in place of 16-bit .png" },
   folder = { "photometric", doc = "where the files go" },
+  layout = { "glint", choices = { "glint", "diligent" }, doc = "names and formats of the files" },
+  objects = { "balls", doc = "of diligent: balls, sphere, solids, dents, by commas" },
+  materials = { "matt", doc = "of diligent: matt, glossy, rough, gold, by commas" },
+  vary = { 0, min = 0, max = 0.9, doc = "of diligent: how much weaker lights may be, by channel" },
+  size = { 512, min = 8, max = 4096, doc = "pixels a side" },
 }
 
-local function ball(x, y, z, radius, color)
-  local paint = glint.material { diffuse = color, specular = P.specular, shininess = 40, ambient = 1 }
-  return glint.sphere { center = { x, y, z }, radius = radius, material = paint }
+-- A material by its name, of the colour that the object gives; ambient = 1 shows where objects are, see below.
+local MATERIALS = {
+  matt = function(color) return { diffuse = color, specular = P.specular, shininess = 40 } end,
+  glossy = function(color) return { diffuse = color, specular = 0.4, shininess = 80 } end,
+  rough = function(color) return { diffuse = color, model = require "glint.models".oren_nayar { roughness = 0.5 } } end,
+  gold = function()
+    return { diffuse = 0.05, specular = 1, model = "cook_torrance", roughness = 0.35, f0 = { 1, 0.77, 0.34 } }
+  end,
+}
+
+local function ball(x, y, z, radius, material)
+  return glint.sphere { center = { x, y, z }, radius = radius, material = material }
 end
 
-local objects = {
-  ball(0, 0, 0, 1.6, { 0.75, 0.72, 0.68 }), ball(1.5, 0.9, 0.9, 0.6, { 0.70, 0.25, 0.18 }),
-  ball(-1.4, -0.8, 1.0, 0.7, { 0.22, 0.45, 0.65 }), ball(-0.7, 1.5, 0.6, 0.5, { 0.35, 0.55, 0.20 }),
+-- The shapes of an object: paint(color) gives the material.
+local OBJECTS = {
+  balls = function(paint)
+    return { ball(0, 0, 0, 1.6, paint { 0.75, 0.72, 0.68 }), ball(1.5, 0.9, 0.9, 0.6, paint { 0.70, 0.25, 0.18 }),
+      ball(-1.4, -0.8, 1.0, 0.7, paint { 0.22, 0.45, 0.65 }), ball(-0.7, 1.5, 0.6, 0.5, paint { 0.35, 0.55, 0.20 }) }
+  end,
+  sphere = function(paint) return { ball(0, 0, 0, 2, paint { 0.7, 0.7, 0.7 }) } end,
+  solids = function(paint)
+    return { glint.box { min = { -1.5, -1.5, -0.5 }, max = { 0.2, 0.2, 0.5 }, material = paint { 0.6, 0.4, 0.3 },
+        transform = glint.rotate("x", 35) * glint.rotate("y", 40) },
+      glint.cylinder { base = { 0.9, -1.8, 0 }, top = { 1.5, 0.2, 0.6 }, radius = 0.5,
+        material = paint { 0.3, 0.5, 0.6 } },
+      glint.cone { base = { -0.2, 0.4, 0 }, top = { 0.9, 2, 0.9 }, radius = 0.8, material = paint { 0.6, 0.6, 0.4 } } }
+  end,
+  dents = function(paint)
+    local dented = paint { 0.7, 0.66, 0.6 }
+    dented.bump = glint.pattern(function(p) return 0.12 * glint.noise(p * 2.5) end)
+    return { ball(0, 0, 0, 2, dented) }
+  end,
 }
-local lamp = glint.directional_light { direction = { 0, 0, -1 }, shadows = P.shadows }
-local scene = glint.scene {
-  camera = glint.camera { eye = { 0, 0, 10 }, at = { 0, 0, 0 }, projection = "orthographic", height = 4.6 },
-  lamp, table.unpack(objects),
-}
-local SIZE = { width = 512, height = 512, bits = 16, transfer = "linear" }
+
+-- The entry of a table for each of the names that a text lists.
+local function pick(text, entries, what)
+  local list, known = {}, {}
+  for name in pairs(entries) do known[#known + 1] = name end
+  table.sort(known)
+  for name in text:gmatch "[^,%s]+" do
+    if not entries[name] then
+      error(("--set %s: '%s' is none of %s"):format(what, name, table.concat(known, ", ")), 0)
+    end
+    list[#list + 1] = { name = name, make = entries[name] }
+  end
+  return list
+end
 
 -- Directions that cover a cap around the camera's axis evenly: a spiral of golden angles.
 local function direction(k)
@@ -45,29 +94,88 @@ local function direction(k)
   return r * glint.cos(angle), r * glint.sin(angle), z
 end
 
-local function path(name) return P.folder .. "/" .. name end
-
-local rows = { "file,x,y,z,intensity\n" }
-for k = 1, P.lights do
-  local x, y, z = direction(k)
-  local file = ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
-  lamp.direction = { -x, -y, -z }
-  SIZE.output = path(file)
-  scene:render(SIZE)
-  rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
+local function write(path, lines)
+  local file = assert(io.open(path, "w"))
+  assert(file:write(table.concat(lines)))
+  assert(file:close())
 end
 
--- The truth: every material has ambient = 1, so that white ambient light alone shows where objects are.
-scene:remove(lamp)
-scene.ambient = 1
-local truth = scene:render { width = SIZE.width, height = SIZE.height, passes = "normal,depth" }
-if truth then -- not on a machine that has another part of the job
+-- One object under all lights, then without them: every material has ambient = 1, so that white ambient light alone
+-- shows where objects are. `look` is called with each light's number, direction and lamp, and gives the picture's file.
+local function render(shapes, look)
+  local lamp = glint.directional_light { direction = { 0, 0, -1 }, shadows = P.shadows }
+  local scene = glint.scene {
+    camera = glint.camera { eye = { 0, 0, 10 }, at = { 0, 0, 0 }, projection = "orthographic", height = 4.6 },
+    lamp, table.unpack(shapes),
+  }
+  for k = 1, P.lights do
+    local x, y, z = direction(k)
+    lamp.direction = { -x, -y, -z }
+    scene:render { width = P.size, height = P.size, bits = 16, transfer = "linear", output = look(k, x, y, z, lamp) }
+  end
+  scene:remove(lamp)
+  scene.ambient = 1
+  return scene:render { width = P.size, height = P.size, passes = "normal,depth" } -- nil on a machine with another part
+end
+
+local function painter(fields)
+  return function(color)
+    local all = fields(color)
+    all.ambient = 1
+    return glint.material(all)
+  end
+end
+
+local function write_glint()
+  local rows = { "file,x,y,z,intensity\n" }
+  local function path(name) return P.folder .. "/" .. name end
+  local truth = render(OBJECTS.balls(painter(MATERIALS.matt)), function(k, x, y, z, lamp)
+    local file = ("light_%03d.%s"):format(k, P.exact and "pfm" or "png")
+    rows[#rows + 1] = ("%s,%.17g,%.17g,%.17g,%.17g\n"):format(file, x, y, z, lamp.intensity)
+    return path(file)
+  end)
+  if not truth then return end
   assert(truth:save(path "mask.png", { bits = 16, transfer = "linear" }))
   for _, pass in ipairs { "normal", "depth" } do
     assert(truth:save(path(pass .. ".png"), { bits = 16, pass = pass }))
     assert(truth:save(path(pass .. ".pfm"), { pass = pass }))
   end
-  local csv = assert(io.open(path "lights.csv", "w"))
-  assert(csv:write(table.concat(rows)))
-  assert(csv:close())
+  write(path "lights.csv", rows)
+end
+
+local function write_diligent(object, material)
+  local folder = ("%s/%s_%s/"):format(P.folder, object.name, material.name)
+  local names, directions, intensities = {}, {}, {}
+  local truth = render(object.make(painter(material.make)), function(k, x, y, z, lamp)
+    local color = {}
+    for c = 1, 3 do color[c] = 1 - P.vary * glint.hash(k, c, 0) end
+    lamp.color = color
+    names[k] = ("%03d.png\n"):format(k)
+    directions[k] = ("%.17g %.17g %.17g\n"):format(x, y, z)
+    intensities[k] = ("%.17g %.17g %.17g\n"):format(color[1], color[2], color[3])
+    return folder .. ("%03d.png"):format(k)
+  end)
+  if not truth then return end
+  local mask = png.grey(P.size, P.size)
+  for y = 0, P.size - 1 do
+    for x = 0, P.size - 1 do
+      if truth:pixel(x, y, "depth") < math.huge then mask:set(x, y, 1) end
+    end
+  end
+  assert(truth:save(folder .. "Normal_gt.npy", { pass = "normal" }))
+  assert(truth:save(folder .. "Normal_gt.png", { bits = 16, pass = "normal" }))
+  assert(truth:save(folder .. "depth_gt.npy", { pass = "depth" }))
+  mask:save(folder .. "mask.png")
+  write(folder .. "filenames.txt", names)
+  write(folder .. "light_directions.txt", directions)
+  write(folder .. "light_intensities.txt", intensities)
+end
+
+if P.layout == "glint" then
+  write_glint()
+else
+  local materials = pick(P.materials, MATERIALS, "materials")
+  for _, object in ipairs(pick(P.objects, OBJECTS, "objects")) do
+    for _, material in ipairs(materials) do write_diligent(object, material) end
+  end
 end

@@ -6,7 +6,7 @@ package.path = "scripts/lib/?.lua;" .. package.path
 local glint = require "glint"
 local elements, particles, xyz = require "glint.elements", require "glint.particles", require "glint.xyz"
 local pdb, lammps, points = require "glint.pdb", require "glint.lammps", require "glint.points"
-local bonds = require "glint.bonds"
+local bonds, png = require "glint.bonds", require "glint.png"
 local nff, helix, sphereflake = require "glint.nff", require "glint.helix", require "glint.sphereflake"
 
 local function near(got, want, tolerance, what)
@@ -583,6 +583,12 @@ function tests.photometric()
       near(l.at(x, y, 1), 0.75 * n_l, 1e-6, ("light %d at %d, %d"):format(k, x, y))
     end
   end
+  local mask = png.grey(3, 2)
+  mask:set(2, 1, 1)
+  mask:save(folder .. "/grey.png")
+  local written = slurp(folder .. "/grey.png")
+  check(written:sub(17, 26) == "\0\0\0\3\0\0\0\2\8\0", "a grey picture: size, 8 bits, one channel")
+  check(written:find("\0\0\0\0\0\0\0\255", 1, true), "its rows")
   for _, name in ipairs { "mask.png", "normal.png", "depth.png" } do
     check(slurp(set .. name):sub(25, 25):byte() == 16, "%s has 16 bits", name)
   end

@@ -3,6 +3,8 @@
 --     local picture = png.new(64, 32)
 --     picture:set(x, y, { 0.5, 0.2, 0.1 })     -- from 0, 0 at the top left; linear, 0 .. 1
 --     picture:save "picture.png"
+--     local mask = png.grey(64, 32)            -- one channel
+--     mask:set(x, y, 1)
 local png = {}
 local picture = {}
 picture.__index = picture
@@ -12,6 +14,11 @@ function png.new(width, height)
   return setmetatable({ width = width, height = height, rows = {} }, picture)
 end
 
+--- A black picture of one channel, such as a mask.
+function png.grey(width, height)
+  return setmetatable({ width = width, height = height, rows = {}, is_grey = true }, picture)
+end
+
 -- The code of sRGB, IEC 61966-2-1.
 local function encode(x)
   x = math.min(math.max(x, 0), 1)
@@ -19,10 +26,14 @@ local function encode(x)
   return math.floor(255 * x + 0.5)
 end
 
---- Sets a pixel to a linear colour: a list of three, or what has x, y and z.
+--- Sets a pixel to a linear colour: a list of three, or what has x, y and z; of one channel to a number.
 function picture:set(x, y, color)
   local row = self.rows[y] or {}
   self.rows[y] = row
+  if self.is_grey then
+    row[x] = string.char(encode(color))
+    return
+  end
   row[x] = string.char(encode(color.x or color[1]), encode(color.y or color[2]), encode(color.z or color[3]))
 end
 
@@ -55,14 +66,14 @@ end
 
 --- Writes the picture to a file; raises when that fails.
 function picture:save(path)
-  local lines = {}
+  local lines, black = {}, self.is_grey and "\0" or "\0\0\0"
   for y = 0, self.height - 1 do
     local row = self.rows[y] or {}
     lines[#lines + 1] = "\0"
-    for x = 0, self.width - 1 do lines[#lines + 1] = row[x] or "\0\0\0" end
+    for x = 0, self.width - 1 do lines[#lines + 1] = row[x] or black end
   end
   local file = assert(io.open(path, "wb"))
-  local head = string.pack(">I4I4BBBBB", self.width, self.height, 8, 2, 0, 0, 0)
+  local head = string.pack(">I4I4BBBBB", self.width, self.height, 8, self.is_grey and 0 or 2, 0, 0, 0)
   assert(file:write("\x89PNG\r\n\x1a\n", chunk("IHDR", head), chunk("sRGB", "\0"),
     chunk("IDAT", store(table.concat(lines))), chunk("IEND", "")))
   assert(file:close())
