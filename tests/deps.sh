@@ -17,6 +17,7 @@ libxxhash-dev   module:libxxhash
 build_optional='
 libisal-dev     module:libisal
 libdeflate-dev  module:libdeflate
+libopenexr-dev  module:OpenEXR
 libseccomp-dev  module:libseccomp
 '
 test_required='
@@ -25,6 +26,7 @@ libmpfr-dev     module:mpfr
 lua5.4          command:lua5.4
 '
 test_optional='
+python3-numpy   file:/usr/lib/python3/dist-packages/numpy
 lua-check       command:luacheck
 cppcheck        command:cppcheck
 povray          command:povray
@@ -134,7 +136,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libseccomp there is no --untrusted"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libseccomp there is no --untrusted"
         ;;
     test)
         require "$test_required"
