@@ -134,19 +134,19 @@ static inline double glint_face_height(const glint_face *face, const double plac
 static inline bool glint_solid_holds(const glint_solid *solid, const double center[3], const double place[3])
 {
     double k[3];
+    for (int i = 0; i < glint_slab_count(solid->form); i++)
+        if (!(glint_face_height(&solid->faces[2 * i], place) > 0 && glint_face_height(&solid->faces[2 * i + 1], place) < 0))
+            return false;
+    if (solid->form == GLINT_FORM_BOX)
+        return true;
     for (int c = 0; c < 3; c++) {
         const double *row = solid->inverse[c];
         k[c] = (row[0] * (place[0] - center[0]) + row[1] * (place[1] - center[1])) + row[2] * (place[2] - center[2]);
     }
-    for (int i = 0; i < glint_slab_count(solid->form); i++)
-        if (!(glint_face_height(&solid->faces[2 * i], place) > 0 && glint_face_height(&solid->faces[2 * i + 1], place) < 0))
-            return false;
     const double round = k[0] * k[0] + k[1] * k[1], z = k[2];
     switch (solid->form) {
     case GLINT_FORM_BALL:
         return round + z * z < 1;
-    case GLINT_FORM_BOX:
-        return true;
     case GLINT_FORM_CYLINDER:
         return round < 1;
     case GLINT_FORM_CONE:
