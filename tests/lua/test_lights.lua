@@ -79,6 +79,43 @@ function tests.whole_spot()
   check(bits(spot) == bits(point), "180 degrees: a point light")
 end
 
+-- ---- One plain lamp, whose light is found with the surface ----
+
+-- What a lamp of intensity 2 gives to a point: n.l / (c0 + c1 d + c2 d^2) on paper.
+local function given(hit, place, c)
+  local l, d = {}, 0
+  for k = 1, 3 do
+    l[k] = place[k] - hit.point[k]
+    d = d + l[k] ^ 2
+  end
+  d = math.sqrt(d)
+  local cosine = (hit.normal[1] * l[1] + hit.normal[2] * l[2] + hit.normal[3] * l[3]) / d
+  return 2 * math.max(cosine, 0) / (c[1] + c[2] * d + c[3] * d * d)
+end
+
+-- Points of a ball on a floor or a hill, seen from near by and from far away.
+function tests.attenuated()
+  local place, c = { 3, 4, 1 }, { 0.5, 0.1, 0.01 }
+  local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = WHITE }
+  local hill = glint.sphere { center = { 0, -1000, 0 }, radius = 1000, material = WHITE }
+  local seen = { [true] = 0, [false] = 0 }
+  math.randomseed(4)
+  for i = 1, 90 do
+    local at = { math.random() * 3 - 1.5, math.random() * 2 - 0.3, math.random() * 3 - 1.5 }
+    local eye = { 0, 2, i % 2 == 0 and 6 or 60 }
+    local scene = glint.scene { camera = glint.camera { eye = eye, at = at, fov = 1e-7 }, ball,
+      i % 3 == 0 and hill or glint.plane(FLOOR),
+      glint.point_light { position = place, attenuation = c, intensity = 2, shadows = false } }
+    local hit = scene:cast(eye, { at[1] - eye[1], at[2] - eye[2], at[3] - eye[3] })
+    if hit then
+      local want, round = given(hit, place, c), hit.object == ball
+      seen[round] = seen[round] + (want > 0 and 1 or 0)
+      for pixels = 1, 4, 3 do near(render(scene, pixels):pixel(0, 0), want, 1e-6, "point " .. i) end
+    end
+  end
+  check(seen[true] > 15 and seen[false] > 15, "lit: %d of the ball, %d below it", seen[true], seen[false])
+end
+
 -- ---- Small and near ----
 
 function tests.radius_0()
