@@ -126,6 +126,19 @@ static void choose_frame(glint_geometry *geometry)
 /// Numbers beyond this are as good as infinite, and differences of such floats are still finite.
 #define BOX_MAX 0x1p120
 
+/// What a box has to be larger by, in the index's units: for rounding; for what a solid's inverse and the solid differ by; for
+/// what a point may be off a triangle and still count as on it. That last is 13 slacks of the scene's coordinates at most:
+/// twice what surface states of the point, of two edges and a coordinate, and one of the corners as the point sees them.
+static double box_slack(const glint_geometry_table *table, const glint_prim *prim, double center, double half)
+{
+    const double rounding = 0x1p-50 * (fabs(center) + half);
+    if (prim->kind == GLINT_PRIM_SOLID)
+        return rounding + 0x1p-30 * half;
+    if (prim->kind == GLINT_PRIM_TRIANGLE)
+        return rounding + 16 * GLINT_POINT_SLACK_DOUBLE * table->extent * table->scale;
+    return rounding;
+}
+
 /// Its box, and a sphere around it: its own, or that of the box.
 static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
 {
@@ -136,12 +149,11 @@ static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, 
         center[c] = prim->kind == GLINT_PRIM_SPHERE ? prim->center[c] : 0.5 * upper[c] + 0.5 * lower[c];
         center[c] = (center[c] - table->reference[c]) * table->scale;
         half[c] *= table->scale;
-        // of a solid, what its inverse and it differ by
-        const double slack =
-            0x1p-50 * (fabs(center[c]) + half[c]) + (prim->kind == GLINT_PRIM_SOLID ? 0x1p-30 * half[c] : 0);
+        const double loose = half[c] + box_slack(table, prim, center[c], half[c]);
         prim->filter_center[c] = (float)center[c];
-        box->lower[c] = float_down(fmax(center[c] - half[c] - slack, -BOX_MAX));
-        box->upper[c] = float_up(fmin(center[c] + half[c] + slack, BOX_MAX));
+        box->lower[c] = float_down(fmax(center[c] - loose, -BOX_MAX));
+        box->upper[c] = float_up(fmin(center[c] + loose, BOX_MAX));
+        half[c] = prim->kind == GLINT_PRIM_SPHERE ? half[c] : loose;
     }
     const double radius = prim->kind == GLINT_PRIM_SPHERE ? half[0] : sqrt(vec_dot(half, half));
     prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(center, center)) + FLT_MIN);

@@ -441,10 +441,18 @@ static void test_occlude(void **state)
     assert_true(settled * case_step() > 100);
 }
 
+/// Cases that were wrong: a triangle of 30 roundings, which a point that counts as on it is further away from than its box is wide.
+static void test_occlude_found(void **state)
+{
+    (void)state;
+    run_cases(1, 1021078, occlude_case);
+}
+
 int main(void)
 {
     find_tested();
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_soft_light) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_occlude_found),
+                                        cmocka_unit_test(test_soft_light) };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();
     return failed;

@@ -34,7 +34,8 @@ typedef struct glint_prim {
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
     float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
-    float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf
+    float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf; triangle:
+                        ///< of its box, where the box has on each side 13 GLINT_POINT_SLACK_DOUBLE extent scale besides
     union {
         struct {
             double center[3]; ///< sphere, solid: centre; plane: a point of it

@@ -307,7 +307,8 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     for (int c = 0; c < 3; c++) {
         const long double low = (lower[c] - table->reference[c]) * table->scale,
                           high = (upper[c] - table->reference[c]) * table->scale;
-        const long double slack = 0x1p-60L * (fabsl(lower[c]) + fabsl(upper[c])) * table->scale,
+        const long double off = prim->kind == GLINT_PRIM_TRIANGLE ? 13 * GLINT_POINT_SLACK_DOUBLE * table->extent * table->scale : 0;
+        const long double slack = 0x1p-60L * (fabsl(lower[c]) + fabsl(upper[c])) * table->scale + off,
                           half = (high - low) / 2;
         away[c] = (double)((low + high) / 2);
         prim->filter_center[c] = (float)away[c];
