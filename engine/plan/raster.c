@@ -358,7 +358,7 @@ void glint_raster_clear(glint_raster *raster)
 #define PROJECT_NS 45 ///< a triangle, in view or not
 #define VISIT_NS 20 ///< what casting takes more for a triangle in view ...
 #define PIXEL_NS 1 ///< ... and for a sample
-#define PARALLEL_NS 500 ///< the same for a sample of parallel rays, which walk the index in groups
+#define PARALLEL_NS 40 ///< the same for a sample of parallel rays, whose triangles are tested one by one
 #define MERGE_NS 4 ///< a sample, where something else is to be cast beside
 #define BUILD_NS 500 ///< an index, for each primitive
 #define FRAMES_WITHOUT 8 ///< frames whose projections together are the work of building an index

@@ -210,10 +210,11 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
             const unsigned near = R(lanes_near_shape)(tile, &shape, depth, x, y);
             if (!near)
                 continue;
-            if (!placed)
+            if (!placed && !tile->parallel)
                 R(place_candidate)(tile->args, id, &candidate);
             placed = true;
-            if (R(decide_pixels)(tile, &candidate, x, y, near))
+            if (tile->parallel ? R(decide_rays)(tile->args, (uint32_t)(y * tile->across + x), id, near)
+                               : R(decide_pixels)(tile, &candidate, x, y, near))
                 R(note_depth)(tile, x, y);
         }
 }
@@ -222,7 +223,7 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
 static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
                           unsigned mask)
 {
-    const unsigned triangles = triangles_in(tile->args->geometry, node, mask);
+    const unsigned triangles = tile->parallel ? 0 : triangles_in(tile->args->geometry, node, mask);
     int order[GLINT_NODE_WIDTH];
     const int count = sort_slots(mask & ~triangles, seen->near, order);
     for (int i = 0; i < count; i++)
@@ -289,7 +290,7 @@ static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
     uint64_t may[GLINT_FIRST_CANDIDATES];
     const int count = R(candidates_in)(view, args->camera, list);
     tile.args = args;
-    tile.scaled = tile.deep = false;
+    tile.scaled = tile.deep = tile.parallel = false;
     tile.rr = view->rr;
     tile.uu = view->uu;
     tile.spread = view->spread;

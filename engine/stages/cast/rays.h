@@ -1,5 +1,5 @@
 // cast_rays: the nearest hit of rays that start anywhere. A lone ray walks the index; parallel ones walk it a group at a
-// time. Contract: stages.h.
+// time, or together where they are a tile of a camera (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -57,19 +57,17 @@ static inline void R(cast_inward)(const glint_cast_args *args, uint32_t g)
     }
 }
 
-/// Tests one primitive against all rays of a group.
-static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, uint32_t id)
+/// Decides one primitive for the lanes of a group in `near`. Returns whether any hit was kept.
+static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint32_t id, unsigned near)
 {
-    const glint_prim *prim = &args->geometry->prims[id];
     const size_t at = (size_t)g * GLINT_GROUP;
-    const unsigned near = R(near_rays)(rays, prim);
+    const glint_prim *prim = &args->geometry->prims[id];
     const unsigned leave = args->leaving ? lanes_equal(args->leaving + at, id) : 0;
     const bool shared_edge = args->leaving && prim->kind == GLINT_PRIM_TRIANGLE;
-    R(flat) flat;
-    if (!near)
-        return;
     const bool rounded = args->leaving && prim->kind == GLINT_PRIM_PLANE;
     const unsigned on_surfaces = rounded ? ~lanes_equal(args->leaving + at, GLINT_MISS) : 0;
+    bool any = false;
+    R(flat) flat;
     count_tests(args->tests, near);
     if (shared_edge)
         flat = R(flat_of)(prim, args->geometry->scale);
@@ -101,9 +99,20 @@ static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, con
             hit = R(meet)(f, c, d, prim, &t);
         }
         hit = rm_andnot(hit, rm_from_bits(own)); // see cast_inward
-        if (rm_bits(hit))
-            R(keep_nearest)(args, at + i, id, hit, t);
+        if (!rm_bits(hit))
+            continue;
+        R(keep_nearest)(args, at + i, id, hit, t);
+        any = true;
     }
+    return any;
+}
+
+/// Tests one primitive against all rays of a group.
+static inline void R(cast_on_group)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, uint32_t id)
+{
+    const unsigned near = R(near_rays)(rays, &args->geometry->prims[id]);
+    if (near)
+        R(decide_rays)(args, g, id, near);
 }
 
 /// Walks the index with one ray; what it may meet is tested against its whole group, whose rays are often alike.
@@ -168,18 +177,31 @@ static void R(walk_parallel)(const glint_cast_args *args, uint32_t g, const R(ra
     }
 }
 
+static void R(cast_parallel)(const glint_cast_args *args);
+
+/// A group's rays as filter and walk see them. local: room for their origins.
+static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
+                                     R(ray_group) * rays)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    R(index_frame)((const void *const *)args->origin, at, args->geometry, local);
+    R(set_origins)((const void *const *)args->origin, at, (const float(*)[GLINT_GROUP])local, rays);
+    for (int k = 0; k < 3; k++)
+        R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
+}
+
 static void R(cast_rays)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
+    if (args->parallel && args->camera && geometry->nodes) {
+        R(cast_parallel)(args);
+        return;
+    }
     for (uint32_t g = 0; g < args->group_count; g++) {
-        const size_t at = (size_t)g * GLINT_GROUP;
         R(start_group)(args, g);
-        R(index_frame)((const void *const *)args->origin, at, geometry, local);
-        R(set_origins)((const void *const *)args->origin, at, (const float(*)[GLINT_GROUP])local, &rays);
-        for (int k = 0; k < 3; k++)
-            R(narrow)((const real *)args->direction[k] + at, rays.direction[k]);
+        R(make_ray_group)(args, g, local, &rays);
         if (args->leaving)
             R(cast_inward)(args, g);
         for (uint32_t i = 0; i < geometry->unbounded_count; i++)

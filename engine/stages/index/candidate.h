@@ -9,6 +9,7 @@ typedef struct R(tile_cast) {
     screen_view view; ///< its cells are the groups
     int across, down;
     bool scaled; ///< the arrays below are filled
+    bool parallel; ///< the rays do not start at one eye but beside each other; they are in arrays
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
     float rr, uu; ///< squares of the lengths of right and up
     float longest; ///< no direction is longer
@@ -342,7 +343,7 @@ static void R(cast_candidates)(R(tile_cast) * tile, const R(candidate) * candida
 static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
-    tile->scaled = tile->deep = false;
+    tile->scaled = tile->deep = tile->parallel = false;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
     tile->rr = (float)DOT(args->camera->right, args->camera->right);
     tile->uu = (float)DOT(args->camera->up, args->camera->up);

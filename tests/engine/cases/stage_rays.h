@@ -208,7 +208,7 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     choose_lines(c, length);
     c->scene = random_scene(&c->plan);
     c->cast.geometry = &c->scene->table;
-    c->cast.camera = &c->camera;
+    c->cast.camera = kind == RAYS_OF_EYE || kind == RAYS_OF_ORTHOGRAPHIC_CAMERA ? &c->camera : NULL;
     memcpy(c->cast.origin, c->origin, sizeof c->cast.origin);
     memcpy(c->cast.direction, c->direction, sizeof c->cast.direction);
 }
