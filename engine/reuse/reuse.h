@@ -1,6 +1,6 @@
 /// What is kept of a frame, so that the next one runs only the stages whose inputs changed. Internal.
 ///
-/// Every stage has a key of exactly what it reads (plan.c). A result is kept per tile from the second frame on that
+/// Every stage has a key of exactly what it reads (plan/keys.c). A result is kept per tile from the second frame on that
 /// has its key: a stage that differs in every frame is not worth the memory it would write. A kept result is used
 /// where its key equals the plan's, so the reused frame has the fresh frame's bits.
 ///
