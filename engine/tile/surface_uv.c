@@ -83,21 +83,23 @@ static void mesh_uv(const glint_pattern_place *place, const glint_uv_point *poin
     const glint_mesh *mesh = place->mesh;
     const uint32_t *at = (mesh->triangle_uv ? mesh->triangle_uv : mesh->triangles)[point->triangle];
     const double *corner[3] = { mesh->uv[at[0]], mesh->uv[at[1]], mesh->uv[at[2]] };
-    double side[3][3], n[3], across[2][3], steepest = 0;
+    double side[3][3], n[3], across[2][3], steepest2 = 0;
     const double scale = sides_of(mesh, point->triangle, point->p, side);
     vec_cross(n, side[0], side[1]);
     vec_cross(across[0], side[1], n);
     vec_cross(across[1], n, side[0]);
-    const double n2 = vec_dot(n, n), w1 = vec_dot(across[0], side[2]) / n2, w2 = vec_dot(across[1], side[2]) / n2;
+    const double n2 = vec_dot(n, n), per = scale / n2, w1 = vec_dot(across[0], side[2]) / n2,
+                 w2 = vec_dot(across[1], side[2]) / n2;
     for (int k = 0; k < 2; k++) {
         const double u0 = corner[0][k], d1 = corner[1][k] - u0, d2 = corner[2][k] - u0;
-        const double low = fmin(u0, fmin(corner[1][k], corner[2][k])), high = fmax(u0, fmax(corner[1][k], corner[2][k]));
+        const double low = fmin(u0, fmin(corner[1][k], corner[2][k])),
+                     high = fmax(u0, fmax(corner[1][k], corner[2][k]));
         out->at[k] = fmin(fmax(u0 + (w1 * d1 + w2 * d2), low), high);
         for (int c = 0; c < 3; c++)
-            out->slope[k][c] = (d1 * across[0][c] + d2 * across[1][c]) / n2 * scale;
-        steepest = fmax(steepest, sqrt(vec_dot(out->slope[k], out->slope[k])));
+            out->slope[k][c] = (d1 * across[0][c] + d2 * across[1][c]) * per;
+        steepest2 = fmax(steepest2, vec_dot(out->slope[k], out->slope[k]));
     }
-    out->unit = 1 / steepest;
+    out->unit = 1 / sqrt(steepest2);
 }
 
 void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point *point, glint_surface_uv *out)
