@@ -233,6 +233,7 @@ static const char *missing_hint(const cli_options *options, char out[GLINTL_PATH
 bool cli_run_script(cli_script *script, const cli_options *options, glintL_run *run)
 {
     task work = { script, options, run };
+    run->is_dialect = options->dialect != NULL;
     *script = (cli_script) { .memory.most = UNTRUSTED_LUA_MEMORY };
     script->state = options->untrusted_s > 0 ? cli_untrusted_state(&script->memory) : luaL_newstate();
     lua_State *L = script->state;

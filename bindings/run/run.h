@@ -204,6 +204,7 @@ struct glintL_run {
     bool keeps_images; ///< every picture has its linear beauty pass
     int preview_side; ///< > 0: no picture has a longer side or more than one sample a pixel
     bool was_shrunk; ///< by preview_side
+    bool is_dialect; ///< the script is in another dialect, with other words than warnings that name functions have
     bool is_command; ///< run by the command: its options beat the script's, files are written behind
     glintL_mode mode;
     int64_t explain_frame;

@@ -132,7 +132,7 @@ static void explain(const glint_scene *scene, const glintL_work *work, char *out
 
 void glintL_look_for_black(glintL_run *run, const glint_scene *scene, const glintL_work *work)
 {
-    if (run->has_light || !work->image || run->request.warnings == GLINTL_WARNINGS_NONE)
+    if (run->has_light || run->is_dialect || !work->image || run->request.warnings == GLINTL_WARNINGS_NONE)
         return;
     if (!glint_image_is_black(work->image)) {
         run->has_light = true;

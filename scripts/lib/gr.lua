@@ -145,6 +145,18 @@ end
 
 -- ---- Materials, lights, pictures ----
 
+-- Neither has methods in the dialect: one that a scene calls is a function that says so.
+local function without_methods(kind)
+  return { __index = function(_, name)
+    if type(name) ~= "string" or name:sub(1, 2) == "__" then return nil end
+    return function()
+      check.raise("%s:%s: this method is not part of the dialect that glint runs", kind, name)
+    end
+  end }
+end
+
+local MATERIAL, LIGHT = without_methods "material", without_methods "light"
+
 -- The model of the highlight. An exponent of 0 makes it 1 wherever a light reaches, as n.h > 0 has it; r.v is not
 -- above 0 everywhere.
 local function model_of(shininess)
@@ -159,7 +171,7 @@ function gr.material(kd, ks, shininess)
     fields.model = model_of(shininess)
     fields.specular, fields.shininess = ks, shininess
   end
-  local material = {}
+  local material = setmetatable({}, MATERIAL)
   materials[material] = { shade = glint.material(fields) }
   check.name_object(material, "material")
   return material
@@ -191,7 +203,7 @@ function gr.light(position, colour, falloff, extra)
       fields.attenuation = NO_FALLOFF
     end
   end
-  local light = {}
+  local light = setmetatable({}, LIGHT)
   lights[light] = new_light(fields)
   check.name_object(light, "light")
   return light

@@ -305,6 +305,9 @@ local function refuses(text, message, options)
 end
 refuses("gr.torus('t', 1)", "gr.torus: this function is not part of the dialect")
 refuses("gr.sphere('s'):set_texture('x.png')", "gr.set_texture: this function is not part of the dialect")
+refuses("gr.material({1,1,1}, {0,0,0}, 1):set_texture('x.png')",
+  "material:set_texture: this method is not part of the dialect")
+refuses("gr.light({1,1,1}, {1,1,1}):set_radius(2)", "light:set_radius: this method is not part of the dialect")
 refuses("gr.sphere()", "gr.sphere: name: string expected, got nil")
 refuses("gr.joint('j', {1, 2}, {0, 0, 0})", "gr.joint: x: table of 3 numbers expected, got table of 2")
 refuses("gr.nh_sphere('s', {0, 0, 0})", "gr.nh_sphere: radius: number expected, got nil")
