@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CARRY_PRIMS 16384u ///< a scene of more keeps nothing
-#define CARRY_CHANGES 64 ///< likewise a frame that has changed more
+#define CARRY_PRIMS 16384u ///< in a scene of more, frames that changed too much are not looked at for some frames
+#define CARRY_CHANGES 64 ///< a frame that has changed more keeps nothing
+#define CARRY_PAUSE_MAX 16 ///< frames
 
 /// Room around every ball: far above all rounding of the kernels, of these tests and of the balls themselves.
 static double loosened(double radius, double distance) { return radius * (1 + 1e-6) + 1e-6 * distance; }
@@ -84,8 +85,13 @@ static bool find_changes(carry *c, const glint_cached_place *was, const glint_ca
 
 // ---- What it may have touched ----
 
-/// Whether a change may show in a tile: one that is not for certain outside the pyramid of its rays.
-static bool shows(const carry *c, uint32_t column, uint32_t row)
+/// The planes around a tile's rays: inwards[k] . (place - eye) >= -offset[k] inside; length[k]: of inwards[k].
+typedef struct sides {
+    double inwards[4][3], length[4], offset[4];
+} sides;
+
+/// A pyramid, or with parallel rays a bar.
+static void find_sides(const carry *c, uint32_t column, uint32_t row, sides *out)
 {
     const glint_plan_camera *camera = &c->plan->camera;
     const double width = c->plan->desc.width, height = c->plan->desc.height;
@@ -93,26 +99,34 @@ static bool shows(const carry *c, uint32_t column, uint32_t row)
                           2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - width };
     const double y[2] = { height - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height),
                           height - 2.0 * row * GLINT_TILE_HEIGHT };
-    double inwards[4][3], length[4];
     for (int side = 0; side < 4; side++) {
         const double *across = side < 2 ? camera->right : camera->up, *along = side < 2 ? camera->up : camera->right;
         const double at = side < 2 ? x[side] : y[side - 2];
         double edge[3];
         for (int k = 0; k < 3; k++)
-            edge[k] = camera->forward[k] + at * across[k];
-        vec_cross(inwards[side], edge, along);
-        length[side] = sqrt(vec_dot(inwards[side], inwards[side]));
-        const double sign = (vec_dot(inwards[side], across) < 0) == (side % 2 == 0) ? -1 : 1;
+            edge[k] = camera->forward[k] + (camera->orthographic ? 0 : at * across[k]);
+        vec_cross(out->inwards[side], edge, along);
+        const double sign = (vec_dot(out->inwards[side], across) < 0) == (side % 2 == 0) ? -1 : 1;
         for (int k = 0; k < 3; k++)
-            inwards[side][k] *= sign;
+            out->inwards[side][k] *= sign;
+        out->length[side] = sqrt(vec_dot(out->inwards[side], out->inwards[side]));
+        out->offset[side] = camera->orthographic ? -at * vec_dot(out->inwards[side], across) : 0;
     }
+}
+
+/// Whether a change may show in a tile: one that is not for certain outside its rays.
+static bool shows(const carry *c, uint32_t column, uint32_t row)
+{
+    const glint_plan_camera *camera = &c->plan->camera;
+    sides s;
+    find_sides(c, column, row, &s);
     for (uint32_t i = 0; i < c->ball_count; i++) {
         double way[3];
         vec_sub(way, c->balls[i].center, camera->eye);
         const double radius = loosened(c->balls[i].radius, sqrt(vec_dot(way, way)));
         bool outside = false;
         for (int side = 0; side < 4; side++)
-            outside = outside || vec_dot(inwards[side], way) < -radius * length[side];
+            outside = outside || vec_dot(s.inwards[side], way) + s.offset[side] < -radius * s.length[side];
         if (!outside)
             return true;
     }
@@ -251,13 +265,16 @@ static bool find_moves(const glint_cached_place *was, const glint_cached_place *
     return same || *moved_to;
 }
 
-static void carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
+/// Returns whether what has changed is little.
+static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count)
 {
     const glint_cached_place *was = c->reuse->places;
     glint_plan_twin twin;
     uint32_t *moved_to = NULL;
-    if (!find_changes(c, was, is, count) || !find_moves(was, is, count, &moved_to))
-        return;
+    if (!find_changes(c, was, is, count))
+        return false;
+    if (!find_moves(was, is, count, &moved_to))
+        return true;
     carry whole = *c;
     whole.moved_to = moved_to;
     whole.before = &twin.plan;
@@ -266,6 +283,27 @@ static void carry_changes(carry *c, const glint_cached_place *is, uint32_t count
         carry_all(&whole);
     glint_plan_twin_free(&twin);
     free(moved_to);
+    return true;
+}
+
+/// Whether the places of this frame are worth finding: of many primitives not in each frame of a scene in which most of them move.
+static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
+{
+    if (count * sizeof(glint_cached_place) >= reuse->budget / 64)
+        return false;
+    if (count <= CARRY_PRIMS || reuse->carry_wait == 0)
+        return true;
+    reuse->carry_wait--;
+    return false;
+}
+
+/// After a frame that changed much: twice as long as the last time.
+static void wait_longer(glint_reuse *reuse)
+{
+    reuse->carry_pause = reuse->carry_pause ? reuse->carry_pause * 2 : 1;
+    if (reuse->carry_pause > CARRY_PAUSE_MAX)
+        reuse->carry_pause = CARRY_PAUSE_MAX;
+    reuse->carry_wait = reuse->carry_pause;
 }
 
 void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *const *images, uint32_t image_count)
@@ -276,13 +314,16 @@ void glint_reuse_carry(glint_reuse *reuse, const glint_plan *plan, glint_image *
     if (!reuse->on || (plain && glint_key_equal(reuse->where, geometry->where)))
         return;
     carry c = { .reuse = reuse, .plan = plan, .images = images, .image_count = image_count };
-    const bool few = count <= CARRY_PRIMS && count * sizeof(glint_cached_place) < reuse->budget / 64;
-    glint_cached_place *places = few ? find_places(geometry, count) : NULL;
+    glint_cached_place *places = is_worth_finding(reuse, count) ? find_places(geometry, count) : NULL;
     const bool alike = plain && reuse->places && places && reuse->place_count == count && reuse->tile_count > 0 &&
                        reuse->scale == geometry->table.scale && // another underflows elsewhere
                        reuse->light_count == (lights < GLINT_CACHED_LIGHTS ? lights : GLINT_CACHED_LIGHTS);
-    if (alike && plan->desc.precision == GLINT_DOUBLE && !plan->camera.orthographic && !glint_plan_cuts(plan))
-        carry_changes(&c, places, count);
+    if (alike && plan->desc.precision == GLINT_DOUBLE && !glint_plan_cuts(plan)) {
+        if (carry_changes(&c, places, count))
+            reuse->carry_pause = 0;
+        else
+            wait_longer(reuse);
+    }
     free(reuse->places);
     reuse->places = places;
     reuse->place_count = count;

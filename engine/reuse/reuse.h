@@ -84,6 +84,7 @@ typedef struct glint_reuse {
     glint_key where; ///< of the places of the last frame's surfaces, and
     glint_cached_place *places; ///< these, by id; owned; NULL: there were too many
     uint32_t place_count;
+    uint32_t carry_wait, carry_pause; ///< frames whose places are not found, of those to come; how many after the last great change
     double scale; ///< of the geometry's table
     // which results this frame has in common with the last, and therefore keeps
     bool keep_cast, keep_pattern, keep_view, keep_light[GLINT_CACHED_LIGHTS];

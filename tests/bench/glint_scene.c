@@ -101,6 +101,10 @@ static void set_camera(side_scene *s)
     widen(s->plain.eye, c.eye);
     widen(s->plain.at, c.at);
     c.fov_y_rad = (double)s->plain.fov_y_degrees * PI / 180;
+    if (s->plain.height > 0) {
+        c.projection = GLINT_ORTHOGRAPHIC;
+        c.height = (double)s->plain.height;
+    }
     glint_camera *camera;
     side_must(glint_camera_create(&c, &camera, &error), &error);
     glint_scene_desc d = *glint_scene_get(s->scene);

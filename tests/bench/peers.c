@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|1k|1M] [shadows=0] [samples=N] [area=1] [change=light|shininess]
+///   peers povray|tachyon [scene=workshop|1k|1M|box] [shadows=0] [samples=N] [area=1] [change=light|shininess]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
 /// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
@@ -24,7 +24,8 @@ static void povray_camera(const bench_scene *s)
         up[k] = -BENCH_HEIGHT * c.down[k];
         forward[k] = c.corner[k] + 0.5 * right[k] - 0.5 * up[k];
     }
-    print3("camera { perspective location <%.9g, %.9g, %.9g>", s->eye);
+    printf("camera { %s", s->height > 0 ? "orthographic" : "perspective");
+    print3(" location <%.9g, %.9g, %.9g>", s->eye);
     printf(" direction <%.9g, %.9g, %.9g>", forward[0], forward[1], forward[2]);
     printf(" right <%.9g, %.9g, %.9g>", right[0], right[1], right[2]);
     printf(" up <%.9g, %.9g, %.9g> }\n", up[0], up[1], up[2]);

@@ -100,6 +100,13 @@ static void make_cloud(bench_scene *s, size_t count)
     set3(s->light, 25, 30, 30);
 }
 
+/// As materials scientists look at particles: all of a box of them, by parallel rays.
+static void make_box(bench_scene *s)
+{
+    make_cloud(s, 100000);
+    s->height = 18;
+}
+
 // ---- A mesh: a knobbly torus of 500 x 500 quadrangles ----
 
 static void make_mesh(bench_scene *s)
@@ -140,6 +147,8 @@ bool bench_scene_create(const char *name, bench_scene *out)
         make_cloud(out, 1000);
     else if (strcmp(name, "1M") == 0)
         make_cloud(out, 1000000);
+    else if (strcmp(name, "box") == 0)
+        make_box(out);
     else if (strcmp(name, "mesh") == 0)
         make_mesh(out);
     else
@@ -191,7 +200,8 @@ bench_camera bench_camera_of(const bench_scene *scene)
     cross(forward, (double[3]) { 0, 1, 0 }, right);
     normalise(right);
     cross(right, forward, up);
-    double pixel = 2 * tan((double)scene->fov_y_degrees * PI / 360) / BENCH_HEIGHT;
+    double pixel = scene->height > 0 ? (double)scene->height / BENCH_HEIGHT
+                                     : 2 * tan((double)scene->fov_y_degrees * PI / 360) / BENCH_HEIGHT;
     for (int c = 0; c < 3; c++) {
         camera.right[c] = pixel * right[c];
         camera.down[c] = -pixel * up[c];

@@ -25,11 +25,12 @@ typedef struct bench_scene {
     int material_count;
     bench_material materials[BENCH_MATERIALS];
     float eye[3], at[3], fov_y_degrees;
+    float height; ///< above 0: of an orthographic view, world units; for glint and POV-Ray alone
     float light[3], light_radius; ///< a white light; the radius is that of the area light
     float ambient[3], background[3];
 } bench_scene;
 
-/// "workshop", "1k", "1M" (spheres) or "mesh" (500,000 triangles). False when there is no such scene.
+/// "workshop", "1k", "1M" (spheres), "box" (100,000 spheres, an orthographic view) or "mesh" (500,000 triangles). False when there is no such scene.
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
 

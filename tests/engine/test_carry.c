@@ -106,6 +106,10 @@ static void make_world(world *w)
     view.eye[0] = between(-4, 4);
     view.eye[1] = between(0.5, 9);
     view.eye[2] = 16;
+    if (one_in(4)) {
+        view.projection = GLINT_ORTHOGRAPHIC;
+        view.height = between(4, 14);
+    }
     assert_int_equal(glint_camera_create(&view, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = *glint_scene_get(w->scene);

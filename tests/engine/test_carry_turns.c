@@ -10,7 +10,7 @@
 #include "engine/film/image.h"
 #include "tests/engine/cases/random.h"
 
-enum { MESHES = 12, LAMPS = 60, BALLS = 30, MOVES = 60 };
+enum { MESHES = 12, LAMPS = 60, BALLS = 30, MOVES = 60, CROWD = 17000 };
 
 typedef struct stand {
     glint_scene *scene;
@@ -68,8 +68,11 @@ static void free_stand(stand *s)
         glint_material_release(s->paint[i]);
 }
 
-static void check(const stand *s, glint_scene *scene)
+/// Compares a frame of the renderer that reuses with a fresh one. Returns the share of its hits that were kept.
+static double check(const stand *s, glint_scene *scene)
 {
+    glint_frame_stats stats;
+    double kept = 0;
     glint_renderer *fresh;
     glint_renderer_desc desc = glint_renderer_desc_default();
     glint_plan *plan;
@@ -79,7 +82,9 @@ static void check(const stand *s, glint_scene *scene)
     assert_int_equal(glint_renderer_create(&desc, &fresh, NULL), GLINT_OK);
     assert_int_equal(glint_plan_create(scene, &s->render, &plan, NULL), GLINT_OK);
     assert_int_equal(glint_render(fresh, plan, &a, NULL, NULL), GLINT_OK);
-    assert_int_equal(glint_render(s->renderer, plan, &b, NULL, NULL), GLINT_OK);
+    assert_int_equal(glint_render(s->renderer, plan, &b, &stats, NULL), GLINT_OK);
+    for (int i = 0; i < stats.stage_count; i++)
+        kept = strcmp(stats.stage_name[i], "cast") == 0 ? stats.stage_reused[i] : kept;
     const size_t pixels = (size_t)a->width * (size_t)a->height;
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         for (int c = 0; c < 3; c++)
@@ -90,6 +95,7 @@ static void check(const stand *s, glint_scene *scene)
     glint_image_release(b);
     glint_plan_destroy(plan);
     glint_renderer_destroy(fresh);
+    return kept;
 }
 
 /// Takes the caller's reference.
@@ -348,12 +354,49 @@ static void shares_in_another_order(void **unused)
     free_stand(&s);
 }
 
+static void look_from_above(stand *s)
+{
+    glint_camera_desc desc = *glint_camera_get(s->camera);
+    desc.projection = GLINT_ORTHOGRAPHIC;
+    desc.height = 6;
+    assert_int_equal(glint_camera_set(s->camera, &desc, NULL), GLINT_OK);
+}
+
+/// One of very many moves: the others' hits are kept, of any camera. Where all move and then one again, that is found out.
+static void one_of_a_crowd(void **unused)
+{
+    (void)unused;
+    static glint_shape *ball[CROWD];
+    for (int parallel = 0; parallel < 2; parallel++) {
+        stand s;
+        double kept = 0;
+        make_stand(&s, 0);
+        if (parallel)
+            look_from_above(&s);
+        for (int i = 0; i < CROWD; i++)
+            ball[i] =
+                add_ball(s.scene, i % 160 * 0.1 - 8, i / 160 % 10 * 0.2 - 1, i / 1600 * 0.5 - 4, 0.04, s.paint[i % 2]);
+        glint_light_release(add_light(s.scene, 3, false));
+        for (int frame = 0; frame < 12; frame++) {
+            for (int i = 0; i < 100 && frame >= 3 && frame < 6; i++)
+                move(ball[i * 50], i % 16 - 8, i / 16 - 3, frame * 0.1);
+            move(ball[7000], frame * 0.2 - 1, 0, 3);
+            kept = check(&s, s.scene);
+            if (frame == 2)
+                assert_true(kept > 0.4);
+        }
+        assert_true(kept > 0.4);
+        free_stand(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_begun),   cmocka_unit_test(another_order),
-        cmocka_unit_test(far_beyond),    cmocka_unit_test(no_room_for_a_while),
-        cmocka_unit_test(other_objects), cmocka_unit_test(shares_in_another_order),
+        cmocka_unit_test(one_of_a_crowd),          cmocka_unit_test(a_box_begun),
+        cmocka_unit_test(another_order),           cmocka_unit_test(far_beyond),
+        cmocka_unit_test(no_room_for_a_while),     cmocka_unit_test(other_objects),
+        cmocka_unit_test(shares_in_another_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
