@@ -1,1 +1,0 @@
-local n = gr.node('n')
