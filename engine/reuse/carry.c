@@ -102,15 +102,15 @@ static void find_sides(const carry *c, uint32_t column, uint32_t row, sides *out
     for (int side = 0; side < 4; side++) {
         const double *across = side < 2 ? camera->right : camera->up, *along = side < 2 ? camera->up : camera->right;
         const double at = side < 2 ? x[side] : y[side - 2];
-        double edge[3];
+        double edge[3], normal[3];
         for (int k = 0; k < 3; k++)
             edge[k] = camera->forward[k] + (camera->orthographic ? 0 : at * across[k]);
-        vec_cross(out->inwards[side], edge, along);
-        const double sign = (vec_dot(out->inwards[side], across) < 0) == (side % 2 == 0) ? -1 : 1;
+        vec_cross(normal, edge, along);
+        const double sign = (vec_dot(normal, across) < 0) == (side % 2 == 0) ? -1 : 1;
         for (int k = 0; k < 3; k++)
-            out->inwards[side][k] *= sign;
-        out->length[side] = sqrt(vec_dot(out->inwards[side], out->inwards[side]));
-        out->offset[side] = camera->orthographic ? -at * vec_dot(out->inwards[side], across) : 0;
+            out->inwards[side][k] = sign * normal[k];
+        out->length[side] = sqrt(vec_dot(normal, normal));
+        out->offset[side] = camera->orthographic ? -at * sign * vec_dot(normal, across) : 0;
     }
 }
 

@@ -154,7 +154,7 @@ static void one_in_the_other(void **unused)
     near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 2, 0); // the point within the ball, the light outside
     near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 5, 1); // both within
     near_share(light, 0.5, (double[3]) { 0, 0.5, 0 }, 3.5, 0.5); // half of the light within
-    near_share(light, 1e-150, (double[3]) { 0, 2, 0 }, 0.25e-150, 0.75); // a quarter of it to the eye
+    near_share(light, 1e-149, (double[3]) { 0, 2, 0 }, 0.25e-149, 0.75); // a quarter of it to the eye
     near_share(light, 0.5, (double[3]) { 0, -40, 0 }, 2, 1); // below
 }
 

@@ -295,7 +295,7 @@ static inline void R(onto_plane)(const glint_solid *solid, rm flat, const vr fac
 INNER void R(onto_unit)(uint32_t form, vr which, rm flat, vr k[3], vr g[3], vr face[3])
 {
     const bool round = form != GLINT_FORM_BOX && form != GLINT_FORM_DISK;
-    vr on_side[3] = { k[0], k[1], k[2] }, side[3];
+    vr on_side[3] = { k[0], k[1], k[2] }, side[3] = { k[0], k[1], k[2] };
     if (round)
         R(onto_side)(form, on_side, side);
     for (int c = 0; c < 3; c++) {
