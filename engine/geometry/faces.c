@@ -34,11 +34,19 @@ void glint_face_init(glint_face *face, const glint_placing *place, const double 
     face->places = 0;
 }
 
-void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3])
+/// What the sums of the map are made of, which brings places of the shape's own space to the world.
+static double moved_by(const glint_placing *place, int axis, const double own[3])
+{
+    const double *row = place->map ? place->map->m[axis] : NULL;
+    return row ? ((fabs(row[0]) * own[0] + fabs(row[1]) * own[1]) + fabs(row[2]) * own[2]) + fabs(row[3]) : 0;
+}
+
+void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3],
+                      const double own[3])
 {
     double places = 0;
     for (int c = 0; c < 3; c++) {
-        const double moved = place->map ? fabs(place->map->m[c][3]) : 0;
+        const double moved = moved_by(place, c, own);
         places += fabs(face->normal[c]) * ((fmax(fabs(lower[c]), fabs(upper[c])) + fabs(face->at[c])) + moved);
     }
     face->places = fmax(face->places, places);

@@ -20,8 +20,9 @@ void glint_place_normal(const glint_placing *place, const double n[3], double ou
 /// The plane through a point, square to a normal of any length. It is made of as little as describes it: where the normal is
 /// along an axis, of the point's coordinate on that axis alone.
 void glint_face_init(glint_face *face, const glint_placing *place, const double normal[3], const double point[3]);
-/// Takes note of a surface on the face, within lower .. upper.
-void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3]);
+/// Takes note of a surface on the face, within lower .. upper; in its own space no coordinate is beyond +-own.
+void glint_face_bound(glint_face *face, const glint_placing *place, const double lower[3], const double upper[3],
+                      const double own[3]);
 
 /// The faces of a solid, in the order of glint_solid; out: room for six.
 void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glint_placing *place, glint_face *out);

@@ -171,12 +171,15 @@ static glint_transform unit_map(const glint_shape_desc *desc)
 }
 
 /// What rounding is measured by: of the faces, and of the curved side, which is near 1 in each of the unit shape's directions.
-static void bound_solid(const glint_prim *prim, const glint_placing *place, glint_solid *solid, glint_face *faces)
+static void bound_solid(const glint_prim *prim, const glint_placing *place, const glint_transform *unit,
+                        glint_solid *solid, glint_face *faces)
 {
-    double lower[3], upper[3];
+    double lower[3], upper[3], own[3];
     solid_bounds(solid, prim->center, lower, upper);
+    for (int c = 0; c < 3; c++)
+        own[c] = ((fabs(unit->m[c][0]) + fabs(unit->m[c][1])) + fabs(unit->m[c][2])) + fabs(unit->m[c][3]);
     for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
-        glint_face_bound(&faces[i], place, lower, upper);
+        glint_face_bound(&faces[i], place, lower, upper, own);
     solid->faces = faces;
     solid->places = 1;
     for (int i = 0; i < 9; i++)
@@ -193,22 +196,23 @@ static double scale_linear(double m[3][3])
     return scale;
 }
 
-/// faces: of it, not yet bounded.
-static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *map,
+/// unit: its map from the unit shape, in its own space. faces: of it, not yet bounded.
+static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, const glint_transform *unit,
                        const glint_placing *place, glint_face *faces)
 {
+    const glint_transform map = place->map ? glint_transform_product(place->map, unit) : *unit;
     double cofactors[3][3], scaled[3][3];
     prim->kind = GLINT_PRIM_SOLID;
     solid->form = form;
-    glint_transform_linear(map, solid->forward);
+    glint_transform_linear(&map, solid->forward);
     for (int c = 0; c < 3; c++)
-        prim->center[c] = map->m[c][3] + 0.0;
+        prim->center[c] = map.m[c][3] + 0.0;
     memcpy(scaled, solid->forward, sizeof scaled);
     const double scale = scale_linear(scaled), determinant = glint_linear_cofactors(scaled, cofactors);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             solid->inverse[i][j] = cofactors[j][i] / determinant * scale;
-    bound_solid(prim, place, solid, faces);
+    bound_solid(prim, place, unit, solid, faces);
 }
 
 // ---- All of a scene ----
@@ -291,7 +295,7 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
 /// A triangle that is square to an axis shares its plane with others, those of its own mesh before all.
 static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
 {
-    double lower[3], upper[3], normal[3];
+    double lower[3], upper[3], normal[3], own[3];
     const int axis = glint_level_axis(mesh, i);
     const double *corner = mesh->vertices[mesh->triangles[i][0]];
     if (axis == 3)
@@ -305,7 +309,10 @@ static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size
     f->level = corner[axis];
     prim->face = f->face_count;
     glint_prim_bounds(NULL, prim, lower, upper);
-    glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper);
+    for (int j = 0; j < 3; j++)
+        for (int c = 0; c < 3; c++)
+            own[c] = fmax(j ? own[c] : 0, fabs(mesh->vertices[mesh->triangles[i][j]][c]));
+    glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper, own);
 }
 
 /// A mirrored triangle's corners are taken the other way round: its front stays its front.
@@ -341,22 +348,20 @@ static void add_ball(filler *f, glint_prim *prim, const double center[3], double
     }
     glint_shape_desc desc = { .kind = GLINT_SHAPE_SPHERE, .radius = radius };
     vec_copy(desc.center, center);
-    const glint_transform unit = unit_map(&desc), map = glint_transform_product(place->map, &unit);
+    const glint_transform unit = unit_map(&desc);
     prim->item = f->solid_count++;
-    solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &map, place, NULL);
+    solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &unit, place, NULL);
 }
 
 static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place)
 {
-    glint_transform map = unit_map(desc);
-    if (place->map)
-        map = glint_transform_product(place->map, &map);
+    const glint_transform unit = unit_map(desc);
     const glint_form form = form_of(desc);
     glint_face *faces = f->geometry->faces + f->face_count;
     glint_solid_faces(desc, form, place, faces);
     f->face_count += 2 * (uint32_t)glint_slab_count(form);
     prim->item = f->solid_count++;
-    solid_init(prim, &f->geometry->solids[prim->item], form, &map, place, faces);
+    solid_init(prim, &f->geometry->solids[prim->item], form, &unit, place, faces);
 }
 
 static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
@@ -490,8 +495,8 @@ static bool allocate(filler *f)
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
-           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) &&
-           (geometry->faces || !f->faces) && allocate_shading_points(f);
+           (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && (geometry->faces || !f->faces) &&
+           allocate_shading_points(f);
 }
 
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
