@@ -1036,6 +1036,26 @@ function glint.log2(a) end
 ---@return any
 function glint.pow(a, b) end
 
+---@alias glint.easing "linear"|"smooth"|"smoother"|"in"|"out"
+
+--- A share of a way for a share of its time: 0 before it, 1 after it. smooth (the default): 3 t^2 - 2 t^3; smoother:
+--- 6 t^5 - 15 t^4 + 10 t^3; in: t^2; out: 2 t - t^2.
+---@param t number
+---@param kind glint.easing?
+---@return number  0 .. 1
+function glint.ease(t, kind) end
+
+---@class glint.keys
+---@field [integer] {[1]: number, [2]: number|glint.vector|number[]}  time and value, times rising; at least two
+---@field ease (glint.easing|"spline")?  of the way from each key to the next; spline: through the keys without a halt (Catmull-Rom)
+---@field cyclic boolean?  after the last key the first comes again
+
+--- A function of time through keys: a number, a vector for values of three, else a list. Before the first key it has the first's value,
+--- after the last the last's.
+---@param keys glint.keys
+---@return fun(t: number): any
+function glint.keys(keys) end
+
 --- Radians, -pi .. pi.
 ---@param y glint.values
 ---@param x glint.values

@@ -295,7 +295,7 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
 /// A triangle that is square to an axis shares its plane with others, those of its own mesh before all.
 static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
 {
-    double lower[3], upper[3], normal[3], own[3];
+    double lower[3], upper[3], normal[3], own[3] = { 0, 0, 0 };
     const int axis = glint_level_axis(mesh, i);
     const double *corner = mesh->vertices[mesh->triangles[i][0]];
     if (axis == 3)
@@ -311,7 +311,7 @@ static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size
     glint_prim_bounds(NULL, prim, lower, upper);
     for (int j = 0; j < 3; j++)
         for (int c = 0; c < 3; c++)
-            own[c] = fmax(j ? own[c] : 0, fabs(mesh->vertices[mesh->triangles[i][j]][c]));
+            own[c] = fmax(own[c], fabs(mesh->vertices[mesh->triangles[i][j]][c]));
     glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper, own);
 }
 

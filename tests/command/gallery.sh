@@ -38,6 +38,7 @@ picture adaptive --frames 3
 picture bricks --frames 1
 picture caps --frames 6
 picture chessboard --frames 1
+picture flight --frames 30
 picture earth --frames 1
 picture furnace
 picture gr_scene --dialect gr
