@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "bindings/command/cli.h"
+#include "bindings/run/system.h"
 
 #define CLIPPED_HINT 0.1 // share of clipped pixels above which a picture looks washed out
 
@@ -259,8 +260,9 @@ void cli_report_end(cli_output *output)
     const glintL_run *run = output->run;
     double seconds = (glintL_now_ms() - output->start_ms) * 1e-3;
     if (output->json) {
-        fprintf(output->data, "{\"event\":\"end\",\"frames\":%" PRId64 ",\"kept\":%" PRId64 ",\"seconds\":%.3f}",
-                run->done, run->kept, seconds);
+        fprintf(output->data,
+                "{\"event\":\"end\",\"frames\":%" PRId64 ",\"kept\":%" PRId64 ",\"seconds\":%.3f,\"peak_bytes\":%lld}",
+                run->done, run->kept, seconds, glintL_peak_bytes());
         cli_end_line(output);
     }
     if (output->quiet)

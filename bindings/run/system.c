@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/utsname.h>
@@ -23,7 +24,8 @@
 static bool make_private(int fd, bool waits)
 {
     const int flags = fcntl(fd, F_GETFL);
-    return fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 && (waits || (flags >= 0 && fcntl(fd, F_SETFL, flags | O_NONBLOCK) == 0));
+    return fcntl(fd, F_SETFD, FD_CLOEXEC) == 0 &&
+           (waits || (flags >= 0 && fcntl(fd, F_SETFL, flags | O_NONBLOCK) == 0));
 }
 
 static int private_socket(int socket, bool waits)
@@ -146,10 +148,7 @@ bool glintL_socket_pair(int ends[2])
 #endif
 }
 
-void glintL_end_path(int end, char out[32])
-{
-    snprintf(out, 32, HAS_LINUX ? "/proc/self/fd/%d" : "/dev/fd/%d", end);
-}
+void glintL_end_path(int end, char out[32]) { snprintf(out, 32, HAS_LINUX ? "/proc/self/fd/%d" : "/dev/fd/%d", end); }
 
 // ---- The machine ----
 
@@ -217,4 +216,16 @@ void glintL_processor_name(char out[128])
     struct utsname names;
     if (!read_model(out))
         snprintf(out, 128, "%.100s", uname(&names) == 0 ? names.machine : "processor unknown");
+}
+
+long long glintL_peak_bytes(void)
+{
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage))
+        return 0;
+#ifdef __APPLE__
+    return usage.ru_maxrss;
+#else
+    return 1024LL * usage.ru_maxrss;
+#endif
 }

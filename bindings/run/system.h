@@ -51,6 +51,9 @@ const char *glintL_other_kind(const char *path);
 /// A name for the end of a pipe, for what opens files by name.
 void glintL_end_path(int end, char out[32]);
 
+/// The most memory that this process has had at a time, bytes.
+long long glintL_peak_bytes(void);
+
 /// The processor's model, or its kind where the system does not tell.
 void glintL_processor_name(char out[128]);
 

@@ -510,6 +510,7 @@ errors() {
 S.scene:render { width = 40, height = 24, output = "x.png" } os.exit(7)'
     exits 7 "os.exit" exits.lua --json
     prints "os.exit ends with the event" '"event":"end","frames":1'
+    prints "the event tells the memory" '"peak_bytes":[1-9][0-9]{6}'
     files "os.exit leaves no picture behind" x.png
     script nested 'local g, S = require "glint", require "scene"
 return g.animation { scene = S.scene, frame = function() S.scene:render() end }'
