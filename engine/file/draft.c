@@ -87,19 +87,23 @@ static void make_temporary_name(const char *path, char *out, size_t room)
     snprintf(out, room, "%.*s.%.120s.%s.%ld.%u.tmp", (int)(name - path), path, name, host, (long)getpid(), number);
 }
 
+/// The name is enlisted before the file is there: no signal comes between.
 static int create_temporary(const char *path, char *temporary, size_t room, int *file)
 {
     for (int i = 0; i < TEMPORARY_TRIES; i++) {
         make_temporary_name(path, temporary, room);
+        glint_draft_enlist(temporary);
         *file = open_again(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (*file >= 0) {
             flock(*file, LOCK_EX | LOCK_NB); // where there are no locks, the process's number alone tells of it
             return 0;
         }
-        if (errno != EEXIST)
-            break;
+        const int code = errno;
+        glint_draft_delist(temporary);
+        if (code != EEXIST)
+            return code;
     }
-    return errno;
+    return EEXIST;
 }
 
 static int sync_again(int file)
@@ -150,7 +154,6 @@ static int open_hidden(glint_draft *draft)
         draft->temporary = NULL;
         return code;
     }
-    glint_draft_enlist(draft->temporary);
     collect_around(draft->temporary);
     return 0;
 }

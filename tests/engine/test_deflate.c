@@ -12,7 +12,7 @@
 
 #include "engine/file/deflate.c" // its functions of one place are its own
 
-#if defined GLINT_HAVE_ISAL && defined __x86_64__ && defined MAP_FIXED_NOREPLACE
+#ifdef BUCKET_BITS // of deflate.c: where a place matters and may be chosen
 #define OTHER_PLACES 32768 // each bucket about four times
 #define BAND_BYTES ((size_t)30000)
 

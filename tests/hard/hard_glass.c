@@ -286,8 +286,8 @@ static void total(void)
 }
 
 /// A prism of total reflections as above, of any length, size, index and angle, anywhere and turned anyhow. *out: what comes
-/// through, of which the truth is transmission^2.
-static bool random_prism(double *out, double *truth)
+/// through, of which *through = transmission^2 is the truth.
+static bool random_prism(double *out, double *through)
 {
     static const double white[3] = { 1, 1, 1 };
     const double ior = uniform(1.2, 2.5), sine = uniform(0.05, 0.95), inside = sine / ior,
@@ -296,7 +296,7 @@ static bool random_prism(double *out, double *truth)
     double axis[3], by[3];
     if (ior * ior * (1 - inside * inside) < 1.001 || rise * reflections < 1e-2)
         return false; // next to the critical angle
-    *truth = uniform(0.1, 1);
+    *through = uniform(0.1, 1);
     random_direction(axis);
     for (int c = 0; c < 3; c++)
         by[c] = chance(0.5) ? 0 : size * uniform(-100, 100);
@@ -311,21 +311,22 @@ static bool random_prism(double *out, double *truth)
     rod.max[0] = size * reflections / rise;
     rod.max[1] = rod.max[2] = size;
     rod.transform = map;
-    rod.material = point_glass(0, 0, *truth, ior, false);
+    rod.material = point_glass(0, 0, *through, ior, false);
     must(glint_shape_create(&rod, &shape, &error), &error);
     must(glint_scene_add_shape(scene, shape, &error), &error);
     glint_material_release(rod.material);
     glint_shape_release(shape);
     scene_light_up(scene, 0, white);
     // it enters half way up
-    const double from[3] = { -size * sqrt(1 - sine * sine), size * (0.5 - sine), 0 }, d[3] = { sqrt(1 - sine * sine), sine, 0 };
+    const double from[3] = { -size * sqrt(1 - sine * sine), size * (0.5 - sine), 0 },
+                 d[3] = { sqrt(1 - sine * sine), sine, 0 };
     hard_ray ray;
     for (int i = 0; i < 3; i++) {
         ray.o[i] = map.m[i][0] * from[0] + map.m[i][1] * from[1] + map.m[i][2] * from[2] + map.m[i][3];
         ray.d[i] = map.m[i][0] * d[0] + map.m[i][1] * d[1] + map.m[i][2] * d[2];
     }
     *out = point_seen(scene, &ray, GLINT_DOUBLE, reflections + 2, GLINT_PASS_TRANSMISSION);
-    *truth *= *truth;
+    *through *= *through;
     glint_scene_release(scene);
     return true;
 }
@@ -336,11 +337,11 @@ static void prisms(uint64_t count)
     hard_values shown = { 0, 0, 0, HARD_BLANK, HARD_BLANK };
     char what[80];
     for (uint64_t i = 0; i < count;) {
-        double got, truth;
-        if (!random_prism(&got, &truth))
+        double got, through;
+        if (!random_prism(&got, &through))
             continue;
         i++;
-        shown.in_double += !hard_check(fabs(got - truth) <= 0x1p-22, "%.9g, truth %.9g", got, truth);
+        shown.in_double += !hard_check(fabs(got - through) <= 0x1p-22, "%.9g, truth %.9g", got, through);
     }
     shown.in_float = HARD_BLANK;
     snprintf(what, sizeof what, "of %llu prisms, dimmed by their total reflections", (unsigned long long)count);
