@@ -76,7 +76,6 @@ static void set_cast_args(glint_tile *tile, const glint_tile_frame *frame, glint
                                 .stop = frame->cancelled,
                                 .camera = &tile->camera,
                                 .view = &tile->view,
-                                .parallel = frame->plan->camera.orthographic,
                                 .t = tile->at.t,
                                 .prim = tile->at.prim,
                                 .hits = tile->at.hits,

@@ -208,8 +208,7 @@ static void cast_case(int precision, bool odd)
     c.cast = (glint_cast_args) { .group_count = groups,
                                  .active = masks(groups),
                                  .geometry = &c.scene->table,
-                                 .parallel = c.kind == RAYS_PARALLEL,
-                                 .camera = &c.camera };
+                                 .camera = c.kind == RAYS_OF_EYE ? &c.camera : NULL };
     if (c.kind == RAYS_OF_EYE) {
         look_along_lattice(&c);
     } else {

@@ -475,8 +475,7 @@ static void ties_case(int precision, bool odd)
     c.cast = (glint_cast_args) { .group_count = GLINT_TILE_GROUPS,
                                  .active = active,
                                  .geometry = &c.scene->table,
-                                 .camera = &c.camera,
-                                 .parallel = true };
+                                 .camera = &c.camera };
     memcpy(c.cast.origin, c.origin, sizeof c.cast.origin);
     memcpy(c.cast.direction, c.direction, sizeof c.cast.direction);
     cast_all(&c);

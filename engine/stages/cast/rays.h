@@ -1,5 +1,5 @@
-// cast_rays: the nearest hit of rays that start anywhere. A lone ray walks the index; parallel ones walk it a group at a
-// time, or together where they are a tile of a camera (parallel.h). Contract: stages.h.
+// cast_rays: the nearest hit of rays that start anywhere. A lone ray walks the index; those of an orthographic camera's tile walk
+// it together (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -146,37 +146,6 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     }
 }
 
-/// Walks the index once for a group of parallel rays.
-static void R(walk_parallel)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays)
-{
-    const glint_geometry_table *geometry = args->geometry;
-    float lower[3], upper[3];
-    light_place ahead = { .directional = true };
-    light_shaft shaft;
-    for (int k = 0; k < 3; k++) {
-        vf least = f_set(HUGE_VALF), most = f_set(-HUGE_VALF);
-        widen(rays->local[k], args->active[g], &least, &most);
-        ahead.lower[k] = ahead.upper[k] = rays->direction[k][0];
-        lower[k] = f_min_all(least);
-        upper[k] = f_max_all(most);
-    }
-    loosen(lower, upper, R(walk_slack)(geometry));
-    make_shaft(lower, upper, &ahead, &shaft);
-    uint32_t stack[WALK_STACK];
-    int height = 0;
-    stack[height++] = 0;
-    while (height > 0) {
-        const glint_node *node = &geometry->nodes[stack[--height]];
-        for (unsigned mask = boxes_in_shaft(node, &shaft); mask; mask &= mask - 1) {
-            const uint32_t child = node->child[__builtin_ctz(mask)];
-            if (child & GLINT_NODE_PRIM)
-                R(cast_on_group)(args, g, rays, child & ~GLINT_NODE_PRIM);
-            else
-                stack[height++] = child;
-        }
-    }
-}
-
 static void R(cast_parallel)(const glint_cast_args *args);
 
 /// A group's rays as filter and walk see them. local: room for their origins.
@@ -195,7 +164,7 @@ static void R(cast_rays)(const glint_cast_args *args)
     const glint_geometry_table *geometry = args->geometry;
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
-    if (args->parallel && args->camera && geometry->nodes) {
+    if (args->camera && geometry->nodes) {
         R(cast_parallel)(args);
         return;
     }
@@ -206,9 +175,7 @@ static void R(cast_rays)(const glint_cast_args *args)
             R(cast_inward)(args, g);
         for (uint32_t i = 0; i < geometry->unbounded_count; i++)
             R(cast_on_group)(args, g, &rays, geometry->unbounded[i]);
-        if (geometry->nodes && args->parallel)
-            R(walk_parallel)(args, g, &rays);
-        else if (geometry->nodes)
+        if (geometry->nodes)
             for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
                 R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
         R(finish_group)(args, g);

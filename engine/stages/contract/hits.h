@@ -35,11 +35,9 @@ typedef struct glint_cast_args {
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
     const glint_geometry_table *geometry;
     const atomic_bool *stop; ///< true: the results do not matter any more; NULL: they do
-    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: with `parallel`, the orthographic camera whose tile
-        ///< they are, or NULL; else not read
+    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the orthographic camera whose tile they are, or NULL
     glint_cast_view *view; ///< in_sight and cast_bundle only: shared by calls of one thread whose geometry, and whose
         ///< camera but for tile and offset, are the same; NULL: nothing is shared
-    bool parallel; ///< cast_rays only: the directions of a group are all the same
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray
     const uint32_t *leaving; ///< cast_rays only: the primitive that each ray starts on, or GLINT_MISS; NULL: none of
         ///< them does

@@ -191,7 +191,7 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     random_place(&c->plan, true);
     double length = random_camera(&c->plan, kind == RAYS_OF_ORTHOGRAPHIC_CAMERA, &c->camera);
     const uint32_t n = c->camera.group_count * GLINT_GROUP;
-    c->cast = (glint_cast_args) { .group_count = c->camera.group_count, .parallel = kind != RAYS_FREE };
+    c->cast = (glint_cast_args) { .group_count = c->camera.group_count };
     c->cast.active = active_pixels(&c->camera);
     if (kind == RAYS_OF_EYE) {
         make_axes(&c->camera, precision);
