@@ -1,19 +1,42 @@
 // beam_leaf: the triangles of a node against the points of a beam. As in cast/leaf.h, float finds pairs, and these are decided
 // a vector at a time, each lane with a triangle of its own. Contract: stages.h, occlude.
 
-/// Nothing is between this point and the light any more that matters.
-static inline void R(close_point)(R(beam) * beam, uint32_t i)
+/// Largest w of a cell's open points.
+static inline float R(farthest_in)(const R(beam) * beam, uint32_t cell)
 {
-    const uint32_t at = beam->at[i], cell = beam->cell[i];
-    float far = -HUGE_VALF;
-    if (beam->w[i] == -HUGE_VALF)
-        return; // it is closed
-    beam->tile->args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
-    beam->w[i] = -HUGE_VALF;
-    beam->open--;
-    for (uint32_t j = beam->begin[cell]; j < beam->begin[cell + 1]; j++)
-        far = larger(far, beam->w[j]);
-    beam->far[cell / SCREEN_ACROSS][cell % SCREEN_ACROSS] = far;
+    const uint32_t end = beam->begin[cell + 1];
+    vf far = f_set(-HUGE_VALF);
+    for (uint32_t j = beam->begin[cell]; j < end; j += VF) {
+        const unsigned in_cell = end - j < VF ? (1u << (end - j)) - 1 : (1u << VF) - 1;
+        far = f_select(fm_from_bits(in_cell), f_max(far, f_load_any(beam->w + j)), far);
+    }
+    return f_max_all(far);
+}
+
+/// Of the points at from[0] .. from[15], those in `blocked` do not reach the light: they are closed, if they are not yet. A
+/// cell's farthest is looked for again where it was one of them, once for all that lie in a cell one after another.
+static inline void R(close_points)(R(beam) * beam, const uint16_t *from, unsigned blocked)
+{
+    const uint32_t none = BEAM_DOWN * SCREEN_ACROSS;
+    float *const far = beam->far[0];
+    uint32_t stale = none;
+    for (; blocked; blocked &= blocked - 1) {
+        const uint32_t i = from[__builtin_ctz(blocked)], at = beam->at[i], cell = beam->cell[i];
+        const float w = beam->w[i];
+        if (w == -HUGE_VALF)
+            continue;
+        if (stale != cell && stale != none) {
+            far[stale] = R(farthest_in)(beam, stale);
+            stale = none;
+        }
+        if (w == far[cell])
+            stale = cell;
+        beam->tile->args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
+        beam->w[i] = -HUGE_VALF;
+        beam->open--;
+    }
+    if (stale != none)
+        far[stale] = R(farthest_in)(beam, stale);
 }
 
 /// What is known of a point, as lane n of these arrays. Triangles need the ray that found it.
@@ -108,8 +131,7 @@ static void R(decide_beam_pairs)(R(beam) * beam)
     }
     for (int i = 0; i < leaf->count; i += VR) {
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
-        for (unsigned blocked = R(pairs_blocked)(beam, i) & there; blocked; blocked &= blocked - 1)
-            R(close_point)(beam, leaf->from[i + __builtin_ctz(blocked)]);
+        R(close_points)(beam, leaf->from + i, R(pairs_blocked)(beam, i) & there);
     }
     leaf->own = leaf->back = 0;
     leaf->count = 0;

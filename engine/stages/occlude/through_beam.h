@@ -30,8 +30,7 @@ static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
     R(beam_batch) *batch = &beam->batch;
     if (!batch->count)
         return;
-    for (unsigned blocked = R(batch_blocked)(beam, prim, (1u << batch->count) - 1); blocked; blocked &= blocked - 1)
-        R(close_point)(beam, batch->from[__builtin_ctz(blocked)]);
+    R(close_points)(beam, batch->from, R(batch_blocked)(beam, prim, (1u << batch->count) - 1));
     batch->count = 0;
     batch->own = 0;
     batch->back = 0;
