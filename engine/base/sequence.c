@@ -49,16 +49,27 @@ static uint32_t flip_upwards(uint32_t x, uint32_t seed)
     return x;
 }
 
-void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2])
+glint_sequence_seed glint_sequence_seed_of(uint64_t seed)
 {
     const uint64_t digits = glint_sequence_mix(seed, 1);
-    const uint32_t place = reverse32(flip_upwards(reverse32(k), (uint32_t)(seed ^ seed >> 32)));
+    return (glint_sequence_seed) { (uint32_t)(seed ^ seed >> 32), { (uint32_t)digits, (uint32_t)(digits >> 32) } };
+}
+
+void glint_sequence_flipped(uint32_t k, const glint_sequence_seed *seed, double out[2])
+{
+    const uint32_t place = reverse32(flip_upwards(reverse32(k), seed->order));
     uint32_t second = 0;
     for (uint32_t i = place, v = 1u << 31; i; i >>= 1, v ^= v >> 1)
         if (i & 1)
             second ^= v;
-    out[0] = (reverse32(flip_upwards(place, (uint32_t)digits)) + 0.5) * 0x1p-32;
-    out[1] = (reverse32(flip_upwards(reverse32(second), (uint32_t)(digits >> 32))) + 0.5) * 0x1p-32;
+    out[0] = (reverse32(flip_upwards(place, seed->digits[0])) + 0.5) * 0x1p-32;
+    out[1] = (reverse32(flip_upwards(reverse32(second), seed->digits[1])) + 0.5) * 0x1p-32;
+}
+
+void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2])
+{
+    const glint_sequence_seed flips = glint_sequence_seed_of(seed);
+    glint_sequence_flipped(k, &flips, out);
 }
 
 void glint_sequence_point(uint32_t k, int bits, double seed, double out[2])

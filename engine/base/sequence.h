@@ -14,6 +14,13 @@ void glint_sequence_point(uint32_t k, int bits, double seed, double out[2]);
 /// Owen Scrambling", JCGT 9(4), 2020.)
 void glint_sequence_scrambled(uint32_t k, uint64_t seed, double out[2]);
 
+/// What such a sequence needs of its seed: how the order and each coordinate's digits are scrambled.
+typedef struct glint_sequence_seed {
+    uint32_t order, digits[2];
+} glint_sequence_seed;
+glint_sequence_seed glint_sequence_seed_of(uint64_t seed);
+void glint_sequence_flipped(uint32_t k, const glint_sequence_seed *seed, double out[2]);
+
 /// A number that has everything of both, mixed.
 uint64_t glint_sequence_mix(uint64_t a, uint64_t b);
 

@@ -23,6 +23,13 @@
 
 typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
 
+/// Points of the unit square, for the scattered rays: see glint_scatter_args.
+typedef struct draws {
+    _Alignas(64) uint32_t number[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t order[GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t digits[2][GLINT_TILE_SAMPLES];
+} draws;
+
 struct glint_indirect {
     glint_batch batch;
     glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
@@ -34,7 +41,7 @@ struct glint_indirect {
         block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
     uint32_t lane[GLINT_TILE_SAMPLES]; ///< which of these pixels
     uint16_t scattered[GLINT_TILE_GROUPS]; ///< rays that go on so
-    _Alignas(64) double square[2][GLINT_TILE_SAMPLES];
+    draws first, next; ///< of the points, and of what their paths met
     _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
 };
 
@@ -84,12 +91,35 @@ static void find_block(struct glint_indirect *indirect, const glint_tile *to, co
     indirect->lane[i] = lane_order(pixel % GLINT_GROUP);
 }
 
-/// The point of the unit square for path `number` of a pixel's point i: two for each turn, `which` says what for.
-static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
+/// Which point of its sequence path `number` of a pixel's point i takes.
+static uint64_t number_in_block(const struct glint_indirect *indirect, uint32_t i, uint64_t number)
 {
     const uint64_t each = (uint64_t)indirect->plan.indirect.samples * (uint64_t)indirect->plan.desc.samples;
-    const uint64_t k = indirect->lane[i] * each + number;
-    glint_sequence_scrambled((uint32_t)k, glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32), out);
+    return indirect->lane[i] * each + number;
+}
+
+/// The seed of that sequence, two for each turn: `which` says what for. k: the point.
+static uint64_t seed_of(const struct glint_indirect *indirect, uint32_t i, uint64_t k, uint32_t which)
+{
+    return glint_sequence_mix(indirect->block[i], which | (k >> 32) << 32);
+}
+
+/// The point itself.
+static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t number, uint32_t which, double out[2])
+{
+    const uint64_t k = number_in_block(indirect, i, number);
+    glint_sequence_scrambled((uint32_t)k, seed_of(indirect, i, k, which), out);
+}
+
+/// Notes it for the stage scatter, which takes the point `further` than what is noted.
+static void note_draw(const struct glint_indirect *indirect, uint32_t i, uint64_t k, uint32_t which, uint32_t further,
+                      draws *to)
+{
+    const glint_sequence_seed seed = glint_sequence_seed_of(seed_of(indirect, i, k, which));
+    to->number[i] = (uint32_t)k - further;
+    to->order[i] = seed.order;
+    to->digits[0][i] = seed.digits[0];
+    to->digits[1][i] = seed.digits[1];
 }
 
 /// One sample of each light, as strong as all of them: another for each path and turn.
@@ -136,16 +166,20 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
     return most;
 }
 
-/// Directions for the rays in indirect->scattered, around the normals of `tile`.
-static void scatter(struct glint_indirect *indirect, const glint_tile *tile, const glint_tile_frame *frame)
+/// Directions for the rays in indirect->scattered, around the normals of `tile`, by points that are `further` than those drawn.
+static void scatter(struct glint_indirect *indirect, const glint_tile *tile, const glint_tile_frame *frame,
+                    const draws *drawn, uint32_t further)
 {
-    glint_scatter_args args = { .group_count = tile->group_count, .wanted = indirect->scattered };
+    glint_scatter_args args = { .group_count = tile->group_count,
+                                .wanted = indirect->scattered,
+                                .number = drawn->number,
+                                .order = drawn->order,
+                                .digits = { drawn->digits[0], drawn->digits[1] },
+                                .further = further };
     for (int c = 0; c < 3; c++) {
         args.normal[c] = tile->surface.normal[c];
         args.direction[c] = indirect->direction[c];
     }
-    args.square[0] = indirect->square[0];
-    args.square[1] = indirect->square[1];
     frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
 }
 
@@ -176,19 +210,18 @@ static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame 
         indirect->scattered[g] = 0;
         for (unsigned left = indirect->matt[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            double square[2];
             if (path >= indirect->paths[i])
                 continue;
-            draw(indirect, i, number, 0, square);
-            indirect->square[0][i] = square[0];
-            indirect->square[1][i] = square[1];
+            const uint64_t k = number_in_block(indirect, i, number);
+            if (path == 0 || (uint32_t)k == 0) // a seed lasts for 2^32 points
+                note_draw(indirect, i, k, 0, path, &indirect->first);
             indirect->scattered[g] |= (uint16_t)(left & -left);
         }
         any |= batch->tile.active[g] = indirect->scattered[g];
     }
     if (!any)
         return false;
-    scatter(indirect, seen, frame);
+    scatter(indirect, seen, frame, &indirect->first, path);
     for (uint32_t g = 0; g < seen->group_count; g++)
         for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
@@ -278,7 +311,6 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const uint16_t bit = (uint16_t)(left & -left);
             glint_batch_ray next;
-            double square[2];
             const turn chosen = choose(indirect, frame, number, i, &next);
             if (chosen == TURN_NONE)
                 continue;
@@ -286,16 +318,15 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
             tile->active[g] |= bit;
             if (chosen != TURN_SCATTERED)
                 continue;
-            draw(indirect, i, number, 2 * (next.scatters + next.depth), square);
-            indirect->square[0][i] = square[0];
-            indirect->square[1][i] = square[1];
+            note_draw(indirect, i, number_in_block(indirect, i, number), 2 * (next.scatters + next.depth), 0,
+                      &indirect->next);
             indirect->scattered[g] |= bit;
         }
         any |= tile->active[g];
     }
     if (!any)
         return false;
-    scatter(indirect, tile, frame);
+    scatter(indirect, tile, frame, &indirect->next, 0);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);

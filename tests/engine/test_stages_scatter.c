@@ -12,7 +12,9 @@ static void scatter_case(int precision, bool odd)
     const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
     const void *normal[3];
     input3(normal, real_kind(precision), n);
-    double *square[2] = { input(KIND_DOUBLE, n), input(KIND_DOUBLE, n) };
+    uint32_t *drawn[4];
+    for (int k = 0; k < 4; k++)
+        drawn[k] = input(KIND_U32, n);
     for (uint32_t i = 0; i < n; i++) {
         double v[3];
         random_unit(v);
@@ -21,13 +23,16 @@ static void scatter_case(int precision, bool odd)
         for (int k = 0; k < 3; k++)
             v[k] = maybe_odd(odd, v[k]);
         put3(normal, precision, i, v);
-        for (int k = 0; k < 2; k++)
-            square[k][i] = maybe_odd(odd, one_in(5) ? below(9) / 8.0 : between(0, 1));
+        for (int k = 0; k < 4; k++)
+            drawn[k][i] = one_in(5) ? below(2) - 1 : (uint32_t)random_bits();
     }
-    glint_scatter_args args = { .group_count = groups, .wanted = masks(groups) };
+    glint_scatter_args args = { .group_count = groups,
+                                .wanted = masks(groups),
+                                .number = drawn[0],
+                                .order = drawn[1],
+                                .digits = { drawn[2], drawn[3] },
+                                .further = one_in(2) ? 0 : (uint32_t)random_bits() };
     memcpy(args.normal, normal, sizeof normal);
-    args.square[0] = square[0];
-    args.square[1] = square[1];
     FOR_EACH_TESTED
     {
         for (int k = 0; k < 3; k++)
@@ -46,14 +51,23 @@ static void test_scatter(void **state)
     run_cases(CASES, 17000, scatter_case);
 }
 
-/// One direction around `n`.
-static void ask(const double n[3], double u, double v, double out[3])
+/// One direction around `n`, by point k of the sequence of a seed.
+static void direction_of(const double n[3], uint32_t k, uint64_t seed, double out[3])
 {
-    static ALIGNED double normal[3][GLINT_GROUP], square[2][GLINT_GROUP], direction[3][GLINT_GROUP];
+    static ALIGNED double normal[3][GLINT_GROUP], direction[3][GLINT_GROUP];
+    static ALIGNED uint32_t drawn[4][GLINT_GROUP];
     const uint16_t first = 1;
-    glint_scatter_args args = { .group_count = 1, .wanted = &first, .square = { square[0], square[1] } };
-    square[0][0] = u;
-    square[1][0] = v;
+    const glint_sequence_seed flips = glint_sequence_seed_of(seed);
+    glint_scatter_args args = { .group_count = 1,
+                                .wanted = &first,
+                                .number = drawn[0],
+                                .order = drawn[1],
+                                .digits = { drawn[2], drawn[3] },
+                                .further = k / 3 };
+    drawn[0][0] = k - k / 3;
+    drawn[1][0] = flips.order;
+    drawn[2][0] = flips.digits[0];
+    drawn[3][0] = flips.digits[1];
     for (int c = 0; c < 3; c++) {
         normal[c][0] = n[c];
         args.normal[c] = normal[c];
@@ -72,17 +86,25 @@ static void test_closed_forms(void **state)
     (void)state;
     random_state = 18000;
     for (int k = 0; k < 3000; k++) {
-        double n[3], zero[3], d[3];
+        double n[3], d[2][3], square[2][2];
+        uint32_t point[2];
         random_unit(n);
-        const double u = between(0, 1), v = between(0, 1);
+        const uint64_t seed = random_bits();
+        for (int j = 0; j < 2; j++) {
+            point[j] = (uint32_t)random_bits();
+            glint_sequence_scrambled(point[j], seed, square[j]);
+        }
+        const double turn = 2 * acos(-1) * (square[0][1] - square[1][1]);
+        const double across = sqrt(square[0][0] * square[1][0]), up = sqrt((1 - square[0][0]) * (1 - square[1][0]));
         FOR_EACH_TESTED
         {
-            ask(n, u, v, d);
-            ask(n, u, 0, zero);
-            assert_true(fabs(sqrt(dot(d, d)) - 1) < 2e-9);
-            assert_true(fabs(dot(d, n) - sqrt(1 - u)) < 1e-14);
-            const double cosine = (dot(d, zero) - (1 - u)) / u; // of the angle between both, seen along n
-            assert_true(u < 1e-3 || fabs(cosine - cos(2 * acos(-1) * v)) < 1e-8);
+            for (int j = 0; j < 2; j++) {
+                direction_of(n, point[j], seed, d[j]);
+                assert_true(fabs(sqrt(dot(d[j], d[j])) - 1) < 2e-9);
+                assert_true(fabs(dot(d[j], n) - sqrt(1 - square[j][0])) < 1e-14);
+            }
+            const double cosine = (dot(d[0], d[1]) - up) / across; // of the angle between both, seen along n
+            assert_true(across < 1e-3 || fabs(cosine - cos(turn)) < 1e-8 / across);
         }
     }
 }
@@ -96,9 +118,8 @@ static void test_means(void **state)
     double mean[3] = { 0 }, square = 0;
     running = &glint_stages_ref;
     for (uint32_t k = 0; k < COUNT; k++) {
-        double uv[2], d[3];
-        glint_sequence_scrambled(k, 5, uv);
-        ask(n, uv[0], uv[1], d);
+        double d[3];
+        direction_of(n, k, 5, d);
         for (int c = 0; c < 3; c++)
             mean[c] += d[c] / COUNT;
         square += dot(d, n) * dot(d, n) / COUNT;

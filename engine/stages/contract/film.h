@@ -51,11 +51,13 @@ typedef struct glint_scatter_args {
     uint32_t group_count;
     const uint16_t *wanted; ///< a bit a lane
     const void *normal[3]; ///< real, unit
-    const double
-        *square[2]; ///< u and v in 0 .. 1: equal areas of the unit square get equal shares of an even sky's light
+    const uint32_t *number, *order, *digits[2]; ///< one a ray: a point of a sequence, and that sequence's seed
+    uint32_t further; ///< points that all rays are beyond their `number`
     void *direction[3]; ///< out, real, unit but for rounding and 2e-9
 } glint_scatter_args;
 // Groups without a wanted lane are not written; in others, lanes that are not wanted hold anything.
+// A point (u, v) of the unit square is chosen as glint_sequence_flipped does, in double: equal areas of the square get equal
+// shares of an even sky's light.
 // The arithmetic: ref/scatter.h: the disk, lifted, which is cosine-weighted, in the orthonormal basis of T. Duff et al., JCGT
 // 6(1), 2017.
 

@@ -1,5 +1,6 @@
 /// The scalar reference: every stage of stages.h for one sample at a time, in the order written there and with nothing
 /// borrowed from the vector bodies. What this file and a vector body disagree about is a mistake in one of them.
+#include "engine/base/sequence.h"
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/simd/coefficients.h"
 #include "engine/stages/light/cone_sample.h"

@@ -21,7 +21,10 @@ static void NAME(turn)(REAL quarters, REAL *sine, REAL *cosine)
 
 static void NAME(scatter_sample)(const glint_scatter_args *args, uint32_t i)
 {
-    REAL u = (REAL)args->square[0][i], v = (REAL)args->square[1][i], sine, cosine;
+    double square[2];
+    const glint_sequence_seed seed = { args->order[i], { args->digits[0][i], args->digits[1][i] } };
+    glint_sequence_flipped(args->number[i] + args->further, &seed, square);
+    REAL u = (REAL)square[0], v = (REAL)square[1], sine, cosine;
     NAME(vec3) n = NAME(load)(args->normal, i);
     NAME(turn)(4 * v, &sine, &cosine);
     REAL r = NAME(square_root)(u), h = NAME(square_root)(NAME(max)(1 - u, 0)), x = r * cosine, y = r * sine;

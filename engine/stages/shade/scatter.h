@@ -33,14 +33,16 @@ static inline void R(scatter_lanes)(const glint_scatter_args *args, vr u, vr v, 
 
 static void R(scatter)(const glint_scatter_args *args)
 {
+    _Alignas(64) double place[2][GLINT_GROUP];
     _Alignas(64) real square[2][GLINT_GROUP];
     for (uint32_t g = 0; g < args->group_count; g++) {
         const size_t at = (size_t)g * GLINT_GROUP;
         if (!args->wanted[g])
             continue;
+        scrambled_group(args, at, place);
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_GROUP; i++)
-                square[k][i] = (real)args->square[k][at + (size_t)i];
+                square[k][i] = (real)place[k][i];
         for (int i = 0; i < GLINT_GROUP; i += VR)
             R(scatter_lanes)(args, r_load(square[0] + i), r_load(square[1] + i), at + (size_t)i);
     }

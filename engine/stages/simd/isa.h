@@ -13,6 +13,7 @@
 #include "engine/stages/index/screen.h"
 #include "engine/stages/index/leaf.h"
 #include "engine/stages/occlude/beam.h"
+#include "engine/stages/shade/sequence.h"
 
 #define GLINT_REAL 64
 #include "engine/stages/simd/geometry_stages.h"
