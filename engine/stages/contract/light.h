@@ -46,8 +46,9 @@ typedef struct glint_light_sample {
 #define GLINT_CONE_SLACK_DOUBLE 0x1p-40
 #define GLINT_CONE_SLACK_FLOAT 0x1p-18
 // GLINT_EMIT_CONE: cone_sample.h, for each lane in double whatever real is. A point on the surface sees the half of the ball
-// that its normal looks at, or nothing. The position is rounded to real then, but light_side (below) reads it as it was. The
-// weight is the solid angle over pi, so that the mean of weight cosine is irradiance over pi radiance.
+// that its normal looks at, or nothing. The position is brought into the light's box, which rounding leaves where the point is
+// 2^52 radii away; then it is rounded to real, but light_side (below) reads it as it was. The weight is the solid angle over
+// pi, so that the mean of weight cosine is irradiance over pi radiance.
 
 typedef struct glint_light_args {
     uint32_t group_count;

@@ -56,8 +56,10 @@ static inline glint_cone_sample glint_cone_at(const glint_light_sample *light_sa
         out.weight = 2 * (q2 * h);
     }
     out.far = t * (1 / scale);
-    for (int k = 0; k < 3; k++)
-        out.place[k] = point[k] + out.way[k] * out.far;
+    for (int k = 0; k < 3; k++) {
+        const double met = point[k] + out.way[k] * out.far, above = met > light_sample->lower[k] ? met : light_sample->lower[k];
+        out.place[k] = above < light_sample->upper[k] ? above : light_sample->upper[k];
+    }
     return out;
 }
 
