@@ -245,8 +245,12 @@ bool glint_program_constant(const glint_program *program, double *outputs);
 /// same bits. The caller frees it. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
 
-/// What a texture has beyond u, v in 0 .. 1: itself again, or its border.
-typedef enum glint_wrap { GLINT_WRAP_REPEAT, GLINT_WRAP_CLAMP } glint_wrap;
+/// What a texture has beyond u, v in 0 .. 1.
+typedef enum glint_wrap {
+    GLINT_WRAP_REPEAT, ///< itself
+    GLINT_WRAP_CLAMP, ///< its border
+    GLINT_WRAP_AROUND ///< itself in u, its border in v: a picture around a ball, or of all directions
+} glint_wrap;
 /// How a colour between texels is found.
 typedef enum glint_filter {
     GLINT_FILTER_BILINEAR, ///< between four texels; of the picture halved as often as the footprint calls for
@@ -266,6 +270,9 @@ typedef struct glint_texture_desc {
 glint_texture_desc glint_texture_desc_default(void);
 /// Reads a picture. GLINT_ERR_IO, GLINT_ERR_FORMAT when it cannot be read or is no whole PNG; GLINT_ERR_NOMEM.
 glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture **out, glint_error *error);
+/// The same picture, which is shared, with another wrap. GLINT_ERR_NOMEM.
+glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
+                                  glint_error *error);
 /// Takes another reference; returns its argument. Any thread.
 glint_texture *glint_texture_retain(glint_texture *texture);
 /// Gives a reference back; the last one frees the texture. NULL: nothing. Any thread.
@@ -652,11 +659,18 @@ typedef struct glint_scene_desc {
     glint_camera *camera; ///< retained; may be NULL until a frame is planned
     double ambient[3]; ///< finite, >= 0; default 0
     double background[3]; ///< finite, >= 0; default 0
+    /// Retained: a pattern of the direction that a ray leaves in, in place of `background`, seen by the eye, in mirrors,
+    /// through glass and by indirect light; NULL: none. It reads as p and world the unit direction d, as n and v -d, as
+    /// footprint the angle of a pixel in radians (0 with parallel rays), and as uv where d is in a picture of all
+    /// directions: u = 1/2 + atan2(x, -z) / 2 pi, so that the middle column is -z, the first and last are +z, and +x is
+    /// three quarters from the left; v = acos(-y) / pi, from straight down to straight up. A pattern of numbers alone is
+    /// a `background` of these; of others NaN and less than 0 are 0
+    glint_program *background_program;
     /// Light fades with the distance d of the first surface from the eye (that of the pass depth) towards a colour:
     /// f = min(max((d - near) / (far - near), 0), 1) of the colour and 1 - f of the light. The colour's share is in the term
     /// of the background; the background itself, and what mirrors show, do not fade
     bool has_depth_cue;
-    bool has_depth_cue_color; ///< false: `background`
+    bool has_depth_cue_color; ///< false: `background`, which then is no pattern
     double depth_cue_color[3]; ///< finite, >= 0
     double depth_cue_near, depth_cue_far; ///< finite, 0 <= near < far; default 0, 1
     bool has_indirect; ///< false: `ambient` stands for all light that surfaces get from each other and the background
@@ -854,10 +868,10 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list);
 /// first generation.
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan);
 
-/// A program that a frame runs for a material.
+/// A program that a frame runs for a material, or for the background.
 typedef struct glint_program_use {
-    const char *material; ///< its name; may be empty
-    const char *field; ///< "diffuse"; "model" of a shader
+    const char *material; ///< its name; may be empty; NULL: the scene's own
+    const char *field; ///< "diffuse"; "model" of a shader; "background"
     const glint_program *program; ///< the plan's
 } glint_program_use;
 
@@ -908,6 +922,7 @@ typedef struct glint_work {
     uint64_t sites; ///< sides of faces and vertices whose light was worked out once, for flat and gouraud shading
     uint64_t lights_seen; ///< rays that end on a visible light
     uint64_t patterns; ///< points for which the programs of a material were run
+    uint64_t environment; ///< rays that left the scene, for which the background's was
     uint64_t overlaps; ///< pairs of a point and a sphere or plane whose cover of a light was looked at, for caps
 } glint_work;
 
@@ -928,9 +943,9 @@ typedef struct glint_frame_stats {
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
     uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
-    const char *odd_field; ///< static string: "diffuse"; NULL: there is none
+    const char *odd_field; ///< static string: "diffuse"; "background" of the scene; NULL: there is none
     char odd_material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
-    double odd_point[3]; ///< in the world
+    double odd_point[3]; ///< in the world; of the background, the direction
 } glint_frame_stats;
 
 /// Renders one frame. *out holds the passes and codes the plan's glint_render_desc names. `stats` may be NULL.

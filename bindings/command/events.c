@@ -130,6 +130,17 @@ static void print_frame_line(cli_output *output, const glintL_record *record)
     fprintf(stderr, ": %s%s%.1f ms\n", file ? file : "", file ? ", " : "", ms);
 }
 
+static void warn_odd(const cli_output *output, int64_t index, const glint_frame_stats *stats)
+{
+    const bool named = stats->odd_material[0], background = strcmp(stats->odd_field, "background") == 0;
+    glintL_run_warn(output->run,
+                    "frame %" PRId64 ": %s%s%s%s.%s: the pattern is NaN, below 0 or above 2^100 at %" PRIu64
+                    " %s, such as (%.6g, %.6g, %.6g); NaN and less are taken as 0",
+                    index, background ? "scene" : "material", named ? " '" : "", stats->odd_material,
+                    named ? "'" : "", stats->odd_field, stats->odd, background ? "directions" : "points",
+                    stats->odd_point[0], stats->odd_point[1], stats->odd_point[2]);
+}
+
 static void report_frame(void *context, const glintL_run *run, const glintL_record *record)
 {
     cli_output *output = context;
@@ -140,12 +151,7 @@ static void report_frame(void *context, const glintL_run *run, const glintL_reco
     else if (!output->quiet && (!output->progress || record->repeat))
         print_frame_line(output, record);
     if (record->stats.odd > 0 && !record->kept)
-        glintL_run_warn(output->run,
-                        "frame %" PRId64 ": material%s%s%s.%s: the pattern is NaN, below 0 or above 2^100 at %" PRIu64
-                        " points, such as (%.6g, %.6g, %.6g); NaN and less are taken as 0",
-                        record->index, record->stats.odd_material[0] ? " '" : "", record->stats.odd_material,
-                        record->stats.odd_material[0] ? "'" : "", record->stats.odd_field, record->stats.odd,
-                        record->stats.odd_point[0], record->stats.odd_point[1], record->stats.odd_point[2]);
+        warn_odd(output, record->index, &record->stats);
     if (record->stats.nonfinite > 0 && !record->kept)
         glintL_run_warn(output->run,
                         "frame %" PRId64 ": %" PRIu64 " pixels are not finite; they are written as 0 or white",

@@ -43,8 +43,9 @@ static void print_programs(FILE *out, const glint_plan *plan)
     glint_program_use use;
     for (size_t i = 0; glint_plan_program(plan, i, &use); i++) {
         char *listing = glint_program_listing(use.program);
-        const bool named = use.material[0];
-        fprintf(out, "\nmaterial%s%s%s.%s\n", named ? " '" : "", use.material, named ? "'" : "", use.field);
+        const bool named = use.material && use.material[0];
+        fprintf(out, "\n%s%s%s%s.%s\n", use.material ? "material" : "scene", named ? " '" : "",
+                named ? use.material : "", named ? "'" : "", use.field);
         for (char *line = listing, *end; line && *line; line = end) {
             end = line + strcspn(line, "\n");
             fprintf(out, "  %.*s\n", (int)(end - line), line);
@@ -63,7 +64,8 @@ static void print_pair(FILE *out, const char *first, const char *value, const ch
     glintL_json_string(out, other);
 }
 
-// `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`
+// `,"programs":[{"material":"floor","field":"diffuse","instructions":3,"rows":2,"listing":"..."}]`; the scene's own has no
+// material
 static void print_programs_json(FILE *out, const glint_plan *plan)
 {
     glint_program_use use;
@@ -71,7 +73,13 @@ static void print_programs_json(FILE *out, const glint_plan *plan)
     for (size_t i = 0; glint_plan_program(plan, i, &use); i++) {
         char *listing = glint_program_listing(use.program);
         fputs(i ? ",{" : "{", out);
-        print_pair(out, "material", use.material, "field", use.field);
+        if (use.material) {
+            fputs("\"material\":", out);
+            glintL_json_string(out, use.material);
+            fputc(',', out);
+        }
+        fputs("\"field\":", out);
+        glintL_json_string(out, use.field);
         fprintf(out, ",\"instructions\":%zu,\"rows\":%zu,\"listing\":", glint_program_length(use.program),
                 glint_program_rows(use.program));
         glintL_json_string(out, listing ? listing : "");

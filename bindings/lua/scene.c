@@ -39,7 +39,10 @@ static void begin_indirect(void *desc)
 static const glintL_field FIELDS[] = {
     { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
     { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
-    { .name = "background", .kind = GLINTL_COLOR, .offset = AT(background) },
+    { .name = "background",
+      .kind = GLINTL_COLOR,
+      .offset = AT(background),
+      .program_offset = AT(background_program) },
     { .name = "depth_cue",
       .kind = GLINTL_NESTED,
       .offset = AT(depth_cue_near),
@@ -274,6 +277,7 @@ static int new_scene(lua_State *L)
         glintL_keep(L, 2, "camera", 3);
         lua_settop(L, 2);
     }
+    glintL_keep_sources(L, 2, 1, FIELDS);
     add_list(L);
     glintL_remember(L, scene);
     return 1;

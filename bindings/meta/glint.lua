@@ -496,8 +496,8 @@ function glint.group(fields) end
 ---@class glint.scene_fields
 ---@field camera? glint.camera  needed for a frame; nil: none
 ---@field ambient? glint.color  light from everywhere, >= 0. Default 0
----@field background? glint.color  what a ray sees that hits nothing, >= 0. Default 0
----@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background) from distance near (default 0) to far. Default nil: it does not
+---@field background? glint.color|glint.pattern|glint.texture  what a ray sees that hits nothing, >= 0; of a pattern p is the unit direction, and a texture is a picture of all directions with -z in its middle, +x three quarters from the left, +y above. Default 0
+---@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background, if that is a colour) from distance near (default 0) to far. Default nil: it does not
 ---@field indirect? glint.indirect  light from surface to surface instead of `ambient`; what a material's `ambient` has beyond its `diffuse` is its own light and stays. Default nil: off
 
 ---@class glint.scene_table: glint.scene_fields
@@ -755,7 +755,7 @@ function triple:unpack() end
 ---@field shininess number  of shaders: the material's
 
 --- A colour or a number at each point. Of a material's fields diffuse, specular, mirror, transmission, shininess,
---- roughness, bump and opacity take one. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
+--- roughness, bump and opacity take one, of a scene's background. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
 --- calls the function. NaN and what is below 0 count as 0.
 ---@class glint.pattern
 local pattern = {}
@@ -785,13 +785,14 @@ function glint.shader(f) end
 
 ---@class glint.texture_fields
 ---@field file string  a PNG file, 8 or 16 bits
----@field wrap? "repeat"|"clamp"  what is beyond 0 .. 1. Default "repeat"
+---@field wrap? "repeat"|"clamp"|"around"  what is beyond 0 .. 1: itself, its border, or itself across and its border up and down. Default "repeat"
 ---@field filter? "bilinear"|"nearest"  between four texels, of a picture made smaller as the footprint calls for; or the texel itself. Default "bilinear"
 ---@field transfer? "srgb"|"linear"  how its codes are meant. Default "srgb", but for a picture that says that it is linear
 
 --- A picture. Inside a pattern it is called: photo(u, v, footprint) or photo(s.uv, s.uv_footprint) is a vector of red,
 --- green and blue, with alpha as its field `a`; (0, 0) is the lower left corner, (1, 1) the upper right one, and without a
---- footprint the picture is taken as it is. As the value of a material's field it lies there by the shape's uv.
+--- footprint the picture is taken as it is. As the value of a material's field it lies there by the shape's uv, as a scene's
+--- background by the direction.
 ---@class glint.texture: glint.texture_fields
 ---@field width integer  pixels
 ---@field height integer  pixels

@@ -75,7 +75,7 @@ int glintL_pattern_evaluate(lua_State *L)
     glint_error error;
     lua_settop(L, 2);
     glintL_read_inputs(L, 2, is_shader, inputs);
-    const glintL_traced *traced = glintL_make_program(L, 1);
+    const glintL_traced *traced = glintL_make_program(L, 1, false);
     glintL_check_status(L, "evaluate", &error, glint_program_evaluate(traced->program, inputs, out, &error));
     if (glint_program_output_count(traced->program) == 1)
         out[1] = out[2] = out[0];
@@ -95,7 +95,7 @@ static int count_instructions(lua_State *L)
 {
     check_self(L);
     lua_settop(L, 1);
-    lua_pushinteger(L, (lua_Integer)glint_program_length(glintL_make_program(L, 1)->program));
+    lua_pushinteger(L, (lua_Integer)glint_program_length(glintL_make_program(L, 1, false)->program));
     return 1;
 }
 
@@ -110,7 +110,7 @@ static int to_string(lua_State *L)
 {
     const glintL_pattern *pattern = check_self(L);
     lua_settop(L, 1);
-    const glintL_traced *traced = glintL_make_program(L, 1);
+    const glintL_traced *traced = glintL_make_program(L, 1, false);
     const int length = (int)glint_program_length(traced->program);
     lua_pushfstring(L, "%s of %d instruction%s\n", name_of(pattern), length, length == 1 ? "" : "s");
     lua_pushcfunction(L, push_text);

@@ -98,7 +98,8 @@ typedef struct glintL_traced {
 /// What runs a function: the end of the script's Lua code on the way up, see glintL_traced_place.
 int glintL_call_function(lua_State *L);
 /// Calls the function of the pattern at `index` and pushes what it gave; the 64 points are looked at when its structure is new.
-glintL_traced *glintL_make_program(lua_State *L, int index);
+/// As a background a texture goes around, whatever it does at its border elsewhere.
+glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background);
 /// Runs the function of the pattern at `index` with the numbers of a point.
 /// Returns how many numbers it gave, as the program's outputs are counted.
 size_t glintL_run_on_numbers(lua_State *L, int index, const double inputs[GLINT_INPUT_COUNT], double *outputs);

@@ -1,11 +1,11 @@
-// Materials whose fields hold patterns. The userdata of a material keeps them; the material itself gets their programs
-// each time that a frame is planned.
+// Materials and scenes whose fields hold patterns. The userdata of such an object keeps them; the object itself gets their
+// programs each time that a frame is planned.
 #include "bindings/pattern/pattern.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const char PATTERNED; // its address is the registry's key of the userdata that keep patterns, as weak keys
+static const char PATTERNED; // its address is the registry's key of materials' userdata that keep patterns, as weak keys
 static const char CLOSED; // and of those that a script has closed, of materials that may still be in a scene
 
 void glintL_refuse_within_trace(lua_State *L, const char *what)
@@ -18,6 +18,8 @@ void glintL_refuse_within_trace(lua_State *L, const char *what)
 
 static void note_patterned(lua_State *L, int index)
 {
+    if (!luaL_testudata(L, index, GLINTL_MATERIAL))
+        return; // a scene is found without
     glintL_push_table(L, &PATTERNED);
     if (!lua_getmetatable(L, -1)) {
         lua_createtable(L, 0, 1);
@@ -86,24 +88,24 @@ void glintL_keep_closed(lua_State *L, int index)
 // ---- Tracing ----
 
 // Pushes what the pattern on top gave in this frame; a pattern of several fields is called once. `frame` is the index of the
-// table of those that were.
-static void push_traced(lua_State *L, int frame)
+// table of those that were. A texture is another program as a background, and no other field takes one there.
+static void push_traced(lua_State *L, int frame, bool is_background)
 {
     lua_pushvalue(L, -1);
     if (lua_rawget(L, frame) != LUA_TNIL)
         return;
     lua_pop(L, 1);
-    glintL_make_program(L, lua_gettop(L));
+    glintL_make_program(L, lua_gettop(L), is_background);
     lua_pushvalue(L, -2);
     lua_pushvalue(L, -2);
     lua_rawset(L, frame);
 }
 
-// Gives the material whose userdata is at `index` the programs of its patterns.
-static void trace_material(lua_State *L, int index, int frame)
+// Gives the object whose userdata is at `index` the programs of its patterns.
+static void trace_object(lua_State *L, int index, const char *type, int frame)
 {
     const int top = lua_gettop(L);
-    const glintL_class *class = glintL_class_of(L, GLINTL_MATERIAL);
+    const glintL_class *class = glintL_class_of(L, type);
     const glintL_field *fields = class->variant(NULL)->fields;
     union {
         max_align_t align;
@@ -112,12 +114,12 @@ static void trace_material(lua_State *L, int index, int frame)
     glint_error error;
     for (const glintL_field *field = fields; field->name; field++)
         if (field->program_offset && glintL_push_kept(L, index, field->name))
-            push_traced(L, frame);
+            push_traced(L, frame, strcmp(type, GLINTL_SCENE) == 0);
     lua_settop(L, top);
-    void *material = glintL_test_object(L, index, GLINTL_MATERIAL);
-    if (!material) // a function closed it
+    void *object = glintL_test_object(L, index, type);
+    if (!object) // a function closed it
         return;
-    class->get(material, &desc);
+    class->get(object, &desc);
     for (const glintL_field *field = fields; field->name; field++) {
         glint_program *program = NULL;
         if (!field->program_offset || !glintL_push_kept(L, index, field->name))
@@ -128,7 +130,7 @@ static void trace_material(lua_State *L, int index, int frame)
             program = traced->program;
         memcpy(desc.bytes + field->program_offset, &program, sizeof program);
     }
-    glintL_check_status(L, "material", &error, class->set(material, &desc, &error));
+    glintL_check_status(L, type + sizeof "glint." - 1, &error, class->set(object, &desc, &error));
     lua_settop(L, top);
 }
 
@@ -137,7 +139,7 @@ void glintL_trace_material(lua_State *L, int index)
     index = lua_absindex(L, index);
     luaL_checkstack(L, 16, "pattern");
     lua_newtable(L);
-    trace_material(L, index, lua_gettop(L));
+    trace_object(L, index, GLINTL_MATERIAL, lua_gettop(L));
     lua_pop(L, 1);
 }
 
@@ -204,6 +206,17 @@ static entries *push_entries(lua_State *L)
     return all;
 }
 
+// The scene's own; it has a table of its own, too, of what they gave.
+static void trace_background(lua_State *L, const glint_scene *scene)
+{
+    const int top = lua_gettop(L);
+    glintL_push_remembered(L, scene);
+    if (lua_isnil(L, -1) || !glintL_push_kept(L, top + 1, "background"))
+        return;
+    lua_newtable(L);
+    trace_object(L, top + 1, GLINTL_SCENE, top + 3);
+}
+
 void glintL_trace_scene(lua_State *L, const glint_scene *scene)
 {
     const int top = lua_gettop(L);
@@ -220,8 +233,9 @@ void glintL_trace_scene(lua_State *L, const glint_scene *scene)
         if (all->items[i].met == 0)
             continue;
         lua_rawgeti(L, top + 1, all->items[i].place);
-        trace_material(L, top + 4, top + 3);
+        trace_object(L, top + 4, GLINTL_MATERIAL, top + 3);
         lua_settop(L, top + 3);
     }
+    trace_background(L, scene);
     lua_settop(L, top);
 }

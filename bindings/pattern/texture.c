@@ -12,7 +12,7 @@ typedef struct arguments {
 
 #define AT(member) offsetof(arguments, member)
 
-static const char *const WRAPS[] = { "repeat", "clamp", NULL };
+static const char *const WRAPS[] = { "repeat", "clamp", "around", NULL };
 static const char *const FILTERS[] = { "bilinear", "nearest", NULL };
 static const char *const TRANSFERS[] = { "srgb", "linear", NULL };
 

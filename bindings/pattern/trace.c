@@ -175,8 +175,8 @@ static glint_status finish(session *s, glint_program **out, glint_error *error)
     return status ? status : glint_builder_finish(s->trace.builder, values, s->count, out, error);
 }
 
-// The picture itself, by the shape's uv.
-static glint_status finish_texture(glint_builder *builder, const glint_texture *texture, glint_program **out,
+// The picture itself, by what is there as s.uv.
+static glint_status finish_picture(glint_builder *builder, const glint_texture *texture, glint_program **out,
                                    glint_error *error)
 {
     static const glint_input inputs[] = { GLINT_INPUT_UV_U, GLINT_INPUT_UV_V, GLINT_INPUT_UV_FOOTPRINT };
@@ -187,6 +187,20 @@ static glint_status finish_texture(glint_builder *builder, const glint_texture *
     if (!status)
         status = glint_builder_texel(builder, texture, in[0], in[1], in[2], color, error);
     return status ? status : glint_builder_finish(builder, color, 3, out, error);
+}
+
+static glint_status finish_texture(glint_builder *builder, const glint_texture *texture, bool is_background,
+                                   glint_program **out, glint_error *error)
+{
+    glint_texture *around;
+    if (!is_background)
+        return finish_picture(builder, texture, out, error);
+    glint_status status = glint_texture_rewrap(texture, GLINT_WRAP_AROUND, &around, error);
+    if (status)
+        return status;
+    status = finish_picture(builder, around, out, error);
+    glint_texture_release(around);
+    return status;
 }
 
 // New structures are compared with plain Lua once; the table of those that were is the pattern's user value 2.
@@ -206,7 +220,7 @@ static void compare_once(lua_State *L, int index, const glintL_traced *traced)
     lua_pop(L, 3);
 }
 
-glintL_traced *glintL_make_program(lua_State *L, int index)
+glintL_traced *glintL_make_program(lua_State *L, int index, bool is_background)
 {
     const glintL_pattern *pattern = lua_touserdata(L, index);
     glint_status status;
@@ -220,7 +234,7 @@ glintL_traced *glintL_make_program(lua_State *L, int index)
     session *s = push_session(L, pattern->kind);
     glintL_check_status(L, "", &error, glint_builder_create(pattern->kind, &s->trace.builder, &error));
     if (pattern->texture) {
-        status = finish_texture(s->trace.builder, pattern->texture, &traced->program, &error);
+        status = finish_texture(s->trace.builder, pattern->texture, is_background, &traced->program, &error);
     } else {
         call(L, index, top + 1);
         status = finish(s, &traced->program, &error);

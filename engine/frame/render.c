@@ -176,6 +176,7 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, cons
         sum.work.lights_seen += part->work.lights_seen;
         sum.work.overlaps += part->work.overlaps;
         sum.work.patterns += part->work.patterns;
+        sum.work.environment += part->work.environment;
         sum.mirror += part->mirror;
         sum.refraction += part->refraction;
         sum.indirect += part->indirect;
@@ -201,7 +202,8 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, cons
     if (odd.count) {
         stats->odd = odd.count;
         stats->odd_field = glint_field_name(odd.field);
-        memcpy(stats->odd_material, plan->patterns->of[odd.material].desc.name, sizeof stats->odd_material);
+        if (odd.field != GLINT_FIELD_BACKGROUND)
+            memcpy(stats->odd_material, plan->patterns->of[odd.material].desc.name, sizeof stats->odd_material);
         memcpy(stats->odd_point, odd.point, sizeof stats->odd_point);
     }
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {

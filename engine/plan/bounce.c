@@ -90,7 +90,7 @@ static double surface_light(const glint_plan *plan, uint32_t i)
 /// The same of all surfaces, of lights that are seen, and of the background.
 static double brightest_surface(const glint_plan *plan)
 {
-    double most = brightest_of(plan->background);
+    double most = plan->environment ? plan->environment->most : brightest_of(plan->background);
     for (uint32_t i = 0; i < plan->visible_light_count; i++)
         most = fmax(most, brightest_of(plan->visible_lights[i].shown));
     for (uint32_t i = 0; i < plan->material_count; i++)

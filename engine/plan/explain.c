@@ -169,26 +169,32 @@ static void materials(explainer *e, const char *effect, material_test *test)
     glint_list_free(&seen);
 }
 
+/// A program and its length. owner: "material 'floor'"
+static void add_program(explainer *e, const glint_program *program, int field, const char *owner)
+{
+    char effect[sizeof e->plan->lines->effect], caller[2 * GLINT_NAME_SIZE];
+    const size_t length = glint_program_length(program), rows = glint_program_rows(program);
+    snprintf(effect, sizeof effect, "pattern: %s", glint_field_name(field));
+    snprintf(caller, sizeof caller, "%s, %zu instruction%s, %zu row%s", owner, length, length == 1 ? "" : "s", rows,
+             rows == 1 ? "" : "s");
+    add_line(e, effect, caller);
+}
+
 /// Each program of a material, with its length.
 static void patterns(explainer *e)
 {
     const glint_plan_patterns *all = e->plan->patterns;
     for (int field = 0; field < GLINT_FIELD_COUNT; field++)
         for (uint32_t i = 0; i < all->material_count; i++) {
-            const glint_program *program = all->of[i].program[field];
-            char effect[sizeof e->plan->lines->effect], caller[2 * GLINT_NAME_SIZE], owner[GLINT_NAME_SIZE];
-            if (!program)
-                continue;
-            snprintf(effect, sizeof effect, "pattern: %s", glint_field_name(field));
-            snprintf(owner, sizeof owner, "#%u", i + 1);
             const glint_material *material = e->plan->geometry->materials.items[i];
-            size_t used = material->desc.name[0]
-                              ? (size_t)snprintf(caller, sizeof caller, "material '%s'", material->desc.name)
-                              : (size_t)snprintf(caller, sizeof caller, "material %s", owner);
-            snprintf(caller + used, sizeof caller - used, ", %zu instruction%s, %zu row%s",
-                     glint_program_length(program), glint_program_length(program) == 1 ? "" : "s",
-                     glint_program_rows(program), glint_program_rows(program) == 1 ? "" : "s");
-            add_line(e, effect, caller);
+            char owner[GLINT_NAME_SIZE + 16];
+            if (!all->of[i].program[field])
+                continue;
+            if (material->desc.name[0])
+                snprintf(owner, sizeof owner, "material '%s'", material->desc.name);
+            else
+                snprintf(owner, sizeof owner, "material #%u", i + 1);
+            add_program(e, all->of[i].program[field], field, owner);
         }
 }
 
@@ -253,7 +259,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     const glint_plan *plan = e->plan;
     const bool surfaces = plan->geometry->table.prim_count > 0;
     one(e, plan->camera.orthographic, "orthographic projection", "camera");
-    one(e, any(scene->desc.background), "background", "scene.background");
+    one(e, any(plan->background), "background", "scene.background");
     lights(e, scene, "visible light", is_seen);
     if (surfaces) {
         one(e, any(scene->desc.ambient), "ambient light", "scene.ambient");
@@ -284,6 +290,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
     }
     if (plan->patterns)
         patterns(e);
+    if (plan->environment)
+        add_program(e, plan->environment->program, GLINT_FIELD_BACKGROUND, "scene");
     if (glint_plan_cuts(plan))
         materials(e, "cut-out", is_cut_out);
     if (plan->highlights) {
@@ -333,6 +341,7 @@ static void list_stages(glint_plan *plan)
         "light worked out once for a face or a vertex",
         "ambient, diffuse and specular terms",
         "shaders of materials, once a light",
+        "the background's program, for rays that leave the scene",
         "light that surfaces get from other surfaces and the background",
         "mirrored and refracted rays, and what they find",
         "light faded by the way from the eye",

@@ -4,6 +4,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/plan/plan.h"
+#include "engine/program/program.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,7 @@ typedef enum input {
     INPUT_SHADOWS, ///< which lights cast them
     INPUT_LIGHT_COLORS,
     INPUT_MATERIALS, ///< reflectances, exponents
-    INPUT_BACKGROUND, ///< and what lights look like
+    INPUT_BACKGROUND, ///< a colour or a program, and what lights look like
     INPUT_TINTS, ///< what light is left of by the transparent, where it tints shadows
     INPUT_INDIRECT, ///< how many paths of light are followed, how far, and what stands for the rest
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
@@ -47,6 +48,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_VERTEX] = READS(LIGHT_COLORS) | READS(MATERIALS),
     [GLINT_STAGE_SHADE] = READS(LIGHT_COLORS) | READS(MATERIALS) | READS(BACKGROUND),
     [GLINT_STAGE_SHADER] = 0,
+    [GLINT_STAGE_ENVIRONMENT] = 0, // `shade` declares what it reads
     [GLINT_STAGE_INDIRECT] = READS(INDIRECT) | READS(BOUNCES),
     [GLINT_STAGE_BOUNCE] = READS(BOUNCES),
     [GLINT_STAGE_DEPTH_CUE] = READS(DEPTH_CUE),
@@ -193,6 +195,16 @@ static glint_key output_key(const glint_plan *plan, uint32_t which, glint_key ke
     return key;
 }
 
+static glint_key background_key(const glint_plan *plan, glint_key key)
+{
+    ADD(key, plan->background);
+    if (plan->environment) {
+        ADD(key, plan->environment->program->structure);
+        ADD(key, plan->environment->program->numbers);
+    }
+    return key;
+}
+
 /// Continues a key with everything in `which`.
 static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key key)
 {
@@ -241,7 +253,7 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     if (which & READS(DEPTH_CUE) && plan->veil.on)
         ADD(key, plan->veil.absorption);
     if (which & READS(BACKGROUND))
-        ADD(key, plan->background);
+        key = background_key(plan, key);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
         ADD(key, plan->desc.alpha);
     for (uint32_t i = 0; i < plan->visible_light_count && which & READS(BACKGROUND); i++)

@@ -13,9 +13,8 @@
 
 const char *glint_field_name(int field)
 {
-    static const char *const names[GLINT_FIELD_COUNT] = { "diffuse",   "ambient",      "specular",
-                                                          "mirror",    "transmission", "shininess",
-                                                          "roughness", "bump",         "opacity",  "model" };
+    static const char *const names[] = { "diffuse",   "ambient", "specular", "mirror", "transmission", "shininess",
+                                         "roughness", "bump",    "opacity",  "model",  "background" };
     return names[field];
 }
 
@@ -383,5 +382,8 @@ bool glint_plan_program(const glint_plan *plan, size_t index, glint_program_use 
             *out = (glint_program_use) { patterns->of[i].desc.name, glint_field_name(field), program };
             return true;
         }
-    return false;
+    if (!plan->environment || index > 0)
+        return false;
+    *out = (glint_program_use) { NULL, glint_field_name(GLINT_FIELD_BACKGROUND), plan->environment->program };
+    return true;
 }

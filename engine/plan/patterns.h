@@ -19,7 +19,8 @@ typedef enum glint_field {
     GLINT_FIELD_BUMP = GLINT_FIELD_PLANES,
     GLINT_FIELD_OPACITY,
     GLINT_FIELD_SHADER,
-    GLINT_FIELD_COUNT
+    GLINT_FIELD_COUNT,
+    GLINT_FIELD_BACKGROUND = GLINT_FIELD_COUNT ///< of no material: the scene's
 } glint_field;
 
 /// Bits of the inputs that say where a point is on a picture.
@@ -27,7 +28,7 @@ typedef enum glint_field {
 
 #define GLINT_FIELDS_PLANES ((1u << GLINT_FIELD_PLANES) - 1) ///< bits of those that have planes
 
-/// "diffuse", "model"
+/// "diffuse", "model", "background"
 const char *glint_field_name(int field);
 /// How many planes a field has.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }

@@ -8,7 +8,7 @@
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
     "camera", "cast",   "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude", "vertex",
-    "shade",  "shader", "indirect",       "bounce",  "depth_cue", "refine", "resolve", "tone",  "outline"
+    "shade",  "shader", "environment",    "indirect", "bounce", "depth_cue", "refine", "resolve", "tone",  "outline"
 };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
@@ -88,7 +88,8 @@ static glint_status check_render_desc(const glint_render_desc *desc, glint_error
 static const uint32_t without_index =
     1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
     1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET |
-    1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_SHADER | 1u << GLINT_STAGE_RESOLVE |
+    1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_SHADER | 1u << GLINT_STAGE_ENVIRONMENT |
+    1u << GLINT_STAGE_RESOLVE |
     1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
 
 /// Whether triangles are to be scanned.
@@ -109,7 +110,7 @@ static bool shades_together(const glint_plan *plan)
 {
     static const glint_stage_id other[] = { GLINT_STAGE_BOUNCE,    GLINT_STAGE_INDIRECT, GLINT_STAGE_VISIBLE_LIGHT,
                                             GLINT_STAGE_DEPTH_CUE, GLINT_STAGE_VERTEX,   GLINT_STAGE_FACET,
-                                            GLINT_STAGE_SHADER };
+                                            GLINT_STAGE_SHADER,    GLINT_STAGE_ENVIRONMENT };
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
@@ -127,13 +128,14 @@ static void choose_stages(glint_plan *plan)
     plan->dims = plan->tints && plan->absorbs;
     plan->runs[GLINT_STAGE_VISIBLE_LIGHT] = plan->visible_light_count > 0;
     plan->runs[GLINT_STAGE_SHADER] = lit && plan->patterns && plan->patterns->shaders;
+    plan->runs[GLINT_STAGE_ENVIRONMENT] = plan->environment;
     plan->depth_cue.on = plan->depth_cue.on && (surfaces || plan->visible_light_count > 0);
     plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
     plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
                        plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
-                       plan->runs[GLINT_STAGE_SHADER] || plan->light_count > GLINT_LIGHT_CHUNK ||
+                       plan->runs[GLINT_STAGE_SHADER] || plan->environment || plan->light_count > GLINT_LIGHT_CHUNK ||
                        (lit && plan->geometry->table.shading_point_count > 0);
-    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0;
+    plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0 || plan->environment;
     plan->runs[GLINT_STAGE_CAST] = surfaces;
     plan->runs[GLINT_STAGE_SURFACE] = surfaces;
     plan->runs[GLINT_STAGE_PATTERN] = surfaces && plan->patterns && (plan->patterns->any || plan->patterns->bumps);
@@ -161,6 +163,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
         status = glint_plan_shading(plan, scene, error);
     if (!status)
         status = glint_plan_visible_lights(plan, scene, error);
+    if (!status)
+        status = glint_plan_find_environment(plan, &scene->desc, error);
     if (!status)
         status = glint_plan_find_indirect(plan, &scene->desc, error);
     if (!status)
@@ -217,6 +221,7 @@ void glint_plan_destroy(glint_plan *plan)
     free(plan->visible_light_edges);
     free(plan->materials);
     glint_plan_patterns_free(plan->patterns);
+    glint_plan_environment_free(plan->environment);
     free(plan->bouncing);
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);

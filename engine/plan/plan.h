@@ -8,6 +8,7 @@
 ///   plan/bounce.c     mirrors and transparent materials
 ///   plan/eye.c        what the eye is inside of
 ///   plan/visible_lights.c       lights that are seen
+///   plan/environment.c a background that a program gives
 ///   plan/indirect.c   light that surfaces get from other surfaces and the background
 ///   plan/explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
@@ -31,6 +32,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_VERTEX,
     GLINT_STAGE_SHADE,
     GLINT_STAGE_SHADER,
+    GLINT_STAGE_ENVIRONMENT, ///< beside `shade`, whose plain background it stands for
     GLINT_STAGE_INDIRECT,
     GLINT_STAGE_BOUNCE,
     GLINT_STAGE_DEPTH_CUE,
@@ -85,6 +87,15 @@ typedef struct glint_plan_visible_light {
     double shown[3]; ///< pi times its radiance: as everything in the film
 } glint_plan_visible_light;
 
+/// A background that a program gives.
+typedef struct glint_plan_environment {
+    glint_program *program; ///< owned reference
+    glint_program *uv; ///< of p, a direction: where it is in a picture of all of them; NULL: the other does not read it
+    uint32_t row_count; ///< the most that one of them needs
+    double pixel; ///< the angle of a pixel; 0: rays are parallel
+    double most; ///< bound of what it gives
+} glint_plan_environment;
+
 /// What a material sends on.
 typedef struct glint_bounce_material {
     double mirror[3], transmission[3], absorption[3], ior;
@@ -125,7 +136,8 @@ struct glint_plan {
     bool caps; ///< shapes and materials allow shadows by caps
     uint32_t light_count, shadow_count; ///< of these, rows that cast shadows, and
     uint32_t spared_count; ///< among those, rows that need no rays of their own
-    double ambient[3], background[3];
+    double ambient[3], background[3]; ///< the latter 0 where there is an environment
+    glint_plan_environment *environment; ///< NULL: the background is plain
     struct {
         bool on;
         double color[3], near, far; ///< see glint_scene_desc
@@ -212,6 +224,9 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
+/// Fills the environment.
+glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
+void glint_plan_environment_free(glint_plan_environment *environment); ///< NULL: nothing
 /// Fills what indirect light needs, after shading, and takes from the materials' ambient light what it stands for.
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
 /// Fills what mirrors and transparent materials need, after that.

@@ -216,7 +216,8 @@ static void total_ambient(glint_plan *plan, const glint_scene *scene)
             plan->ambient[c] += desc->ambient[c] * desc->intensity;
     }
     bounded(plan->ambient, plan->ambient, 1);
-    bounded(plan->background, scene->desc.background, 1);
+    if (!scene->desc.background_program)
+        bounded(plan->background, scene->desc.background, 1);
     plan->depth_cue.on = scene->desc.has_depth_cue;
     plan->depth_cue.near = scene->desc.depth_cue_near;
     plan->depth_cue.far = scene->desc.depth_cue_far;

@@ -16,6 +16,7 @@ struct glint_texture {
     glint_texture_table table;
     glint_texture_level levels[LEVELS_MAX];
     glint_key key;
+    glint_texture *owner; ///< retained: whose texels these are; NULL: its own
     _Atomic uint32_t references;
 };
 
@@ -32,8 +33,9 @@ void glint_texture_release(glint_texture *texture)
 {
     if (!texture || atomic_fetch_sub(&texture->references, 1) > 1)
         return;
-    for (uint32_t i = 0; i < texture->table.level_count; i++)
+    for (uint32_t i = 0; i < texture->table.level_count && !texture->owner; i++)
         free((void *)texture->levels[i].texels);
+    glint_texture_release(texture->owner);
     free(texture);
 }
 
@@ -155,8 +157,8 @@ static glint_status check(const glint_texture_desc *desc, glint_error *error)
 {
     if (!desc->path || !*desc->path)
         return glint_fail(error, GLINT_ERR_INVALID, "path: name of a .png expected");
-    if ((unsigned)desc->wrap > GLINT_WRAP_CLAMP)
-        return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat or clamp expected, got %d", (int)desc->wrap);
+    if ((unsigned)desc->wrap > GLINT_WRAP_AROUND)
+        return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat, clamp or around expected, got %d", (int)desc->wrap);
     if ((unsigned)desc->filter > GLINT_FILTER_NEAREST)
         return glint_fail(error, GLINT_ERR_INVALID, "filter: bilinear or nearest expected, got %d", (int)desc->filter);
     return GLINT_OK;
@@ -186,4 +188,24 @@ glint_status glint_texture_create(const glint_texture_desc *desc, glint_texture 
     }
     free(png.codes);
     return status;
+}
+
+glint_status glint_texture_rewrap(const glint_texture *texture, glint_wrap wrap, glint_texture **out,
+                                  glint_error *error)
+{
+    glint_texture *owner = texture->owner ? texture->owner : (glint_texture *)(uintptr_t)texture;
+    if ((unsigned)wrap > GLINT_WRAP_AROUND)
+        return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat, clamp or around expected, got %d", (int)wrap);
+    glint_texture *twin = calloc(1, sizeof *twin);
+    if (!twin)
+        return glint_fail_nomem(error);
+    memcpy(twin->levels, texture->levels, sizeof twin->levels);
+    twin->table = texture->table;
+    twin->table.levels = twin->levels;
+    twin->table.wrap = wrap;
+    twin->key = glint_key_add(texture->key, &wrap, sizeof wrap);
+    twin->owner = glint_texture_retain(owner);
+    twin->references = 1;
+    *out = twin;
+    return GLINT_OK;
 }

@@ -1,8 +1,10 @@
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
+#include "engine/stages/stages.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 glint_material_desc glint_material_desc_default(void)
 {
@@ -61,21 +63,22 @@ typedef struct program_field {
     const char *name;
     size_t program, number; ///< offsets; number 0: none
     size_t count; ///< of numbers
+    double most; ///< that they may be
     size_t set; ///< of the flag that they are given; 0: none
 } program_field;
 
 #define AT(member) offsetof(glint_material_desc, member)
 
 static const program_field program_fields[] = {
-    { "diffuse", AT(program.diffuse), AT(diffuse), 3, 0 },
-    { "specular", AT(program.specular), AT(specular), 3, AT(has_specular) },
-    { "mirror", AT(program.mirror), AT(mirror), 3, AT(has_mirror) },
-    { "transmission", AT(program.transmission), AT(transmission), 3, 0 },
-    { "shininess", AT(program.shininess), AT(shininess), 1, 0 },
-    { "roughness", AT(program.roughness), AT(roughness), 1, 0 },
-    { "bump", AT(program.bump), 0, 1, 0 },
-    { "opacity", AT(program.opacity), AT(opacity), 1, 0 },
-    { "model", AT(program.shader), 0, 0, 0 },
+    { "diffuse", AT(program.diffuse), AT(diffuse), 3, GLINT_REFLECTANCE_MAX, 0 },
+    { "specular", AT(program.specular), AT(specular), 3, GLINT_REFLECTANCE_MAX, AT(has_specular) },
+    { "mirror", AT(program.mirror), AT(mirror), 3, GLINT_REFLECTANCE_MAX, AT(has_mirror) },
+    { "transmission", AT(program.transmission), AT(transmission), 3, GLINT_REFLECTANCE_MAX, 0 },
+    { "shininess", AT(program.shininess), AT(shininess), 1, GLINT_REFLECTANCE_MAX, 0 },
+    { "roughness", AT(program.roughness), AT(roughness), 1, 1, 0 },
+    { "bump", AT(program.bump), 0, 1, 0, 0 },
+    { "opacity", AT(program.opacity), AT(opacity), 1, 1, 0 },
+    { "model", AT(program.shader), 0, 0, 0, 0 },
 };
 
 static glint_program **program_at(const glint_material_programs *programs, const program_field *field)
@@ -113,17 +116,28 @@ static glint_status check_program(const program_field *field, const glint_progra
     return GLINT_OK;
 }
 
-/// A pattern of numbers alone is these numbers.
+bool glint_pattern_numbers(const glint_program *program, double most, double out[3])
+{
+    double value[GLINT_PROGRAM_OUTPUTS_MAX];
+    const bool grey = glint_program_output_count(program) == 1;
+    bool good = glint_program_kind_of(program) == GLINT_PROGRAM_PATTERN && glint_program_constant(program, value);
+    for (size_t i = 0; i < glint_program_output_count(program); i++)
+        good = good && value[i] >= 0 && value[i] <= most;
+    for (int c = 0; c < 3 && good; c++)
+        out[c] = value[grey ? 0 : c];
+    return good;
+}
+
+/// A pattern of numbers alone is these numbers. One height everywhere is no bump.
 static void fold_program(const program_field *field, glint_material_desc *desc)
 {
     double value[GLINT_PROGRAM_OUTPUTS_MAX];
     glint_program **program = program_at(&desc->program, field);
-    double *number = (double *)(void *)((char *)desc + field->number);
-    const bool grey = glint_program_output_count(*program) == 1;
-    if (field->count == 0 || !glint_program_constant(*program, value))
+    if (field->count == 0 || (field->number ? !glint_pattern_numbers(*program, field->most, value)
+                                            : !glint_program_constant(*program, value)))
         return;
-    for (size_t i = 0; field->number && i < field->count; i++)
-        number[i] = value[grey ? 0 : i];
+    if (field->number)
+        memcpy((char *)desc + field->number, value, field->count * sizeof *value);
     if (field->set)
         *((bool *)desc + field->set) = true;
     *program = NULL;

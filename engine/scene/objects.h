@@ -92,6 +92,10 @@ void glint_transform_linear(const glint_transform *t, double out[3][3]);
 double glint_linear_cofactors(double m[3][3], double out[3][3]);
 glint_status glint_check_transform(const char *name, const glint_transform *t, glint_error *error);
 
+/// Whether a pattern is numbers alone, 0 .. most, which then can stand in its place; one of them stands for all three. Others
+/// are run, so that those that are out of range become what a pattern's are, and are counted.
+bool glint_pattern_numbers(const glint_program *program, double most, double out[3]);
+
 /// Takes a reference to `material`, or makes one with default fields.
 glint_material *glint_material_or_default(glint_material *material, glint_error *error);
 void glint_mesh_free(glint_mesh *mesh);

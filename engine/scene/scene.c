@@ -1,5 +1,6 @@
 #include "engine/base/status.h"
 #include "engine/scene/objects.h"
+#include "engine/stages/stages.h"
 
 #include <float.h>
 #include <math.h>
@@ -29,11 +30,27 @@ static glint_status check_depth_cue(const glint_scene_desc *desc, glint_error *e
     return status;
 }
 
-glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, glint_error *error)
+static glint_status check_background(const glint_scene_desc *desc, glint_error *error)
 {
+    const glint_program *program = desc->background_program;
+    if (program && glint_program_kind_of(program) != GLINT_PROGRAM_PATTERN)
+        return glint_fail(error, GLINT_ERR_INVALID, "background: a pattern expected, got a shader");
+    if (program && desc->has_depth_cue && !desc->has_depth_cue_color)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "depth_cue.color: a colour expected where the background, which it follows, is a pattern");
+    return glint_check_color("background", desc->background, error);
+}
+
+glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, glint_error *error)
+{
+    glint_scene_desc folded = *given;
+    const glint_scene_desc *desc = &folded;
+    if (given->background_program &&
+        glint_pattern_numbers(given->background_program, GLINT_REFLECTANCE_MAX, folded.background))
+        folded.background_program = NULL;
     glint_status status = glint_check_color("ambient", desc->ambient, error);
     if (!status)
-        status = glint_check_color("background", desc->background, error);
+        status = check_background(desc, error);
     if (!status && desc->has_depth_cue)
         status = check_depth_cue(desc, error);
     if (!status && desc->has_indirect)
@@ -44,6 +61,8 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *desc, g
         return status;
     glint_camera_retain(desc->camera);
     glint_camera_release(scene->desc.camera);
+    glint_program_retain(desc->background_program);
+    glint_program_release(scene->desc.background_program);
     scene->desc = *desc;
     return GLINT_OK;
 }
@@ -66,6 +85,7 @@ void glint_scene_release(glint_scene *scene)
     for (size_t i = 0; i < scene->lights.count; i++)
         glint_light_release(glint_scene_light(scene, i));
     glint_camera_release(scene->desc.camera);
+    glint_program_release(scene->desc.background_program);
     glint_geometry_release(scene->geometry);
     glint_list_free(&scene->shapes);
     glint_list_free(&scene->lights);

@@ -16,6 +16,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     tile->vertex = to->vertex;
     tile->facets = to->facets;
     tile->visible_light = to->visible_light;
+    tile->environment = to->environment;
     tile->sample = to->sample;
     tile->counts = (glint_tile_counts) { 0 };
     tile->clock = to->clock;
@@ -41,6 +42,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
     to->counts.work.lights_seen += batch->tile.counts.work.lights_seen;
     to->counts.work.overlaps += batch->tile.counts.work.overlaps;
     to->counts.work.patterns += batch->tile.counts.work.patterns;
+    to->counts.work.environment += batch->tile.counts.work.environment;
     glint_odd_pattern_add(&to->counts.odd, &batch->tile.counts.odd);
 }
 

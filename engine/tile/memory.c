@@ -30,6 +30,10 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
     tile->pattern = NULL;
     if (plan->patterns)
         good = (tile->pattern = glint_pattern_create(plan)) && good;
+    glint_environment_destroy(tile->environment); // likewise
+    tile->environment = NULL;
+    if (plan->environment)
+        good = (tile->environment = glint_environment_create(plan)) && good;
     if (plan->visible_light_count && !tile->visible_light)
         tile->visible_light = glint_visible_light_create();
     return good && (!plan->visible_light_count || glint_visible_light_fits(tile->visible_light, plan));
@@ -48,6 +52,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_indirect_destroy(tile->indirect);
     glint_samples_destroy(tile->samples);
     glint_pattern_destroy(tile->pattern);
+    glint_environment_destroy(tile->environment);
     free(tile->facets);
     free(tile);
 }

@@ -106,6 +106,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         run_shaders(tile, frame, from, count, lights);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
         glint_tile_add_visible_light(tile, frame);
+    if (plan->environment && args.first)
+        glint_tile_add_environment(tile, frame);
     glint_tile_count_powers(tile, frame, from, count);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADE, false);
 }

@@ -149,6 +149,7 @@ typedef struct glint_tile {
     struct glint_visible_light
         *visible_light; ///< of tile/visible_lights.c; NULL unless the frame has lights that are seen
     struct glint_indirect *indirect; ///< memory of tile/indirect.c; likewise
+    struct glint_environment *environment; ///< of tile/environment.c; NULL unless a program gives the background
     uint64_t clock; ///< end of the last timed stage, ns
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
@@ -305,6 +306,14 @@ void glint_tile_visible_light_normal(const glint_tile *tile, const glint_tile_fr
 const uint16_t *glint_tile_unlit_lanes(const glint_tile *tile, uint16_t lanes[GLINT_TILE_GROUPS]);
 /// Adds what lights look like to the sums, as background.
 void glint_tile_add_visible_light(glint_tile *tile, const glint_tile_frame *frame);
+
+/// tile/environment.c: a background that a program gives.
+struct glint_environment *glint_environment_create(const glint_plan *plan);
+void glint_environment_destroy(struct glint_environment *environment); ///< NULL: nothing
+/// Whether some ray may leave the scene and show it: then the tile's rays are needed.
+bool glint_tile_sees_environment(const glint_tile *tile);
+/// Adds what such rays see to the sums.
+void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);

@@ -270,6 +270,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
     const bool any = find_hits(tile, frame, &w);
     if (frame->plan->runs[GLINT_STAGE_DEPTH_CUE])
         find_depth_cue(tile, frame, &w, any);
+    if (frame->plan->environment && glint_tile_sees_environment(tile))
+        need_rays(tile, frame, &w);
     const bool shading_points = any && frame->plan->runs[GLINT_STAGE_VERTEX];
     const bool lit = shading_points ? glint_tile_choose_sampled(tile, frame) : any;
     const uint32_t lights = lit ? frame->plan->light_count : 0;

@@ -21,7 +21,7 @@ bad=0
 compare() {
     local surfaces=${4:-plain}
     local name=$1_$2_$3_$surfaces
-    ${LUA:-lua5.4} tests/povray/pov.lua "$1" "$2" "$3" $width $height "$surfaces" >"$out/$name.pov" &&
+    ${LUA:-lua5.4} tests/povray/pov.lua "$1" "$2" "$3" $width $height "$surfaces" "$out/sky.png" >"$out/$name.pov" &&
         povray "+I$out/$name.pov" "+O$out/$name.pov.png" +W$width +H$height +FN16 File_Gamma=1.0 -A -D \
             >"$out/$name.log" 2>&1 || {
         tail -n 20 "$out/$name.log"
@@ -29,7 +29,7 @@ compare() {
         bad=1
         return
     }
-    "$glint" tests/povray/scene.lua --set "model=$1" --set "light=$2" --set "projection=$3" --set "surfaces=$surfaces" --size ${width}x$height \
+    "$glint" tests/povray/scene.lua --set "model=$1" --set "light=$2" --set "projection=$3" --set "surfaces=$surfaces" --set "sky=$out/sky.png" --size ${width}x$height \
         --quiet --force -o "$out/$name.png" &&
         "$build/tests/compare16" "$out/$name.png" "$out/$name.pov.png" 0.0001 || {
         echo "not ok - $name"
@@ -40,6 +40,7 @@ compare() {
 }
 
 mkdir -p "$out"
+${LUA:-lua5.4} tests/povray/sky.lua "$out/sky.png" || bad=1
 for model in phong blinn_phong; do
     for light in point directional; do
         compare $model $light perspective
@@ -48,7 +49,7 @@ done
 for light in spot fade area; do
     compare phong $light perspective
 done
-for surfaces in mirror glass absorbing inside fresnel solids open faceted smooth stretched prism nested checker; do
+for surfaces in mirror glass absorbing inside fresnel solids open faceted smooth stretched prism nested checker sky; do
     compare phong point perspective $surfaces
 done
 compare phong point orthographic

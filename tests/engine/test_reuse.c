@@ -57,6 +57,7 @@ typedef enum kind {
     DEPTH, ///< 8 or 16
     TRANSFORM,
     REGION, ///< x, y, width, height; or none
+    SKY, ///< one of the patterns below, or none
     FIXED ///< not a field to set here: a name, a kind, what is set another way
 } kind;
 
@@ -117,6 +118,7 @@ static const field scene_fields[] = {
     FIELD(glint_scene_desc, camera, FIXED, 0, 0),
     FIELD(glint_scene_desc, ambient, COLOR, 0, 1),
     FIELD(glint_scene_desc, background, COLOR, 0, 1),
+    FIELD(glint_scene_desc, background_program, SKY, 0, 0),
     FIELD(glint_scene_desc, has_depth_cue, FLAG, 0, 1),
     FIELD(glint_scene_desc, has_depth_cue_color, FLAG, 0, 1),
     FIELD(glint_scene_desc, depth_cue_color, COLOR, 0, 1),
@@ -162,6 +164,24 @@ static void set_region(double out[4])
         out[i] = out[2] > 0 && out[3] > 0 ? out[i] : 0;
 }
 
+#define SKIES 3 ///< the first two differ in a number alone
+static glint_program *skies[SKIES];
+
+/// Of a direction's height, and of where it is in a picture of all of them.
+static void make_skies(void)
+{
+    for (int k = 0; k < SKIES; k++) {
+        glint_builder *b;
+        glint_value in, by, out;
+        assert_int_equal(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, NULL), GLINT_OK);
+        glint_builder_input(b, k < 2 ? GLINT_INPUT_P_Y : GLINT_INPUT_UV_U, &in, NULL);
+        glint_builder_number(b, k == 0 ? 0.5 : 0.75, &by, NULL);
+        glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { in, by }, &out, NULL);
+        assert_int_equal(glint_builder_finish(b, &out, 1, &skies[k], NULL), GLINT_OK);
+        glint_builder_destroy(b);
+    }
+}
+
 static void set_field(const field *f, void *desc)
 {
     void *at = (char *)desc + f->offset;
@@ -193,6 +213,9 @@ static void set_field(const field *f, void *desc)
         break;
     case REGION:
         set_region(at);
+        break;
+    case SKY:
+        memcpy(at, draw(3) ? &skies[draw(SKIES)] : &(glint_program *) { NULL }, sizeof *skies);
         break;
     default:
         whole = f->kind == CHOICE  ? (int32_t)draw((uint32_t)f->high)
@@ -354,6 +377,7 @@ static glint_shape *new_group(const glint_shape_desc *like)
 static void make_world(world *w)
 {
     memset(w, 0, sizeof *w);
+    make_skies();
     glint_camera_desc c = glint_camera_desc_default();
     c.eye[1] = 2;
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
@@ -396,6 +420,8 @@ static void make_world(world *w)
 
 static void free_world(world *w)
 {
+    for (int i = 0; i < SKIES; i++)
+        glint_program_release(skies[i]);
     for (int i = 0; i < SHAPES; i++) {
         glint_material_release(w->materials[i]);
         glint_shape_release(w->shapes[i]);

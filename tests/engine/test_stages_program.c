@@ -187,8 +187,8 @@ static void texel_operations(int precision, bool odd)
 static void test_texels(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < 4; kind++) {
-        load_texture((glint_wrap)(kind & 1), (glint_filter)(kind >> 1));
+    for (int kind = 0; kind < 6; kind++) {
+        load_texture((glint_wrap)(kind % 3), (glint_filter)(kind / 3));
         run_cases(200, 44000, texel_operations);
         run_cases(200, 45000, random_program);
         glint_texture_release(recipe_texture);

@@ -112,6 +112,14 @@ static void test_wrapping(void **state)
     expect(nearest, 0.49, 0.51, 1, 0, 0, 1);
     expect(nearest, 0.51, 0.51, 0, 1, 0, 1);
     expect(nearest, -0.51, 1.49, 0, 0, 1, 1);
+    glint_texture *around = load(GLINT_WRAP_AROUND, GLINT_FILTER_BILINEAR, false);
+    expect(around, 1, 0.75, 0.5, 0.5, 0, 1); // itself across
+    expect(around, -2.75, 1, 1, 0, 0, 1); // its border down
+    expect(around, 0.25, -0.2, 0, 0, 1, 1);
+    glint_texture_release(around);
+    around = load(GLINT_WRAP_AROUND, GLINT_FILTER_NEAREST, false);
+    expect(around, 1.3, 1.7, 1, 0, 0, 1);
+    glint_texture_release(around);
     double any[4];
     texel(repeat, INFINITY, NAN, NAN, any); // a texel of the picture
     assert_true(any[3] >= 0.2 && any[3] <= 1);
@@ -154,7 +162,7 @@ static void test_slopes(void **state)
     for (size_t i = 0; i < sizeof samples; i++)
         samples[i] = (uint8_t)below(256);
     write_png(path, 13, 7, PNG_COLOR_TYPE_RGB, 8, 0, samples);
-    for (int wrap = 0; wrap < 2; wrap++) {
+    for (int wrap = 0; wrap < 3; wrap++) {
         glint_texture *t = load((glint_wrap)wrap, GLINT_FILTER_BILINEAR, false);
         uint32_t kinks = 0;
         for (int i = 0; i < 2000; i++) {
@@ -206,7 +214,7 @@ static void test_files(void **state)
     glint_texture_desc desc = glint_texture_desc_default();
     assert_int_equal(glint_texture_create(&desc, &texture, &error), GLINT_ERR_INVALID);
     desc.path = path;
-    desc.wrap = (glint_wrap)2;
+    desc.wrap = (glint_wrap)3;
     assert_int_equal(glint_texture_create(&desc, &texture, &error), GLINT_ERR_INVALID);
     glint_texture_release(NULL);
 }
@@ -243,11 +251,31 @@ static void test_keys(void **state)
     glint_program_release(p);
 }
 
+/// The same texels with another wrap: it reads as a picture loaded so, has a key of its own, and outlives the first.
+static void test_rewrap(void **state)
+{
+    (void)state;
+    write_four();
+    glint_texture *first = load(GLINT_WRAP_REPEAT, GLINT_FILTER_BILINEAR, false), *second, *third;
+    assert_int_equal(glint_texture_rewrap(first, GLINT_WRAP_AROUND, &second, &error), GLINT_OK);
+    assert_false(glint_key_equal(glint_texture_key(first), glint_texture_key(second)));
+    glint_texture_release(first);
+    expect(second, 0.25, 1, 1, 0, 0, 1);
+    assert_int_equal(glint_texture_rewrap(second, GLINT_WRAP_CLAMP, &third, &error), GLINT_OK);
+    glint_texture_release(second);
+    expect(third, 1.5, 0.75, 0, 1, 0, 1);
+    assert_true(glint_texture_width(third) == 2 && glint_texture_height(third) == 2);
+    assert_int_equal(glint_texture_rewrap(third, (glint_wrap)3, &second, &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "wrap: repeat, clamp or around expected, got 3"));
+    glint_texture_release(third);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_codes),  cmocka_unit_test(test_wrapping), cmocka_unit_test(test_footprints),
         cmocka_unit_test(test_slopes), cmocka_unit_test(test_files),    cmocka_unit_test(test_keys),
+        cmocka_unit_test(test_rewrap),
     };
     snprintf(path, sizeof path, "/tmp/glint_texture_%ld.png", (long)getpid());
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);

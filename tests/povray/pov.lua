@@ -1,4 +1,4 @@
--- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT SURFACES
+-- Writes the workshop as a POV-Ray 3.7 scene to stdout:  lua5.4 pov.lua MODEL LIGHT PROJECTION WIDTH HEIGHT SURFACES SKY
 --
 -- How our formulas read in POV-Ray's language (16-bit linear output: +FN16 File_Gamma=1.0, and no +A):
 --   assumed_gamma 1.0, pigment { rgb C }, ambient_light rgb 1
@@ -24,9 +24,11 @@
 --   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
 --                float there; a normal that looks away from the eye is turned, here one that looks through its face
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
+--   background   sky_sphere { pigment { image_map { map_type 1 } } }: there the left edge of a picture is +x, here it is +z, and it
+--                runs on as it does here; texels are not mixed
 --   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
-local model, light, projection, width, height, surfaces = table.unpack(arg)
+local model, light, projection, width, height, surfaces, sky = table.unpack(arg)
 local w = dofile "tests/povray/workshop.lua"
 
 local function sub(a, b) return { a[1] - b[1], a[2] - b[2], a[3] - b[3] } end
@@ -45,7 +47,11 @@ local extent = projection == "perspective" and 2 * math.tan(math.rad(w.fov) / 2)
 
 line "#version 3.7;"
 line("global_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level %d adc_bailout 0 }", (w.depths[surfaces] or w.max_depth) + 1)
-line("background { rgb %s }", vector(w.background))
+if surfaces == "sky" then
+  line('sky_sphere { pigment { image_map { png "%s" gamma 1.0 map_type 1 } rotate -90 * y } }', sky)
+else
+  line("background { rgb %s }", vector(w.background))
+end
 line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
   vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
 if light == "point" then

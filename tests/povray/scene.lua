@@ -4,7 +4,8 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "faceted", "smooth", "stretched", "prism", "nested", "checker" } },
+     "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
+  sky = { "", doc = "the PNG file of the sky" },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
 local w = dofile "tests/povray/workshop.lua"
@@ -71,6 +72,7 @@ end
 -- Where materials have patterns, all of them have an ambient that follows the diffuse reflectance: less light for that.
 local follows = P.surfaces == "checker"
 local scene = glint.scene { camera = glint.camera(camera), ambient = follows and w.ambient / w.diffuse or 1, background = w.background }
+if P.surfaces == "sky" then scene.background = glint.texture { file = P.sky, filter = "nearest", transfer = "linear" } end
 for _, light in ipairs(lights[P.light]()) do scene:add(light) end
 for i, sphere in ipairs(w.spheres) do
   local c, surface = sphere[3], (w.surfaces[P.surfaces] or {})[i] or {}

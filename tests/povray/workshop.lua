@@ -36,6 +36,10 @@ return {
   fov = 42, -- degrees, vertical
   height = 15, -- world units, of the orthographic view
   background = { 0.2, 0.3, 0.5 },
+  sky = { -- of the surfaces of that name: a picture of all directions, of red, green and blue at x, y from the top left, 0 .. 1
+    width = 64, height = 32,
+    color = function(x, y) return { 0.1 + 0.6 * x, 0.1 + 0.6 * y, 0.2 + 0.3 * ((64 * x // 4 + 32 * y // 4) % 2) } end,
+  },
   light = { color = { 0.8, 0.75, 0.7 }, position = { 0, 20, 0 }, direction = { -3, -5, -2 } },
   spot = { inner = 8, outer = 14, direction = { 0.05, -1, 0.08 } }, -- at the light's place; POV-Ray: radius, falloff
   fade = 15, -- distance at which the light is as strong as without fall-off
@@ -65,6 +69,7 @@ return {
     -- stands on the ground shows that, enlarged
     plain = {},
     checker = { [2] = { checker = { 0.1, 0.2, 0.3 } }, [3] = { checker = { 0.1, 0.1, 0.1 } }, [4] = { checker = { 0.9, 0.9, 0.8 } } },
+    sky = { [2] = { mirror = 0.5 }, [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 } },
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
     prism = { [2] = { transmission = 0.9, ior = 1.5, specular = 0 }, [3] = { transmission = 0.8, ior = 1.7, mirror = 0.1, specular = 0 } },

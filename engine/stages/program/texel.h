@@ -7,12 +7,16 @@ typedef struct texel_place {
     _Alignas(64) double fx[VD], fy[VD];
 } texel_place;
 
-static inline vd texel_wrap(const glint_texture_table *texture, vd u)
+static inline vd texel_wrap(bool repeat, vd u)
 {
-    if (texture->wrap == GLINT_WRAP_REPEAT)
+    if (repeat)
         u = u - d_floor(u);
     return d_min(d_max(u, d_set(0)), d_set(1));
 }
+
+static inline bool texel_repeats_u(const glint_texture_table *texture) { return texture->wrap != GLINT_WRAP_CLAMP; }
+
+static inline bool texel_repeats_v(const glint_texture_table *texture) { return texture->wrap == GLINT_WRAP_REPEAT; }
 
 /// width, height: of each lane's level.
 static void texel_locate(vd u, vd v, vd width, vd height, texel_place *at)
@@ -38,11 +42,11 @@ static inline size_t texel_index(bool repeat, int at, uint32_t side)
 static inline void texel_corners(const glint_texture_table *texture, const glint_texture_level *level,
                                  const texel_place *at, int lane, const float *corner[4])
 {
-    const bool repeat = texture->wrap == GLINT_WRAP_REPEAT;
+    const bool across = texel_repeats_u(texture), down = texel_repeats_v(texture);
     const int x = (int)at->x[lane], y = (int)at->y[lane];
-    const size_t left = texel_index(repeat, x, level->width), right = texel_index(repeat, x + 1, level->width);
-    const size_t upper = texel_index(repeat, y, level->height) * level->width;
-    const size_t lower = texel_index(repeat, y + 1, level->height) * level->width;
+    const size_t left = texel_index(across, x, level->width), right = texel_index(across, x + 1, level->width);
+    const size_t upper = texel_index(down, y, level->height) * level->width;
+    const size_t lower = texel_index(down, y + 1, level->height) * level->width;
     corner[0] = level->texels + 4 * (upper + left);
     corner[1] = level->texels + 4 * (upper + right);
     corner[2] = level->texels + 4 * (lower + left);
@@ -122,7 +126,8 @@ static void texel_nearest(const op_call *call, vd u, vd v, bool slope, double ou
 
 INNER void texel_vector(const op_call *call, size_t i, bool slope)
 {
-    const vd u = texel_wrap(call->texture, op_in(call, 0, i)), v = texel_wrap(call->texture, op_in(call, 1, i));
+    const vd u = texel_wrap(texel_repeats_u(call->texture), op_in(call, 0, i));
+    const vd v = texel_wrap(texel_repeats_v(call->texture), op_in(call, 1, i));
     const vd level = texel_level(call->texture, op_in(call, 2, i));
     double out[VD][GLINT_RESULTS_MAX];
     _Alignas(64) double levels[VD];

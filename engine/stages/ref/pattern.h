@@ -161,20 +161,25 @@ static void op_cell(const double p[3], double *distance, double *slope)
 
 // ---- texels ------------------------------------------------------------------------------------------------------
 
-/// 0 .. 1 of a picture's side; NaN gives 0.
-static double wrapped(glint_wrap wrap, double u)
+/// Whether a picture goes on across with itself, and whether it does down.
+static bool repeats(glint_wrap wrap, bool down)
 {
-    if (wrap == GLINT_WRAP_REPEAT)
+    return wrap == GLINT_WRAP_REPEAT || (wrap == GLINT_WRAP_AROUND && !down);
+}
+
+/// 0 .. 1 of a picture's side; NaN gives 0.
+static double wrapped(bool repeat, double u)
+{
+    if (repeat)
         u = u - floor(u);
     u = u > 0 ? u : 0;
     return u < 1 ? u : 1;
 }
 
 /// The two texels around x of a side of n.
-static void neighbours(glint_wrap wrap, double x, uint32_t n, uint32_t at[2])
+static void neighbours(bool repeat, double x, uint32_t n, uint32_t at[2])
 {
     const double first = floor(x);
-    const bool repeat = wrap == GLINT_WRAP_REPEAT;
     at[0] = first < 0 ? (repeat ? n - 1 : 0) : (uint32_t)first;
     at[1] = first + 1 < n ? (uint32_t)(first + 1) : repeat ? 0 : n - 1;
 }
@@ -185,11 +190,12 @@ static void texel_of_level(const glint_texture_table *texture, uint32_t level, d
 {
     const glint_texture_level *l = &texture->levels[level];
     const double w = l->width, h = l->height;
-    const double x = wrapped(texture->wrap, u) * w - 0.5, y = (1 - wrapped(texture->wrap, v)) * h - 0.5;
+    const bool across = repeats(texture->wrap, false), down = repeats(texture->wrap, true);
+    const double x = wrapped(across, u) * w - 0.5, y = (1 - wrapped(down, v)) * h - 0.5;
     const double fx = x - floor(x), fy = y - floor(y);
     uint32_t i[2], j[2];
-    neighbours(texture->wrap, x, l->width, i);
-    neighbours(texture->wrap, y, l->height, j);
+    neighbours(across, x, l->width, i);
+    neighbours(down, y, l->height, j);
     for (int c = 0; c < 4; c++) {
         double t[2][2];
         for (int k = 0; k < 4; k++)
@@ -207,8 +213,8 @@ static void texel_of_level(const glint_texture_table *texture, uint32_t level, d
 static void nearest_texel(const glint_texture_table *texture, double u, double v, double *color)
 {
     const glint_texture_level *l = &texture->levels[0];
-    const double x = floor(wrapped(texture->wrap, u) * l->width);
-    const double y = floor((1 - wrapped(texture->wrap, v)) * l->height);
+    const double x = floor(wrapped(repeats(texture->wrap, false), u) * l->width);
+    const double y = floor((1 - wrapped(repeats(texture->wrap, true), v)) * l->height);
     const size_t i = (size_t)(x < l->width ? x : l->width - 1), j = (size_t)(y < l->height ? y : l->height - 1);
     for (size_t c = 0; c < 4; c++)
         color[c] = (double)l->texels[4 * (j * l->width + i) + c];

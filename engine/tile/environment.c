@@ -1,0 +1,207 @@
+/// A background that a program gives: run for the rays of a tile or batch that meet nothing, in the place where `shade` adds
+/// a plain one.
+///
+/// Directions are made unit in double, and the same code serves every instruction set; the programs are a kernel's.
+#include "engine/base/alloc.h"
+#include "engine/base/vec.h"
+#include "engine/program/program.h"
+#include "engine/tile/pattern_inputs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define TURN 0x1.921fb54442d18p+2 // 2 pi
+
+struct glint_environment {
+    glint_pattern_inputs inputs;
+    _Alignas(64) double shown[3][GLINT_PROGRAM_LANES];
+    double *rows; ///< scratch of the kernel
+};
+
+struct glint_environment *glint_environment_create(const glint_plan *plan)
+{
+    struct glint_environment *environment = glint_alloc(1, sizeof *environment);
+    if (!environment)
+        return NULL;
+    environment->rows =
+        glint_alloc((size_t)plan->environment->row_count * GLINT_PROGRAM_LANES, sizeof *environment->rows);
+    if (environment->rows)
+        return environment;
+    free(environment);
+    return NULL;
+}
+
+void glint_environment_destroy(struct glint_environment *environment)
+{
+    if (environment)
+        free(environment->rows);
+    free(environment);
+}
+
+/// Lanes of a group whose rays leave the scene.
+static uint16_t leaving(const glint_tile *tile, const glint_plan *plan, uint32_t g)
+{
+    uint16_t lanes = (uint16_t)(tile->active[g] & ~tile->at.hits[g]);
+    for (unsigned left = plan->runs[GLINT_STAGE_VISIBLE_LIGHT] ? lanes : 0; left; left &= left - 1)
+        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)))
+            lanes &= (uint16_t) ~(left & -left);
+    return lanes;
+}
+
+bool glint_tile_sees_environment(const glint_tile *tile)
+{
+    unsigned any = 0;
+    for (uint32_t g = 0; g < tile->group_count && !tile->transparent; g++)
+        any |= tile->active[g] & (unsigned)~tile->at.hits[g];
+    return any;
+}
+
+// ---- What the programs read ----
+
+/// Sixteen numbers of an array of real.
+static void load_group(const void *array, glint_precision precision, size_t at, double out[GLINT_GROUP])
+{
+    if (precision == GLINT_DOUBLE)
+        memcpy(out, (const double *)array + at, GLINT_GROUP * sizeof *out);
+    for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+        out[i] = (double)((const float *)array)[at + i];
+}
+
+/// The rays of a group, not unit: as glint_tile_direction has them.
+static void load_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double d[3][GLINT_GROUP])
+{
+    const size_t across = tile->camera.orthographic ? 1 : tile->groups_across, x = g % across, y = g / across;
+    for (size_t c = 0; c < 3; c++) {
+        double down[GLINT_GROUP];
+        if (tile->camera.orthographic) {
+            load_group(tile->rays.direction[c], precision, (size_t)g * GLINT_GROUP, d[c]);
+            continue;
+        }
+        load_group(tile->rays.across, precision, (3 * x + c) * GLINT_GROUP, d[c]);
+        load_group(tile->rays.down, precision, (3 * y + c) * GLINT_GROUP, down);
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            d[c][i] += down[i];
+        for (uint32_t i = 0; i < GLINT_GROUP && precision == GLINT_FLOAT; i++)
+            d[c][i] = (double)(float)d[c][i];
+    }
+}
+
+/// Group g of the tile, into group `to` of the rows.
+static void gather_group(struct glint_environment *environment, const glint_tile *tile, const glint_plan *plan,
+                         uint32_t g, uint32_t to)
+{
+    double d[3][GLINT_GROUP], length[GLINT_GROUP];
+    const uint32_t at = to * GLINT_GROUP;
+    double(*row)[GLINT_PROGRAM_LANES] = environment->inputs.row;
+    load_directions(tile, plan->desc.precision, g, d);
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        length[i] = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
+    for (int c = 0; c < 3; c++) {
+        double *p = row[GLINT_INPUT_P_X + c] + at, *n = row[GLINT_INPUT_N_X + c] + at;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            p[i] = d[c][i] / length[i];
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            n[i] = -p[i];
+        memcpy(row[GLINT_INPUT_WORLD_X + c] + at, p, sizeof *d);
+        memcpy(row[GLINT_INPUT_V_X + c] + at, n, sizeof *d);
+    }
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        row[GLINT_INPUT_FOOTPRINT][at + i] = plan->environment->pixel;
+        row[GLINT_INPUT_UV_FOOTPRINT][at + i] = plan->environment->pixel / TURN;
+    }
+}
+
+static void run(const struct glint_environment *environment, const glint_tile_frame *frame,
+                const glint_program *program, glint_program_args *args)
+{
+    args->code = &program->code;
+    args->rows = environment->rows;
+    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+        args->input[input] = environment->inputs.row[input];
+    frame->stages->program(args);
+}
+
+// ---- What they give ----
+
+/// Notes the lanes of group `from` of the rows at which the program gave what is no light.
+static void note_odd(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
+                     unsigned lanes)
+{
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t at = from * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        glint_odd_pattern one = { .field = GLINT_FIELD_BACKGROUND };
+        for (uint32_t c = 0; c < channels; c++)
+            one.count |= !(environment->shown[c][at] >= 0 && environment->shown[c][at] <= GLINT_REFLECTANCE_MAX);
+        for (int c = 0; c < 3; c++)
+            one.point[c] = environment->inputs.row[GLINT_INPUT_P_X + c][at];
+        glint_odd_pattern_add(&tile->counts.odd, &one);
+    }
+}
+
+/// Adds group `from` of the rows to group g of the tile. channels: how many the program gives; one stands for all.
+static void add_group(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t g,
+                      uint32_t from, unsigned lanes)
+{
+    double wanted[GLINT_GROUP], odd[GLINT_GROUP] = { 0 };
+    bool any = false;
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        wanted[i] = lanes >> i & 1 ? GLINT_REFLECTANCE_MAX : 0;
+    for (uint32_t c = 0; c < 3; c++) {
+        const double *shown = environment->shown[c < channels ? c : 0] + from * GLINT_GROUP;
+        double *sum = tile->film.sum[GLINT_TERM_BACKGROUND][c] + g * GLINT_GROUP, light[GLINT_GROUP];
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            light[i] = shown[i] > 0 ? shown[i] : 0;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            light[i] = light[i] < GLINT_REFLECTANCE_MAX ? light[i] : GLINT_REFLECTANCE_MAX;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            odd[i] += light[i] == shown[i] ? 0 : 1;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            sum[i] += light[i] < wanted[i] ? light[i] : wanted[i];
+    }
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        any = any || odd[i] > 0;
+    if (any)
+        note_odd(tile, environment, channels, from, lanes);
+}
+
+/// Some groups, and their lanes.
+static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
+                       uint32_t count)
+{
+    struct glint_environment *environment = tile->environment;
+    const glint_plan_environment *own = frame->plan->environment;
+    const uint32_t channels = own->program->code.output_count;
+    glint_program_args args = { .group_count = count, .wanted = lanes };
+    for (uint32_t k = 0; k < count; k++)
+        gather_group(environment, tile, frame->plan, groups[k], k);
+    if (own->uv) {
+        args.result[0] = environment->inputs.row[GLINT_INPUT_UV_U];
+        args.result[1] = environment->inputs.row[GLINT_INPUT_UV_V];
+        run(environment, frame, own->uv, &args);
+        args.result[1] = NULL;
+    }
+    for (uint32_t c = 0; c < channels; c++)
+        args.result[c] = environment->shown[c];
+    run(environment, frame, own->program, &args);
+    for (uint32_t k = 0; k < count; k++)
+        add_group(tile, environment, channels, groups[k], k, lanes[k]);
+}
+
+void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
+{
+    uint32_t groups[GLINT_PROGRAM_GROUPS], count = 0;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS];
+    if (tile->transparent)
+        return;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        lanes[count] = leaving(tile, frame->plan, g);
+        tile->counts.work.environment += (uint64_t)__builtin_popcount(lanes[count]);
+        groups[count] = g;
+        count += lanes[count] != 0;
+        if (count == GLINT_PROGRAM_GROUPS || (count > 0 && g + 1 == tile->group_count)) {
+            run_groups(tile, frame, groups, lanes, count);
+            count = 0;
+        }
+    }
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
+}

@@ -1,0 +1,269 @@
+/// Backgrounds that a program gives, through glint.h alone: what is counted, what of a frame runs again, what is refused; and
+/// patterns of numbers alone, within a field's range and beyond it.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <string.h>
+
+#include "engine/glint.h"
+
+#define WIDTH 96
+#define HEIGHT 72
+
+static glint_error error;
+
+#define OK(call) \
+    do { \
+        if ((call) != GLINT_OK) \
+            fail_msg("%s: %s", #call, error.message); \
+    } while (0)
+
+/// offset + slope d.y
+static glint_program *gradient(double offset, double slope)
+{
+    glint_builder *b;
+    glint_program *out;
+    glint_value y, numbers[2], value;
+    OK(glint_builder_create(GLINT_PROGRAM_PATTERN, &b, &error));
+    OK(glint_builder_input(b, GLINT_INPUT_P_Y, &y, &error));
+    OK(glint_builder_number(b, slope, &numbers[0], &error));
+    OK(glint_builder_number(b, offset, &numbers[1], &error));
+    OK(glint_builder_op(b, GLINT_OP_MUL, (const glint_value[]) { y, numbers[0] }, &value, &error));
+    OK(glint_builder_op(b, GLINT_OP_ADD, (const glint_value[]) { value, numbers[1] }, &value, &error));
+    OK(glint_builder_finish(b, &value, 1, &out, &error));
+    glint_builder_destroy(b);
+    return out;
+}
+
+static glint_program *constant(glint_program_kind kind, double number)
+{
+    glint_builder *b;
+    glint_program *out;
+    glint_value value;
+    OK(glint_builder_create(kind, &b, &error));
+    OK(glint_builder_number(b, number, &value, &error));
+    OK(glint_builder_finish(b, (const glint_value[]) { value, value, value }, kind == GLINT_PROGRAM_SHADER ? 3 : 1,
+                            &out, &error));
+    glint_builder_destroy(b);
+    return out;
+}
+
+// ---- A ball before the background ------------------------------------------------------------------------------------
+
+typedef struct world {
+    glint_scene *scene;
+    glint_material *material;
+    glint_light *lamp;
+    glint_renderer *renderer;
+    glint_frame_stats stats;
+} world;
+
+static world new_world(bool no_reuse)
+{
+    world w = { 0 };
+    glint_camera_desc camera = glint_camera_desc_default();
+    glint_material_desc material = glint_material_desc_default();
+    glint_light_desc lamp = glint_light_desc_default(GLINT_LIGHT_POINT);
+    glint_shape_desc ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    const glint_renderer_desc renderer = { .threads = 2, .count_work = true, .no_reuse = no_reuse };
+    glint_scene_desc scene = { .ambient = { 0.5, 0.5, 0.5 } };
+    glint_shape *shape;
+    OK(glint_camera_create(&camera, &scene.camera, &error));
+    OK(glint_material_create(&material, &w.material, &error));
+    OK(glint_light_create(&lamp, &w.lamp, &error));
+    ball.material = w.material;
+    ball.radius = 2;
+    OK(glint_shape_create(&ball, &shape, &error));
+    OK(glint_scene_create(&w.scene, &error));
+    OK(glint_scene_set(w.scene, &scene, &error));
+    OK(glint_scene_add_shape(w.scene, shape, &error));
+    OK(glint_scene_add_light(w.scene, w.lamp, &error));
+    OK(glint_renderer_create(&renderer, &w.renderer, &error));
+    glint_camera_release(scene.camera);
+    glint_shape_release(shape);
+    return w;
+}
+
+static void release_world(world *w)
+{
+    glint_renderer_destroy(w->renderer);
+    glint_scene_release(w->scene);
+    glint_material_release(w->material);
+    glint_light_release(w->lamp);
+}
+
+/// Gives the reference to the scene.
+static glint_status set_background(world *w, glint_program *program)
+{
+    glint_scene_desc desc = *glint_scene_get(w->scene);
+    desc.background_program = program;
+    const glint_status status = glint_scene_set(w->scene, &desc, &error);
+    glint_program_release(program);
+    return status;
+}
+
+/// What pixel x, y shows.
+static double render(world *w, int x, int y)
+{
+    glint_render_desc desc = glint_render_desc_default();
+    glint_plan *plan;
+    glint_image *image;
+    float light[3];
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    OK(glint_plan_create(w->scene, &desc, &plan, &error));
+    OK(glint_render(w->renderer, plan, &image, &w->stats, &error));
+    OK(glint_image_pixel(image, GLINT_PASS_BEAUTY, x, y, light, &error));
+    glint_plan_destroy(plan);
+    glint_image_release(image);
+    return (double)light[0];
+}
+
+static double share_reused(const glint_frame_stats *stats, const char *stage)
+{
+    for (int i = 0; i < stats->stage_count; i++)
+        if (strcmp(stats->stage_name[i], stage) == 0)
+            return stats->stage_reused[i];
+    return -1;
+}
+
+// ---- What a frame runs -----------------------------------------------------------------------------------------------
+
+/// Every ray that meets nothing, and no other; with a mirror those that leave it, too. Without a program there is no stage.
+static void test_counts(void **state)
+{
+    (void)state;
+    world w = new_world(true);
+    render(&w, 0, 0);
+    assert_true(share_reused(&w.stats, "environment") == -1 && w.stats.work.environment == 0);
+    OK(set_background(&w, gradient(0.5, 0.25)));
+    render(&w, 0, 0);
+    const uint64_t missing = w.stats.work.environment;
+    assert_true(missing > WIDTH * HEIGHT / 2 && missing < WIDTH * HEIGHT);
+    assert_true(share_reused(&w.stats, "environment") == 0 && w.stats.odd == 0);
+    glint_material_desc mirror = *glint_material_get(w.material);
+    mirror.has_mirror = true;
+    mirror.mirror[0] = mirror.mirror[1] = mirror.mirror[2] = 0.5;
+    OK(glint_material_set(w.material, &mirror, &error));
+    render(&w, 0, 0);
+    assert_int_equal(w.stats.work.environment, WIDTH * HEIGHT); // each ray leaves in the end
+    release_world(&w);
+}
+
+/// A changed number of the background runs `shade` where it is seen, and leaves hits and lights; a moved lamp leaves the tiles that
+/// show nothing else.
+static void test_reuse(void **state)
+{
+    (void)state;
+    world w = new_world(false);
+    for (int i = 0; i < 3; i++) {
+        OK(set_background(&w, gradient(0.5, 0.25)));
+        render(&w, 0, 0);
+    }
+    assert_true(share_reused(&w.stats, "environment") == 1 && w.stats.work.environment == 0);
+    double corner = 0;
+    for (int i = 0; i < 3; i++) { // the third frame has what the second kept
+        OK(set_background(&w, gradient(0.5, 0.125 * i)));
+        corner = render(&w, 0, 0);
+    }
+    assert_true(corner > 0.5 && corner < 0.5 + 0.25);
+    assert_true(share_reused(&w.stats, "cast") == 1 && share_reused(&w.stats, "light") == 1);
+    assert_true(share_reused(&w.stats, "environment") < 0.5);
+    glint_light_desc lamp = *glint_light_get(w.lamp);
+    lamp.position[0] += 1;
+    OK(glint_light_set(w.lamp, &lamp, &error));
+    assert_true(render(&w, 0, 0) == corner);
+    assert_true(share_reused(&w.stats, "environment") > 0 && share_reused(&w.stats, "environment") < 1);
+    release_world(&w);
+}
+
+/// NaN, and numbers out of range, are told of with a direction at which they are.
+static void test_odd(void **state)
+{
+    (void)state;
+    world w = new_world(true);
+    OK(set_background(&w, gradient(0, 1)));
+    assert_true(render(&w, 0, HEIGHT - 1) == 0 && w.stats.odd > 0);
+    assert_string_equal(w.stats.odd_field, "background");
+    assert_string_equal(w.stats.odd_material, "");
+    const double *d = w.stats.odd_point;
+    assert_true(d[1] < 0 && d[2] < 0 && d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < 1 + 1e-12);
+    release_world(&w);
+}
+
+static void test_refused(void **state)
+{
+    (void)state;
+    world w = new_world(true);
+    assert_int_equal(set_background(&w, constant(GLINT_PROGRAM_SHADER, 1)), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "background: a pattern expected, got a shader");
+    OK(set_background(&w, gradient(0.5, 0.25)));
+    glint_scene_desc desc = *glint_scene_get(w.scene);
+    desc.has_depth_cue = true;
+    desc.depth_cue_far = 9;
+    assert_int_equal(glint_scene_set(w.scene, &desc, &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "depth_cue.color: a colour expected"));
+    desc.has_depth_cue_color = true;
+    OK(glint_scene_set(w.scene, &desc, &error));
+    release_world(&w);
+}
+
+// ---- Patterns of numbers alone ---------------------------------------------------------------------------------------
+
+/// In range they are a plain colour; out of it they are run, are 0, and are told of.
+static void test_numbers(void **state)
+{
+    (void)state;
+    world w = new_world(true);
+    OK(set_background(&w, constant(GLINT_PROGRAM_PATTERN, 0.25)));
+    assert_null(glint_scene_get(w.scene)->background_program);
+    assert_true(glint_scene_get(w.scene)->background[2] == 0.25 && render(&w, 0, 0) == 0.25);
+    OK(set_background(&w, constant(GLINT_PROGRAM_PATTERN, -0.25)));
+    assert_non_null(glint_scene_get(w.scene)->background_program);
+    assert_true(render(&w, 0, 0) == 0 && w.stats.odd == w.stats.work.environment && w.stats.odd > 0);
+    release_world(&w);
+}
+
+static void test_material_numbers(void **state)
+{
+    (void)state;
+    world w = new_world(true);
+    glint_material_desc plain = *glint_material_get(w.material), desc = plain;
+    desc.program.diffuse = constant(GLINT_PROGRAM_PATTERN, 0.5);
+    OK(glint_material_set(w.material, &desc, &error));
+    assert_true(!glint_material_get(w.material)->program.diffuse && glint_material_get(w.material)->diffuse[1] == 0.5);
+    glint_program_release(desc.program.diffuse);
+    desc = plain;
+    desc.program.diffuse = constant(GLINT_PROGRAM_PATTERN, -1);
+    OK(glint_material_set(w.material, &desc, &error));
+    glint_program_release(desc.program.diffuse);
+    assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0 && w.stats.odd > 0);
+    assert_string_equal(w.stats.odd_field, "diffuse");
+    desc = plain;
+    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, -1); // a hole
+    OK(glint_material_set(w.material, &desc, &error));
+    assert_true(render(&w, WIDTH / 2, HEIGHT / 2) == 0);
+    glint_program_release(desc.program.opacity);
+    desc.program.opacity = constant(GLINT_PROGRAM_PATTERN, 7);
+    OK(glint_material_set(w.material, &desc, &error));
+    assert_true(render(&w, WIDTH / 2, HEIGHT / 2) > 0.4);
+    glint_program_release(desc.program.opacity);
+    desc = plain;
+    desc.program.bump = constant(GLINT_PROGRAM_PATTERN, -3); // one height everywhere
+    OK(glint_material_set(w.material, &desc, &error));
+    assert_null(glint_material_get(w.material)->program.bump);
+    glint_program_release(desc.program.bump);
+    release_world(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_counts),  cmocka_unit_test(test_reuse),   cmocka_unit_test(test_odd),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_numbers), cmocka_unit_test(test_material_numbers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
