@@ -66,6 +66,8 @@ float *glint_pattern_planes(struct glint_pattern *pattern, glint_walk walk) { re
 static unsigned alike(const uint32_t *material, unsigned lanes)
 {
     const uint32_t first = material[__builtin_ctz(lanes)];
+    if (glint_all_are(material, first))
+        return lanes;
     unsigned same = 0;
     for (unsigned i = 0; i < GLINT_GROUP; i++)
         same |= (unsigned)(material[i] == first) << i;
@@ -291,11 +293,17 @@ bool glint_pattern_needs_normals(const glint_plan *plan)
 uint32_t glint_tile_fields_shown(const glint_tile *tile, const glint_plan *plan)
 {
     uint32_t fields = 0, last = GLINT_MISS;
-    for (uint32_t i = 0; plan->patterns && i < tile->group_count * GLINT_GROUP; i++) {
-        if (!glint_has_lane(tile->at.hits, i) || tile->surface.material[i] == last)
+    for (uint32_t g = 0; plan->patterns && g < tile->group_count; g++) {
+        const uint32_t *material = tile->surface.material + (size_t)g * GLINT_GROUP;
+        if (glint_all_are(material, last)) // the common case
             continue;
-        last = tile->surface.material[i];
-        fields |= plan->patterns->of[last].made;
+        for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
+            const uint32_t m = material[__builtin_ctz(left)];
+            if (m == last)
+                continue;
+            last = m;
+            fields |= plan->patterns->of[m].made;
+        }
     }
     return fields;
 }

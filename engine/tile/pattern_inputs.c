@@ -25,12 +25,7 @@ static double *row(const gathering *g, int input) { return g->inputs->row[input]
 /// Sixteen numbers of an array of real.
 static void load_group(const gathering *g, const void *array, double out[GLINT_GROUP])
 {
-    if (g->frame->plan->desc.precision == GLINT_DOUBLE) {
-        memcpy(out, (const double *)array + g->at, GLINT_GROUP * sizeof *out);
-        return;
-    }
-    for (int i = 0; i < GLINT_GROUP; i++)
-        out[i] = (double)((const float *)array)[g->at + (size_t)i];
+    glint_reals_of(array, g->frame->plan->desc.precision, (uint32_t)(g->at / GLINT_GROUP), out);
 }
 
 // ---- Normals ----
@@ -79,11 +74,9 @@ static const glint_pattern_place *next_place(const gathering *g, unsigned left, 
     const glint_prim *prims = g->frame->geometry.prims;
     const uint32_t *prim = g->points->prim + g->at;
     const uint32_t first = prim[__builtin_ctz(left)], part = geometry->prim_part[prims[first].id];
-    uint32_t other = 0;
-    for (int i = 0; i < GLINT_GROUP; i++)
-        other |= prim[i] ^ first;
-    *lanes = other ? 0 : left; // the common case: one primitive
-    for (unsigned rest = other ? left : 0; rest; rest &= rest - 1) {
+    const bool one = glint_all_are(prim, first); // the common case
+    *lanes = one ? left : 0;
+    for (unsigned rest = one ? 0 : left; rest; rest &= rest - 1) {
         const uint32_t id = prim[__builtin_ctz(rest)];
         if (id == first || geometry->prim_part[prims[id].id] == part)
             *lanes |= rest & -rest;
@@ -128,58 +121,67 @@ static void put_exact(const gathering *g, const glint_pattern_place *place, unsi
         row(g, GLINT_INPUT_P_X + place->axis)[__builtin_ctz(lanes)] = place->face;
 }
 
-/// Coordinate c of a group in the shape's own space.
-static void own_coordinates(const glint_pattern_place *place, int c, double world[3][GLINT_GROUP],
-                            double out[GLINT_GROUP])
+/// Takes a group's points in the world, which are in the rows, into the shape's own space.
+static void map_points(const gathering *g, const glint_pattern_place *place, unsigned lanes)
 {
-    const double x = place->inverse[c][0], y = place->inverse[c][1], z = place->inverse[c][2], w = place->inverse[c][3];
-    if (!place->mapped) {
-        memcpy(out, world[c], GLINT_GROUP * sizeof *out);
-        return;
+    double own[3][GLINT_GROUP];
+    for (int c = 0; c < 3; c++) {
+        const double *m = place->inverse[c], *x = row(g, GLINT_INPUT_P_X), *y = row(g, GLINT_INPUT_P_Y),
+                     *z = row(g, GLINT_INPUT_P_Z);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            own[c][i] = ((m[0] * x[i] + m[1] * y[i]) + m[2] * z[i]) + m[3];
     }
-    for (int i = 0; i < GLINT_GROUP; i++)
-        out[i] = ((x * world[0][i] + y * world[1][i]) + z * world[2][i]) + w;
+    for (int c = 0; c < 3; c++) {
+        double *to = row(g, GLINT_INPUT_P_X + c);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            to[i] = lanes >> i & 1 ? own[c][i] : to[i];
+    }
 }
 
 static void gather_points(const gathering *g, unsigned lanes)
 {
-    double world[3][GLINT_GROUP];
-    bool begun = false;
     for (int c = 0; c < 3; c++)
-        load_group(g, g->points->point[c], world[c]);
+        load_group(g, g->points->point[c], row(g, GLINT_INPUT_P_X + c));
     for (unsigned left = lanes, here; left; left &= ~here) {
         const glint_pattern_place *place = next_place(g, left, &here);
-        for (int c = 0; c < 3; c++) {
-            double *to = row(g, GLINT_INPUT_P_X + c), own[GLINT_GROUP];
-            own_coordinates(place, c, world, begun ? own : to);
-            for (int i = 0; begun && i < GLINT_GROUP; i++)
-                to[i] = here >> i & 1 ? own[i] : to[i];
-        }
-        begun = true;
+        if (place->mapped)
+            map_points(g, place, here);
         put_exact(g, place, here);
     }
 }
 
 // ---- The viewer ----
 
-/// From the eye to a point, not unit.
-static void ray_at(const gathering *g, uint32_t i, double out[3])
+/// A component of the group's rays, not unit: as glint_tile_direction.
+static void load_rays(const gathering *g, int c, double out[GLINT_GROUP])
 {
+    const glint_tile *tile = g->points->tile;
     const glint_precision precision = g->frame->plan->desc.precision;
-    for (int c = 0; c < 3; c++)
-        out[c] = g->points->direction[c] ? glint_real_at(g->points->direction[c], precision, i)
-                                         : glint_tile_direction(g->points->tile, precision, c, i);
+    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP);
+    double down[GLINT_GROUP];
+    if (g->points->direction[c] || tile->camera.orthographic) {
+        load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
+        return;
+    }
+    glint_reals_of(tile->rays.across, precision, 3 * (group % tile->groups_across) + (uint32_t)c, out);
+    glint_reals_of(tile->rays.down, precision, 3 * (group / tile->groups_across) + (uint32_t)c, down);
+    for (int i = 0; i < GLINT_GROUP; i++)
+        out[i] += down[i];
+    for (int i = 0; precision == GLINT_FLOAT && i < GLINT_GROUP; i++)
+        out[i] = (double)(float)out[i];
 }
 
-static void gather_views(const gathering *g, unsigned lanes)
+static void gather_views(const gathering *g)
 {
-    for (; lanes; lanes &= lanes - 1) {
-        const uint32_t lane = (uint32_t)__builtin_ctz(lanes);
-        double d[3];
-        ray_at(g, (uint32_t)g->at + lane, d);
-        const double length = sqrt(vec_dot(d, d));
-        for (int c = 0; c < 3; c++)
-            row(g, GLINT_INPUT_V_X + c)[lane] = -d[c] / length;
+    double d[3][GLINT_GROUP], length[GLINT_GROUP];
+    for (int c = 0; c < 3; c++)
+        load_rays(g, c, d[c]);
+    for (int i = 0; i < GLINT_GROUP; i++)
+        length[i] = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
+    for (int c = 0; c < 3; c++) {
+        double *restrict to = row(g, GLINT_INPUT_V_X + c);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            to[i] = -d[c][i] / length[i];
     }
 }
 
@@ -248,7 +250,7 @@ void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *
     if (reads & READS_N)
         gather_normals(&g, lanes);
     if (reads & READS_V)
-        gather_views(&g, lanes);
+        gather_views(&g);
     if (reads & READS_FOOTPRINT)
         gather_footprints(&g, lanes);
     if (reads & READS_UV)

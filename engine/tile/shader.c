@@ -1,7 +1,8 @@
 /// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
-#include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/tile/pattern_work.h"
+
+#include <math.h>
 
 /// One light, or one sample of an area light, as shaders see it.
 typedef struct shader_light {
@@ -10,62 +11,78 @@ typedef struct shader_light {
     const glint_shader_light *reach;
 } shader_light;
 
-static double *row(const glint_tile *tile, int input, uint32_t lane) { return &tile->pattern->inputs.row[input][lane]; }
-
-/// Towards the light, unit; returns its distance.
-static double to_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t i,
-                       double l[3])
+static double *row(const glint_tile *tile, int input, uint32_t k)
 {
-    for (int c = 0; c < 3; c++) {
-        l[c] = from->sample ? from->sample->position[c][i % GLINT_GROUP] : from->light->position[c];
-        if (!from->light->directional)
-            l[c] -= glint_real_at(tile->surface.point[c], plan->desc.precision, i);
-    }
-    const double distance = sqrt(vec_dot(l, l));
-    for (int c = 0; c < 3; c++)
-        l[c] /= distance;
-    return from->light->directional ? HUGE_VAL : distance;
+    return &tile->pattern->inputs.row[input][(size_t)k * GLINT_GROUP];
 }
 
-/// What of a sample depends on the light: sample i of the tile, lane `to` of the rows.
-static void gather_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t i,
-                         uint32_t to)
+/// What of group g depends on the light: group k of the rows. Lanes without a hit get anything.
+static void gather_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
+                         uint32_t k)
 {
-    double l[3];
-    *row(tile, GLINT_INPUT_DISTANCE, to) = to_light(tile, plan, from, i, l);
+    const glint_plan_light *light = from->light;
+    double l[3][GLINT_GROUP], point[GLINT_GROUP], length[GLINT_GROUP];
     for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < GLINT_GROUP; i++)
+            l[c][i] = from->sample ? from->sample->position[c][i] : light->position[c];
+        if (light->directional)
+            continue;
+        glint_reals_of(tile->surface.point[c], plan->desc.precision, g, point);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            l[c][i] -= point[i];
+    }
+    for (int i = 0; i < GLINT_GROUP; i++)
+        length[i] = sqrt((l[0][i] * l[0][i] + l[1][i] * l[1][i]) + l[2][i] * l[2][i]);
+    double *restrict distance = row(tile, GLINT_INPUT_DISTANCE, k);
+    for (int i = 0; i < GLINT_GROUP; i++)
+        distance[i] = light->directional ? HUGE_VAL : length[i];
+    for (int c = 0; c < 3; c++) {
+        double *restrict way = row(tile, GLINT_INPUT_L_X + c, k), *restrict color = row(tile, GLINT_INPUT_LIGHT_R + c, k);
         const float *weight = from->reach->weight[c];
-        *row(tile, GLINT_INPUT_L_X + c, to) = l[c];
-        *row(tile, GLINT_INPUT_LIGHT_R + c, to) = from->light->diffuse[c] * (weight ? (double)weight[i] : 1);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            way[i] = l[c][i] / length[i];
+        for (int i = 0; i < GLINT_GROUP; i++)
+            color[i] = light->diffuse[c] * (weight ? (double)weight[g * GLINT_GROUP + (uint32_t)i] : 1);
     }
 }
 
-/// What of a sample is the material's.
-static void gather_material(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own, uint32_t i,
-                            uint32_t to)
+/// A number of a material, or what a program gave of it, of group g.
+static void gather_field(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own, glint_field field,
+                         int channel, double number, uint32_t g, double *restrict to)
 {
-    const uint32_t m = tile->surface.material[i];
-    double kd_room[3], ks_room[3];
-    const double *kd = glint_tile_diffuse(tile, plan, i, kd_room);
-    const double *ks = glint_color_at(tile->at.planes, plan, GLINT_FIELD_SPECULAR, m, i, own->desc.specular, ks_room);
+    const bool made = own->made >> field & 1;
+    const float *plane = made ? glint_plane_of(tile->at.planes, plan, field, channel) + (size_t)g * GLINT_GROUP : NULL;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        to[i] = plane ? (double)plane[i] : number;
+}
+
+static void gather_material(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own,
+                            const double *diffuse, uint32_t g, uint32_t k)
+{
     for (int c = 0; c < 3; c++) {
-        *row(tile, GLINT_INPUT_KD_R + c, to) = kd[c];
-        *row(tile, GLINT_INPUT_KS_R + c, to) = ks[c];
+        gather_field(tile, plan, own, GLINT_FIELD_DIFFUSE, c, diffuse[c], g, row(tile, GLINT_INPUT_KD_R + c, k));
+        gather_field(tile, plan, own, GLINT_FIELD_SPECULAR, c, own->desc.specular[c], g,
+                     row(tile, GLINT_INPUT_KS_R + c, k));
     }
-    *row(tile, GLINT_INPUT_SHININESS, to) =
-        own->made >> GLINT_FIELD_SHININESS & 1
-            ? (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SHININESS, 0)[i]
-            : own->desc.shininess;
+    gather_field(tile, plan, own, GLINT_FIELD_SHININESS, 0, own->desc.shininess, g, row(tile, GLINT_INPUT_SHININESS, k));
 }
 
 /// Adds what the shader gave to the sums.
 static void add_terms(glint_tile *tile, const glint_shader_light *reach, const glint_pattern_lanes *entry, int terms)
 {
-    for (unsigned left = entry->lanes; left; left &= left - 1) {
-        const uint32_t i = entry->group * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-        const double share = reach->share ? (double)reach->share[i] : 1;
-        for (int k = 0; k < terms; k++)
-            tile->film.sum[GLINT_TERM_DIFFUSE + k / 3][k % 3][i] += share * (double)tile->pattern->shaded[k][i];
+    const size_t at = (size_t)entry->group * GLINT_GROUP;
+    double share[GLINT_GROUP];
+    for (size_t i = 0; i < GLINT_GROUP; i++)
+        share[i] = reach->share ? (double)reach->share[at + i] : 1;
+    for (int k = 0; k < terms; k++) {
+        double *restrict sum = &tile->film.sum[GLINT_TERM_DIFFUSE + k / 3][k % 3][at];
+        const float *restrict given = &tile->pattern->shaded[k][at];
+        for (size_t i = 0; entry->lanes == 0xffff && i < GLINT_GROUP; i++)
+            sum[i] += share[i] * (double)given[i];
+        for (unsigned left = entry->lanes == 0xffff ? 0 : entry->lanes; left; left &= left - 1) {
+            const unsigned i = (unsigned)__builtin_ctz(left);
+            sum[i] += share[i] * (double)given[i];
+        }
     }
 }
 
@@ -81,11 +98,8 @@ static void shade_material(glint_tile *tile, const glint_tile_frame *frame, cons
         groups[k] = entries[k].group;
         wanted[k] = entries[k].lanes;
         glint_pattern_gather(&tile->pattern->inputs, frame, points, program->inputs, groups[k], wanted[k], k);
-        for (unsigned left = wanted[k]; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left), i = groups[k] * GLINT_GROUP + lane;
-            gather_light(tile, frame->plan, from, i, k * GLINT_GROUP + lane);
-            gather_material(tile, frame->plan, own, i, k * GLINT_GROUP + lane);
-        }
+        gather_light(tile, frame->plan, from, groups[k], k);
+        gather_material(tile, frame->plan, own, glint_plan_diffuse(frame->plan, entries[0].material), groups[k], k);
         tile->counts.work.patterns += (uint64_t)__builtin_popcount(wanted[k]);
     }
     glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups };

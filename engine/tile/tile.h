@@ -362,6 +362,23 @@ static inline double glint_real_at(const void *array, glint_precision precision,
 {
     return precision == GLINT_FLOAT ? (double)((const float *)array)[i] : ((const double *)array)[i];
 }
+/// Whether a group's numbers are all this one.
+static inline bool glint_all_are(const uint32_t of[GLINT_GROUP], uint32_t number)
+{
+    uint32_t other = 0;
+    for (int i = 0; i < GLINT_GROUP; i++)
+        other |= of[i] ^ number;
+    return !other;
+}
+/// Those of group g.
+static inline void glint_reals_of(const void *array, glint_precision precision, uint32_t g, double out[GLINT_GROUP])
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    if (precision == GLINT_DOUBLE)
+        memcpy(out, (const double *)array + at, GLINT_GROUP * sizeof *out);
+    for (size_t i = 0; precision == GLINT_FLOAT && i < GLINT_GROUP; i++)
+        out[i] = (double)((const float *)array)[at + i];
+}
 static inline void glint_real_put(void *array, glint_precision precision, uint32_t i, double x)
 {
     if (precision == GLINT_FLOAT)

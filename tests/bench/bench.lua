@@ -8,7 +8,7 @@ local cases, measure = require "cases", require "measure"
 local build, compiler, selection = arg[1], arg[2], arg[3] or ""
 local runs = math.tointeger(tonumber(arg[4] ~= "" and arg[4] or "7"))
 local default_parts = "frame,reuse,jobs,many,programs,encode,stages,peers"
-local labels = { glint = "glint", hand = "hand-written", embree = "Embree", povray = "POV-Ray", tachyon = "Tachyon" }
+local labels = { glint = "glint", hand = "hand-written", embree = "Embree", povray = "POV-Ray", tachyon = "Tachyon", lua = "plain Lua" }
 
 local function die(message)
   io.stderr:write("bench: ", message, "\n")

@@ -1,9 +1,9 @@
 /// glint, measured by its public API: what a program that links it gets, in its default double precision.
 ///
-///   glint_side frame scene=workshop|1k|1M [threads=N] [samples=N] [shadows=0] [isa=NAME] [float=1]
+///   glint_side frame scene=workshop|1k|1M [threads=N] [samples=N] [shadows=0] [isa=NAME] [float=1] [pattern=NAME]
 ///   glint_side build scene=1M [threads=N]                ms of the index, and of a scene's first (small) frame
 ///   glint_side stages [isa=NAME]                         ns a pixel
-///   glint_side reuse change=light|sphere|shininess       ms of a frame anew, and of one from what was kept
+///   glint_side reuse change=light|sphere|shininess|number [pattern=NAME]  ms of a frame anew, and of one from what was kept
 ///   glint_side job change=light|sphere|shininess out=FOLDER [threads=N] [reuse=0] [float=1]
 ///   glint_side encode out=FOLDER
 ///   glint_side program                                   ns a point of patterns and a shader, by the kernel alone

@@ -7,6 +7,7 @@
 
 static glint_builder *builder;
 static glint_error error;
+static double dark; ///< the darker of a pattern's colours
 
 static glint_value number(double x)
 {
@@ -58,7 +59,7 @@ static size_t checker(glint_value out[6])
 {
     glint_value p[3];
     read3(GLINT_INPUT_P_X, p);
-    out[0] = op(GLINT_OP_SELECT, op(GLINT_OP_PARITY, p[0], p[1], p[2]), number(0.05), number(0.9));
+    out[0] = op(GLINT_OP_SELECT, op(GLINT_OP_PARITY, p[0], p[1], p[2]), number(dark), number(0.9));
     return 1;
 }
 
@@ -87,7 +88,7 @@ static size_t marble(glint_value out[6])
     const glint_value wave = op(GLINT_OP_SIN, add(mul(p[0], number(7)), mul(octaves(p), number(5))), 0, 0);
     const glint_value share = op(GLINT_OP_MULADD, wave, number(0.5), number(0.5));
     for (int c = 0; c < 3; c++)
-        out[c] = op(GLINT_OP_MIX, number(0.9), number(0.1 + 0.1 * c), share);
+        out[c] = op(GLINT_OP_MIX, number(0.9), number(dark + 0.1 * c), share);
     return 3;
 }
 
@@ -97,6 +98,40 @@ static size_t cells(glint_value out[6])
     read3(GLINT_INPUT_P_X, p);
     out[0] = op(GLINT_OP_CELL, p[0], p[1], p[2]);
     return 1;
+}
+
+typedef struct named {
+    const char *name;
+    glint_program_kind kind;
+    size_t (*make)(glint_value out[6]); ///< returns how many outputs it has
+} named;
+
+static const named programs[] = {
+    { "phong", GLINT_PROGRAM_SHADER, phong },   { "checker", GLINT_PROGRAM_PATTERN, checker },
+    { "octaves", GLINT_PROGRAM_PATTERN, noise }, { "marble", GLINT_PROGRAM_PATTERN, marble },
+    { "cells", GLINT_PROGRAM_PATTERN, cells },
+};
+enum { PROGRAMS = sizeof programs / sizeof *programs };
+
+static glint_program *create(const named *of, double number)
+{
+    glint_program *program;
+    glint_value out[6];
+    dark = number;
+    side_must(glint_builder_create(of->kind, &builder, &error), &error);
+    side_must(glint_builder_finish(builder, out, of->make(out), &program, &error), &error);
+    glint_builder_destroy(builder);
+    return program;
+}
+
+glint_program *side_program_create(const char *pattern, double number)
+{
+    for (int i = 0; i < PROGRAMS; i++)
+        if (strcmp(programs[i].name, pattern) == 0)
+            return create(&programs[i], number);
+    if (strcmp(pattern, "none") != 0)
+        bench_fail(pattern, "no such pattern");
+    return NULL;
 }
 
 typedef struct runner {
@@ -113,37 +148,29 @@ static double time_points(void *state)
     return bench_now_ms() - start;
 }
 
-static void run(const char *name, glint_program_kind kind, size_t (*make)(glint_value out[6]))
+static void run(const named *of)
 {
     static const uint16_t all[GLINT_PROGRAM_GROUPS] = { 65535, 65535, 65535, 65535, 65535, 65535, 65535, 65535 };
     static _Alignas(64) double rows[GLINT_PROGRAM_ROWS_MAX][GLINT_PROGRAM_LANES];
     static program_points points;
     const char *asked;
     bool unknown;
-    glint_program *program;
-    glint_value out[6];
-    side_must(glint_builder_create(kind, &builder, &error), &error);
-    const size_t count = make(out);
-    side_must(glint_builder_finish(builder, out, count, &program, &error), &error);
+    glint_program *program = create(of, 0.05);
     program_points_fill(&points);
     runner r = { .stages = glint_stages_select(NULL, &asked, &unknown) };
     r.args = (glint_program_args) { .code = &program->code, .group_count = GLINT_PROGRAM_GROUPS, .wanted = all };
     r.args.rows = rows[0];
     for (int i = 0; i < GLINT_INPUT_COUNT; i++)
         r.args.input[i] = points.input[i];
-    for (size_t k = 0; k < count; k++)
+    for (size_t k = 0; k < glint_program_output_count(program); k++)
         r.args.plane[k] = points.plane[k];
-    bench_say(name, "ns", bench_median(time_points, &r) * 1e6 / ((double)PROGRAM_REPEATS * GLINT_PROGRAM_LANES));
+    bench_say(of->name, "ns", bench_median(time_points, &r) * 1e6 / ((double)PROGRAM_REPEATS * GLINT_PROGRAM_LANES));
     glint_program_release(program);
-    glint_builder_destroy(builder);
 }
 
 void side_run_program(const bench_options *options)
 {
     (void)options;
-    run("phong", GLINT_PROGRAM_SHADER, phong);
-    run("checker", GLINT_PROGRAM_PATTERN, checker);
-    run("octaves", GLINT_PROGRAM_PATTERN, noise);
-    run("marble", GLINT_PROGRAM_PATTERN, marble);
-    run("cells", GLINT_PROGRAM_PATTERN, cells);
+    for (int i = 0; i < PROGRAMS; i++)
+        run(&programs[i]);
 }

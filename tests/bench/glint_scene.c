@@ -18,6 +18,17 @@ static void widen(const float from[3], double to[3])
         to[c] = (double)from[c];
 }
 
+/// Gives the material what the pattern's name says: a shader, or of the first material the diffuse reflectance.
+static void set_program(const side_scene *s, int material, double number, glint_material_desc *d)
+{
+    const bool shader = strcmp(s->pattern, "phong") == 0;
+    glint_program *program = shader || material == 0 ? side_program_create(s->pattern, number) : NULL;
+    if (shader)
+        d->program.shader = program;
+    else if (program)
+        d->program.diffuse = program;
+}
+
 static void make_materials(side_scene *s)
 {
     glint_error error;
@@ -28,7 +39,9 @@ static void make_materials(side_scene *s)
         for (int c = 0; c < 3; c++)
             d.specular[c] = (double)p->specular;
         d.shininess = (double)p->shininess;
+        set_program(s, m, 0.05, &d);
         side_must(glint_material_create(&d, &s->materials[m], &error), &error);
+        glint_program_release(d.program.shader ? d.program.shader : d.program.diffuse);
     }
 }
 
@@ -118,7 +131,7 @@ static void set_camera(side_scene *s)
 side_scene side_scene_create(const bench_options *options)
 {
     glint_error error;
-    side_scene s = { 0 };
+    side_scene s = { .pattern = options->pattern };
     if (!bench_scene_create(options->scene, &s.plain))
         bench_fail(options->scene, "no such scene");
     side_must(glint_scene_create(&s.scene, &error), &error);
@@ -158,6 +171,13 @@ void side_scene_set_frame(side_scene *s, const char *change, int frame)
         glint_shape_desc d = *glint_shape_get(s->ball);
         d.center[1] += 0.02 * (frame % 2 ? 1 : -1);
         side_must(glint_shape_set(s->ball, &d, &error), &error);
+        return;
+    }
+    if (strcmp(change, "number") == 0) {
+        glint_material_desc d = *glint_material_get(s->materials[0]);
+        set_program(s, 0, 0.05 + 0.01 * frame, &d);
+        side_must(glint_material_set(s->materials[0], &d, &error), &error);
+        glint_program_release(d.program.diffuse);
         return;
     }
     for (int m = 0; m < s->plain.material_count; m++) {

@@ -13,6 +13,7 @@ typedef struct side_scene {
     glint_light *lamp;
     glint_material *materials[BENCH_MATERIALS];
     glint_shape *ball; ///< the last sphere of few; the scene's
+    const char *pattern; ///< of the options
 } side_scene;
 
 /// Ends the program with the message unless the status is GLINT_OK.
@@ -20,8 +21,8 @@ void side_must(glint_status status, const glint_error *error);
 
 side_scene side_scene_create(const bench_options *options);
 void side_scene_free(side_scene *scene);
-/// Frame `frame` of a job: moves the lamp, lifts the last of few spheres, or changes the shininess of every material that
-/// shines.
+/// Frame `frame` of a job: moves the lamp, lifts the last of few spheres, changes a number of the pattern, or the shininess of
+/// every material that shines.
 void side_scene_set_frame(side_scene *scene, const char *change, int frame);
 
 /// NULL when this machine lacks the instruction set the options name.
@@ -35,6 +36,8 @@ void side_run_stages(const bench_options *options);
 void side_run_reuse(const bench_options *options);
 void side_run_encode(const bench_options *options);
 void side_run_job(const bench_options *options);
+/// A program of bench_options.pattern, to be released; `number`, 0 .. 1: the darker of its colours. NULL: "none".
+glint_program *side_program_create(const char *pattern, double number);
 /// The kernel of programs alone, which no public function runs.
 void side_run_program(const bench_options *options);
 

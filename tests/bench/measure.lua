@@ -24,6 +24,7 @@ local function command_of(side, build)
     if not installed(side) then return nil, absent[side] end
     return ("BUILD='%s' tests/bench/peer.sh %s"):format(build, side)
   end
+  if side == "lua" then return ("LUA_CPATH='%s/?.so;;' lua5.4 tests/bench/lua_program.lua"):format(build) end
   local compared = side:match "^unlike (.+)$"
   local name = (compared or side):gsub("^glint$", "glint_side")
   local program = ("%s/tests/bench/%s"):format(build, name)

@@ -11,7 +11,9 @@ typedef struct bench_options {
     const char *isa; ///< glint alone; NULL: the best
     const char *out; ///< a file or folder to write to
     const char *with; ///< a file to compare with
-    const char *change; ///< of a job: "light", "sphere", "shininess" or "none" (default)
+    const char *change; ///< of a job: "light", "sphere", "shininess", "number" (of the pattern) or "none" (default)
+    const char *pattern; ///< "checker", "octaves" or "marble" of the first material, or "phong": a shader in place of the model
+        ///< of all; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function". "none" (default)
     int threads; ///< default 1
     int samples; ///< a pixel; default 1
     bool is_float; ///< glint alone

@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|1k|1M|box] [shadows=0] [samples=N] [area=1] [change=light|shininess]
+///   peers povray|tachyon [scene=workshop|1k|1M|box] [shadows=0] [samples=N] [area=1] [change=light|shininess] [pattern=NAME]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
 /// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
@@ -44,16 +44,37 @@ static void povray_light(const bench_scene *s, const bench_options *o, bool move
     puts(o->shadows ? " }" : " shadowless }");
 }
 
+/// Of the first material. What glint's programs of these names show, but for the noise's own shapes: glint's `p` is above
+/// POV-Ray's by the floor's radius, a whole number. f_noise3d is 0 .. 1.
+static void povray_pigment(const bench_material *p, const char *pattern)
+{
+    const char *map = "color_map { [0 rgb 0.9] [1 rgb <0.05, 0.15, 0.25>] }";
+    if (strcmp(pattern, "checker") == 0)
+        printf("pigment { checker rgb 0.9 rgb 0.05 }");
+    else if (strcmp(pattern, "checker-function") == 0)
+        printf("pigment { function { mod(floor(x) + floor(y) + floor(z) + 2e4, 2) } color_map { [0 rgb 0.9] [1 rgb 0.05] } }");
+    else if (strcmp(pattern, "marble") == 0)
+        printf("pigment { marble turbulence 0.5 octaves 3 %s }", map);
+    else if (strcmp(pattern, "marble-function") == 0)
+        printf("pigment { function { 0.5 + 0.5 * sin(7 * x + 10 * (f_noise3d(x, y, z) + f_noise3d(2 * x, 2 * y, 2 * z) / 2 + "
+               "f_noise3d(4 * x, 4 * y, 4 * z) / 4)) } %s }", map);
+    else
+        print3("pigment { rgb <%.9g, %.9g, %.9g> }", p->diffuse);
+}
+
 static void write_povray(const bench_scene *s, const bench_options *o)
 {
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
     puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 }");
+    if (strstr(o->pattern, "-function"))
+        puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as functions.inc has it
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
     povray_camera(s);
     povray_light(s, o, changes && !shines);
     for (int m = 0; m < s->material_count; m++) {
         const bench_material *p = &s->materials[m];
-        print3("#declare M = texture { pigment { rgb <%.9g, %.9g, %.9g> }", p->diffuse);
+        printf("#declare M = texture { ");
+        povray_pigment(p, m == 0 ? o->pattern : "none");
         print3(" finish { ambient <%.9g, %.9g, %.9g> diffuse 1 specular 0", s->ambient);
         if (p->specular > 0 && shines)
             printf(" phong %.9g phong_size 8*pow(2, (frame_number-1)/10)", (double)p->specular);
