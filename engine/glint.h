@@ -554,7 +554,7 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 /// Replaces the description by a copy, of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
 /// The description; of a GLINT_SHAPE_SPHERES shape only kind, transform, two_sided, name and material (its first) mean
-/// anything, of a mesh these and `shading`, of a group kind, transform and name.
+/// anything, of a mesh these and `shading`, of a group kind, transform and name. Setting `material` replaces the first.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);
@@ -616,12 +616,19 @@ typedef struct glint_mesh_desc {
     bool has_shading; ///< false: phong where there are normals, faceted where there are none
     /// Phong and gouraud without normals: those of the faces around a vertex are averaged by area
     glint_shading shading;
-    glint_material *material; ///< retained; NULL: one with default fields
+    glint_material *material; ///< retained; NULL: one with default fields, or `materials`, or those of the file
+    glint_material *const *materials; ///< where faces have their own: retained, in place of `material`; no NULL entries
+    size_t material_count; ///< 0: all faces have `material`
+    const uint32_t *material_index; ///< face_count numbers < material_count, copied; NULL: all are 0
     glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
 } glint_mesh_desc;
 
+    void (*reads)(void *context, const char *path); ///< glint_mesh_load: a file is about to be opened; NULL: nothing
+    /// glint_mesh_load: something that the file has or names is passed over; the message names the file; NULL: nothing
+    void (*warns)(void *context, const char *message);
+    void *context; ///< of both
 #define GLINT_NO_NORMAL 0xffffffffu
 #define GLINT_NO_UV 0xffffffffu
 
@@ -631,9 +638,17 @@ glint_mesh_desc glint_mesh_desc_default(void);
 /// "faces[3]: a face with an area expected: its vertices 1, 2, 3 are on one line". A triangle of no area within a larger
 /// face is left out.
 glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
-/// Reads a Wavefront .obj file: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative).
-/// Groups, materials, lines and points are passed over. `desc` gives the fields that are not in the
-/// file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT with the number of the line when it is not as it should be.
+/// Reads a mesh; `desc` gives the fields that are not in the file. GLINT_ERR_IO when it cannot be read, GLINT_ERR_FORMAT
+/// when it is not as it should be, with the number of the line, or of the vertex or face. By the ending of the name:
+///
+/// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
+/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces; colours are passed over.
+/// else  Wavefront .obj: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative), and where
+///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd
+///       (.png). What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
+///       are passed over.
+///
+/// Of .stl and .ply, faces without an area are left out.
 glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glint_shape **out, glint_error *error);
 /// A sphere of `segments` (whole number, 3 .. 16384) around the equator and half as many, rounded up, from pole to pole,
 /// with the sphere's own normals at the vertices. `desc` gives shading (default phong), material, sides and name.

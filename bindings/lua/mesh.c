@@ -364,16 +364,43 @@ static glintL_box *begin(lua_State *L)
     return box;
 }
 
+// The materials of a file live as long as the mesh, with what a script puts into their fields.
+static void keep_materials(lua_State *L, const glint_shape *shape)
+{
+    glint_material *const *list;
+    const size_t count = glint_shape_materials(shape, &list);
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        glintL_push_object(L, GLINTL_MATERIAL, list[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    if (count == 1)
+        lua_rawgeti(L, -1, 1);
+    glintL_keep(L, BOX, count == 1 ? "material" : "materials", -1);
+}
+
 static int finish(lua_State *L, glintL_box *box, glint_shape *shape)
 {
     box->object = shape;
+    lua_settop(L, MATERIAL);
     if (!lua_isnil(L, MATERIAL))
         glintL_keep(L, BOX, "material", MATERIAL);
+    else if (!lua_isnil(L, OTHER))
+        keep_materials(L, shape);
     lua_settop(L, BOX);
     glintL_remember(L, shape);
     glintL_charge(L, glint_spheres_count(shape) * 6 * sizeof(double));
     return 1;
 }
+
+static void note_read(void *context, const char *path)
+{
+    const glintL_reporter *reporter = &((const glintL_run *)context)->reporter;
+    if (reporter->reads)
+        reporter->reads(reporter->context, path);
+}
+
+static void note_warning(void *context, const char *message) { glintL_run_warn(context, "%s", message); }
 
 static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_error *error)
 {
@@ -389,12 +416,12 @@ static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_
     if (strlen(path) != lua_rawlen(L, OTHER))
         glintL_error(L, "mesh.file: string without a zero byte expected");
     read_material(L, "mesh.material", a);
-    const glintL_run *run = glintL_get_run(L);
+    glintL_run *run = glintL_get_run(L);
     if (run->request.is_untrusted) // which would learn from the answers what files there are
         glintL_error(L, "mesh.file: an untrusted script reads no files");
-    const glintL_reporter *reporter = &run->reporter;
-    if (reporter->reads)
-        reporter->reads(reporter->context, path);
+    a->desc.reads = note_read;
+    a->desc.warns = note_warning;
+    a->desc.context = run;
     return glint_mesh_load(path, &a->desc, shape, error);
 }
 

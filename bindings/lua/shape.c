@@ -78,7 +78,7 @@ static const glintL_field MESH_FIELDS[] = {
     { .name = NULL },
 };
 
-// Pushes the list of materials given to glint.spheres{materials = ...}; nil for other shapes.
+// Pushes the list of materials given to glint.spheres{materials = ...}, or of a mesh's file; nil for other shapes.
 static void push_kept_list(lua_State *L)
 {
     if (lua_getiuservalue(L, 1, 1) == LUA_TTABLE) {
@@ -112,15 +112,27 @@ static int get_materials(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg SPHERES_GETTERS[] = { { "count", get_count }, { "materials", get_materials }, { NULL, NULL } };
+static int push_corner(lua_State *L, bool upper)
+{
+    double corners[2][3];
+    glint_shape_bounds(glintL_check_object(L, 1, GLINTL_SHAPE), corners[0], corners[1]);
+    glintL_push_vector(L, corners[upper]);
+    return 1;
+}
 
-static const luaL_Reg MESH_GETTERS[] = { { "count", get_count }, { NULL, NULL } };
+static int get_min(lua_State *L) { return push_corner(L, false); }
+static int get_max(lua_State *L) { return push_corner(L, true); }
+
+// Of spheres and meshes.
+static const luaL_Reg MANY_GETTERS[] = {
+    { "count", get_count }, { "materials", get_materials }, { "min", get_min }, { "max", get_max }, { NULL, NULL },
+};
 
 static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_SPHERE] = { .name = "sphere", .fields = SPHERE_FIELDS, .place = "center" },
     [GLINT_SHAPE_PLANE] = { .name = "plane", .fields = PLANE_FIELDS },
-    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = SPHERES_GETTERS },
-    [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MESH_GETTERS },
+    [GLINT_SHAPE_SPHERES] = { .name = "spheres", .fields = SPHERES_FIELDS, .getters = MANY_GETTERS },
+    [GLINT_SHAPE_MESH] = { .name = "mesh", .fields = MESH_FIELDS, .getters = MANY_GETTERS },
     [GLINT_SHAPE_BOX] = { .name = "box", .fields = BOX_FIELDS },
     [GLINT_SHAPE_DISK] = { .name = "disk", .fields = DISK_FIELDS, .place = "center" },
     [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
@@ -151,7 +163,10 @@ static void assigned(lua_State *L, const glintL_field *field, void *desc)
         return;
     push_kept_list(L);
     if (!lua_isnil(L, -1))
-        glintL_error(L, "spheres.material: these spheres have a list of materials; change the fields of those");
+        glintL_error(L, "%s a list of materials; change the fields of those",
+                     glint_shape_get(glintL_check_object(L, 1, GLINTL_SHAPE))->kind == GLINT_SHAPE_MESH
+                         ? "mesh.material: this mesh has"
+                         : "spheres.material: these spheres have");
     lua_pop(L, 1);
 }
 

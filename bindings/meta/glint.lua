@@ -345,6 +345,8 @@ function glint.plane(fields) end
 ---@class glint.spheres: glint.shape_fields
 ---@field count integer  how many spheres; only read
 ---@field materials glint.material[]  a new list of them; only read
+---@field min glint.vector  of the box around them, before its transform, the corner of the smallest coordinates; only read
+---@field max glint.vector  that of the largest; only read
 local spheres = {}
 
 --- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
@@ -360,10 +362,10 @@ function glint.spheres(fields) end
 ---| "flat"  # lit once a face, at its centroid
 ---| "gouraud"  # lit once a vertex, with its normal; between them by barycentric coordinates
 
---- Polygons that share vertices, from tables or from a Wavefront .obj file; copied once. Give `file`, or `vertices` and
+--- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or `vertices` and
 --- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
----@field file? string  an .obj file (v, vt, vn, f); relative to the working directory
+---@field file? string  a mesh, relative to the working directory: .stl; .ply; else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd)
 ---@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
 ---@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
 ---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
@@ -374,6 +376,9 @@ function glint.spheres(fields) end
 ---@class glint.mesh: glint.shape_fields
 ---@field shading glint.shading
 ---@field count integer  how many triangles; only read
+---@field materials glint.material[]  all of them, of a file those that faces have; only read, their own fields can be set
+---@field min glint.vector  of the box around its vertices, before its transform, the corner of the smallest coordinates; only read
+---@field max glint.vector  that of the largest; only read
 local mesh = {}
 
 --- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.

@@ -262,8 +262,9 @@ static bool reads_uv(const glint_plan_pattern *own)
     return reads & GLINT_READS_UV;
 }
 
-/// Sees to it that a program finds coordinates on all of a mesh.
-static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *shape, glint_error *error)
+/// Sees to it that a program finds coordinates on all faces of a mesh that have the `material`-th of its materials.
+static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *shape, size_t material,
+                                 glint_error *error)
 {
     const char *name = shape->desc.name, *before = name[0] ? " '" : "", *after = name[0] ? "'" : "";
     place->mesh = shape->mesh;
@@ -271,9 +272,9 @@ static glint_status take_mesh_uv(glint_pattern_place *place, const glint_shape *
         return glint_fail(error, GLINT_ERR_INVALID,
                           "s.uv: mesh%s%s%s has no coordinates on its surface: uv, or vt in its file, expected", before,
                           name, after);
-    if (shape->mesh->uv_missing)
-        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no coordinates (vt)", before, name,
-                          after, shape->mesh->uv_missing);
+    if (shape->mesh->uv_missing[material])
+        return glint_fail(error, GLINT_ERR_INVALID, "s.uv: mesh%s%s%s: faces[%zu] has no coordinates (vt)", before,
+                          name, after, shape->mesh->uv_missing[material]);
     return GLINT_OK;
 }
 
@@ -294,7 +295,7 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
                 place_init(&patterns->places[i], part);
             begun = true;
             glint_status status = part->shape->mesh && reads_uv(own)
-                                      ? take_mesh_uv(&patterns->places[i], part->shape, error)
+                                      ? take_mesh_uv(&patterns->places[i], part->shape, k, error)
                                       : GLINT_OK;
             if (status)
                 return status;

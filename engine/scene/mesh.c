@@ -1,5 +1,6 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
+#include "engine/scene/mesh_file.h"
 #include "engine/scene/objects.h"
 
 #include <stdlib.h>
@@ -21,6 +22,7 @@ void glint_mesh_free(glint_mesh *mesh)
     free(mesh->triangle_normals);
     free(mesh->uv);
     free(mesh->triangle_uv);
+    free(mesh->uv_missing);
     free(mesh->faces);
     free(mesh->shading_points);
     free(mesh);
@@ -50,6 +52,8 @@ typedef struct builder {
     glint_mesh *mesh;
     size_t room; ///< triangles
     polygon face;
+    uint32_t *index; ///< of each triangle, a material; NULL: they have one
+    size_t *flat; ///< counts faces without an area, which are left out; NULL: they are an error
     glint_error *error;
 } builder;
 
@@ -92,6 +96,9 @@ static bool grow(builder *b)
     bool good = resize(&faces, room * sizeof *mesh->faces);
     for (int i = 0; i < 3; i++)
         good = good && resize(&of_corners[i], room * sizeof *mesh->triangles);
+    void *index = b->index;
+    good = good && resize(&index, room * sizeof *b->index);
+    b->index = index;
     mesh->triangles = of_corners[0];
     mesh->triangle_normals = of_corners[1];
     mesh->triangle_uv = of_corners[2];
@@ -106,6 +113,12 @@ static uint32_t number_or(uint32_t number, uint32_t none, size_t count)
     return number == none ? (uint32_t)count : number;
 }
 
+/// The number of the material of the face at hand.
+static uint32_t material_of(const builder *b)
+{
+    return b->desc->material_index ? b->desc->material_index[b->face.number - 1] : 0;
+}
+
 static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, uint32_t j, uint32_t k)
 {
     glint_mesh *mesh = b->mesh;
@@ -115,6 +128,8 @@ static glint_status keep_triangle(builder *b, size_t first_corner, uint32_t i, u
         return glint_fail_nomem(b->error);
     if (mesh->faces)
         mesh->faces[mesh->triangle_count] = (uint32_t)(b->face.number - 1);
+    if (b->index)
+        b->index[mesh->triangle_count] = material_of(b);
     const uint32_t place[3] = { i, j, k };
     for (int c = 0; c < 3; c++) {
         mesh->triangles[mesh->triangle_count][c] = b->face.corners[place[c]];
@@ -242,6 +257,10 @@ static glint_status cut_ears(builder *b, size_t first_corner)
 static glint_status cut_face(builder *b, size_t first_corner)
 {
     polygon_normal(b);
+    if (is_zero(b->face.normal) && b->flat) {
+        ++*b->flat;
+        return GLINT_OK;
+    }
     if (is_zero(b->face.normal))
         return glint_fail(b->error, GLINT_ERR_INVALID,
                           "faces[%zu]: a face with an area expected: its vertices %u, %u, %u%s are on one line",
@@ -268,6 +287,11 @@ static glint_status check_counts(const glint_mesh_desc *desc, glint_error *error
     if (desc->uv && !desc->uv_corners && desc->uv_count != desc->vertex_count)
         return glint_fail(error, GLINT_ERR_INVALID, "uv: one a vertex (%zu) expected, got %zu", desc->vertex_count,
                           desc->uv_count);
+    for (size_t i = 0; i < desc->material_count; i++)
+        if (!desc->materials[i])
+            return glint_fail(error, GLINT_ERR_INVALID, "materials: entry %zu is missing", i + 1);
+    if (desc->material_index && !desc->material_count)
+        return glint_fail(error, GLINT_ERR_INVALID, "materials: 1 or more expected with an index");
     glint_status status = glint_check_transform("transform", &desc->transform, error);
     return !status && desc->has_shading ? glint_check_shading(desc->shading, error) : status;
 }
@@ -303,6 +327,9 @@ static glint_status check_face(const builder *b, size_t first_corner)
     if (b->face.size < 3)
         return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: 3 vertices or more expected, got %u",
                           b->face.number, b->face.size);
+    if (desc->material_count && material_of(b) >= desc->material_count)
+        return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: material 1 .. %zu expected, got %llu",
+                          b->face.number, desc->material_count, (unsigned long long)material_of(b) + 1);
     for (uint32_t i = 0; i < b->face.size; i++) {
         if (b->face.corners[i] >= desc->vertex_count)
             return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: vertex 1 .. %zu expected, got %llu",
@@ -312,8 +339,8 @@ static glint_status check_face(const builder *b, size_t first_corner)
             return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: normal 1 .. %zu expected, got %llu",
                               b->face.number, desc->normal_count, (unsigned long long)normal + 1);
         const uint32_t uv = desc->uv && desc->uv_corners ? desc->uv_corners[first_corner + i] : 0;
-        if (uv == GLINT_NO_UV && desc->uv && !b->mesh->uv_missing)
-            b->mesh->uv_missing = b->face.number;
+        if (uv == GLINT_NO_UV && desc->uv && !b->mesh->uv_missing[material_of(b)])
+            b->mesh->uv_missing[material_of(b)] = b->face.number;
         if (uv != GLINT_NO_UV && desc->uv && uv >= desc->uv_count)
             return glint_fail(b->error, GLINT_ERR_INVALID, "faces[%zu]: uv 1 .. %zu expected, got %llu",
                               b->face.number, desc->uv_count, (unsigned long long)uv + 1);
@@ -361,58 +388,85 @@ static bool has_polygons(const glint_mesh_desc *desc)
     return false;
 }
 
-static glint_status fill(const glint_mesh_desc *desc, glint_mesh *mesh, glint_error *error)
+/// Room for a triangle a face.
+static glint_status allocate(builder *b)
 {
-    const bool polygons = has_polygons(desc);
-    builder b = { .desc = desc, .mesh = mesh, .room = desc->face_count, .error = error };
+    glint_mesh *mesh = b->mesh;
+    const glint_mesh_desc *desc = b->desc;
     const bool numbered = desc->normals && desc->normal_corners, mapped = desc->uv && desc->uv_corners;
-    glint_status status = copy_vertices(desc, mesh, error);
-    if (status)
-        return status;
-    mesh->triangles = malloc(b.room * sizeof *mesh->triangles);
-    mesh->triangle_normals = numbered ? malloc(b.room * sizeof *mesh->triangles) : NULL;
-    mesh->triangle_uv = mapped ? malloc(b.room * sizeof *mesh->triangles) : NULL;
-    mesh->faces = polygons ? malloc(b.room * sizeof *mesh->faces) : NULL;
-    mesh->face_count = desc->face_count;
+    const bool polygons = has_polygons(desc), several = desc->material_count > 1;
+    mesh->triangles = malloc(b->room * sizeof *mesh->triangles);
+    mesh->triangle_normals = numbered ? malloc(b->room * sizeof *mesh->triangles) : NULL;
+    mesh->triangle_uv = mapped ? malloc(b->room * sizeof *mesh->triangles) : NULL;
+    mesh->faces = polygons ? malloc(b->room * sizeof *mesh->faces) : NULL;
+    mesh->uv_missing = calloc(desc->material_count ? desc->material_count : 1, sizeof *mesh->uv_missing);
+    b->index = several ? malloc(b->room * sizeof *b->index) : NULL;
     if (!mesh->triangles || (numbered && !mesh->triangle_normals) || (mapped && !mesh->triangle_uv) ||
-        (polygons && !mesh->faces))
-        return glint_fail_nomem(error);
+        (polygons && !mesh->faces) || !mesh->uv_missing || (several && !b->index))
+        return glint_fail_nomem(b->error);
+    return GLINT_OK;
+}
+
+static glint_status fill(builder *b)
+{
+    const glint_mesh_desc *desc = b->desc;
+    glint_mesh *mesh = b->mesh;
+    glint_status status = copy_vertices(desc, mesh, b->error);
+    if (!status)
+        status = allocate(b);
+    mesh->face_count = desc->face_count;
     size_t first = 0;
     for (size_t i = 0; i < desc->face_count && !status; i++) {
-        b.face.number = i + 1;
-        b.face.corners = desc->corners + first;
-        b.face.size = desc->face_sizes[i];
-        status = check_face(&b, first);
+        b->face.number = i + 1;
+        b->face.corners = desc->corners + first;
+        b->face.size = desc->face_sizes[i];
+        status = check_face(b, first);
         if (!status)
-            status = cut_face(&b, first);
-        first += b.face.size;
+            status = cut_face(b, first);
+        first += b->face.size;
     }
-    free(b.face.left);
+    free(b->face.left);
+    if (!status && mesh->triangle_count == 0)
+        status = glint_fail(b->error, GLINT_ERR_INVALID, "faces: one with an area expected, got %zu without",
+                            desc->face_count);
     if (!status && mesh->uv)
         sign_uv(mesh, desc->uv_count);
     return status;
 }
 
-static glint_status make_shape(const glint_mesh_desc *desc, glint_shape *shape, glint_error *error)
+static glint_status take_materials(const glint_mesh_desc *desc, glint_shape *shape, glint_error *error)
+{
+    const size_t count = desc->material_count ? desc->material_count : 1;
+    for (size_t i = 0; i < count; i++) {
+        shape->materials[i] =
+            glint_material_or_default(desc->material_count ? desc->materials[i] : desc->material, error);
+        if (!shape->materials[i])
+            return GLINT_ERR_NOMEM;
+        shape->material_count++;
+    }
+    shape->desc.material = shape->materials[0];
+    return GLINT_OK;
+}
+
+static glint_status make_shape(const glint_mesh_desc *desc, size_t *flat, glint_shape *shape, glint_error *error)
 {
     shape->mesh = calloc(1, sizeof *shape->mesh);
     if (!shape->mesh)
         return glint_fail_nomem(error);
-    shape->materials[0] = glint_material_or_default(desc->material, error);
-    if (!shape->materials[0])
-        return GLINT_ERR_NOMEM;
-    shape->material_count = 1;
-    shape->desc.material = shape->materials[0];
-    glint_status status = fill(desc, shape->mesh, error);
+    builder b = { .desc = desc, .mesh = shape->mesh, .room = desc->face_count, .flat = flat, .error = error };
+    glint_status status = take_materials(desc, shape, error);
     if (!status)
-        status = glint_mesh_prepare(shape->mesh, shape->desc.shading, error);
+        status = fill(&b);
+    shape->index = b.index;
+    if (!status)
+        status = glint_mesh_prepare(shape->mesh, shape->index, shape->desc.shading, error);
     shape->count = shape->mesh->triangle_count;
     for (size_t i = 0; i < shape->mesh->vertex_count && !status; i++)
         glint_shape_stretch(shape, shape->mesh->vertices[i], 0, i == 0);
     return status;
 }
 
-glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
+glint_status glint_mesh_make(const glint_mesh_desc *desc, size_t *flat, glint_shape **out, glint_error *error)
 {
     glint_status status = check_counts(desc, error);
     if (!status)
@@ -424,14 +478,19 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
     base.transform = desc->transform;
     base.shading = desc->has_shading ? desc->shading : desc->normals ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED;
     memcpy(base.name, desc->name, sizeof base.name);
-    glint_shape *shape = glint_shape_alloc(&base, 1);
+    glint_shape *shape = glint_shape_alloc(&base, desc->material_count ? desc->material_count : 1);
     if (!shape)
         return glint_fail_nomem(error);
-    status = make_shape(desc, shape, error);
+    status = make_shape(desc, flat, shape, error);
     if (status) {
         glint_shape_release(shape);
         return status;
     }
     *out = shape;
     return GLINT_OK;
+}
+
+glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, glint_error *error)
+{
+    return glint_mesh_make(desc, NULL, out, error);
 }

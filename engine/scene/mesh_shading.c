@@ -39,35 +39,49 @@ static glint_status make_normals(glint_mesh *mesh, glint_error *error)
     return GLINT_OK;
 }
 
-/// The sites of each vertex, one behind the other: those with a normal of their own.
+/// The sites of each vertex, one behind the other: those with a normal and a material of their own.
 typedef struct chains {
     uint32_t *first; ///< of each vertex; GLINT_NO_NORMAL: none
     uint32_t *next, *normal; ///< of each site
+    uint32_t *material; ///< likewise; NULL: there is one
 } chains;
 
 /// The number of the site of a vertex with a normal, a new one where it has none yet. A corner without a normal, which takes
 /// its face's, is a site of its own.
-static uint32_t shading_point_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, size_t *count)
+static uint32_t shading_point_of(const glint_mesh *mesh, chains *c, uint32_t vertex, uint32_t normal, uint32_t material,
+                                 size_t *count)
 {
     const bool alone = is_zero(mesh->normals[normal]);
     uint32_t at = alone ? GLINT_NO_NORMAL : c->first[vertex];
-    while (at != GLINT_NO_NORMAL && c->normal[at] != normal)
+    while (at != GLINT_NO_NORMAL && (c->normal[at] != normal || (c->material && c->material[at] != material)))
         at = c->next[at];
     if (at != GLINT_NO_NORMAL)
         return at;
     at = (uint32_t)(*count)++;
     if (!alone) {
         c->normal[at] = normal;
+        if (c->material)
+            c->material[at] = material;
         c->next[at] = c->first[vertex];
         c->first[vertex] = at;
     }
     return at;
 }
 
-static glint_status number_shading_points(glint_mesh *mesh, glint_error *error)
+static void link_corners(glint_mesh *mesh, const uint32_t *index, chains *c)
+{
+    uint32_t(*normals)[3] = mesh->triangle_normals ? mesh->triangle_normals : mesh->triangles;
+    memset(c->first, 0xff, mesh->vertex_count * sizeof *c->first);
+    for (size_t i = 0; i < mesh->triangle_count; i++)
+        for (int j = 0; j < 3; j++)
+            mesh->shading_points[i][j] = shading_point_of(mesh, c, mesh->triangles[i][j], normals[i][j],
+                                                          index ? index[i] : 0, &mesh->shading_point_count);
+}
+
+static glint_status number_shading_points(glint_mesh *mesh, const uint32_t *index, glint_error *error)
 {
     const size_t corners = 3 * mesh->triangle_count;
-    if (!mesh->triangle_normals) {
+    if (!mesh->triangle_normals && !index) {
         mesh->shading_point_count = mesh->vertex_count;
         return GLINT_OK;
     }
@@ -75,19 +89,15 @@ static glint_status number_shading_points(glint_mesh *mesh, glint_error *error)
         return glint_fail(error, GLINT_ERR_INVALID, "shading: at most %u triangles expected with gouraud, got %zu",
                           GLINT_NO_NORMAL / 3, mesh->triangle_count);
     chains c = { malloc(mesh->vertex_count * sizeof *c.first), malloc(corners * sizeof *c.next),
-                 malloc(corners * sizeof *c.normal) };
+                 malloc(corners * sizeof *c.normal), index ? malloc(corners * sizeof *c.material) : NULL };
     mesh->shading_points = malloc(mesh->triangle_count * sizeof *mesh->shading_points);
-    const bool room = c.first && c.next && c.normal && mesh->shading_points;
-    if (room) {
-        memset(c.first, 0xff, mesh->vertex_count * sizeof *c.first);
-        for (size_t i = 0; i < corners; i++)
-            mesh->shading_points[i / 3][i % 3] =
-                shading_point_of(mesh, &c, mesh->triangles[i / 3][i % 3], mesh->triangle_normals[i / 3][i % 3],
-                                 &mesh->shading_point_count);
-    }
+    const bool room = c.first && c.next && c.normal && (c.material || !index) && mesh->shading_points;
+    if (room)
+        link_corners(mesh, index, &c);
     free(c.first);
     free(c.next);
     free(c.normal);
+    free(c.material);
     if (room)
         return GLINT_OK;
     free(mesh->shading_points);
@@ -95,13 +105,13 @@ static glint_status number_shading_points(glint_mesh *mesh, glint_error *error)
     return glint_fail_nomem(error);
 }
 
-glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_error *error)
+glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_shading shading, glint_error *error)
 {
     glint_status status = GLINT_OK;
     if ((shading == GLINT_SHADING_PHONG || shading == GLINT_SHADING_GOURAUD) && !mesh->normals)
         status = make_normals(mesh, error);
     if (!status && shading == GLINT_SHADING_GOURAUD && !mesh->shading_point_count)
-        status = number_shading_points(mesh, error);
+        status = number_shading_points(mesh, index, error);
     return status;
 }
 

@@ -32,12 +32,12 @@ typedef struct glint_mesh {
     double (*uv)[2]; ///< coordinates on a picture; NULL: there are none
     uint32_t (*triangle_uv)[3]; ///< numbers of these; NULL: those of the vertices
     glint_key uv_key; ///< of both
-    size_t uv_missing; ///< the first face that has a corner without, from 1; 0: none
+    size_t *uv_missing; ///< of each material, the first face that has a corner without, from 1; 0: none
     uint32_t *faces; ///< the face each triangle was cut from, from 0; NULL: each is a face
     size_t face_count;
-    uint32_t (*shading_points)
-        [3]; ///< of gouraud shading: numbers of pairs of a vertex and a normal; NULL: those of the vertices
-    size_t shading_point_count; ///< pairs; 0: not counted yet
+    uint32_t (*shading_points)[3]; ///< of gouraud shading: numbers of what a vertex, a normal and a material are together;
+                                   ///< NULL: those of the vertices
+    size_t shading_point_count; ///< 0: not counted yet
     double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
     double bend; ///< see glint_mesh_bend; 0: none, or not looked for yet
 } glint_mesh;
@@ -56,7 +56,7 @@ struct glint_shape {
     uint64_t children_hash; ///< of their revisions then
     double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
-    uint32_t *index; ///< GLINT_SHAPE_SPHERES: material of each, or NULL
+    uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material of each sphere or triangle, or NULL
     glint_material **materials;
     size_t material_count;
 };
@@ -100,7 +100,8 @@ bool glint_pattern_numbers(const glint_program *program, double most, double out
 glint_material *glint_material_or_default(glint_material *material, glint_error *error);
 void glint_mesh_free(glint_mesh *mesh);
 /// Makes what a mesh lacks to be shaded so: normals of the vertices, and the numbers of its sites.
-glint_status glint_mesh_prepare(glint_mesh *mesh, glint_shading shading, glint_error *error);
+/// index: the material of each triangle; NULL: they have one.
+glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_shading shading, glint_error *error);
 glint_status glint_check_shading(glint_shading shading, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.

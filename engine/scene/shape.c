@@ -166,7 +166,7 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
     if (status)
         return status;
     if (shape->mesh)
-        status = glint_mesh_prepare(shape->mesh, desc->shading, error);
+        status = glint_mesh_prepare(shape->mesh, shape->index, desc->shading, error);
     if (status)
         return status;
     glint_material *material = glint_material_or_default(desc->material, error);

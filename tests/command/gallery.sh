@@ -49,6 +49,7 @@ picture lantern --frames 1
 picture lobes --size 400x160
 picture mesh_and_sphere --size 400x200
 picture mirror_and_glass --size 320x180 --samples 9
+picture model
 picture molecule --set style=sticks
 picture moving_light --frames 31 --samples 4
 "$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet

@@ -6,9 +6,9 @@ cd "$work" || exit 1
 seconds=5
 memory_kib=400000 # of address space: a picture in memory is far less, what the files below claim is far more
 
-mkfifo pipe pipe.png pipe.pfm pipe.obj
-mkdir folder folder.png folder.pfm folder.obj
-for kind in png pfm obj; do
+mkfifo pipe pipe.png pipe.pfm pipe.obj pipe.stl pipe.ply
+mkdir folder folder.png folder.pfm folder.obj folder.stl folder.ply
+for kind in png pfm obj stl ply; do
     ln -s /dev/zero device.$kind
     truncate -s 20G huge.$kind
 done
@@ -21,6 +21,13 @@ LUA
 "$glint" scene.lua --size 8x8 -o good.png -q && "$glint" scene.lua --size 8x8 -o good.pfm -q
 head -c 60 good.png >begun.png && truncate -s 15G begun.png
 head -c 12 good.pfm >begun.pfm && truncate -s 15G begun.pfm
+ply='ply\nformat binary_little_endian 1.0\nelement vertex %s\nproperty float x\nproperty float y\nproperty float z\nelement face 2'
+ply="$ply\nproperty list uchar int vertex_indices\nend_header\n"
+# shellcheck disable=SC2059 # the format is the head of the file
+printf "$ply" 1000000000 >begun.ply && truncate -s 15G begun.ply
+# shellcheck disable=SC2059
+printf "$ply" 4000000000 >claims.ply
+{ head -c 80 /dev/zero && printf '\1\2\3\4'; } >claims.stl
 
 # What a run may take of memory: a sanitizer maps terabytes.
 limited() {
@@ -58,7 +65,23 @@ for bad in device pipe folder huge begun; do
     script "a texture of a $bad" "$bad.png: " 'local glint = require "glint"' "return glint.texture { file = '$bad.png' }"
 done
 for bad in device pipe folder huge; do
-    script "a mesh of a $bad" "$bad.obj: " 'local glint = require "glint"' "return glint.mesh { file = '$bad.obj' }"
+    for kind in obj stl ply; do
+        script "a mesh of a $bad, .$kind" "$bad.$kind: " 'local glint = require "glint"' "return glint.mesh { file = '$bad.$kind' }"
+    done
+done
+for kind in stl ply; do
+    script "a mesh that is not as large as it says, .$kind" "claims.$kind: .*expected, got" 'require("glint").mesh { file = "claims.'$kind'" }'
+done
+script "a mesh that only begins" "begun.ply: |out of memory" 'require("glint").mesh { file = "begun.ply" }'
+printf 'mtllib %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' device.png >named.obj
+printf 'mtllib good.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n' >painted.obj
+for bad in device.png pipe folder huge.png; do
+    sed "s/device.png/$bad/" named.obj >mesh.obj
+    script "a mesh with materials in $bad" "mesh.obj: its materials are not all there: $bad: " 'require("glint").mesh { file = "mesh.obj" }' \
+        'error "read"'
+    printf 'newmtl a\nmap_Kd %s\n' "$bad" >good.mtl
+    script "a mesh with the picture $bad" "painted.obj: material 'a' has its Kd in place of its map_Kd: $bad: " \
+        'require("glint").mesh { file = "painted.obj" }' 'error "read"'
 done
 export LUA_PATH="$root/scripts/lib/?.lua;;"
 for reader in xyz pdb lammps points; do

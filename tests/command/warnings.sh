@@ -242,6 +242,45 @@ END
 test "$(grep -c "sphere_light 'bulb'.shadow: caps are for scenes of opaque spheres and planes alone" err)" -eq 1
 result $? "caps that are rays, once"
 
+# ---- Meshes from files ----
+
+# mesh LINES MATERIALS: m.obj of one triangle with these statements above, and m.mtl
+mesh() {
+    # shellcheck disable=SC2059 # they have line ends
+    printf "$1v -1 0 0\nv 1 0 0\nv 0 1 0\n" >m.obj
+    grep -q 'usemtl b' m.obj && printf 'usemtl a\nf 1 2 3\nusemtl b\n' >>m.obj
+    echo 'f 1 2 3' >>m.obj
+    # shellcheck disable=SC2059
+    printf "$2" >m.mtl
+}
+scene 'objects = { glint.mesh { file = "m.obj" } }'
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nmap_Bump b.png\nanything else\n'
+silent "materials that are there"
+mesh 'usemtl a\n' ''
+warns "no file of materials" "m.obj: material 'a': the mesh names no file of materials (mtllib)$"
+mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl c\n'
+warns "materials that the file has not" "m.obj: material 'a' and 1 more: not in m.mtl$"
+mesh 'mtllib gone.mtl\nusemtl b\n' ''
+warns "a file of materials that is not there" "m.obj: its materials are not all there: gone.mtl: No such file or directory$"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0\nKd 1 0 x\n'
+warns "a colour that is none" "m.obj: its materials are not all there: m.mtl: line 3: a number expected, got 'x'$"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Kd wood.png\n'
+warns "a picture without coordinates" "m.obj: material 'a' has its Kd in place of its map_Kd: faces of it have no coordinates (vt)$"
+scene 'objects = { glint.mesh { file = "m.obj", material = glint.material {} } }'
+silent "a material of the script: the file's are not looked at"
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n' >m.ply
+printf 'element face 1\nproperty list uchar int vertex_indices\nend_header\n-1 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n' >>m.ply
+scene 'objects = { glint.mesh { file = "m.ply" }, glint.mesh { file = "m.ply" } }'
+warns "colours of vertices, once" "m.ply: its colours are passed over: the mesh has those of its material$"
+{
+    echo 'solid x'
+    for corner in '0 0 0' '0 1 0'; do
+        printf 'facet normal 0 0 0\nouter loop\nvertex -1 0 0\nvertex 1 0 0\nvertex %s\nendloop\nendfacet\n' "$corner"
+    done
+} >m.stl
+scene 'objects = { glint.mesh { file = "m.stl" } }'
+warns "faces without an area" "m.stl: 1 of 2 faces are left out: they have no area$"
+
 # ---- The scripts of the project give no cause ----
 
 run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff # the file that nff.lua reads

@@ -25,5 +25,7 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t room); ///< libFuzzer
 
 /// Writes the bytes to a file of this process in memory, for readers that take a path. Returns the path.
 const char *fuzz_file(const uint8_t *data, size_t size);
+/// The same with an ending of its name, ".ply".
+const char *fuzz_file_as(const char *ending, const uint8_t *data, size_t size);
 
 #endif

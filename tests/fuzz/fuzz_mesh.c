@@ -1,4 +1,5 @@
-/// Bytes as a Wavefront .obj file: a mesh, which is then seen from the front in a small picture, or a message.
+/// Bytes as a file of a mesh, of the kind that they begin like, or as the materials of one: a mesh, which is then seen from the
+/// front in a small picture, or a message.
 #include "engine/glint.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -32,17 +33,46 @@ static void see(glint_shape *shape)
     glint_camera_release(camera);
 }
 
+/// An .obj file whose materials the bytes are.
+static const char *mesh_with(const uint8_t *data, size_t size)
+{
+    char text[256];
+    const char *path = fuzz_file_as(".mtl", data, size);
+    const int length = snprintf(text, sizeof text,
+                                "mtllib %s\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n"
+                                "usemtl b\nf 3/1 2/1 1/1\n",
+                                path);
+    return fuzz_file_as(".obj", (const uint8_t *)text, (size_t)length);
+}
+
+static const char *file_of(const uint8_t *data, size_t size)
+{
+    if (size > 6 && memcmp(data, "newmtl", 6) == 0)
+        return mesh_with(data, size);
+    if (size > 3 && memcmp(data, "ply", 3) == 0)
+        return fuzz_file_as(".ply", data, size);
+    const bool solid = (size > 5 && memcmp(data, "solid", 5) == 0) || (size >= 84 && (size - 84) % 50 == 0);
+    return solid ? fuzz_file_as(".stl", data, size) : fuzz_file(data, size);
+}
+
+static void take_message(void *context, const char *message)
+{
+    (void)context;
+    FUZZ_CHECK(*message && strlen(message) < 512, "a warning");
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     glint_renderer_desc r = glint_renderer_desc_default();
     glint_mesh_desc d = glint_mesh_desc_default();
     glint_shape *shape;
     glint_error error = { 0 };
+    d.warns = take_message;
     r.threads = 1;
     r.no_reuse = true;
     if (!renderer)
         FUZZ_CHECK(!glint_renderer_create(&r, &renderer, &error), "%s", error.message);
-    if (glint_mesh_load(fuzz_file(data, size), &d, &shape, &error)) {
+    if (glint_mesh_load(file_of(data, size), &d, &shape, &error)) {
         FUZZ_CHECK(*error.message && strlen(error.message) < sizeof error.message, "a message");
         return 0;
     }

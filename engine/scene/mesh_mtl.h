@@ -1,0 +1,21 @@
+/// The materials of .obj files: what usemtl names, as the files that mtllib names have it. Internal to scene/.
+#ifndef GLINT_MESH_MTL_H
+#define GLINT_MESH_MTL_H
+
+#include "engine/scene/mesh_file.h"
+
+/// NULL: out of memory.
+glint_mesh_library *glint_mesh_library_create(void);
+void glint_mesh_library_free(glint_mesh_library *library); ///< NULL: nothing
+/// mtllib: reads the materials of a file, or of several; `names` is the rest of the line. What cannot be read is a warning.
+glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_mesh_reader *reader, const char *names);
+/// usemtl: the faces that follow have this material.
+void glint_mesh_library_use(glint_mesh_library *library, const char *name);
+/// The material of a face: a number among those that faces have, in the order of their first faces.
+glint_status glint_mesh_library_face(glint_mesh_library *library, uint32_t *number, glint_error *error);
+/// Makes the materials of a file that is read; what is missing is a warning.
+glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_mesh_reader *reader);
+/// Puts them into a description; the library keeps them until it is freed.
+void glint_mesh_library_give(const glint_mesh_library *library, const glint_mesh_reader *reader, glint_mesh_desc *desc);
+
+#endif
