@@ -259,7 +259,9 @@ typedef enum glint_filter {
 
 /// The fields of a texture.
 typedef struct glint_texture_desc {
-    const char *path; ///< a .png
+    const char *path; ///< a .png; NULL: `rgb`
+    const uint8_t *rgb; ///< red, green and blue of each pixel, codes of 8 bits, top row first; borrowed for the call
+    int width, height; ///< of `rgb`, pixels, >= 1
     glint_wrap wrap; ///< default repeat
     glint_filter filter; ///< default bilinear
     bool linear; ///< true: codes are numbers as they are; false, the default: they are sRGB and are decoded, unless the
@@ -623,12 +625,12 @@ typedef struct glint_mesh_desc {
     glint_transform transform; ///< default identity
     bool two_sided;
     char name[GLINT_NAME_SIZE];
-} glint_mesh_desc;
-
     void (*reads)(void *context, const char *path); ///< glint_mesh_load: a file is about to be opened; NULL: nothing
     /// glint_mesh_load: something that the file has or names is passed over; the message names the file; NULL: nothing
     void (*warns)(void *context, const char *message);
     void *context; ///< of both
+} glint_mesh_desc;
+
 #define GLINT_NO_NORMAL 0xffffffffu
 #define GLINT_NO_UV 0xffffffffu
 
@@ -1010,6 +1012,7 @@ typedef struct glint_write_desc {
     /// 8 leave them float; the rest is float either way
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
+    double dpi; ///< .png: pixels an inch where it is printed, 0 .. 1e6; 0: not said
     const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts
 } glint_write_desc;

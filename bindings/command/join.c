@@ -121,7 +121,9 @@ static int write_whole(join *j, const char *path)
 {
     glint_text texts[GLINTL_TEXT_COUNT];
     glint_error error;
-    glint_write_desc desc = { .path = path, .encode = j->render.encode, .tone = j->render.desc.tone, .text = texts };
+    glint_write_desc desc = {
+        .path = path, .encode = j->render.encode, .dpi = j->render.dpi, .tone = j->render.desc.tone, .text = texts
+    };
     desc.text_count = list_texts(j, texts);
     if (!is_color(glint_picture_text(j->pictures[0], "glint:pass")))
         desc.tone.transfer = GLINT_TRANSFER_LINEAR;

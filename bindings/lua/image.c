@@ -113,6 +113,7 @@ static void read_options(lua_State *L, glint_write_desc *desc)
           .names = glintL_tone_curves },
         { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
         { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
+        { .name = "dpi", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.dpi) },
         { .name = "pass", .kind = GLINTL_OTHER },
         { .name = NULL },
     };

@@ -62,6 +62,7 @@ static glint_write_desc write_desc(const glintL_work *work, const glintL_file *f
     glint_write_desc desc = { .path = file->path, .pass = file->pass };
     desc.tone = work->render.desc.tone;
     desc.encode = work->render.encode;
+    desc.dpi = work->render.dpi;
     return desc;
 }
 

@@ -285,6 +285,7 @@ typedef struct glintL_render {
     glint_render_desc desc;
     char output[4096]; ///< "" = none given
     glint_encode encode;
+    double dpi; ///< pixels an inch; 0: not said
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
 } glintL_render;
 

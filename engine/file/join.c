@@ -71,7 +71,7 @@ static glint_status write_canvas(const canvas *from, const glint_picture *first,
                                  glint_error *error)
 {
     glint_bytes bytes = { 0 };
-    const glint_png_desc png = { desc->encode, desc->text, desc->text_count };
+    const glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
     const glint_png_source source = { .width = from->width,
                                       .height = from->height,
                                       .alpha = glint_picture_channels(first) == 4,

@@ -65,6 +65,7 @@ typedef struct container {
     const glint_png_source *source;
     const glint_text *text;
     size_t text_count;
+    double dpi;
     const glint_bytes *stream;
     glint_bytes *out;
     char *latin1; ///< room for the longest value
@@ -101,6 +102,9 @@ static bool write_container(container *c)
         png_set_sRGB(c->png, c->info, PNG_sRGB_INTENT_PERCEPTUAL);
     else if (source->tone.transfer == GLINT_TRANSFER_LINEAR)
         png_set_gAMA_fixed(c->png, c->info, 100000);
+    const png_uint_32 meter = (png_uint_32)(c->dpi / 0.0254 + 0.5); // pixels
+    if (meter > 0)
+        png_set_pHYs(c->png, c->info, meter, meter, PNG_RESOLUTION_METER);
     set_text(c);
     png_write_info(c->png, c->info);
     for (size_t at = 0; at < c->stream->size; at += CHUNK_BYTES) {
@@ -137,9 +141,12 @@ glint_status glint_png_encode(glint_bands *bands, const glint_png_source *source
     glint_bytes stream = { 0 };
     status = glint_bands_deflate(bands, source, desc->encode, &stream, reused, error);
     if (!status) {
-        container c = {
-            .source = source, .text = desc->text, .text_count = desc->text_count, .stream = &stream, .out = out
-        };
+        container c = { .source = source,
+                        .text = desc->text,
+                        .text_count = desc->text_count,
+                        .dpi = desc->dpi,
+                        .stream = &stream,
+                        .out = out };
         status = put_in_container(&c, error);
     }
     free(stream.data);

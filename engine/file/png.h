@@ -32,6 +32,7 @@ typedef struct glint_png_desc {
     glint_encode encode;
     const glint_text *text;
     size_t text_count;
+    double dpi; ///< pixels an inch; 0: not said
 } glint_png_desc;
 
 /// Appends a whole PNG to `out`. The bytes depend on source and desc and the deflate library alone; no dates.

@@ -224,7 +224,7 @@ static glint_status encode_rows(const glint_image *image, const glint_write_desc
         return status;
     glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
     source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
-    glint_png_desc png = { desc->encode, desc->text, desc->text_count };
+    glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
     if (!is_color(desc->pass))
         source.tone.transfer = GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
@@ -274,6 +274,8 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
                           (int)desc->pass);
     if (desc->encode != GLINT_ENCODE_FAST && desc->encode != GLINT_ENCODE_SMALL)
         return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
+    if (!(desc->dpi >= 0 && desc->dpi <= 1e6))
+        return glint_fail(error, GLINT_ERR_INVALID, "dpi: number 0 .. 1000000 expected, got %g", desc->dpi);
     if (kind == GLINT_FILE_PNG)
         return encode_png(image, desc, bands, out, reused, error);
     if (kind == GLINT_FILE_EXR)

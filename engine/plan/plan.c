@@ -296,6 +296,8 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
+    if (desc->dpi > 0)
+        key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);
     key = glint_key_add_string(key, GLINT_VERSION);
     return glint_key_add_string(key, glint_encoder_name(desc->encode));
 }

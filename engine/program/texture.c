@@ -10,7 +10,8 @@
 #include <string.h>
 
 #define TEXELS_MAX ((size_t)1 << 25)
-#define LEVELS_MAX 17 // of 65535 texels
+#define SIDE_MAX 65535
+#define LEVELS_MAX 17 // of SIDE_MAX texels
 
 struct glint_texture {
     glint_texture_table table;
@@ -133,10 +134,23 @@ static glint_status decode(const glint_bytes *bytes, glint_png *png, bool *linea
     return glint_png_decode(bytes->data, bytes->size, png, error);
 }
 
+static glint_status copy_codes(const glint_texture_desc *desc, glint_png *png, glint_error *error)
+{
+    const size_t bytes = 3 * (size_t)desc->width * (size_t)desc->height;
+    *png = (glint_png) { .width = desc->width, .height = desc->height, .channels = 3, .bits = 8 };
+    png->codes = malloc(bytes);
+    if (!png->codes)
+        return glint_fail_nomem(error);
+    memcpy(png->codes, desc->rgb, bytes);
+    return GLINT_OK;
+}
+
 static glint_status read_picture(const glint_texture_desc *desc, glint_png *png, bool *linear, glint_error *error)
 {
     glint_bytes bytes = { 0 };
     glint_error inner;
+    if (!desc->path)
+        return copy_codes(desc, png, error);
     glint_status status = glint_file_read_picture(desc->path, &bytes, error);
     if (status)
         return status;
@@ -155,8 +169,12 @@ static glint_key key_of(const glint_texture *texture)
 
 static glint_status check(const glint_texture_desc *desc, glint_error *error)
 {
-    if (!desc->path || !*desc->path)
+    if (desc->path ? !*desc->path : !desc->rgb)
         return glint_fail(error, GLINT_ERR_INVALID, "path: name of a .png expected");
+    if (!desc->path && (desc->width < 1 || desc->height < 1 || desc->width > SIDE_MAX || desc->height > SIDE_MAX ||
+                        (size_t)desc->width * (size_t)desc->height > TEXELS_MAX))
+        return glint_fail(error, GLINT_ERR_INVALID, "rgb: a picture of at most %zu pixels expected, got %d x %d",
+                          TEXELS_MAX, desc->width, desc->height);
     if ((unsigned)desc->wrap > GLINT_WRAP_AROUND)
         return glint_fail(error, GLINT_ERR_INVALID, "wrap: repeat, clamp or around expected, got %d", (int)desc->wrap);
     if ((unsigned)desc->filter > GLINT_FILTER_NEAREST)

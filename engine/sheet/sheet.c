@@ -257,7 +257,7 @@ static glint_status write_canvas(const glint_canvas *canvas, const char *path, g
     glint_png_source source = {
         .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas
     };
-    glint_png_desc png = { GLINT_ENCODE_SMALL, &text, 1 };
+    glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1 };
     glint_bytes bytes = { 0 };
     source.tone = glint_tone_desc_default();
     glint_status status = glint_png_encode(NULL, &source, &png, &bytes, NULL, error);

@@ -64,6 +64,33 @@ static void write_four(void)
     write_png(path, 2, 2, PNG_COLOR_TYPE_RGB_ALPHA, 8, 0, four);
 }
 
+/// Codes of the caller are those of a file.
+static void test_memory(void **state)
+{
+    (void)state;
+    static const uint8_t rgb[] = { 255, 0, 0, 0, 255, 0, 0, 0, 255, 128, 128, 128 };
+    const double gray = glint_srgb_decode(128.0 / 255);
+    glint_texture_desc desc = glint_texture_desc_default();
+    glint_texture *t;
+    desc.rgb = rgb;
+    for (int side = -1; side < 2; side++) {
+        desc.width = desc.height = side < 0 ? 70000 : side;
+        assert_int_equal(glint_texture_create(&desc, &t, &error), side < 1 ? GLINT_ERR_INVALID : GLINT_OK);
+        assert_true(side == 1 || strstr(error.message, "rgb: a picture of at most"));
+    }
+    glint_texture_release(t);
+    desc.width = desc.height = 2;
+    assert_int_equal(glint_texture_create(&desc, &t, &error), GLINT_OK);
+    expect(t, 0.25, 0.75, 1, 0, 0, 1);
+    expect(t, 0.75, 0.75, 0, 1, 0, 1);
+    expect(t, 0.25, 0.25, 0, 0, 1, 1);
+    expect(t, 0.75, 0.25, gray, gray, gray, 1);
+    glint_texture_release(t);
+    desc.rgb = NULL;
+    assert_int_equal(glint_texture_create(&desc, &t, &error), GLINT_ERR_INVALID);
+    assert_string_equal(error.message, "path: name of a .png expected");
+}
+
 static void test_codes(void **state)
 {
     (void)state;
@@ -275,7 +302,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_codes),  cmocka_unit_test(test_wrapping), cmocka_unit_test(test_footprints),
         cmocka_unit_test(test_slopes), cmocka_unit_test(test_files),    cmocka_unit_test(test_keys),
-        cmocka_unit_test(test_rewrap),
+        cmocka_unit_test(test_rewrap), cmocka_unit_test(test_memory),
     };
     snprintf(path, sizeof path, "/tmp/glint_texture_%ld.png", (long)getpid());
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
