@@ -31,6 +31,10 @@ static const unsigned char PICTURE[] = {
 #include "scripts/lib/gr/picture.lua.h"
 };
 
+static const unsigned char SURFACE[] = {
+#include "scripts/lib/gr/surface.lua.h"
+};
+
 static const struct carried {
     const char *name, *source;
     const unsigned char *text;
@@ -45,6 +49,7 @@ static const struct carried {
     { "gr.obj", "@gr/obj.lua", OBJ, sizeof OBJ },
     { "gr.options", "@gr/options.lua", OPTIONS, sizeof OPTIONS },
     { "gr.picture", "@gr/picture.lua", PICTURE, sizeof PICTURE },
+    { "gr.surface", "@gr/surface.lua", SURFACE, sizeof SURFACE },
 };
 
 typedef struct code_buffer {

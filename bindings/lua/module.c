@@ -2,8 +2,8 @@
 #include <lualib.h>
 #include <string.h>
 
+#include "bindings/run/run.h"
 #include "bindings/run/system.h"
-#include "bindings/value/glintL.h"
 
 typedef struct members { // of the module's table, which is at `index`
     lua_State *L;
@@ -73,6 +73,13 @@ static int other_kind(lua_State *L)
     return 1;
 }
 
+// _warn(message): the run's warning, without a position. For scripts/lib alone.
+static int warn(lua_State *L)
+{
+    glintL_run_warn(glintL_get_run(L), "%s", luaL_checkstring(L, 1));
+    return 0;
+}
+
 __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
 {
     static void (*const parts[])(lua_State *) = {
@@ -90,6 +97,8 @@ __attribute__((visibility("default"))) int luaopen_glint(lua_State *L)
     lua_setfield(L, -2, "_fields");
     lua_pushcfunction(L, other_kind);
     lua_setfield(L, -2, "_other_kind");
+    lua_pushcfunction(L, warn);
+    lua_setfield(L, -2, "_warn");
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         parts[i](L);
     lua_createtable(L, 0, 2);

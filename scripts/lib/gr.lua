@@ -11,8 +11,16 @@
 --   gr.cylinder(name)                                   radius 1 around the z axis, from z = 0 to z = 1, closed
 --   gr.cone(name)                                       base of radius 1 at z = 0, apex at z = 1, closed
 --   gr.material({kd}, {ks}, shininess)
+--   gr.material({kd}, {ks}, shininess, r, t, n)         and what else may follow: bindings/README.md has the forms
+--   gr.reflective_material(...)  gr.material_refl(...)  gr.material_refr(...)  gr.reflective()  gr.refractive(n)
+--   gr.perlin_material({a}, {b}, {ks}, shininess)       two colours, mixed by noise
+--   gr.texture(file, u, v)  gr.texture(file, {ks}, shininess)  gr.texture_material(...)  gr.texture_map(file)
+--   gr.bump(file, height)  gr.bumpmap  gr.bump_map      gr.bump(material, file)
 --   gr.light({position}, {colour}, {c0, c1, c2})        falls off by 1/(c0 + c1 r + c2 r^2); {1, 0, 0} when left out
 --   gr.render(root, file, width, height, {eye}, {view}, {up}, fov, {ambient}, {lights})
+--   material:set_texture(t)  :set_bump(b)  :set_bumpmap(b)  :set_reflect(r)  :reflection(r)  :set_refract(n)
+--   :set_ri(n)
+--   node:set_texture(t)  :set_texture_map(t)  :set_bump(b)  :set_bumpmap(b)  :set_bump_map(b)
 --   node:add_child(n)  :set_material(m)  :scale(x, y, z)  :rotate("x"|"y"|"z", degrees)  :translate(x, y, z)
 --
 -- `gr` is the nodes' metatable: gr.scale(n, ...) is n:scale(...), and functions a scene adds to it are methods.
@@ -28,15 +36,17 @@ local glint = require "glint"
 local mesh = require "gr.mesh"
 local options = require "gr.options"
 local picture = require "gr.picture"
+local surface = require "gr.surface"
 
 local abs, lower, max, min, setmetatable, type = math.abs, string.lower, math.max, math.min, setmetatable, type
+local pairs = pairs
 
 local gr = { options = options }
 gr.__index = gr
 
 -- What the dialect's objects hold, by the objects: scenes see tables with nothing in them.
-local nodes, materials, lights = {}, {}, {}
-for _, kept in ipairs { nodes, materials, lights } do setmetatable(kept, { __mode = "k" }) end
+local nodes, materials, lights, pictures, reliefs = {}, {}, {}, {}, {}
+for _, kept in ipairs { nodes, materials, lights, pictures, reliefs } do setmetatable(kept, { __mode = "k" }) end
 
 local IDENTITY = glint.translate(0, 0, 0)
 
@@ -75,14 +85,14 @@ function gr.cone(name) return new_node("cone", name, { kind = "cone" }) end
 function gr.nh_sphere(name, center, radius)
   local node = { kind = "sphere", center = check.vector("nh_sphere", "centre", center, 3) }
   node.radius = abs(check.number("nh_sphere", "radius", radius)) -- the course squares it
-  node.is_nothing = node.radius == 0
+  node.is_nothing, node.size = node.radius == 0, node.radius
   return new_node("nh_sphere", name, node)
 end
 
 function gr.nh_box(name, corner, edge)
   corner = check.vector("nh_box", "corner", corner, 3)
   edge = check.number("nh_box", "edge", edge)
-  local node = { kind = "box", is_nothing = edge == 0, min = {}, max = {} }
+  local node = { kind = "box", is_nothing = edge == 0, size = abs(edge), min = {}, max = {} }
   for i = 1, 3 do
     node.min[i], node.max[i] = min(corner[i], corner[i] + edge), max(corner[i], corner[i] + edge)
   end
@@ -108,12 +118,44 @@ function gr.add_child(self, child)
   node.children[#node.children + 1] = node_of("add_child", "child", child)
 end
 
-function gr.set_material(self, material)
-  local node = node_of("set_material", "self", self)
+local function shape_of(call, self)
+  local node = node_of(call, "self", self)
   if not node.kind then
-    check.raise("gr.set_material: a shape expected, got the %s '%s', which has no surface", node.call, node.name)
+    check.raise("gr.%s: a shape expected, got the %s '%s', which has no surface", call, node.call, node.name)
   end
+  return node
+end
+
+function gr.set_material(self, material)
+  local node = shape_of("set_material", self)
   node.material = materials[material] or check.refuse("set_material", "material", "material", material)
+end
+
+-- What gr.texture gave, or the name of a file; across, down: how often.
+local function picture_of(call, value, across, down)
+  local known = pictures[value]
+  if known and across == nil then return known end
+  if not known and type(value) ~= "string" then
+    check.refuse(call, "texture", "texture, or the name of a file,", value)
+  end
+  return surface.picture(call, known and known.name or value, across, down)
+end
+
+local function relief_of(call, value, height)
+  local known = reliefs[value]
+  if known and height == nil then return known end
+  if not known and type(value) ~= "string" then check.refuse(call, "bump", "bump, or the name of a file,", value) end
+  return surface.relief(call, known and known.name or value, height)
+end
+
+for _, call in pairs { "set_texture", "set_texture_map" } do
+  gr[call] = function(self, texture, across, down)
+    shape_of(call, self).picture = picture_of(call, texture, across, down)
+  end
+end
+
+for _, call in pairs { "set_bump", "set_bumpmap", "set_bump_map" } do
+  gr[call] = function(self, bump, height) shape_of(call, self).relief = relief_of(call, bump, height) end
 end
 
 local function transform(node, map)
@@ -145,37 +187,118 @@ end
 
 -- ---- Materials, lights, pictures ----
 
--- Neither has methods in the dialect: one that a scene calls is a function that says so.
-local function without_methods(kind)
+-- They have no methods in the course's dialect, and few in its variants: another that a scene calls is a function that
+-- says so.
+local function with_methods(kind, methods)
   return { __index = function(_, name)
     if type(name) ~= "string" or name:sub(1, 2) == "__" then return nil end
-    return function()
+    return methods[name] or function()
       check.raise("%s:%s: this method is not part of the dialect that glint runs", kind, name)
     end
   end }
 end
 
-local MATERIAL, LIGHT = without_methods "material", without_methods "light"
-
--- The model of the highlight. An exponent of 0 makes it 1 wherever a light reaches, as n.h > 0 has it; r.v is not
--- above 0 everywhere.
-local function model_of(shininess)
-  return (options.specular == "blinn" or shininess == 0) and "blinn_phong" or "phong"
+-- Methods of materials: each changes a field of the record.
+local function changing(change)
+  return function(self, ...)
+    local record = materials[self] or check.refuse("material", "self", "material", self)
+    change(record, ...)
+    surface.changed(record)
+  end
 end
 
-function gr.material(kd, ks, shininess)
-  kd, ks = check.vector("material", "kd", kd, 3, 0), check.vector("material", "ks", ks, 3, 0)
-  local fields = { diffuse = kd, model = "lambert" }
-  shininess = check.at_least("material", "shininess", shininess, 0)
-  if max(ks[1], ks[2], ks[3]) > 0 then
-    fields.model = model_of(shininess)
-    fields.specular, fields.shininess = ks, shininess
-  end
+local material_methods = {}
+material_methods.set_texture = changing(function(record, texture, across, down)
+  record.picture = picture_of("set_texture", texture, across, down)
+end)
+for _, call in pairs { "set_bump", "set_bumpmap" } do
+  material_methods[call] = changing(function(record, bump, height) record.relief = relief_of(call, bump, height) end)
+end
+for _, call in pairs { "set_reflect", "reflection" } do
+  material_methods[call] = changing(function(record, share) surface.mirror(record, call, share) end)
+end
+for _, call in pairs { "set_refract", "set_ri" } do
+  material_methods[call] = changing(function(record, index) surface.glass(record, call, index) end)
+end
+
+local MATERIAL, LIGHT = with_methods("material", material_methods), with_methods("light", {})
+
+local function new_material(record, name)
   local material = setmetatable({}, MATERIAL)
-  materials[material] = { shade = glint.material(fields) }
-  check.name_object(material, "material")
+  materials[material] = record
+  check.name_object(material, name or "material")
   return material
 end
+
+function gr.material(kd, ks, shininess, ...)
+  return new_material(surface.record("material", kd, ks, shininess, ...))
+end
+
+local function reflective(call)
+  return function(kd, ks, shininess, share)
+    local record = surface.record(call, kd, ks, shininess)
+    surface.mirror(record, call, share)
+    return new_material(record)
+  end
+end
+gr.reflective_material, gr.material_refl = reflective "reflective_material", reflective "material_refl"
+
+function gr.material_refr(kd, ks, shininess, share, index)
+  local record = surface.record("material_refr", kd, ks, shininess)
+  surface.glass(record, "material_refr", index)
+  record.transmission, record.fresnel = check.at_least("material_refr", "transparency", share, 0), nil
+  return new_material(record)
+end
+
+local BLACK = { 0, 0, 0 }
+
+function gr.reflective()
+  local record = surface.record("reflective", BLACK, BLACK, 0)
+  surface.mirror(record, "reflective", 1)
+  return new_material(record)
+end
+
+function gr.refractive(index)
+  local record = surface.record("refractive", BLACK, BLACK, 0)
+  surface.glass(record, "refractive", index)
+  return new_material(record)
+end
+
+function gr.perlin_material(...) return new_material(surface.noisy("perlin_material", ...)) end
+
+-- A picture may be a material, with a highlight where it is given one, or lie on a shape that has another.
+local function texture(call)
+  return function(file, ks, ...)
+    local record
+    if ks and type(ks) ~= "boolean" and type(ks) ~= "number" then
+      record = surface.pictured(call, file, ks, ...)
+    else
+      record = surface.plain(surface.picture(call, file, type(ks) == "number" and ks or nil, ...))
+    end
+    local object = new_material(record, "texture")
+    pictures[object] = record.picture
+    record.picture.name = file
+    return object
+  end
+end
+gr.texture, gr.texture_map, gr.texture_material = texture "texture", texture "texture_map", texture "texture_material"
+
+-- gr.bump(file): a relief; gr.bump(material, file): of that material.
+local function bump(call)
+  return function(file, height, more)
+    local record = materials[file]
+    if record and not pictures[file] then
+      record.relief = relief_of(call, height, more)
+      return surface.changed(record)
+    end
+    local object = setmetatable({}, with_methods("bump", {}))
+    reliefs[object] = surface.relief(call, file, height)
+    reliefs[object].name = file
+    check.name_object(object, "bump")
+    return object
+  end
+end
+gr.bump, gr.bumpmap, gr.bump_map, gr.load_bumpmap = bump "bump", bump "bumpmap", bump "bump_map", bump "load_bumpmap"
 
 local function new_light(fields)
   local light = { shine = glint.point_light(fields) }

@@ -304,9 +304,9 @@ local function refuses(text, message, options)
   check(exit == 2 and got:find("scene.lua:2: " .. message, 1, true), "%s: %s", text, got)
 end
 refuses("gr.torus('t', 1)", "gr.torus: this function is not part of the dialect")
-refuses("gr.sphere('s'):set_texture('x.png')", "gr.set_texture: this function is not part of the dialect")
-refuses("gr.material({1,1,1}, {0,0,0}, 1):set_texture('x.png')",
-  "material:set_texture: this method is not part of the dialect")
+refuses("gr.sphere('s'):set_normal('x.png')", "gr.set_normal: this function is not part of the dialect")
+refuses("gr.material({1,1,1}, {0,0,0}, 1):set_opacity(0, 1.5)",
+  "material:set_opacity: this method is not part of the dialect")
 refuses("gr.light({1,1,1}, {1,1,1}):set_radius(2)", "light:set_radius: this method is not part of the dialect")
 refuses("gr.sphere()", "gr.sphere: name: string expected, got nil")
 refuses("gr.joint('j', {1, 2}, {0, 0, 0})", "gr.joint: x: table of 3 numbers expected, got table of 2")

@@ -1,6 +1,7 @@
 -- The arguments of the dialect's calls, as the course's glue code takes them: numeric strings pass for numbers, vectors
 -- have exactly n entries, arguments too many are ignored. Errors name the function, the argument and the value, and
 -- stand at the scene's line. The libraries' functions are kept here: a scene may overwrite the globals.
+local glint = require "glint"
 local check = {}
 
 local error, pairs, rawget, rawlen, tonumber, tostring, type = error, pairs, rawget, rawlen, tonumber, tostring, type
@@ -12,18 +13,29 @@ local own = {} -- sources of the dialect's modules: errors are not theirs
 function check.own_source() own[getinfo(2, "S").source] = true end
 check.own_source()
 
---- Raises at the nearest line that is the scene's.
-function check.raise(text, ...)
+-- A message with the nearest line that is the scene's.
+local function placed(text, ...)
   local message = format(text, ...)
-  for level = 2, huge do
+  for level = 3, huge do
     local at = getinfo(level, "Sl")
     if not at then break end
     if at.currentline > 0 and not own[at.source] then
-      message = at.short_src .. ":" .. at.currentline .. ": " .. message
-      break
+      return at.short_src .. ":" .. at.currentline .. ": " .. message
     end
   end
-  error(message, 0)
+  return message
+end
+
+--- Raises at the nearest line that is the scene's.
+function check.raise(text, ...) error(placed(text, ...), 0) end
+
+local told = {}
+
+--- Warns, once for each `key`.
+function check.tell(key, text, ...)
+  if told[key] then return end
+  told[key] = true
+  glint._warn(placed(text, ...))
 end
 
 --- The file whose code calls the dialect, or nil where it is no file.

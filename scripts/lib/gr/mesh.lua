@@ -6,9 +6,11 @@ local obj = require "gr.obj"
 check.own_source()
 local mesh = {}
 
-local ipairs, pcall, rawget, rawlen, tonumber, type = ipairs, pcall, rawget, rawlen, tonumber, type
+local ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type =
+  ipairs, pcall, rawget, rawlen, setmetatable, tonumber, type
 local floor = math.floor
 local loaded = {} -- models by the name the scene gives
+local uv_of = setmetatable({}, { __mode = "k" }) -- of faces of corners: the coordinates of these
 
 -- Twice the area's vector of a polygon; corners are places in the flat list of coordinates.
 local function area(numbers, corners)
@@ -34,7 +36,7 @@ end
 -- The model of the flat list of coordinates and the faces, lists of numbers from 0: faces that count from 1, flat when
 -- all are triangles.
 local function new_model(numbers, faces, generation)
-  local model = { vertices = numbers, generation = generation, faces = {}, polygons = {} }
+  local model = { vertices = numbers, generation = generation, faces = {}, polygons = {}, uv = {} }
   local triangles, polygons = model.faces, model.polygons
   local places, n = {}, 0
   for i = 1, #faces do
@@ -43,11 +45,14 @@ local function new_model(numbers, faces, generation)
     for j = 1, size do places[j] = 3 * face[j] + 1 end
     for j = size + 1, #places do places[j] = nil end
     if not has_area(numbers, places) then goto next end
+    if model.uv and not face.uv then model.uv = nil end
     if size == 3 then
       triangles[n + 1], triangles[n + 2], triangles[n + 3] = face[1] + 1, face[2] + 1, face[3] + 1
+      for j = 1, model.uv and 3 or 0 do model.uv[n + j] = face.uv[j] end
       n = n + 3
     else
       local corners = {}
+      uv_of[corners] = face.uv
       for j = 1, size do corners[j] = face[j] + 1 end
       polygons[#polygons + 1] = corners
     end
@@ -111,14 +116,20 @@ function mesh.of_file(path)
   return loaded[path]
 end
 
-local function try(vertices, faces, name)
-  return pcall(glint.mesh, { vertices = vertices, faces = faces, shading = "faceted", two_sided = false, name = name })
+local function try(vertices, faces, name, uv)
+  return pcall(glint.mesh,
+    { vertices = vertices, faces = faces, uv = uv, shading = "faceted", two_sided = false, name = name })
 end
 
 local function add_fan(faces, corners, numbers)
+  local uv = uv_of[corners]
   for i = 2, #corners - 1 do
     local a, b, c = corners[1], corners[i], corners[i + 1]
-    if has_area(numbers, { 3 * a - 2, 3 * b - 2, 3 * c - 2 }) then faces[#faces + 1] = { a, b, c } end
+    if has_area(numbers, { 3 * a - 2, 3 * b - 2, 3 * c - 2 }) then
+      local face = { a, b, c }
+      faces[#faces + 1] = face
+      uv_of[face] = uv and { uv[1], uv[i], uv[i + 1] }
+    end
   end
 end
 
@@ -134,8 +145,12 @@ end
 
 -- Triangles and polygons in one list, the crossed ones among these as fans where `fans` is true.
 local function all_faces(model, fans)
-  local faces, flat = {}, model.faces
-  for i = 1, #flat, 3 do faces[#faces + 1] = { flat[i], flat[i + 1], flat[i + 2] } end
+  local faces, flat, uv = {}, model.faces, model.uv
+  for i = 1, #flat, 3 do
+    local face = { flat[i], flat[i + 1], flat[i + 2] }
+    faces[#faces + 1] = face
+    uv_of[face] = uv and { uv[i], uv[i + 1], uv[i + 2] }
+  end
   for _, corners in ipairs(model.polygons) do
     if fans and is_crossed(model.vertices, corners) then
       add_fan(faces, corners, model.vertices)
@@ -146,14 +161,29 @@ local function all_faces(model, fans)
   return faces
 end
 
+-- Coordinates on the surface, one pair a corner in the order of the faces; nil where some face has none.
+local function coordinates_of(model, faces)
+  local uv = {}
+  if not model.uv then return nil end
+  if faces == model.faces then return model.uv end
+  for _, face in ipairs(faces) do
+    for i = 1, #face do uv[#uv + 1] = uv_of[face][i] end
+  end
+  return uv
+end
+
+--- Whether a picture may lie on it.
+function mesh.has_coordinates(model) return model.uv ~= nil end
+
 --- A new glint.mesh, or nil where no face has an area.
 function mesh.shape(model, name)
   local flat = #model.polygons == 0
   local faces = flat and model.faces or all_faces(model, false)
   if #faces == 0 then return nil end
-  local good, shape = try(model.vertices, faces, name)
+  local good, shape = try(model.vertices, faces, name, coordinates_of(model, faces))
   if not good and not flat and shape:find "cross itself" then
-    good, shape = try(model.vertices, all_faces(model, true), name)
+    faces = all_faces(model, true)
+    good, shape = try(model.vertices, faces, name, coordinates_of(model, faces))
   end
   if not good then check.raise("gr.mesh: '%s': %s", name, (shape:gsub("^.-mesh%.", ""))) end
   return shape

@@ -1,4 +1,4 @@
--- Models: the `v` and `f` lines of .obj files, as the course's hosts read them. What follows a slash in a face is
+-- Models: the `v`, `vt` and `f` lines of .obj files, as the course's hosts and those of textures read them. Normals are
 -- dropped, and so is every other line. `require "readobj"` gives the course's function where the scene has no such
 -- file.
 local check = require "gr.check"
@@ -30,9 +30,17 @@ local function read_vertex(text, place)
   return x, y, z
 end
 
--- Numbers count from 1, or from the last vertex where negative; in the list from 0.
-local function read_face(text, count, place)
-  local face, n = {}, 0
+local function read_coordinates(text, place)
+  local u, v = text:match "^(%S+)%s*(%S*)"
+  u, v = tonumber(u), v == "" and 0 or tonumber(v)
+  if not (u and v) or u - u ~= 0 or v - v ~= 0 then raise("%s: two numbers expected, got '%s'", place, text) end
+  return { u, v }
+end
+
+-- Numbers count from 1, or from the last vertex where negative; in the list from 0. face.uv has the coordinates of each
+-- corner, where all have any.
+local function read_face(text, count, coordinates, place)
+  local face, n, uv = {}, 0, #coordinates > 0 and {} or nil
   for word in text:gmatch "%S+" do
     local number = tointeger(tonumber(word:match "^[^/]*"))
     local vertex = number and (number < 0 and count + number or number - 1)
@@ -41,7 +49,13 @@ local function read_face(text, count, place)
     end
     n = n + 1
     face[n] = vertex
+    if uv then
+      local which = tointeger(tonumber(word:match "^[^/]*/([^/]+)"))
+      uv[n] = which and coordinates[which < 0 and #coordinates + 1 + which or which]
+      if not uv[n] then uv = nil end
+    end
   end
+  face.uv = uv
   if n < 3 then raise("%s: 3 vertices or more expected, got '%s'", place, text) end
   return face
 end
@@ -60,16 +74,18 @@ end
 --- Calls vertex(i, x, y, z) for each vertex; returns the faces, lists of numbers from 0.
 function obj.read(call, path, vertex)
   local found = find(call, path)
-  local faces, numbers, count, number = {}, {}, 0, 0
+  local faces, numbers, count, number, coordinates = {}, {}, 0, 0, {}
   for line in lines(found) do
     number = number + 1
-    local word, text = line:match "^%s*([vf])%s+([^#]-)%s*%f[#\0]"
+    local word, text = line:match "^%s*([vf]t?)%s+([^#]-)%s*%f[#\0]"
     if word == "v" then
       count = count + 1
       vertex(count, read_vertex(text, found .. ": line " .. number))
     elseif word == "f" then
-      faces[#faces + 1] = read_face(text, count, found .. ": line " .. number)
+      faces[#faces + 1] = read_face(text, count, coordinates, found .. ": line " .. number)
       numbers[#faces] = number
+    elseif word == "vt" then
+      coordinates[#coordinates + 1] = read_coordinates(text, found .. ": line " .. number)
     end
   end
   check_faces(faces, numbers, count, found)

@@ -8,6 +8,7 @@ local generation = require "gr.generation"
 local glint = require "glint"
 local mesh = require "gr.mesh"
 local options = require "gr.options"
+local surface = require "gr.surface"
 check.own_source()
 local picture = {}
 
@@ -121,8 +122,20 @@ local function try(change, ...)
   if type(result) ~= "string" or not result:find "flattens space" then fail(result) end
 end
 
+-- The material of a place: that of the node, with what lies on the shape.
+local function shade_of(node, map)
+  local bare = node.kind == "mesh" and not mesh.has_coordinates(node.model)
+  local record = node.material or surface.plain(node.picture)
+  node.material = record
+  if bare and (node.picture or node.relief or record.relief or record.picture and record.picture.photo) then
+    check.tell(node, "gr.render: mesh '%s' has no coordinates (vt, in all faces of its file): nothing lies on it",
+      node.name)
+  end
+  return surface.shade(record, node, map, bare)
+end
+
 local function make_shape(node, map)
-  local fields = { material = node.material.shade, two_sided = false, name = cut_name(node.name), transform = map }
+  local fields = { material = shade_of(node, map), two_sided = false, name = cut_name(node.name), transform = map }
   return makers[node.kind](fields, node)
 end
 
@@ -152,7 +165,8 @@ local function place_of(node, n, map)
     node.places[n] = shape
   end
   local painted = is_mesh and node.mesh_shape or shape
-  if painted and painted.material ~= node.material.shade then painted.material = node.material.shade end
+  local shade = painted and (not is_mesh or n == 1) and shade_of(node, map)
+  if shade and painted.material ~= shade then painted.material = shade end
   return shape
 end
 
@@ -171,7 +185,7 @@ end
 local function members_of(root, order, count, lights)
   local members, seen = {}, {}
   walk(root, order, count, function(node, map)
-    if not node.material then
+    if not node.material and not node.picture then
       check.raise("gr.render: %s '%s' has no material; set_material gives it one", node.call, node.name)
     end
     seen[node] = (seen[node] or 0) + 1

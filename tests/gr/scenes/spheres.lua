@@ -1,7 +1,7 @@
 -- Spheres outside any hierarchy: a view as long as the eye is far, numbers as strings, arguments too many.
 mat1 = gr.material({0.7, 1.0, 0.7}, {0.5, 0.7, 0.5}, 25)
-mat2 = gr.material({"0.5", 0.5, 0.5}, {0.5, 0.7, 0.5}, "25", 0.3)
-mat3 = gr.material({1.0, 0.6, 0.1}, {0.5, 0.7, 0.5}, 25, 1.5, {1, 2})
+mat2 = gr.material({"0.5", 0.5, 0.5}, {0.5, 0.7, 0.5}, "25", 0)
+mat3 = gr.material({1.0, 0.6, 0.1}, {0.5, 0.7, 0.5}, 25, 10000000, {1, 2})
 
 scene_root = gr.node('root')
 

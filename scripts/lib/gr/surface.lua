@@ -1,0 +1,226 @@
+-- What surfaces are: materials with what the variants of the dialect add, and pictures and reliefs that lie on them. A
+-- record says it in plain fields; surface.shade makes the glint.material of a record at one place of a shape.
+local check = require "gr.check"
+local files = require "gr.files"
+local glint = require "glint"
+local options = require "gr.options"
+check.own_source()
+local surface = {}
+
+local pcall, select, setmetatable, tonumber, tostring, type = pcall, select, setmetatable, tonumber, tostring, type
+local abs, concat, max, unpack = math.abs, table.concat, math.max, table.unpack
+
+local INDEX_MAX = 4 -- a number beyond is no index of refraction: variants use large ones for what is opaque
+local HEIGHT = 0.05 -- of a relief's white above its black, over the shape's size before its transforms
+
+-- ---- Pictures ----
+
+local photos = {} -- by the name that the scene gives
+
+-- Codes are colours as they are, as those of the dialect's own pictures.
+local function read_photo(call, name)
+  name = check.text(call, "file", name)
+  if photos[name] then return photos[name] end
+  local found, places = files.find(name)
+  if not found then check.raise("gr.%s: '%s': no such file; looked for %s", call, name, places) end
+  local good, photo = pcall(glint.texture, { file = found, transfer = "linear" })
+  if not good then check.raise("gr.%s: %s", call, (photo:gsub("^[^:]*:%d+: ", ""):gsub("^texture: ", ""))) end
+  photos[name] = photo
+  return photo
+end
+
+--- A picture on a surface, `across` and `down` times.
+function surface.picture(call, name, across, down)
+  local photo = read_photo(call, name)
+  across = check.number(call, "across", across == nil and 1 or across)
+  down = check.number(call, "down", down == nil and across or down)
+  local most = max(abs(across), abs(down))
+  local pattern = glint.pattern(function(_, s)
+    return photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * most)
+  end)
+  return { photo = photo, across = across, down = down, most = most, pattern = pattern }
+end
+
+--- A relief by the brightness of a picture.
+function surface.relief(call, name, height)
+  return { photo = read_photo(call, name), height = check.number(call, "height", height == nil and HEIGHT or height) }
+end
+
+-- ---- What a material is given beyond the course's ----
+
+local function leave_out(call, values, why)
+  local texts = {}
+  for i = 1, #values do texts[i] = check.spelling(values[i]) end
+  check.tell(call, "gr.%s: left out after the shininess: %s; %s", call, concat(texts, ", "), why)
+end
+
+local function is_share(x) return x >= 0 and x <= 1 end
+local function is_index(x) return x > 1 and x <= INDEX_MAX end
+
+-- Glass by its index alone: how much it mirrors follows from that.
+local function make_glass(record, index) record.transmission, record.ior, record.fresnel = 1, index, true end
+
+-- One number: a reflectivity or an index. A plain 1 is in some scenes what makes every material opaque.
+local readers = {
+  function(record, a)
+    local kd = record.kd
+    if a == 1 and max(kd[1], kd[2], kd[3]) > 0 then
+      return "a 1 is a mirror where kd is {0, 0, 0}, and elsewhere may say that it is opaque"
+    end
+    if is_share(a) then record.mirror = a
+    elseif is_index(a) then make_glass(record, a)
+    else return "a reflectivity 0 .. 1 or an index up to 4 expected" end
+  end,
+  function(record, a, b)
+    if is_share(a) and is_share(b) then
+      record.mirror, record.transmission, record.ior = a, b, 1
+    elseif is_share(a) and is_index(b) then
+      make_glass(record, b)
+      if a > 0 then return "the index says how much glass mirrors", { a } end
+    elseif is_index(a) and is_share(b) then
+      record.transmission, record.ior = b, a
+    else
+      return "a reflectivity and a transparency 0 .. 1, or an index up to 4, expected"
+    end
+  end,
+  function(record, a, b, c)
+    if not (is_share(a) and is_share(b) and (is_index(c) or c == 1 or b == 0 and c == 0)) then
+      return "a reflectivity, a transparency and an index expected"
+    end
+    record.mirror, record.transmission, record.ior = a, b, c == 0 and 1 or c
+  end,
+}
+
+local function read_numbers(record, call, numbers)
+  while numbers[#numbers] == 0 do numbers[#numbers] = nil end -- what is 0 adds nothing
+  if #numbers == 0 then return end
+  local given = { unpack(numbers, 1, 3) }
+  local why, which = readers[#given](record, unpack(given))
+  if why then return leave_out(call, which or numbers, why) end
+  if #numbers > 3 then leave_out(call, { unpack(numbers, 4) }, "three numbers are read") end
+end
+
+-- Numbers, and names of pictures: the first that is not "" lies on the surface.
+local function read_more(record, call, ...)
+  local numbers, others = {}, {}
+  for i = 1, select("#", ...) do
+    local value = select(i, ...)
+    if type(value) == "number" then
+      numbers[#numbers + 1] = value
+    elseif type(value) == "string" and value:find "%.%a+$" and not record.picture then
+      record.picture = surface.picture(call, value)
+    elseif value and value ~= "" then
+      others[#others + 1] = value
+    end
+  end
+  read_numbers(record, call, numbers)
+  if #others > 0 then leave_out(call, others, "numbers, and the name of a picture, expected") end
+end
+
+-- The model of the highlight. An exponent of 0 makes it 1 wherever a light reaches, as n.h > 0 has it; r.v is not
+-- above 0 everywhere.
+local function model_of(shininess)
+  return (options.specular == "blinn" or shininess == 0) and "blinn_phong" or "phong"
+end
+
+--- A record of the course's three arguments, and of what follows them.
+function surface.record(call, kd, ks, shininess, ...)
+  local record = { kd = check.vector(call, "kd", kd, 3, 0), ks = check.vector(call, "ks", ks, 3, 0) }
+  record.shininess = check.at_least(call, "shininess", shininess, 0)
+  record.model = model_of(record.shininess)
+  read_more(record, call, ...)
+  return record
+end
+
+--- The same with a picture in the place of kd.
+function surface.pictured(call, file, ks, shininess, ...)
+  local record = surface.record(call, { 1, 1, 1 }, ks, shininess, ...)
+  record.picture = surface.picture(call, file)
+  return record
+end
+
+--- A picture and nothing else.
+function surface.plain(picture) return { kd = { 1, 1, 1 }, ks = { 0, 0, 0 }, shininess = 0, picture = picture } end
+
+function surface.mirror(record, call, share) record.mirror = check.at_least(call, "reflectivity", share, 0) end
+
+function surface.glass(record, call, index)
+  index = check.number(call, "index", index)
+  if index <= 0 then check.refuse(call, "index", "number > 0", index) end
+  make_glass(record, index)
+end
+
+--- Two colours, mixed by noise.
+function surface.noisy(call, a, b, ks, shininess, ...)
+  local record = surface.record(call, a, ks, shininess)
+  local other = check.vector(call, "the other colour", b, 3, 0)
+  record.picture = { pattern = glint.pattern(function(p)
+    local sum = glint.noise(p * 4) + glint.noise(p * 8) / 2 + glint.noise(p * 16) / 4
+    return glint.mix(record.kd, other, glint.clamp(0.5 + 0.5 * sum, 0, 1))
+  end) }
+  if select("#", ...) > 0 then leave_out(call, { ... }, "the noise is glint's own") end
+  return record
+end
+
+-- ---- glint materials ----
+
+local function bump_of(relief, picture, scale)
+  local photo, height = relief.photo, relief.height * scale / 3
+  local across, down, most = 1, 1, 1
+  if picture and picture.across then across, down, most = picture.across, picture.down, picture.most end
+  return glint.pattern(function(_, s)
+    local c = photo(s.uv.u * across, s.uv.v * down, s.uv_footprint * most)
+    return height * (c.r + c.g + c.b)
+  end)
+end
+
+local function make(record, picture, relief, scale)
+  local fields = { diffuse = picture and picture.pattern or record.kd, model = "lambert" }
+  if max(record.ks[1], record.ks[2], record.ks[3]) > 0 then
+    fields.model = record.model
+    fields.specular, fields.shininess = record.ks, record.shininess
+  end
+  if (record.mirror or 0) > 0 then fields.mirror = record.mirror end
+  if (record.transmission or 0) > 0 then fields.transmission, fields.ior = record.transmission, record.ior end
+  fields.fresnel = record.fresnel
+  if relief then fields.bump = bump_of(relief, picture, scale) end
+  return glint.material(fields)
+end
+
+-- By how much a map makes lengths longer, in the mean.
+local function scale_of(map)
+  local m, n = {}, 0
+  for number in tostring(map):gmatch "[-+%w.]+" do
+    if tonumber(number) then
+      n = n + 1
+      m[n] = tonumber(number)
+    end
+  end
+  local determinant = m[1] * (m[6] * m[11] - m[7] * m[10]) - m[2] * (m[5] * m[11] - m[7] * m[9])
+    + m[3] * (m[5] * m[10] - m[6] * m[9])
+  return abs(determinant) ^ (1 / 3)
+end
+
+local kept = setmetatable({}, { __mode = "k" }) -- materials, by record, picture, relief and scale
+local NONE = {}
+
+local function part(all, key)
+  all[key] = all[key] or {}
+  return all[key]
+end
+
+--- The glint.material of a record on a node's shape, under what lies on that alone, where the map has put it.
+-- bare: the shape has no coordinates for pictures and reliefs.
+function surface.shade(record, node, map, bare)
+  local picture, relief = node.picture or record.picture, node.relief or record.relief
+  if bare then picture, relief = picture and picture.photo == nil and picture or nil, nil end
+  local scale = relief and scale_of(map) * (node.size or 1) or 0
+  local made = part(part(part(kept, record), picture or NONE), relief or NONE)
+  made[scale] = made[scale] or make(record, picture, relief, scale)
+  return made[scale]
+end
+
+--- After a record's fields were changed.
+function surface.changed(record) kept[record] = nil end
+
+return surface

@@ -1,0 +1,293 @@
+-- The gr dialect's variants of surfaces: pictures and reliefs on them, mirrors and glass. The forms in which scenes say the
+-- same make the same codes; what they are is known on paper. What means nothing is told of, once.
+local build = os.getenv "BUILD" or "build"
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+package.path = "scripts/lib/?.lua;" .. package.path
+local png = require "glint.png"
+local tests = {}
+
+local function output_of(command)
+  local pipe <close> = assert(io.popen(command))
+  return pipe:read "a"
+end
+
+local here = output_of "pwd":gsub("\n", "")
+local folder = here .. "/" .. build .. "/tests/gr/surfaces"
+assert(os.execute(("rm -rf '%s' && mkdir -p '%s'"):format(folder, folder)))
+
+local function write(name, text)
+  local file <close> = assert(io.open(folder .. "/" .. name, "wb"))
+  file:write(text)
+end
+
+-- Runs a scene of this text; what it says, and its exit code.
+local function run(text, options)
+  write("scene.lua", text)
+  local said = output_of(("cd '%s' && { '%s/%s/glint' --dialect gr scene.lua --quiet -t 1 %s; } 2>&1 </dev/null; echo \" exit $?\"")
+    :format(folder, here, build, options or ""))
+  return said, tonumber(said:match "exit (%d+)\n$")
+end
+
+-- The middle of the shape `s` that the text makes, which is 1 wide, looked at along -z in ambient light alone.
+local SIZE <const> = 16
+local function look(text, options)
+  local said, code = run(text .. [[
+
+    if not has_no_material then s:set_material(m) end
+    gr.render(s, 'out', 16, 16, {0, 0, 100}, {0, 0, -1}, {0, 1, 0}, 2 * math.deg(math.atan(0.5, 99.5)), {1, 1, 1}, lights or {})]],
+    "--warnings=none " .. (options or ""))
+  check(code == 0, "%s: %s", text, said)
+  local pipe <close> = assert(io.popen(("'%s/tests/gr/codes' '%s/out.png'"):format(build, folder)))
+  local width, height = pipe:read("n", "n")
+  check(width == SIZE and height == SIZE)
+  pipe:read(1)
+  local codes = pipe:read "a"
+  return function(x, y) return codes:byte(3 * (SIZE * y + x) + 1, 3 * (SIZE * y + x) + 3) end, codes
+end
+
+local function is(pixel, x, y, want, name)
+  local got = table.concat({ pixel(x, y) }, ",")
+  check(got == want, "%s: pixel %d, %d: %s expected, got %s", name, x, y, want, got)
+end
+
+-- All texts make the same codes.
+local function same(texts, options)
+  local first
+  for _, text in ipairs(texts) do
+    local pixel, codes = look(text, options)
+    if first then check(codes == first, "%s: another picture than %s", text, texts[1]) end
+    first = first or codes
+    if text == texts[1] then texts.pixel = pixel end
+  end
+  return texts.pixel
+end
+
+-- Red and green over blue and white.
+local four, COLORS = png.new(SIZE, SIZE), { [0] = { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 1 } }
+for y = 0, SIZE - 1 do
+  for x = 0, SIZE - 1 do four:set(x, y, COLORS[2 * (2 * y // SIZE) + 2 * x // SIZE]) end
+end
+four:save(folder .. "/four.png")
+
+local CUBE <const> = "s = gr.cube('s') s:translate(-0.5, -0.5, -1) "
+local PLAIN <const> = "m = gr.material({1, 1, 1}, {0, 0, 0}, 0) "
+
+function tests.a_picture_lies_on_a_face_in_every_form()
+  local pixel = same {
+    CUBE .. PLAIN .. "s:set_texture(gr.texture('four.png'))",
+    CUBE .. PLAIN .. "s:set_texture('four.png')",
+    CUBE .. "s:set_texture('four.png') has_no_material = true",
+    CUBE .. "m = gr.texture('four.png')",
+    CUBE .. "m = gr.texture('four.png', {0, 0, 0}, 1)",
+    CUBE .. "m = gr.texture('four.png', {0, 0, 0}, 25, 0)",
+    CUBE .. "m = gr.texture('four.png', false)",
+    CUBE .. "m = gr.texture('four.png', 1, 1)",
+    CUBE .. "m = gr.texture_material('four.png', {0, 0, 0}, 25, 1)",
+    CUBE .. "m = gr.material({0.3, 0, 0}, {0, 0, 0}, 0) m:set_texture('four.png')",
+    CUBE .. "m = gr.material({0.3, 0, 0}, {0, 0, 0}, 0) m:set_texture(gr.texture 'four.png')",
+    CUBE .. "m = gr.material({0.3, 0, 0}, {0, 0, 0}, 0, 0, 0, 'four.png')",
+    CUBE .. "m = gr.material({0.3, 0, 0}, {0, 0, 0}, 0, 0, 0, 'four.png', '')",
+    CUBE .. PLAIN .. "s:set_texture_map(gr.texture_map('four.png'))",
+    CUBE .. PLAIN .. "gr.set_texture(s, gr.texture('four.png'), 1)",
+  }
+  is(pixel, 2, 2, "255,0,0", "upper left") is(pixel, 13, 2, "0,255,0", "upper right")
+  is(pixel, 2, 13, "0,0,255", "lower left") is(pixel, 13, 13, "255,255,255", "lower right")
+end
+
+function tests.it_repeats()
+  local pixel = same {
+    CUBE .. "m = gr.texture('four.png', 2, 2)", CUBE .. PLAIN .. "s:set_texture(gr.texture('four.png', 2))",
+    CUBE .. PLAIN .. "s:set_texture(gr.texture 'four.png', 2, 2)", CUBE .. PLAIN .. "s:set_texture('four.png', 2, 2)",
+  }
+  for _, x in ipairs { 2, 10 } do
+    for _, y in ipairs { 2, 10 } do is(pixel, x, y, "255,0,0", "each repetition begins anew") end
+  end
+end
+
+-- Codes are numbers as they are: 128 of 255 shows as such.
+function tests.codes_are_not_decoded()
+  local grey = png.grey(1, 1)
+  grey:set(0, 0, ((128 / 255 + 0.055) / 1.055) ^ 2.4)
+  grey:save(folder .. "/grey.png")
+  local r = look(CUBE .. "m = gr.texture 'grey.png'")(8, 8)
+  check(r == 128 or r == 127, "128 expected, got %d", r)
+end
+
+-- A picture has the light and the highlight of its material.
+function tests.it_is_lit_as_its_colour()
+  write("white.txt", "")
+  local white = png.new(1, 1)
+  white:set(0, 0, { 1, 1, 1 })
+  white:save(folder .. "/white.png")
+  local LAMP <const> = "lights = { gr.light({0, 9, 9}, {0.3, 0.2, 0.1}, {1, 0, 0}) } s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) "
+  same({
+    LAMP .. "m = gr.material({1, 1, 1}, {0.5, 0.5, 0.5}, 10)",
+    LAMP .. "m = gr.texture('white.png', {0.5, 0.5, 0.5}, 10)",
+    LAMP .. "m = gr.texture_material('white.png', {0.5, 0.5, 0.5}, 10)",
+    LAMP .. "m = gr.material({0, 0, 0}, {0.5, 0.5, 0.5}, 10) s:set_texture('white.png')",
+  }, "--gr-specular blinn")
+end
+
+local QUAD <const> = "v -.5 -.5 0\nv .5 -.5 0\nv .5 .5 0\nv -.5 .5 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1 0\n"
+function tests.meshes_have_coordinates_of_their_own()
+  write("quad.obj", QUAD .. "f 1/1 2/2 3/3 4/4\n")
+  write("triangles.obj", QUAD .. "vn 0 0 1\nf 1/1/1 2/2/1 3/3/1\nf 1/-4/1 -2/-2/1 -1/-1/1\n")
+  write("crossed.obj", QUAD .. "f 1/1 2/2 3/3 4/4\nv 5 5 0\nv 6 6 0\nv 6 5 0\nv 5 6 0\nf 5/1 6/2 7/3 8/4\n")
+  local pixel = same {
+    CUBE .. "m = gr.texture 'four.png'", "s = gr.mesh('s', 'quad.obj') m = gr.texture 'four.png'",
+    "s = gr.mesh('s', 'triangles.obj') m = gr.texture 'four.png'", "s = gr.mesh('s', 'crossed.obj') m = gr.texture 'four.png'",
+  }
+  is(pixel, 2, 2, "255,0,0", "a mesh")
+  write("bare.obj", QUAD .. "f 1/1 2/2 3/3\nf 1 3 4\n")
+  local text = [[
+    for i = 1, 3 do
+      local s = gr.mesh('bare', 'bare.obj')
+      s:set_material(gr.material({0, 1, 0}, {0, 0, 0}, 0))
+      s:set_texture('four.png')
+      for _ = 1, 2 do gr.render(s, 'out', 8, 8, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {}) end
+      if i == 2 then break end
+    end]]
+  local said, code = run(text)
+  local _, count = said:gsub("mesh 'bare' has no coordinates", "")
+  check(code == 0 and count == 1, "told of once: %s", said)
+  is(look "s = gr.mesh('s', 'bare.obj') m = gr.material({0, 1, 0}, {0, 0, 0}, 0) s:set_texture('four.png')", 8, 8, "0,255,0", "its own colour")
+  for text_of, message in pairs { ["vt x 1\n"] = "line 9: two numbers expected, got 'x 1'" } do
+    write("wrong.obj", QUAD .. text_of .. "f 1 2 3\n")
+    said, code = run("gr.mesh('m', 'wrong.obj')")
+    check(code == 2 and said:find(message, 1, true), "%s: %s", message, said)
+  end
+end
+
+function tests.reliefs_turn_normals()
+  local hill = png.grey(8, 8)
+  for y = 0, 7 do
+    for x = 0, 7 do hill:set(x, y, (x % 4) / 3) end
+  end
+  hill:save(folder .. "/hill.png")
+  local LAMP <const> = "lights = { gr.light({0, 30, 90}, {0.8, 0.7, 0.6}, {1, 0, 0}) } m = gr.material({0.5, 0.5, 0.5}, {0, 0, 0}, 0) "
+  local BALL <const> = LAMP .. "s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) "
+  local _, flat = look(BALL)
+  same {
+    BALL .. "s:set_bump(gr.bump 'hill.png')", BALL .. "s:set_bump('hill.png')", BALL .. "s:set_bumpmap('hill.png', 0.05)",
+    BALL .. "s:set_bump_map(gr.bump_map('hill.png'))", BALL .. "m:set_bump('hill.png')", BALL .. "m:set_bumpmap(gr.bumpmap('hill.png'))",
+    BALL .. "gr.bump(m, 'hill.png')", BALL .. "gr.load_bumpmap(m, 'hill.png')", BALL .. "s:set_bump(gr.bump('hill.png', 0.05))",
+    -- as high as the shape is large: of a ball of another radius, under another scale
+    LAMP .. "s = gr.nh_sphere('s', {0, 0, 0}, 20) s:scale(1 / 40, 1 / 40, 1 / 40) s:set_bump('hill.png')",
+  }
+  local _, bumped = look(BALL .. "s:set_bump('hill.png')")
+  check(bumped ~= flat, "it shows")
+  local _, none = look(BALL .. "s:set_bump('hill.png', 0)")
+  check(none == flat, "a relief without height does not")
+end
+
+-- A face that looks at the eye mirrors what is behind that: nothing but the background.
+function tests.mirrors_add_their_share()
+  local options = "--gr-background 0.2,0.4,0.6"
+  local KD <const> = "m = gr.material({0.2, 0, 0.11}, {0, 0, 0}, 0"
+  local pixel = same({
+    CUBE .. KD .. ", 0.5)", CUBE .. KD .. ", 0.5, 0)", CUBE .. KD .. ", 0.5, 0, 0)", CUBE .. KD .. ", 0.5, 0, 1.5)",
+    CUBE .. KD .. ") m:set_reflect(0.5)", CUBE .. KD .. ") m:reflection(0.5)",
+    CUBE .. "m = gr.reflective_material({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)", CUBE .. "m = gr.material_refl({0.2, 0, 0.11}, {0, 0, 0}, 0, 0.5)",
+  }, options)
+  is(pixel, 8, 8, "76,51,104", "kd + half of the background") -- 0.3, 0.2, 0.41 of 255, cut
+  pixel = same({ CUBE .. "m = gr.material({0, 0, 0}, {1, 1, 1}, 5, 1)", CUBE .. "m = gr.reflective()",
+    CUBE .. "m = gr.material({0, 0, 0}, {0, 0, 0}, 0, 1.0)" }, options)
+  is(pixel, 8, 8, "51,102,153", "all of it")
+  is(look(CUBE .. KD .. ", 1)", options), 8, 8, "51,0,28", "where 1 may mean opaque")
+  is(look(CUBE .. KD .. ", 0.5) m:set_reflect(0)", options), 8, 8, "51,0,28", "a field that is changed")
+end
+
+function tests.glass_is_seen_through()
+  local options = "--gr-background 0.4,0.8,0.6"
+  local KD <const> = "m = gr.material({0, 0, 0}, {0, 0, 0}, 0"
+  is(look(CUBE .. KD .. ", 0, 0.5)", options), 8, 8, "25,51,38", "0.5 at each of two faces")
+  is(look(CUBE .. KD .. ", 0.25, 0.5)", options), 8, 8, "59,118,89", "and 0.25 mirrored: 1/4 + 1/4 (1 + 1/4 + 1/16 ...) of it")
+  same({
+    CUBE .. KD .. ", 1.5)", CUBE .. KD .. ", 0, 1.5)", CUBE .. KD .. ", 0.7, 1.5)", CUBE .. "m = gr.refractive(1.5)",
+    CUBE .. KD .. ") m:set_refract(1.5)", CUBE .. KD .. ") m:set_ri(1.5)",
+  }, options)
+  same({ CUBE .. KD .. ", 0, 0.8, 1.33)", CUBE .. KD .. ", 1.33, 0.8)", CUBE .. "m = gr.material_refr({0, 0, 0}, {0, 0, 0}, 0, 0.8, 1.33)" }, options)
+  -- All light is either mirrored or goes through: before an even background a ball of glass is that background, but for
+  -- what is still within after 5 surfaces.
+  local r = look("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) " .. KD .. ", 1.5)", options)(8, 8)
+  check(r >= 101 and r <= 102, "glass before an even background: 102 expected, got %d", r)
+end
+
+function tests.what_means_nothing_is_told_of_once()
+  local text = [[
+    for i = 1, 3 do gr.material({1, 1, 1}, {0, 0, 0}, 1, %s) end
+    gr.render(gr.node('n'), 'out', 4, 4, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {})]]
+  for extra, message in pairs {
+    ["10000000"] = "10000000; a reflectivity 0 .. 1 or an index up to 4 expected",
+    ["1"] = "1; a 1 is a mirror where kd is {0, 0, 0}",
+    ["0.3, 1.5"] = "0.3; the index says how much glass mirrors",
+    ["0.05, 100"] = "0.05, 100; a reflectivity and a transparency 0 .. 1, or an index up to 4, expected",
+    ["1.3, 0, 0.6"] = "1.3, 0, 0.6; a reflectivity, a transparency and an index expected",
+    ["0.5, 0.2, 1.33, 0.15"] = "0.15; three numbers are read",
+    ["{1, 2}"] = "table of 2; numbers, and the name of a picture, expected",
+    ["'soft'"] = '"soft"; numbers, and the name of a picture, expected',
+  } do
+    local said, code = run(text:format(extra))
+    local _, count = said:gsub("left out after the shininess", "")
+    check(code == 0 and count == 1 and said:find("scene.lua:1: gr.material: left out after the shininess: " .. message, 1, true), "%s: %s", extra, said)
+  end
+  for _, extra in ipairs { "0", "0, 0", "0, 0, 0, 0", "0, 0, ''", "nil", "false", "0.5", "0, 1.5", "0.5, 0.2, 1.33" } do
+    local said, code = run(text:format(extra))
+    check(code == 0 and said == " exit 0\n", "%s says nothing: %s", extra, said)
+  end
+  local said, code = run(text:format "7", "--warnings=error")
+  check(code == 2 and said:find "left out", "a warning may be an error: %s", said)
+end
+
+function tests.noise_mixes_two_colours()
+  local pixel = look("s = gr.sphere('s') s:scale(0.5, 0.5, 0.5) m = gr.perlin_material({1, 0, 0}, {0, 0, 1}, {0, 0, 0}, 5, 0, 0.0)")
+  local least, most = 255, 0
+  for x = 4, 11 do
+    for y = 4, 11 do
+      local r, g, b = pixel(x, y)
+      check(g == 0 and r + b >= 253, "a mixture: %d, %d, %d", r, g, b)
+      least, most = math.min(least, r), math.max(most, r)
+    end
+  end
+  check(most - least > 60, "it varies: %d .. %d", least, most)
+end
+
+function tests.errors_name_the_call()
+  write("text.png", "no picture")
+  local function refuses(text, message)
+    local said, code = run("local s, m = gr.sphere('s'), gr.material({1, 1, 1}, {0, 0, 0}, 1)\n" .. text)
+    check(code == 2 and said:find("scene.lua:2: " .. message, 1, true), "%s: %s", text, said)
+  end
+  refuses("gr.texture('none.png')", "gr.texture: 'none.png': no such file; looked for ")
+  refuses("gr.texture('text.png')", "gr.texture: text.png: ")
+  refuses("gr.texture()", "gr.texture: file: string expected, got nil")
+  refuses("gr.texture('four.png', 'x')", "gr.texture: ks: table expected, got \"x\"")
+  refuses("gr.texture('four.png', {1, 2}, 3)", "gr.texture: ks: table of 3 numbers expected, got table of 2")
+  refuses("gr.texture('four.png', {1, 2, 3})", "gr.texture: shininess: number expected, got nil")
+  refuses("s:set_texture()", "gr.set_texture: texture: texture, or the name of a file, expected, got nil")
+  refuses("s:set_texture(m)", "gr.set_texture: texture: texture, or the name of a file, expected, got material")
+  refuses("gr.node('n'):set_texture('four.png')", "gr.set_texture: a shape expected, got the node 'n', which has no surface")
+  refuses("s:set_bump('none.png')", "gr.set_bump: 'none.png': no such file")
+  refuses("s:set_bump('four.png', 'high')", "gr.set_bump: height: number expected, got \"high\"")
+  refuses("s:set_bump(gr.texture 'four.png')", "gr.set_bump: bump: bump, or the name of a file, expected, got texture")
+  refuses("m:set_reflect(-1)", "gr.set_reflect: reflectivity: number >= 0 expected, got -1")
+  refuses("m:set_ri(0)", "gr.set_ri: index: number > 0 expected, got 0")
+  refuses("gr.refractive()", "gr.refractive: index: number expected, got nil")
+  refuses("gr.reflective_material({1, 1, 1}, {0, 0, 0}, 1)", "gr.reflective_material: reflectivity: number expected, got nil")
+  refuses("gr.normal_map('four.png', 1)", "gr.normal_map: this function is not part of the dialect")
+  refuses("gr.bump('four.png'):remap(1)", "bump:remap: this method is not part of the dialect")
+end
+
+-- A material that is changed after a picture, shapes under several maps, and the same picture as fresh.
+function tests.later_changes_show()
+  local pixel = look(CUBE .. PLAIN .. [[
+    s:set_material(m)
+    gr.render(s, 'first', 8, 8, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 10, {1, 1, 1}, {})
+    m:set_texture('four.png')
+    gr.render(s, 'second', 8, 8, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 10, {1, 1, 1}, {})]])
+  is(pixel, 2, 2, "255,0,0", "after two pictures")
+end
+
+tally.run(tests)
+tally.finish()
