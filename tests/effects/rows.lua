@@ -65,5 +65,16 @@ return {
     end },
   { name = "environment", stage = "environment", functions = { "environment" },
     call = function(glint, _, scene) scene.background = glint.pattern(function(d) return 0.5 + 0.25 * d.y end) end },
+  { name = "pattern", part = "PROGRAM", stage = "pattern", functions = { "^program$", "glint_tile_pattern" },
+    call = function(glint, parts) parts.ball.diffuse = glint.pattern(function(p) return glint.fract(p.y) end) end },
+  { name = "shader", part = "PROGRAM", stage = "shader", functions = { "glint_tile_shader" },
+    call = function(glint, parts)
+      parts.ball.model = glint.shader(function(s) return s.kd * s.light * s.n:dot(s.l) end)
+    end },
+  { name = "bump", part = "PROGRAM", functions = { "^glint_tile_bump$" },
+    call = function(glint, parts)
+      parts.ball.bump = glint.pattern(function(p) return 0.1 * glint.sin(9 * p.x) end)
+    end },
+  { name = "opacity", functions = { "glint_tile_see_through" }, call = function(_, parts) parts.ball.opacity = 0 end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
 }

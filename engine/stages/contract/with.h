@@ -40,6 +40,9 @@
 #ifndef GLINT_WITH_SHADOW
 #define GLINT_WITH_SHADOW 1
 #endif
+#ifndef GLINT_WITH_PROGRAM
+#define GLINT_WITH_PROGRAM 1
+#endif
 #ifndef GLINT_WITH_SAMPLES
 #define GLINT_WITH_SAMPLES 1
 #endif

@@ -50,7 +50,7 @@ static inline const glint_shade_material *only_material(const samples_frame *fra
         if (sample->hits[g] != 0xffff)
             return NULL;
         const glint_shade_material *shown = material_of(sample, (size_t)g * GLINT_GROUP, &lanes);
-        if (lanes != 0xffff || (material && shown != material) || shown->planes)
+        if (lanes != 0xffff || (material && shown != material) || (GLINT_WITH_PROGRAM && shown->planes))
             return NULL;
         material = shown;
     }

@@ -48,8 +48,9 @@ static __attribute__((noinline)) void put_lobe(const glint_shade_args *args, con
 {
     const unsigned lit = light->lit[at / GLINT_GROUP];
     const bool facets = has_facets(material);
-    const float *exponent = material->planes & GLINT_PLANE_SHININESS ? args->planes->shininess + at : NULL;
-    const float *width = material->planes & GLINT_PLANE_ALPHA ? args->planes->alpha + at : NULL;
+    const uint32_t planes = GLINT_WITH_PROGRAM ? material->planes : 0;
+    const float *exponent = planes & GLINT_PLANE_SHININESS ? args->planes->shininess + at : NULL;
+    const float *width = planes & GLINT_PLANE_ALPHA ? args->planes->alpha + at : NULL;
     const vf most = f_set(GLINT_ATTENUATION_MAX), zero = f_set(0);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         vf w = f_set(1), share;

@@ -205,7 +205,7 @@ static __attribute__((noinline)) void shade_sums(const glint_shade_args *args, u
         lanes = left;
         const glint_shade_material *material = material_of(args, (size_t)g * GLINT_GROUP, &lanes);
         const bool specular = args->highlights && material->highlight;
-        if (material->planes) {
+        if (GLINT_WITH_PROGRAM && material->planes) {
             add_planes(args, material, specular, g, to, lanes);
             continue;
         }
@@ -300,7 +300,7 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         lanes = left;
         const glint_shade_material *material = material_of(args, at, &lanes);
         const bool specular = args->highlights && material->highlight;
-        if (material->planes) {
+        if (GLINT_WITH_PROGRAM && material->planes) {
             if (!begun)
                 start_direct(args, g, &terms);
             begun = true;

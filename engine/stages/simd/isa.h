@@ -45,7 +45,7 @@
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
-    .program = program,
+    .program = GLINT_WITH_PROGRAM ? program : NULL,
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,
