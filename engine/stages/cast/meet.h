@@ -1,17 +1,23 @@
 // meet: a ray and a surface. A float test over a group rejects; the decision is real. Contract: stages.h, cast.
 
-/// |f|^2 - (radius scale)^2 without cancellation.
-INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
+/// |f|^2 - (r2 + r2_low) without cancellation.
+INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
 {
 #if GLINT_REAL == 64
     vd e0, e1, e2;
     vd p0 = d_two_prod(f[0], f[0], &e0), p1 = d_two_prod(f[1], f[1], &e1), p2 = d_two_prod(f[2], f[2], &e2);
     vd xe, ye, ze;
-    vd x = d_two_sum(p0, p1, &xe), y = d_two_sum(x, p2, &ye), z = d_two_sum(y, d_set(-prim->r2), &ze);
-    return z + (((xe + ye) + ze) + (((e0 + e1) + e2) - d_set(prim->r2_low)));
+    vd x = d_two_sum(p0, p1, &xe), y = d_two_sum(x, p2, &ye), z = d_two_sum(y, -r2, &ze);
+    return z + (((xe + ye) + ze) + (((e0 + e1) + e2) - r2_low));
 #else
-    return DOT(f, f) - r_set(prim->r2);
+    (void)r2_low;
+    return DOT(f, f) - r2;
 #endif
+}
+
+INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
+{
+    return R(exact_power)(f, r_set(prim->r2), r_set(prim->r2_low));
 }
 
 /// a r^2 - |f x d|^2
@@ -32,9 +38,10 @@ INNER vr R(discriminant)(const vr f[3], const vr d[3], vr a, vr b, vr c, vr r2)
     return r_select(near, inner, R(discriminant_afar)(f, d, ar2));
 }
 
-INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
+/// A sphere or, a lane each, several.
+INNER rm R(meet_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale, vr *t)
 {
-    const vr zero = r_set(0), r2 = r_set(prim->r2), scale = r_set(prim->scale);
+    const vr zero = r_set(0);
     vr b = -DOT(f, d);
     vr disc = R(discriminant)(f, d, a, b, c, r2);
     vr s = r_sqrt(r_max(disc, zero));
@@ -43,6 +50,11 @@ INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_pr
     rm far_root = rm_and(r_le(c, zero), ahead);
     *t = r_select(far_root, q, c) / (r_select(far_root, a, q) * scale);
     return rm_and(r_le(zero, disc), r_lt(zero, *t));
+}
+
+INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
+{
+    return R(meet_ball)(f, d, a, c, r_set(prim->r2), r_set(prim->scale), t);
 }
 
 INNER rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)

@@ -159,6 +159,82 @@ static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, fl
         R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
 }
 
+/// Starts a group with what it meets without the index: what it is in, and what has no end.
+static inline void R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
+                                 R(ray_group) * rays)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    R(start_group)(args, g);
+    R(make_ray_group)(args, g, local, rays);
+    if (args->leaving)
+        R(cast_inward)(args, g);
+    for (uint32_t i = 0; i < geometry->unbounded_count; i++)
+        R(cast_on_group)(args, g, rays, geometry->unbounded[i]);
+}
+
+/// The primitives of a small index: spheres from the front of the list on, others from its end.
+typedef struct R(few_prims) {
+    uint32_t id[GLINT_FEW];
+    int spheres, others;
+} R(few_prims);
+
+static inline void R(list_few)(const glint_geometry_table *geometry, R(few_prims) * few)
+{
+    uint32_t stack[WALK_STACK];
+    int height = 0;
+    few->spheres = few->others = 0;
+    stack[height++] = 0;
+    while (height > 0) {
+        const glint_node *node = &geometry->nodes[stack[--height]];
+        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
+            const uint32_t child = node->child[i], id = child & ~GLINT_NODE_PRIM;
+            if (!(node->lower[0][i] <= node->upper[0][i]))
+                continue;
+            if (!(child & GLINT_NODE_PRIM))
+                stack[height++] = child;
+            else if (GLINT_REAL == 64 && geometry->prims[id].kind == GLINT_PRIM_SPHERE)
+                few->id[few->spheres++] = id;
+            else
+                few->id[GLINT_FEW - ++few->others] = id;
+        }
+    }
+}
+
+/// The rays that float alone did not decide.
+static void R(decide_rest)(const glint_cast_args *args, uint32_t g, const R(few_prims) * few, unsigned lanes)
+{
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
+    R(make_ray_group)(args, g, local, &rays);
+    for (int n = 0; n < few->spheres; n++) {
+        const unsigned near = lanes & R(near_rays)(&rays, &args->geometry->prims[few->id[n]]);
+        if (near)
+            R(decide_rays)(args, g, few->id[n], near);
+    }
+}
+
+/// Of a scene with few primitives.
+static void R(cast_few_rays)(const glint_cast_args *args)
+{
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
+    R(few_prims) few;
+    R(ray_pairs) pairs = { .count = 0 };
+    R(list_few)(args->geometry, &few);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        R(begin_rays)(args, g, local, &rays);
+        for (int n = GLINT_FEW - few.others; n < GLINT_FEW; n++)
+            R(cast_on_group)(args, g, &rays, few.id[n]);
+        R(cast_spheres)(args, g, &rays, few.id, few.spheres, &pairs);
+    }
+    R(decide_ray_pairs)(args, &pairs);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        if (pairs.undecided[g])
+            R(decide_rest)(args, g, &few, pairs.undecided[g]);
+        R(finish_group)(args, g);
+    }
+}
+
 static void R(cast_rays)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;
@@ -168,13 +244,12 @@ static void R(cast_rays)(const glint_cast_args *args)
         R(cast_parallel)(args);
         return;
     }
+    if (geometry->nodes && geometry->prim_count <= GLINT_FEW) {
+        R(cast_few_rays)(args);
+        return;
+    }
     for (uint32_t g = 0; g < args->group_count; g++) {
-        R(start_group)(args, g);
-        R(make_ray_group)(args, g, local, &rays);
-        if (args->leaving)
-            R(cast_inward)(args, g);
-        for (uint32_t i = 0; i < geometry->unbounded_count; i++)
-            R(cast_on_group)(args, g, &rays, geometry->unbounded[i]);
+        R(begin_rays)(args, g, local, &rays);
         if (geometry->nodes)
             for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
                 R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));

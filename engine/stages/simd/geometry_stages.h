@@ -11,6 +11,7 @@
 #include "engine/stages/index/cover.h"
 #include "engine/stages/index/view.h"
 #include "engine/stages/cast/leaf.h"
+#include "engine/stages/cast/nearest.h"
 #include "engine/stages/cast/rays.h"
 #include "engine/stages/cast/cast.h"
 #include "engine/stages/cast/parallel.h"

@@ -1,0 +1,178 @@
+// nearest: rays of their own origins against spheres. Float finds for each ray the sphere that it may enter first, and how far it
+// goes before it may enter another; double decides the first, a lane each, for as many rays as a vector has. Only a ray that
+// misses it, or meets it beyond where another begins, is decided against all. Contract: stages.h, cast.
+
+#define GLINT_FEW 32 ///< primitives of a scene that are tested without its index
+#define GLINT_RAY_PAIRS 64
+
+/// What float arithmetic on a ray and a sphere may add to a length, of the lengths it came from: origin, centre and direction are
+/// a rounding off each, differences and products six more, quotient and square root three.
+#define NEAREST_SLACK 0x1p-20f
+
+/// Rays of which float says what they meet first, and what is to be decided about them.
+typedef struct R(ray_pairs) {
+    _Alignas(64) real origin[3][GLINT_RAY_PAIRS], direction[3][GLINT_RAY_PAIRS];
+    _Alignas(64) real center[3][GLINT_RAY_PAIRS], scale[GLINT_RAY_PAIRS];
+    _Alignas(64) real r2[GLINT_RAY_PAIRS], r2_low[GLINT_RAY_PAIRS];
+    float next[GLINT_RAY_PAIRS]; ///< up to here the ray enters no other sphere, in the index's units
+    uint32_t ray[GLINT_RAY_PAIRS], prim[GLINT_RAY_PAIRS];
+    int count;
+    uint16_t undecided[GLINT_TILE_GROUPS]; ///< rays that are to be decided against all
+} R(ray_pairs);
+
+/// A hit at t in the index's units, rounded up.
+static inline float R(reach_in_index)(const glint_cast_args *args, real t)
+{
+    return (float)(t * (real)args->geometry->scale) * (1 + 0x1p-22f);
+}
+
+/// Keeps the hit of one ray where it is the nearest so far.
+static inline void R(keep_ray)(const glint_cast_args *args, uint32_t ray, uint32_t id, real t)
+{
+    const glint_prim *prims = args->geometry->prims;
+    real *best = (real *)args->t + ray;
+    uint32_t *best_id = args->prim + ray;
+    const bool tie = t == *best && t < (real)HUGE_VAL && *best_id != GLINT_MISS && prims[id].id < prims[*best_id].id;
+    if (!(t < *best || tie))
+        return;
+    *best = t;
+    *best_id = id;
+}
+
+/// Decides VR pairs from number i on.
+INNER unsigned R(meet_pairs)(const R(ray_pairs) * pairs, int i, real t[VR])
+{
+    vr f[3], d[3], hit_t;
+    const vr scale = r_load(pairs->scale + i), r2 = r_load(pairs->r2 + i);
+    for (int k = 0; k < 3; k++) {
+        f[k] = (r_load(pairs->origin[k] + i) - r_load(pairs->center[k] + i)) * scale;
+        d[k] = r_load(pairs->direction[k] + i);
+    }
+    const vr c = R(exact_power)(f, r2, r_load(pairs->r2_low + i));
+    const unsigned hits = rm_bits(R(meet_ball)(f, d, DOT(d, d), c, r2, scale, &hit_t));
+    r_store(t, hit_t);
+    return hits;
+}
+
+static __attribute__((noinline)) void R(decide_ray_pairs)(const glint_cast_args *args, R(ray_pairs) * pairs)
+{
+    _Alignas(64) real t[VR];
+    if (args->tests)
+        *args->tests += (unsigned)pairs->count;
+    for (int i = 0; i < pairs->count; i += VR) {
+        const unsigned hits = R(meet_pairs)(pairs, i, t);
+        for (int j = i; j < i + VR && j < pairs->count; j++) {
+            const uint32_t ray = pairs->ray[j];
+            if (hits >> (j - i) & 1)
+                R(keep_ray)(args, ray, pairs->prim[j], t[j - i]);
+            if (pairs->next[j] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
+                pairs->undecided[ray / GLINT_GROUP] |= (uint16_t)(1u << ray % GLINT_GROUP);
+        }
+    }
+    pairs->count = 0;
+}
+
+static inline void R(add_pair)(const glint_cast_args *args, R(ray_pairs) * pairs, uint32_t ray, uint32_t id, float next)
+{
+    const glint_prim *prim = &args->geometry->prims[id];
+    const int n = pairs->count++;
+    for (int k = 0; k < 3; k++) {
+        pairs->origin[k][n] = ((const real *)args->origin[k])[ray];
+        pairs->direction[k][n] = ((const real *)args->direction[k])[ray];
+        pairs->center[k][n] = (real)prim->center[k];
+    }
+    pairs->scale[n] = (real)prim->scale;
+    pairs->r2[n] = (real)prim->r2;
+    pairs->r2_low[n] = (real)prim->r2_low;
+    pairs->ray[n] = ray;
+    pairs->prim[n] = id;
+    pairs->next[n] = next;
+    if (pairs->count == GLINT_RAY_PAIRS)
+        R(decide_ray_pairs)(args, pairs);
+}
+
+/// VF rays in float.
+typedef struct R(float_rays) {
+    vf origin[3], direction[3], bound;
+    vf length, per_a; ///< |d|, 1 / |d|^2
+    fm usual; ///< neither so far off nor of such a direction that float over- or underflows below
+} R(float_rays);
+
+INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * out)
+{
+    for (int k = 0; k < 3; k++) {
+        out->origin[k] = f_load(rays->local[k] + i);
+        out->direction[k] = f_load(rays->direction[k] + i);
+    }
+    out->bound = f_load(rays->bound + i);
+    const vf a = DOT(out->direction, out->direction);
+    out->length = f_sqrt(a);
+    out->per_a = f_set(1) / a;
+    out->usual = fm_and(fm_and(f_lt(f_set(0x1p-40f), a), f_lt(a, f_set(0x1p40f))), f_lt(out->bound, f_set(1)));
+}
+
+/// The lanes that may enter a sphere, or are in it, and how far they go before, in the index's units; infinite in the others.
+INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *way)
+{
+    vf f[3];
+    const vf *d = rays->direction;
+    for (int k = 0; k < 3; k++)
+        f[k] = rays->origin[k] - f_set(prim->filter_center[k]);
+    const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
+    const vf limit = (f_set(prim->filter_bound) + rays->bound) * rays->length;
+    const vf room = limit * limit - DOT(x, x), b = -DOT(f, d);
+    const vf half = f_sqrt(f_max(room, f_set(0)));
+    const vf slack = f_set(NEAREST_SLACK) * (f_abs(b) + limit);
+    const fm near = fm_and(f_le(f_set(0), room), f_le(f_set(0), (b + half) + slack));
+    *way = f_select(near, f_max((b - half) - slack, f_set(0)) * rays->per_a, f_set(HUGE_VALF));
+    return near;
+}
+
+/// What a group may meet first.
+typedef struct R(first_met) {
+    _Alignas(64) float way[GLINT_GROUP], next[GLINT_GROUP];
+    _Alignas(64) uint32_t prim[GLINT_GROUP];
+    unsigned usual;
+} R(first_met);
+
+/// The first sphere of `list` that each ray may enter, and the way to the second.
+static inline void R(find_first)(const glint_cast_args *args, const R(ray_group) * rays, size_t at,
+                                 const uint32_t *list, int count, R(first_met) * out)
+{
+    out->usual = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        R(float_rays) lanes;
+        vf way = f_set(HUGE_VALF), next = way, first = f_from_bits(i_set(GLINT_MISS));
+        R(load_float_rays)(rays, i, &lanes);
+        const vi leaving = args->leaving ? i_load(args->leaving + at + i) : i_set(GLINT_MISS);
+        for (int n = 0; n < count; n++) {
+            vf own;
+            if (!fm_bits(R(way_to_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
+                continue;
+            own = f_select(i_eq(leaving, i_set(list[n])), f_set(HUGE_VALF), own);
+            first = f_select(f_lt(own, way), f_from_bits(i_set(list[n])), first);
+            next = f_min(next, f_max(own, way));
+            way = f_min(own, way);
+        }
+        f_store(out->way + i, way);
+        f_store(out->next + i, next);
+        i_store(out->prim + i, f_bits(first));
+        out->usual |= fm_bits(lanes.usual) << i;
+    }
+}
+
+/// The spheres of a scene of few primitives against a group.
+static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
+                                   const uint32_t *list, int count, R(ray_pairs) * pairs)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    R(first_met) met;
+    R(find_first)(args, rays, at, list, count, &met);
+    pairs->undecided[g] |= (uint16_t)(args->active[g] & ~met.usual);
+    for (unsigned left = args->active[g] & met.usual & ~lanes_equal(met.prim, GLINT_MISS); left; left &= left - 1) {
+        const int lane = __builtin_ctz(left);
+        const uint32_t ray = (uint32_t)at + (uint32_t)lane;
+        if (met.way[lane] <= R(reach_in_index)(args, ((const real *)args->t)[ray]))
+            R(add_pair)(args, pairs, ray, met.prim[lane], met.next[lane]);
+    }
+}
