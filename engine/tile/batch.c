@@ -1,4 +1,4 @@
-/// The walk of a batch of rays: into the arrays, through the stages, and where they go on.
+/// The walk of a batch of rays: cast, what they meet packed into few groups, through the stages, and where they go on.
 #include "engine/tile/batch.h"
 #include "engine/base/vec.h"
 #include "engine/tile/cut_out.h"
@@ -12,7 +12,10 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     glint_tile *tile = &batch->tile;
     tile->camera = (glint_camera_args) { .orthographic = true }; // rays in arrays
     tile->transparent_shadow = to->transparent_shadow;
-    tile->batch_rays = batch->ray;
+    if (!batch->rays)
+        batch->rays = &batch->own;
+    batch->ordered = false;
+    tile->batch = batch;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
     tile->visible_light = to->visible_light;
@@ -48,77 +51,134 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
 
 // ---- What the rays find ----
 
-void glint_batch_load(glint_batch *batch, glint_precision precision)
+/// Whether stages between cast and surface need all rays where they were, those that meet nothing as well.
+static bool needs_all(const glint_plan *plan)
 {
-    static const glint_batch_ray nowhere = { .direction = { 1, 1, 1 }, .leaving = GLINT_MISS };
-    glint_tile *tile = &batch->tile;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const uint32_t g = i / GLINT_GROUP, lane = i % GLINT_GROUP;
-        const glint_batch_ray *ray = glint_has_lane(tile->active, i) ? &batch->ray[i] : &nowhere;
-        for (int c = 0; c < 3; c++) {
-            glint_real_put(tile->rays.origin[c], precision, i, ray->origin[c]);
-            glint_real_put(tile->rays.direction[c], precision, i, ray->direction[c]);
-        }
-        batch->leaving[i] = ray->leaving;
-        batch->inward[g] = (uint16_t)((lane ? batch->inward[g] : 0) | (unsigned)ray->inward << lane);
-    }
+    return glint_plan_cuts(plan) || plan->runs[GLINT_STAGE_VISIBLE_LIGHT] || plan->environment;
 }
 
-static bool cast(glint_batch *batch, const glint_tile_frame *frame)
+static void cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
-    glint_cast_args args = { .group_count = tile->group_count,
-                             .active = tile->active,
+    const glint_rays *rays = batch->rays;
+    glint_cast_args args = { .group_count = rays->group_count,
+                             .active = rays->active,
                              .geometry = &frame->geometry,
                              .stop = frame->cancelled,
-                             .leaving = batch->leaving,
-                             .inward = batch->inward,
+                             .leaving = rays->leaving,
+                             .inward = rays->inward,
                              .t = tile->at.t,
                              .prim = tile->at.prim,
                              .hits = tile->at.hits,
                              .tests = glint_tile_tests_of(tile, frame) };
     for (int c = 0; c < 3; c++) {
-        args.origin[c] = tile->rays.origin[c];
-        args.direction[c] = tile->rays.direction[c];
+        args.origin[c] = rays->origin[c];
+        args.direction[c] = rays->direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].cast_rays(&args);
+}
+
+/// Every ray has the sample of its own number.
+static void take_all(glint_batch *batch, const glint_tile_frame *frame)
+{
+    glint_tile *tile = &batch->tile;
+    const glint_rays *rays = batch->rays;
+    const size_t size = rays->group_count * GLINT_GROUP * sizeof(double);
+    tile->group_count = rays->group_count;
+    memcpy(tile->active, rays->active, rays->group_count * sizeof *tile->active);
+    for (int c = 0; c < 3; c++) {
+        memcpy(tile->rays.origin[c], rays->origin[c], size);
+        memcpy(tile->rays.direction[c], rays->direction[c], size);
+    }
+    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
+        batch->sample[i] = batch->ray_of[i] = (uint16_t)i;
     if (glint_plan_cuts(frame->plan))
         glint_tile_see_through(tile, frame);
     if (frame->plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && glint_tile_visible_light_in_sight(tile, frame))
         glint_tile_see_lights(tile, frame, tile->active);
-    unsigned any = 0;
-    for (uint32_t g = 0; g < tile->group_count; g++)
-        any |= tile->at.hits[g];
-    return any;
+}
+
+/// Moves what ray i has met to sample `to`, which is not above it.
+static void move_hit(glint_batch *batch, glint_precision precision, uint32_t i, uint32_t to)
+{
+    glint_tile *tile = &batch->tile;
+    const glint_rays *rays = batch->rays;
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(tile->rays.origin[c], precision, to, glint_real_at(rays->origin[c], precision, i));
+        glint_real_put(tile->rays.direction[c], precision, to, glint_real_at(rays->direction[c], precision, i));
+    }
+    glint_real_put(tile->at.t, precision, to, glint_real_at(tile->at.t, precision, i));
+    tile->at.prim[to] = tile->at.prim[i];
+    batch->sample[i] = (uint16_t)to;
+    batch->ray_of[to] = (uint16_t)i;
+}
+
+/// Rays that meet something get the first samples of their lane, by which area lights choose their points.
+static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
+{
+    glint_tile *tile = &batch->tile;
+    uint32_t next[GLINT_GROUP];
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+        next[lane] = lane;
+    for (uint32_t g = 0; g < batch->rays->group_count; g++) {
+        batch->met[g] = tile->at.hits[g];
+        for (unsigned left = batch->met[g]; left; left &= left - 1) {
+            const uint32_t lane = (uint32_t)__builtin_ctz(left);
+            move_hit(batch, frame->plan->desc.precision, g * GLINT_GROUP + lane, next[lane]);
+            next[lane] += GLINT_GROUP;
+        }
+    }
+    tile->group_count = 0;
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+        tile->group_count = next[lane] / GLINT_GROUP > tile->group_count ? next[lane] / GLINT_GROUP : tile->group_count;
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        tile->at.hits[g] = 0;
+        for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+            if (g < next[lane] / GLINT_GROUP)
+                tile->at.hits[g] |= (uint16_t)(1u << lane);
+            else
+                tile->at.prim[g * GLINT_GROUP + lane] = GLINT_MISS;
+        tile->active[g] = tile->at.hits[g];
+    }
 }
 
 /// Weakens the rays by what they went through since their last surface.
 static void absorb(glint_batch *batch, const glint_tile_frame *frame)
 {
     const glint_tile *tile = &batch->tile;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        if (!glint_has_lane(tile->active, i))
+    glint_rays *rays = batch->rays;
+    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++) {
+        if (!glint_has_lane(rays->active, i))
             continue;
-        glint_batch_ray *ray = &batch->ray[i];
-        const bool hit = glint_has_lane(tile->at.hits, i);
+        const uint32_t at = batch->sample[i];
+        const bool sampled = glint_batch_has_sample(batch, i), hit = sampled && glint_has_lane(tile->at.hits, at);
         const uint32_t medium =
-            hit && frame->plan->bouncing[tile->surface.material[i]].transmits
-                ? glint_media_before(&ray->media, tile->surface.material[i], glint_has_lane(tile->hit.back, i))
-                : glint_media_top(&ray->media);
+            hit && frame->plan->bouncing[tile->surface.material[at]].transmits
+                ? glint_media_before(&rays->media[i], tile->surface.material[at], glint_has_lane(tile->hit.back, at))
+                : glint_media_top(&rays->media[i]);
         if (medium == GLINT_NO_MEDIUM)
             continue;
-        const double way = glint_real_at(tile->at.t, frame->plan->desc.precision, i); // the directions are unit
+        const double way = sampled ? glint_real_at(tile->at.t, frame->plan->desc.precision, at) : HUGE_VAL; // directions are unit
         for (int c = 0; c < 3; c++)
-            ray->weight[c] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], way);
+            rays->weight[c][i] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], way);
     }
 }
 
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
 {
-    const bool any = cast(batch, frame);
+    glint_tile *tile = &batch->tile;
+    unsigned any = 0;
+    batch->whole = batch->ordered || needs_all(frame->plan);
+    cast(batch, frame);
+    if (batch->whole)
+        take_all(batch, frame);
+    else
+        take_hits(batch, frame);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        any |= tile->at.hits[g];
     if (any)
-        glint_tile_find_surfaces(&batch->tile, frame);
-    if (frame->plan->transmits)
+        glint_tile_find_surfaces(tile, frame);
+    if (frame->plan->absorbs)
         absorb(batch, frame);
     return any;
 }
@@ -185,6 +245,11 @@ double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
     return light;
 }
 
+double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
+{
+    return glint_batch_has_sample(batch, ray) ? glint_batch_found(batch, c, batch->sample[ray]) : plan->background[c];
+}
+
 // ---- From a surface on ----
 
 static double index_of(const glint_plan *plan, uint32_t medium)
@@ -207,7 +272,7 @@ static double index_ratio(const glint_plan *plan, const glint_media *media, uint
 static const glint_media *media_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                                    uint32_t i)
 {
-    return tile == &batch->tile ? &batch->ray[i].media : &frame->plan->eye_media;
+    return tile == &batch->tile && frame->plan->transmits ? glint_batch_media(batch, i) : &frame->plan->eye_media;
 }
 
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
@@ -237,12 +302,14 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
     frame->stages->geometry[precision].bounce(&args);
 }
 
-glint_batch_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
-                                      uint32_t i)
+glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
+                                uint32_t i)
 {
-    glint_batch_ray ray = { .weight = { 1, 1, 1 }, .pixel = i, .media = *media_of(batch, tile, frame, i) };
+    glint_ray ray = { .weight = { 1, 1, 1 }, .pixel = i };
     if (tile == &batch->tile)
-        ray = batch->ray[i];
+        ray = glint_rays_get(batch->rays, frame->plan, batch->ray_of[i]);
+    else if (frame->plan->transmits)
+        ray.media = frame->plan->eye_media;
     if (frame->plan->patterns)
         ray.way += glint_real_at(tile->at.t, frame->plan->desc.precision, i);
     ray.leaving = tile->at.prim[i];
@@ -260,7 +327,7 @@ static void total_share(const glint_bounce_material *m, double share[3])
 }
 
 /// Points a ray along `way`, and weighs it.
-static void send(glint_batch_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], glint_precision precision, uint32_t i,
+static void send(glint_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], glint_precision precision, uint32_t i,
                  const double share[3], double factor)
 {
     for (int c = 0; c < 3; c++) {
@@ -270,7 +337,7 @@ static void send(glint_batch_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], 
 }
 
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
-                       glint_batch_ray *mirror, glint_batch_ray *through)
+                       glint_ray *mirror, glint_ray *through)
 {
     const glint_precision precision = frame->plan->desc.precision;
     glint_bounce_material room;

@@ -21,13 +21,20 @@
 
 struct glint_bounce {
     glint_batch batch;
-    glint_batch_ray levels[GLINT_BOUNCE_LEVELS][GLINT_TILE_SAMPLES];
+    glint_rays room[GLINT_BOUNCE_LEVELS];
+    glint_rays *levels[GLINT_BOUNCE_LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
     uint32_t counts[GLINT_BOUNCE_LEVELS];
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
 };
 
 /// Its pages are the system's until a level is used.
-struct glint_bounce *glint_bounce_create(void) { return glint_alloc(1, sizeof(struct glint_bounce)); }
+struct glint_bounce *glint_bounce_create(void)
+{
+    struct glint_bounce *bounce = glint_alloc(1, sizeof *bounce);
+    for (int i = 0; bounce && i < GLINT_BOUNCE_LEVELS; i++)
+        bounce->levels[i] = &bounce->room[i];
+    return bounce;
+}
 
 void glint_bounce_destroy(struct glint_bounce *bounce) { free(bounce); }
 
@@ -53,7 +60,7 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const glint_bounce_material *m = &plan->bouncing[tile->surface.material[i]];
-            const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.ray[i].depth : 0;
+            const uint32_t depth = tile == &bounce->batch.tile ? bounce->batch.rays->depth[bounce->batch.ray_of[i]] : 0;
             if ((m->mirrors || m->transmits) && depth < plan->desc.max_depth)
                 bounce->batch.wanted[g] |= (uint16_t)(left & -left);
         }
@@ -62,10 +69,10 @@ static bool choose(struct glint_bounce *bounce, const glint_tile *tile, const gl
     return any;
 }
 
-static double total_weight(const glint_batch_ray *ray) { return (ray->weight[0] + ray->weight[1]) + ray->weight[2]; }
+static double total_weight(const glint_ray *ray) { return (ray->weight[0] + ray->weight[1]) + ray->weight[2]; }
 
 /// Whether a ray must be followed; if not, what it might have brought is off the budget.
-static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const glint_batch_ray *ray)
+static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const glint_ray *ray)
 {
     const double weight = fmax(ray->weight[0], fmax(ray->weight[1], ray->weight[2]));
     double *budget = &bounce->budget[ray->pixel];
@@ -78,14 +85,18 @@ static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const g
     return false;
 }
 
-static void push(struct glint_bounce *bounce, uint32_t level, const glint_batch_ray *ray)
+static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t level, const glint_ray *ray)
 {
-    if (level < GLINT_BOUNCE_LEVELS)
-        bounce->levels[level][bounce->counts[level]++] = *ray;
+    if (level >= GLINT_BOUNCE_LEVELS)
+        return;
+    const uint32_t count = bounce->counts[level]++;
+    if (count % GLINT_GROUP == 0)
+        bounce->levels[level]->active[count / GLINT_GROUP] = bounce->levels[level]->inward[count / GLINT_GROUP] = 0;
+    glint_rays_put(bounce->levels[level], plan, count, ray);
 }
 
 /// A number in 0 .. 1 that is the ray's own: made of its direction's bits (the finish of splitmix64).
-static double lot_of(const glint_batch_ray *ray)
+static double lot_of(const glint_ray *ray)
 {
     uint64_t z = ray->depth;
     for (int c = 0; c < 3; c++) {
@@ -99,10 +110,10 @@ static double lot_of(const glint_batch_ray *ray)
 }
 
 /// One of two rays, by lot as they weigh, gets the weight of both, the other none.
-static void stand_for_both(glint_batch_ray *a, glint_batch_ray *b)
+static void stand_for_both(glint_ray *a, glint_ray *b)
 {
     const bool first = lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a);
-    glint_batch_ray *one = first ? a : b, *other = first ? b : a;
+    glint_ray *one = first ? a : b, *other = first ? b : a;
     for (int c = 0; c < 3; c++) {
         one->weight[c] = fmin(one->weight[c] + other->weight[c], GLINT_WEIGHT_MAX);
         other->weight[c] = 0;
@@ -113,7 +124,7 @@ static void stand_for_both(glint_batch_ray *a, glint_batch_ray *b)
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                     uint32_t level)
 {
-    glint_batch_ray mirror, through;
+    glint_ray mirror, through;
     glint_batch_split(&bounce->batch, tile, frame, i, &mirror, &through);
     if (tile != &bounce->batch.tile) {
         mirror.term = GLINT_TERM_MIRROR;
@@ -128,20 +139,35 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
     const bool mirrors = matters(bounce, frame->plan, &mirror), transmits = matters(bounce, frame->plan, &through);
     const bool weaker_mirror = mirrors && transmits && total_weight(&mirror) < total_weight(&through);
     if (mirrors)
-        push(bounce, level + weaker_mirror, &mirror);
+        push(bounce, frame->plan, level + weaker_mirror, &mirror);
     if (transmits)
-        push(bounce, level + (mirrors && !weaker_mirror), &through);
+        push(bounce, frame->plan, level + (mirrors && !weaker_mirror), &through);
 }
 
-/// Sends on what the samples of `tile` have hit; `level` is that of the batch, and empty.
-static void spawn(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t level)
+/// Sends on what the eye's samples have hit, to level 0.
+static void spawn_first(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame)
 {
     if (!choose(bounce, tile, frame))
         return;
     glint_batch_find_ways(&bounce->batch, tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = bounce->batch.wanted[g]; left; left &= left - 1)
-            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), level);
+            send_on(bounce, tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), 0);
+}
+
+/// Sends on what the batch has hit, in the order of its rays; `level` is where these were, and empty.
+static void spawn(struct glint_bounce *bounce, const glint_tile_frame *frame, uint32_t level)
+{
+    const glint_batch *batch = &bounce->batch;
+    if (!choose(bounce, &batch->tile, frame))
+        return;
+    glint_batch_find_ways(&bounce->batch, &batch->tile, frame);
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        for (unsigned left = batch->rays->active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            if (glint_batch_has_sample(batch, i) && glint_has_lane(batch->wanted, batch->sample[i]))
+                send_on(bounce, &batch->tile, frame, batch->sample[i], level);
+        }
 }
 
 // ---- A batch ----
@@ -149,52 +175,51 @@ static void spawn(struct glint_bounce *bounce, const glint_tile *tile, const gli
 /// Takes all rays of a level into the batch.
 static void take_level(struct glint_bounce *bounce, uint32_t level, glint_tile_counts *counts)
 {
-    glint_tile *tile = &bounce->batch.tile;
-    const uint32_t count = bounce->counts[level];
-    memcpy(bounce->batch.ray, bounce->levels[level], count * sizeof *bounce->batch.ray);
+    glint_rays *rays = bounce->levels[level];
+    bounce->levels[level] = bounce->batch.rays;
+    bounce->batch.rays = rays;
+    rays->group_count = (bounce->counts[level] + GLINT_GROUP - 1) / GLINT_GROUP;
+    for (uint32_t i = 0; i < bounce->counts[level]; i++) {
+        counts->mirror += rays->term[i] == GLINT_TERM_MIRROR;
+        counts->refraction += rays->term[i] == GLINT_TERM_TRANSMISSION;
+    }
     bounce->counts[level] = 0;
-    tile->group_count = (count + GLINT_GROUP - 1) / GLINT_GROUP;
-    for (uint32_t g = 0; g < tile->group_count; g++) {
-        const uint32_t left = count - g * GLINT_GROUP;
-        tile->active[g] = (uint16_t)(left < GLINT_GROUP ? (1u << left) - 1 : 0xffff);
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        counts->mirror += bounce->batch.ray[i].term == GLINT_TERM_MIRROR;
-        counts->refraction += bounce->batch.ray[i].term == GLINT_TERM_TRANSMISSION;
-    }
 }
 
-/// Adds what the rays found to their pixels.
-static void collect(const glint_batch *batch, glint_tile *to)
+/// Adds what the rays found to their pixels, in their order.
+static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
 {
-    for (uint32_t i = 0; i < batch->tile.group_count * GLINT_GROUP; i++) {
-        const glint_batch_ray *ray = &batch->ray[i];
-        for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++)
-            to->film.sum[ray->term][c][ray->pixel] += ray->weight[c] * glint_batch_found(batch, c, i);
-    }
+    const glint_rays *rays = batch->rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned left = rays->active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            for (int c = 0; c < 3; c++)
+                to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * glint_batch_light_of(batch, plan, c, i);
+        }
 }
 
 static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_tile_frame *frame, uint32_t level)
 {
     take_level(bounce, level, &to->counts);
-    glint_batch_load(&bounce->batch, frame->plan->desc.precision);
     const bool any = glint_batch_cast(&bounce->batch, frame);
-    glint_batch_light(&bounce->batch, frame, any);
-    collect(&bounce->batch, to);
+    if (any || bounce->batch.whole)
+        glint_batch_light(&bounce->batch, frame, any);
+    collect(&bounce->batch, frame->plan, to);
     if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
         glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);
     if (any)
-        spawn(bounce, &bounce->batch.tile, frame, level);
+        spawn(bounce, frame, level);
 }
 
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame)
 {
     struct glint_bounce *bounce = tile->bounce;
     glint_batch_begin(&bounce->batch, tile, frame, GLINT_WALK_BOUNCE);
+    bounce->batch.ordered = frame->plan->runs[GLINT_STAGE_INDIRECT]; // whose paths begin in the order of samples
     memset(bounce->counts, 0, sizeof bounce->counts);
     for (int i = 0; i < GLINT_TILE_SAMPLES; i++)
         bounce->budget[i] = GLINT_BOUNCE_LOSS;
-    spawn(bounce, tile, frame, 0);
+    spawn_first(bounce, tile, frame);
     for (uint32_t level = 1;;) {
         while (level > 0 && bounce->counts[level] == 0)
             level--;

@@ -228,7 +228,7 @@ static bool begin_seeing(struct glint_cut_out *cut, const glint_tile *tile, cons
 static void see_next(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_precision precision = frame->plan->desc.precision;
-    const bool eye = tile->batch_rays == NULL; // whose rays leave no surface
+    const bool eye = tile->batch == NULL; // whose rays leave no surface
     for (uint32_t g = 0; g < tile->group_count; g++) {
         for (unsigned left = cut->holes[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);

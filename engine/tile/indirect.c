@@ -35,14 +35,17 @@ struct glint_indirect {
     glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
     glint_tile_frame frame; ///< likewise
     glint_plan_light *lights; ///< of that plan; NULL: there are none
-    uint32_t paths[GLINT_TILE_SAMPLES]; ///< that each point gets
+    uint32_t paths[GLINT_TILE_SAMPLES], fewest; ///< that each point gets, and the least of these
     uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that get any
     uint64_t
         block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
     uint32_t lane[GLINT_TILE_SAMPLES]; ///< which of these pixels
-    uint16_t scattered[GLINT_TILE_GROUPS]; ///< rays that go on so
-    draws first, next; ///< of the points, and of what their paths met
-    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES];
+    draws first_draws, next_draws; ///< of the points, and of what their paths met
+    glint_rays first; ///< from each point its own number's ray: but for its direction, the same for all paths
+    double weight[3][GLINT_TILE_SAMPLES]; ///< what these weigh before anything is taken from them
+    glint_rays next[2]; ///< rays of odd and even steps
+    uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples that a path leaves so
+    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< of these
 };
 
 struct glint_indirect *glint_indirect_create(const glint_plan *plan)
@@ -81,14 +84,15 @@ static uint32_t lane_order(uint32_t lane)
 
 /// Notes which block of pixels point i of `seen` belongs to.
 static void find_block(struct glint_indirect *indirect, const glint_tile *to, const glint_plan *plan,
-                       const glint_batch_ray *ray, uint32_t i)
+                       const glint_ray *ray, uint32_t i)
 {
-    const uint32_t pixel = ray ? ray->pixel : i, group = pixel / GLINT_GROUP;
+    const uint32_t group = ray->pixel / GLINT_GROUP;
     const uint32_t x = to->x0 / 4 + group % to->groups_across, y = to->y0 / 4 + group / to->groups_across;
-    const uint64_t place = ray ? 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR) : 0;
+    const uint64_t place =
+        ray->term == GLINT_TERM_INDIRECT ? 0 : 1 + 2 * (uint64_t)ray->depth + (ray->term == GLINT_TERM_MIRROR);
     uint64_t block = glint_sequence_mix(x | (uint64_t)y << 32, (uint64_t)plan->desc.seed);
     indirect->block[i] = glint_sequence_mix(block, place);
-    indirect->lane[i] = lane_order(pixel % GLINT_GROUP);
+    indirect->lane[i] = lane_order(ray->pixel % GLINT_GROUP);
 }
 
 /// Which point of its sequence path `number` of a pixel's point i takes.
@@ -111,15 +115,15 @@ static void draw(const struct glint_indirect *indirect, uint32_t i, uint64_t num
     glint_sequence_scrambled((uint32_t)k, seed_of(indirect, i, k, which), out);
 }
 
-/// Notes it for the stage scatter, which takes the point `further` than what is noted.
+/// Notes it in place `at` for the stage scatter, which takes the point `further` than what is noted.
 static void note_draw(const struct glint_indirect *indirect, uint32_t i, uint64_t k, uint32_t which, uint32_t further,
-                      draws *to)
+                      draws *to, uint32_t at)
 {
     const glint_sequence_seed seed = glint_sequence_seed_of(seed_of(indirect, i, k, which));
-    to->number[i] = (uint32_t)k - further;
-    to->order[i] = seed.order;
-    to->digits[0][i] = seed.digits[0];
-    to->digits[1][i] = seed.digits[1];
+    to->number[at] = (uint32_t)k - further;
+    to->order[at] = seed.order;
+    to->digits[0][at] = seed.digits[0];
+    to->digits[1][at] = seed.digits[1];
 }
 
 /// One sample of each light, as strong as all of them: another for each path and turn.
@@ -141,104 +145,156 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
 
 // ---- Where paths begin ----
 
-/// How many paths each point gets: fewer where it is seen by mirrors that leave little of it. Returns the most.
+/// The first ray of point i, for each of `paths`: all that it is but for its direction.
+static glint_ray first_ray(const struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
+                           const glint_batch *from, uint32_t i, uint32_t paths)
+{
+    const glint_plan *plan = frame->plan;
+    const double part = 1.0 / paths;
+    double room[3];
+    const double *diffuse = glint_tile_diffuse(seen, plan, i, room);
+    glint_ray ray = glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i);
+    if (!from)
+        ray.term = GLINT_TERM_INDIRECT;
+    ray.point = i;
+    ray.least = largest(ray.weight) * part * plan->indirect.least;
+    ray.inward = glint_has_lane(seen->hit.back, i);
+    ray.scatters++;
+    for (int c = 0; c < 3; c++) {
+        ray.direction[c] = 0;
+        ray.weight[c] = fmin(ray.weight[c] * (diffuse[c] * part), GLINT_WEIGHT_MAX);
+    }
+    return ray;
+}
+
+/// Begins at point i, which is fewer times seen where mirrors leave little of it. Returns how many paths it gets.
+static uint32_t begin_point(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
+                            const glint_tile *seen, const glint_batch *from, uint32_t i)
+{
+    const double samples = frame->plan->indirect.samples;
+    double weight = 0;
+    for (int c = 0; c < 3; c++)
+        weight = from ? fmax(weight, from->rays->weight[c][from->ray_of[i]]) : 1;
+    const uint32_t paths = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
+    const glint_ray ray = first_ray(indirect, frame, seen, from, i, paths);
+    glint_rays_put(&indirect->first, frame->plan, i, &ray);
+    for (int c = 0; c < 3; c++)
+        indirect->weight[c][i] = ray.weight[c];
+    indirect->paths[i] = paths;
+    find_block(indirect, to, frame->plan, &ray, i);
+    return paths;
+}
+
+/// Where paths begin, and how many at each point. Returns the most.
 static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *to, const glint_tile_frame *frame,
                             const glint_tile *seen, const glint_batch *from)
 {
-    const glint_plan *plan = frame->plan;
     uint32_t most = 0;
     double room[3];
+    indirect->fewest = UINT32_MAX;
+    glint_rays_clear(&indirect->first, seen->group_count);
     for (uint32_t g = 0; g < seen->group_count; g++) {
-        indirect->matt[g] = 0;
         for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const glint_batch_ray *ray = from ? &from->ray[i] : NULL;
-            const double weight = ray ? largest(ray->weight) : 1;
-            const double samples = plan->indirect.samples;
-            if (largest(glint_tile_diffuse(seen, plan, i, room)) == 0)
+            if (largest(glint_tile_diffuse(seen, frame->plan, i, room)) == 0)
                 continue;
-            indirect->paths[i] = (uint32_t)fmin(fmax(ceil(samples * weight), 1), samples);
-            indirect->matt[g] |= (uint16_t)(left & -left);
-            most = indirect->paths[i] > most ? indirect->paths[i] : most;
-            find_block(indirect, to, plan, ray, i);
+            const uint32_t paths = begin_point(indirect, to, frame, seen, from, i);
+            most = paths > most ? paths : most;
+            indirect->fewest = paths < indirect->fewest ? paths : indirect->fewest;
         }
+        indirect->matt[g] = indirect->first.active[g];
     }
     return most;
 }
 
-/// Directions for the rays in indirect->scattered, around the normals of `tile`, by points that are `further` than those drawn.
-static void scatter(struct glint_indirect *indirect, const glint_tile *tile, const glint_tile_frame *frame,
-                    const draws *drawn, uint32_t further)
+/// Directions around the normals of `tile` for the samples in `wanted`, by points that are `further` than those drawn.
+static void scatter(const glint_tile *tile, const glint_tile_frame *frame, const uint16_t *wanted, const draws *drawn,
+                    uint32_t further, double (*direction)[GLINT_TILE_SAMPLES])
 {
     glint_scatter_args args = { .group_count = tile->group_count,
-                                .wanted = indirect->scattered,
+                                .wanted = wanted,
                                 .number = drawn->number,
                                 .order = drawn->order,
                                 .digits = { drawn->digits[0], drawn->digits[1] },
                                 .further = further };
     for (int c = 0; c < 3; c++) {
         args.normal[c] = tile->surface.normal[c];
-        args.direction[c] = indirect->direction[c];
+        args.direction[c] = direction[c];
     }
     frame->stages->geometry[frame->plan->desc.precision].scatter(&args);
 }
 
-/// Sends ray i along its direction from a point of `tile`.
-static void leave(const struct glint_indirect *indirect, const glint_tile *tile, double factor, uint32_t i,
-                  glint_batch_ray *ray)
+/// Whether light that is scattered from a sample leaves its surface, along the direction in place i.
+static bool leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i,
+                   const double (*direction)[GLINT_TILE_SAMPLES])
 {
-    const glint_plan *plan = &indirect->plan;
-    double room[3];
-    const double *share = glint_tile_diffuse(tile, plan, i, room);
-    ray->inward = glint_has_lane(tile->hit.back, i);
-    ray->scatters++;
+    double d[3];
     for (int c = 0; c < 3; c++)
-        ray->direction[c] = glint_real_at(indirect->direction[c], plan->desc.precision, i);
-    const double left = glint_tile_leaves(tile, plan, i, ray->direction) ? factor : 0;
-    for (int c = 0; c < 3; c++)
-        ray->weight[c] = fmin(ray->weight[c] * (share[c] * left), GLINT_WEIGHT_MAX);
+        d[c] = glint_real_at(direction[c], plan->desc.precision, i);
+    return glint_tile_leaves(tile, plan, i, d);
+}
+
+/// The first rays weigh what they did, but those that bumps do not let go.
+static void weigh_first(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen)
+{
+    glint_rays *first = &indirect->first;
+    if (frame->plan->absorbs || glint_plan_bumps(frame->plan))
+        memcpy(first->weight, indirect->weight, sizeof first->weight);
+    if (!glint_plan_bumps(frame->plan))
+        return;
+    for (uint32_t i = 0; i < first->group_count * GLINT_GROUP; i++)
+        if (glint_has_lane(first->active, i) &&
+            !leaves(seen, frame->plan, i, (const double(*)[GLINT_TILE_SAMPLES])first->direction))
+            for (int c = 0; c < 3; c++)
+                first->weight[c][i] = 0;
+}
+
+/// The points that get path `path`. Returns whether there are any.
+static bool choose_points(struct glint_indirect *indirect, uint32_t path)
+{
+    glint_rays *first = &indirect->first;
+    unsigned any = 0;
+    memcpy(first->active, indirect->matt, first->group_count * sizeof *first->active);
+    for (uint32_t g = 0; g < first->group_count; g++) {
+        for (unsigned left = path < indirect->fewest ? 0 : first->active[g]; left; left &= left - 1)
+            if (path >= indirect->paths[g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)])
+                first->active[g] &= (uint16_t)~(left & -left);
+        any |= first->active[g];
+    }
+    return any;
+}
+
+/// Draws for the points that get path `path`, or those before whose seed ends here: it lasts for 2^32 points.
+static void draw_first(struct glint_indirect *indirect, const glint_plan *plan, uint32_t path, uint64_t number)
+{
+    const bool lasting = (uint64_t)plan->indirect.samples * (uint64_t)plan->desc.samples <= UINT32_MAX / GLINT_GROUP;
+    if (path > 0 && lasting)
+        return;
+    for (uint32_t g = 0; g < indirect->first.group_count; g++)
+        for (unsigned left = indirect->first.active[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const uint64_t k = number_in_block(indirect, i, number);
+            if (path == 0 || (uint32_t)k == 0)
+                note_draw(indirect, i, k, 0, path, &indirect->first_draws, i);
+        }
 }
 
 /// The first rays of path `path` of every point. Returns whether there are any.
 static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
-                        const glint_batch *from, uint32_t path, uint64_t number)
+                        uint32_t path, uint64_t number)
 {
-    glint_batch *batch = &indirect->batch;
-    unsigned any = 0;
-    batch->tile.group_count = seen->group_count;
-    for (uint32_t g = 0; g < seen->group_count; g++) {
-        indirect->scattered[g] = 0;
-        for (unsigned left = indirect->matt[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            if (path >= indirect->paths[i])
-                continue;
-            const uint64_t k = number_in_block(indirect, i, number);
-            if (path == 0 || (uint32_t)k == 0) // a seed lasts for 2^32 points
-                note_draw(indirect, i, k, 0, path, &indirect->first);
-            indirect->scattered[g] |= (uint16_t)(left & -left);
-        }
-        any |= batch->tile.active[g] = indirect->scattered[g];
-    }
-    if (!any)
+    glint_rays *first = &indirect->first;
+    if (!choose_points(indirect, path))
         return false;
-    scatter(indirect, seen, frame, &indirect->first, path);
-    for (uint32_t g = 0; g < seen->group_count; g++)
-        for (unsigned left = batch->tile.active[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double share = 1.0 / indirect->paths[i];
-            glint_batch_ray *ray = &batch->ray[i];
-            *ray = glint_batch_start_ray(from ? from : batch, seen, frame, i);
-            if (!from)
-                ray->term = GLINT_TERM_INDIRECT;
-            ray->least = largest(ray->weight) * share * frame->plan->indirect.least;
-            leave(indirect, seen, share, i, ray);
-        }
+    draw_first(indirect, frame->plan, path, number);
+    scatter(seen, frame, first->active, &indirect->first_draws, path, first->direction);
+    weigh_first(indirect, frame, seen);
     return true;
 }
 
 // ---- Where they go on ----
 
-/// Rays that mirrors and transparent materials may send on; finds where to.
+/// Samples that mirrors and transparent materials may send paths on from; finds where to.
 static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
 {
     glint_batch *batch = &indirect->batch;
@@ -249,7 +305,7 @@ static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *f
         for (unsigned left = plan->bouncing ? batch->tile.at.hits[g] : 0; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const glint_bounce_material *m = &plan->bouncing[batch->tile.surface.material[i]];
-            if ((m->mirrors || m->transmits) && batch->ray[i].depth < plan->desc.max_depth)
+            if ((m->mirrors || m->transmits) && batch->rays->depth[batch->ray_of[i]] < plan->desc.max_depth)
                 batch->wanted[g] |= (uint16_t)(left & -left);
         }
         any |= batch->wanted[g];
@@ -258,18 +314,31 @@ static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *f
         glint_batch_find_ways(batch, &batch->tile, frame);
 }
 
-/// Chooses how ray i goes on, and starts it there unless it is scattered.
+/// Which of three ways a path takes, as they share its light out.
+static int choose_way(const struct glint_indirect *indirect, uint64_t number, const glint_rays *rays, uint32_t ray,
+                      const double share[3], double all)
+{
+    const int likely = share[0] > 0 ? 0 : share[1] > 0 ? 1 : 2;
+    double number_of[2];
+    if (!(share[likely] < all))
+        return likely;
+    draw(indirect, rays->point[ray], number, 2 * (rays->scatters[ray] + rays->depth[ray]) + 1, number_of);
+    return number_of[0] * all < share[0] ? 0 : number_of[0] * all < share[0] + share[1] || !(share[2] > 0) ? 1 : 2;
+}
+
+/// Chooses how the path of sample i goes on, and starts it there unless it is scattered.
 static turn choose(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t i,
-                   glint_batch_ray *next)
+                   glint_ray *next)
 {
     glint_batch *batch = &indirect->batch;
-    const glint_batch_ray *ray = &batch->ray[i];
+    const glint_rays *rays = batch->rays;
+    const uint32_t ray = batch->ray_of[i];
     double share[3] = { 0 }, least = 0, room[3];
     const double *diffuse = glint_tile_diffuse(&batch->tile, frame->plan, i, room);
-    glint_batch_ray split[2];
-    if (ray->scatters < frame->plan->indirect.bounces)
+    glint_ray split[2];
+    if (rays->scatters[ray] < frame->plan->indirect.bounces)
         for (int c = 0; c < 3; c++)
-            share[0] += diffuse[c] * ray->weight[c];
+            share[0] += diffuse[c] * rays->weight[c][ray];
     if (glint_has_lane(batch->wanted, i)) {
         glint_batch_split(batch, &batch->tile, frame, i, &split[0], &split[1]);
         share[1] = 3 * mean(split[0].weight);
@@ -278,82 +347,126 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     const double all = (share[0] + share[1]) + share[2];
     if (!(all > 0))
         return TURN_NONE;
-    int chosen = share[0] > 0 ? 0 : share[1] > 0 ? 1 : 2;
-    if (share[chosen] < all) {
-        double number_of[2];
-        draw(indirect, i, number, 2 * (ray->scatters + ray->depth) + 1, number_of);
-        chosen = number_of[0] * all < share[0]                                 ? 0
-                 : number_of[0] * all < share[0] + share[1] || !(share[2] > 0) ? 1
-                                                                               : 2;
-    }
+    const int chosen = choose_way(indirect, number, rays, ray, share, all);
     const double chance = share[chosen] / all;
     *next = chosen ? split[chosen - 1] : glint_batch_start_ray(batch, &batch->tile, frame, i);
     for (int c = 0; c < 3; c++) {
         next->weight[c] = fmin(next->weight[c] / chance, GLINT_WEIGHT_MAX);
         least = fmax(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
-    if (least <= ray->least)
+    if (least <= rays->least[ray])
         return TURN_NONE;
     return (turn)(TURN_SCATTERED + chosen);
 }
 
-/// Sends every ray on that has found a surface to go on from. Returns whether any does.
-static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number)
+/// Sends the path of sample i on that is scattered there.
+static void leave(const struct glint_indirect *indirect, const glint_tile_frame *frame, uint32_t i, glint_rays *next)
+{
+    const glint_tile *tile = &indirect->batch.tile;
+    const glint_precision precision = frame->plan->desc.precision;
+    double room[3];
+    const double *diffuse = glint_tile_diffuse(tile, frame->plan, i, room);
+    const bool free = leaves(tile, frame->plan, i, indirect->direction);
+    next->scatters[i]++;
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
+        next->weight[c][i] = fmin(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)), GLINT_WEIGHT_MAX);
+    }
+}
+
+/// Sends every path on that has found a surface to go on from. Returns whether any does.
+static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame, uint64_t number, uint32_t step)
 {
     glint_batch *batch = &indirect->batch;
-    glint_tile *tile = &batch->tile;
+    const glint_tile *tile = &batch->tile;
+    glint_rays *rays = &indirect->next[step & 1];
     unsigned any = 0;
     find_ways(indirect, frame);
+    glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         indirect->scattered[g] = 0;
-        tile->active[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const uint16_t bit = (uint16_t)(left & -left);
-            glint_batch_ray next;
+            glint_ray next;
             const turn chosen = choose(indirect, frame, number, i, &next);
             if (chosen == TURN_NONE)
                 continue;
-            batch->ray[i] = next;
-            tile->active[g] |= bit;
-            if (chosen != TURN_SCATTERED)
-                continue;
-            note_draw(indirect, i, number_in_block(indirect, i, number), 2 * (next.scatters + next.depth), 0,
-                      &indirect->next);
-            indirect->scattered[g] |= bit;
+            if (chosen == TURN_SCATTERED) {
+                note_draw(indirect, next.point, number_in_block(indirect, next.point, number),
+                          2 * (next.scatters + next.depth), 0, &indirect->next_draws, i);
+                indirect->scattered[g] |= (uint16_t)(left & -left);
+                next.inward = glint_has_lane(tile->hit.back, i);
+            }
+            glint_rays_put(rays, frame->plan, i, &next);
         }
-        any |= tile->active[g];
+        any |= rays->active[g];
     }
     if (!any)
         return false;
-    scatter(indirect, tile, frame, &indirect->next, 0);
+    scatter(tile, frame, indirect->scattered, &indirect->next_draws, 0, indirect->direction);
     for (uint32_t g = 0; g < tile->group_count; g++)
-        for (unsigned left = indirect->scattered[g]; left; left &= left - 1) {
-            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            leave(indirect, tile, 1, i, &batch->ray[i]);
-        }
+        for (unsigned left = indirect->scattered[g]; left; left &= left - 1)
+            leave(indirect, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), rays);
+    batch->rays = rays;
     return true;
 }
 
 // ---- What they find ----
 
-/// Adds the light that the rays have found to their pixels.
-static void collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to)
+/// Adds what ray i has found in sample `at`. Paths that end there do without the light that more of them would bring: they take
+/// the ambient light that it stands for.
+static void collect_sample(const glint_batch *batch, const glint_plan *plan, uint32_t i, uint32_t at, glint_tile *to)
 {
-    for (uint32_t i = 0; i < batch->tile.group_count * GLINT_GROUP; i++) {
-        const glint_batch_ray *ray = &batch->ray[i];
-        const bool last = glint_has_lane(batch->tile.at.hits, i) && ray->scatters == plan->indirect.bounces;
-        for (int c = 0; c < 3 && glint_has_lane(batch->tile.active, i); c++) {
-            const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, i, c) : 0;
-            to->film.sum[ray->term][c][ray->pixel] += ray->weight[c] * (glint_batch_found(batch, c, i) + rest);
-        }
+    const glint_rays *rays = batch->rays;
+    const bool last = rays->scatters[i] == plan->indirect.bounces && glint_has_lane(batch->tile.at.hits, at);
+    for (int c = 0; c < 3; c++) {
+        const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
+        to->film.sum[rays->term[i]][c][rays->pixel[i]] +=
+            rays->weight[c][i] * (glint_batch_found(batch, c, at) + rest);
     }
+}
+
+/// Adds what rays of a packed batch that meet nothing bring. The first rays of the eye's points are their pixels' own.
+static void collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
+{
+    const glint_rays *rays = indirect->batch.rays;
+    uint16_t missed[GLINT_TILE_GROUPS];
+    glint_sky_args args = { .group_count = rays->group_count, .missed = missed };
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        missed[g] = rays->active[g] & (uint16_t)~indirect->batch.met[g];
+    for (int c = 0; c < 3; c++) {
+        args.weight[c] = rays->weight[c];
+        args.background[c] = frame->plan->background[c];
+        args.sum[c] = to->film.sum[GLINT_TERM_INDIRECT][c];
+    }
+    if (rays == &indirect->first) {
+        frame->stages->sky(&args);
+        return;
+    }
+    for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
+        for (int c = 0; c < 3 && glint_has_lane(missed, i); c++)
+            args.sum[c][rays->pixel[i]] += rays->weight[c][i] * args.background[c];
+}
+
+/// Adds the light that the rays have found to their pixels: of a whole batch in the order of rays, which may share pixels.
+static void collect(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
+{
+    const glint_batch *batch = &indirect->batch;
+    const uint16_t *lanes = batch->whole ? batch->rays->active : batch->tile.at.hits;
+    const uint32_t groups = batch->whole ? batch->rays->group_count : batch->tile.group_count;
+    for (uint32_t g = 0; g < groups; g++)
+        for (unsigned left = lanes[g]; left; left &= left - 1) {
+            const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            collect_sample(batch, frame->plan, batch->ray_of[at], at, to);
+        }
+    if (!batch->whole)
+        collect_missed(indirect, frame, to);
 }
 
 static void count_rays(const glint_batch *batch, glint_tile *to)
 {
-    for (uint32_t g = 0; g < batch->tile.group_count; g++)
-        to->counts.indirect += (unsigned)__builtin_popcount(batch->tile.active[g]);
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        to->counts.indirect += (unsigned)__builtin_popcount(batch->rays->active[g]);
 }
 
 /// The light of faces and vertices is kept for all readers: it is made of every sample of the lights.
@@ -372,14 +485,15 @@ static void follow(struct glint_indirect *indirect, const glint_tile_frame *fram
 {
     glint_batch *batch = &indirect->batch;
     bool any = true;
+    batch->rays = &indirect->first;
     for (uint32_t step = 0; any && !glint_tile_cancelled(frame); step++) {
         count_rays(batch, to);
-        glint_batch_load(batch, frame->plan->desc.precision);
         take_lights(indirect, frame->plan, number, step);
         any = glint_batch_cast(batch, &indirect->frame);
-        light(indirect, frame, any);
-        collect(batch, frame->plan, to);
-        any = any && go_on(indirect, frame, number);
+        if (any || batch->whole)
+            light(indirect, frame, any);
+        collect(indirect, frame, to);
+        any = any && go_on(indirect, frame, number, step);
     }
 }
 
@@ -397,10 +511,11 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->frame.plan = &indirect->plan;
     const uint32_t paths = find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
+    batch->ordered = from != NULL; // whose rays may share pixels
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;
-        if (begin_paths(indirect, frame, seen, from, path, number))
+        if (begin_paths(indirect, frame, seen, path, number))
             follow(indirect, frame, tile, number);
     }
     glint_batch_end(batch, tile);

@@ -193,7 +193,7 @@ static void gather_footprints(const gathering *g, unsigned lanes)
     for (; lanes; lanes &= lanes - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(lanes), i = (uint32_t)g->at + lane;
         const double t = g->points->t ? glint_real_at(g->points->t, g->frame->plan->desc.precision, i) : 0;
-        const double far = t + (g->points->t && tile->batch_rays ? tile->batch_rays[i].way : 0);
+        const double far = t + (g->points->t && tile->batch ? tile->batch->rays->way[tile->batch->ray_of[i]] : 0);
         row(g, GLINT_INPUT_FOOTPRINT)[lane] = !g->points->t ? 0 : patterns->pixel * (patterns->parallel ? 1 : far);
     }
 }

@@ -142,7 +142,7 @@ typedef struct glint_tile {
     struct glint_transparent_shadow *transparent_shadow;
     struct glint_samples *samples; ///< memory of tile/shade.c; likewise
     uint32_t own_lights; ///< the first of `lights` that is the current sample's
-    const struct glint_batch_ray *batch_rays; ///< of a batch: the ray that found each sample; NULL: the eye's
+    const struct glint_batch *batch; ///< whose rays found the samples; NULL: the eye's did
     struct glint_vertex *vertex; ///< likewise, of tile/vertex.c
     struct glint_depth_cue *depth_cue; ///< of tile/depth_cue.c; NULL until a frame fades
     struct glint_raster_rest *raster_rest; ///< of tile/raster.c: what is cast because it is no triangle; likewise

@@ -49,7 +49,7 @@ void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transpare
 /// What is around a sample's point, on the side of the viewer, to which the light comes as well.
 static glint_media media_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
 {
-    glint_media media = tile->batch_rays ? tile->batch_rays[i].media : plan->eye_media;
+    glint_media media = tile->batch ? *glint_batch_media(tile->batch, i) : plan->eye_media;
     const uint32_t material = tile->surface.material[i];
     if (plan->bouncing[material].transmits && glint_has_lane(tile->hit.back, i) && !glint_media_has(&media, material))
         glint_media_enter(&media, material);

@@ -51,6 +51,42 @@ static void test_scatter(void **state)
     run_cases(CASES, 17000, scatter_case);
 }
 
+/// Sums that hold something: added to where rays missed, left alone elsewhere.
+static void sky_case(int precision, bool odd)
+{
+    (void)precision;
+    const uint32_t groups = 1 + below(6), n = groups * GLINT_GROUP;
+    double *before = input(KIND_DOUBLE, n);
+    glint_sky_args args = { .group_count = groups, .missed = masks(groups) };
+    for (int c = 0; c < 3; c++) {
+        double *weight = input(KIND_DOUBLE, n);
+        for (uint32_t i = 0; i < n; i++) {
+            before[i] = between(0, 2);
+            weight[i] = maybe_odd(odd, one_in(5) ? 0 : power_of_ten(-6, 0));
+        }
+        args.weight[c] = weight;
+        args.background[c] = one_in(5) ? 0 : between(0, 3);
+    }
+    FOR_EACH_TESTED
+    {
+        for (int c = 0; c < 3; c++) {
+            args.sum[c] = output("sum", KIND_DOUBLE, n);
+            memcpy(args.sum[c], before, n * sizeof *before);
+        }
+        running->sky(&args);
+        for (uint32_t i = 0; i < n; i++)
+            if (!lane_of(args.missed, i) && args.sum[0][i] != before[i])
+                mismatches++;
+        compare_outputs("sky");
+    }
+}
+
+static void test_sky(void **state)
+{
+    (void)state;
+    run_cases(CASES, 20000, sky_case);
+}
+
 /// One direction around `n`, by point k of the sequence of a seed.
 static void direction_of(const double n[3], uint32_t k, uint64_t seed, double out[3])
 {
@@ -176,7 +212,7 @@ int main(void)
     find_tested();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scatter),  cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_means),
-        cmocka_unit_test(test_evenness), cmocka_unit_test(test_independence),
+        cmocka_unit_test(test_evenness), cmocka_unit_test(test_independence), cmocka_unit_test(test_sky),
     };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

@@ -1,4 +1,4 @@
-/// The contract of the stages from there to the picture: vertex, bounce, scatter, shade, resolve, tone. Begin with stages.h.
+/// The contract of the stages from there to the picture: vertex, bounce, scatter, sky, shade, resolve, tone. Begin with stages.h.
 #ifndef GLINT_CONTRACT_FILM_H
 #define GLINT_CONTRACT_FILM_H
 
@@ -60,6 +60,16 @@ typedef struct glint_scatter_args {
 // shares of an even sky's light.
 // The arithmetic: ref/scatter.h: the disk, lifted, which is cosine-weighted, in the orthonormal basis of T. Duff et al., JCGT
 // 6(1), 2017.
+
+// ---- sky: what rays that meet nothing bring ----
+
+typedef struct glint_sky_args {
+    uint32_t group_count;
+    const uint16_t *missed; ///< a bit a lane
+    const double *weight[3];
+    double background[3];
+    double *sum[3]; ///< in and out: where missed, weight times background is added
+} glint_sky_args;
 
 // ---- shade: the terms of each sample ----
 

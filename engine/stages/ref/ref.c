@@ -221,6 +221,7 @@ static double square_root_double(double x) { return sqrt(x); }
 #undef NAME
 
 #include "engine/stages/ref/shade.h"
+#include "engine/stages/ref/sky.h"
 
 // ---- resolve -----------------------------------------------------------------------------------------------------
 
@@ -307,6 +308,7 @@ const glint_stages glint_stages_ref = {
     .name = "ref",
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .program = program,
+    .sky = sky,
     .shade = shade,
     .resolve = resolve,
     .resolve_samples = resolve_samples,

@@ -25,6 +25,7 @@
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/program/program.h"
 #include "engine/stages/shade/shade.h"
+#include "engine/stages/shade/sky.h"
 #include "engine/stages/film/resolve.h"
 #include "engine/stages/film/samples.h"
 #include "engine/stages/film/tone.h"
@@ -45,6 +46,7 @@
 const glint_stages GLINT_STAGES_SYMBOL = {
     .name = GLINT_STAGES_NAME,
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
+    .sky = GLINT_WITH_INDIRECT ? sky : NULL,
     .program = GLINT_WITH_PROGRAM ? program : NULL,
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,

@@ -1,0 +1,56 @@
+#include "engine/tile/rays.h"
+
+#include <string.h>
+
+void glint_rays_clear(glint_rays *rays, uint32_t group_count)
+{
+    rays->group_count = group_count;
+    memset(rays->active, 0, group_count * sizeof *rays->active);
+    memset(rays->inward, 0, group_count * sizeof *rays->inward);
+}
+
+void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray)
+{
+    const glint_precision precision = plan->desc.precision;
+    for (int c = 0; c < 3; c++) {
+        glint_real_put(rays->origin[c], precision, i, ray->origin[c]);
+        glint_real_put(rays->direction[c], precision, i, ray->direction[c]);
+        rays->weight[c][i] = ray->weight[c];
+    }
+    rays->leaving[i] = ray->leaving;
+    rays->way[i] = ray->way;
+    rays->least[i] = ray->least;
+    rays->pixel[i] = ray->pixel;
+    rays->point[i] = ray->point;
+    rays->depth[i] = ray->depth;
+    rays->scatters[i] = ray->scatters;
+    rays->term[i] = ray->term;
+    rays->active[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+    rays->inward[i / GLINT_GROUP] |= (uint16_t)((unsigned)ray->inward << i % GLINT_GROUP);
+    if (plan->transmits)
+        rays->media[i] = ray->media;
+}
+
+glint_ray glint_rays_get(const glint_rays *rays, const glint_plan *plan, uint32_t i)
+{
+    const glint_precision precision = plan->desc.precision;
+    glint_ray ray;
+    for (int c = 0; c < 3; c++) {
+        ray.origin[c] = glint_real_at(rays->origin[c], precision, i);
+        ray.direction[c] = glint_real_at(rays->direction[c], precision, i);
+        ray.weight[c] = rays->weight[c][i];
+    }
+    ray.leaving = rays->leaving[i];
+    ray.way = rays->way[i];
+    ray.least = rays->least[i];
+    ray.pixel = rays->pixel[i];
+    ray.point = rays->point[i];
+    ray.depth = rays->depth[i];
+    ray.scatters = rays->scatters[i];
+    ray.term = rays->term[i];
+    ray.inward = glint_has_lane(rays->inward, i);
+    ray.media.count = 0;
+    if (plan->transmits)
+        ray.media = rays->media[i];
+    return ray;
+}

@@ -1,0 +1,41 @@
+/// Rays that start on surfaces, in arrays: at most a tile's samples. Internal.
+#ifndef GLINT_TILE_RAYS_H
+#define GLINT_TILE_RAYS_H
+
+#include "engine/tile/tile.h"
+
+/// One of them, on its way from one set to another.
+typedef struct glint_ray {
+    double origin[3], direction[3], weight[3]; ///< the direction is unit but for rounding
+    uint32_t leaving; ///< the primitive it starts on
+    uint32_t pixel; ///< its sample's place in the tile
+    uint32_t point; ///< of a path of indirect light: the point where it began
+    uint32_t depth; ///< mirrors and refractions on its path so far
+    uint32_t scatters; ///< matt surfaces
+    double way; ///< from the eye to where it starts, along its path; in frames with programs
+    double least; ///< the weight below which a path of indirect light ends
+    uint16_t term; ///< where its light goes
+    bool inward;
+    glint_media media; ///< in frames with transparent materials
+} glint_ray;
+
+typedef struct glint_rays {
+    _Alignas(64) double origin[3][GLINT_TILE_SAMPLES], direction[3][GLINT_TILE_SAMPLES]; ///< real
+    _Alignas(64) double weight[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) uint32_t leaving[GLINT_TILE_SAMPLES];
+    double way[GLINT_TILE_SAMPLES], least[GLINT_TILE_SAMPLES];
+    uint32_t pixel[GLINT_TILE_SAMPLES], point[GLINT_TILE_SAMPLES];
+    uint32_t depth[GLINT_TILE_SAMPLES], scatters[GLINT_TILE_SAMPLES];
+    uint16_t term[GLINT_TILE_SAMPLES];
+    uint32_t group_count;
+    uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray hold anything
+    glint_media media[GLINT_TILE_SAMPLES];
+} glint_rays;
+
+/// Makes `rays` an empty set of groups.
+void glint_rays_clear(glint_rays *rays, uint32_t group_count);
+/// Puts a ray into lane i, which becomes active.
+void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray);
+glint_ray glint_rays_get(const glint_rays *rays, const glint_plan *plan, uint32_t i);
+
+#endif
