@@ -176,3 +176,164 @@ static inline void R(cast_spheres)(const glint_cast_args *args, uint32_t g, cons
             R(add_pair)(args, pairs, ray, met.prim[lane], met.next[lane]);
     }
 }
+
+// ---- One ray against the spheres of a node ----
+
+/// A group's rays as one after the other walks the index.
+typedef struct R(lone_rays) {
+    _Alignas(64) float inverse[3][GLINT_GROUP], length[GLINT_GROUP], per_a[GLINT_GROUP]; ///< of d: 1 / d, |d|, 1 / |d|^2
+    unsigned usual; ///< others are not for float
+} R(lone_rays);
+
+static inline void R(load_lone_rays)(const R(ray_group) * rays, R(lone_rays) * out)
+{
+    out->usual = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        R(float_rays) lanes;
+        R(load_float_rays)(rays, i, &lanes);
+        for (int k = 0; k < 3; k++)
+            f_store(out->inverse[k] + i, f_set(1) / lanes.direction[k]);
+        f_store(out->length + i, lanes.length);
+        f_store(out->per_a + i, lanes.per_a);
+        out->usual |= fm_bits(lanes.usual) << i;
+    }
+}
+
+/// One ray, and what it may meet first of what it has come upon.
+typedef struct R(lone_ray) {
+    float origin[3], direction[3], inverse[3], length, per_a;
+    float enter[3], leave[3]; ///< the origin, moved by its rounding to where boxes begin earlier and end later
+    uint32_t leaving;
+    float far; ///< what is met is not beyond, in the index's units
+    float way[2], next; ///< ways to the first two spheres that it may enter, and to the third
+    uint32_t prim[2]; ///< these; GLINT_MISS: none
+} R(lone_ray);
+
+static inline void R(load_lone_ray)(const glint_cast_args *args, size_t at, const R(ray_group) * rays,
+                                    const R(lone_rays) * lone, R(lone_ray) * ray)
+{
+    const size_t lane = at % GLINT_GROUP;
+    ray->length = lone->length[lane];
+    ray->per_a = lone->per_a[lane];
+    ray->leaving = args->leaving ? args->leaving[at] : GLINT_MISS;
+    ray->far = R(reach_in_index)(args, ((const real *)args->t)[at]);
+    ray->way[0] = ray->way[1] = ray->next = HUGE_VALF;
+    ray->prim[0] = ray->prim[1] = GLINT_MISS;
+    for (int k = 0; k < 3; k++) {
+        const float x = rays->local[k][lane], moved = 0x1p-22f * fabsf(x) + FLT_MIN;
+        ray->origin[k] = x;
+        ray->direction[k] = rays->direction[k][lane];
+        ray->inverse[k] = lone->inverse[k][lane];
+        ray->enter[k] = ray->inverse[k] < 0 ? x - moved : x + moved;
+        ray->leave[k] = ray->inverse[k] < 0 ? x + moved : x - moved;
+    }
+}
+
+/// Which boxes the ray may enter before `far`, and where it enters each. As boxes_on_ray: what is rounded besides the origin is
+/// a share of the way.
+static inline unsigned R(boxes_of_lone_ray)(const glint_node *node, const R(lone_ray) * ray,
+                                            float depth[GLINT_NODE_WIDTH])
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        vf enter = f_set(0), leave = f_set(ray->far);
+        for (int k = 0; k < 3; k++) {
+            const bool back = ray->inverse[k] < 0;
+            const float *first = back ? node->upper[k] : node->lower[k], *last = back ? node->lower[k] : node->upper[k];
+            const vf inverse = f_set(ray->inverse[k]);
+            enter = f_max((f_load(first + i) - f_set(ray->enter[k])) * inverse, enter); // NaN, 0 times infinity, keeps
+            leave = f_min((f_load(last + i) - f_set(ray->leave[k])) * inverse, leave); // what there was
+        }
+        f_store(depth + i, enter);
+        inside |= fm_bits(f_le(enter, leave * f_set(1 + WALK_SLACK))) << i;
+    }
+    return inside;
+}
+
+/// Ways to the spheres of a node, a slot each.
+typedef struct R(balls_on_ray) {
+    _Alignas(64) float way[GLINT_NODE_WIDTH]; ///< the ray enters not before
+    _Alignas(64) float sure[GLINT_NODE_WIDTH]; ///< it enters for certain before; infinite: it may miss
+} R(balls_on_ray);
+
+/// What a box of a node says of the sphere that fills it: from its centre to the ray's origin, and between what bounds rounding
+/// leaves the radius.
+typedef struct R(boxed_balls) {
+    vf f[3], least, most, margin;
+} R(boxed_balls);
+
+INNER R(boxed_balls) R(balls_in_boxes)(const glint_node *node, const R(lone_ray) * ray, int i)
+{
+    R(boxed_balls) out;
+    vf size = f_set(0);
+    for (int k = 0; k < 3; k++) {
+        const vf lower = f_load(node->lower[k] + i), upper = f_load(node->upper[k] + i);
+        const vf middle = f_set(0.5f) * (lower + upper), half = upper - middle, from = f_set(ray->origin[k]);
+        out.f[k] = from - middle;
+        out.least = k ? f_min(out.least, half) : half;
+        out.most = k ? f_max(out.most, half) : half;
+        size = size + (f_abs(middle) + f_abs(from));
+    }
+    out.margin = f_set(NEAREST_SLACK) * (size + out.most);
+    return out;
+}
+
+/// Returns the slots whose spheres the ray may enter before `far`, or begins in.
+static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) * ray, R(balls_on_ray) * out)
+{
+    const vf d[3] = { f_set(ray->direction[0]), f_set(ray->direction[1]), f_set(ray->direction[2]) };
+    const vf length = f_set(ray->length), per_a = f_set(ray->per_a), zero = f_set(0);
+    unsigned may = 0;
+    for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
+        const R(boxed_balls) ball = R(balls_in_boxes)(node, ray, i);
+        const vf *f = ball.f;
+        const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
+        const vf limit = ball.most + ball.margin, inner = f_max(ball.least - ball.margin, zero);
+        const vf x2 = DOT(x, x), b = -DOT(f, d), reach = limit * length, least = inner * length;
+        const vf room = reach * reach - x2, inner_room = least * least - x2;
+        const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
+        const vf way = f_max((b - half) - slack, zero) * per_a;
+        const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, f_set(ray->far)));
+        if (!fm_bits(near))
+            continue;
+        const vf inner_half = f_sqrt(f_max(inner_room, zero));
+        const fm outside = fm_and(f_lt(limit * limit, DOT(f, f)), f_lt(zero, b));
+        const vf sure = ((b - inner_half) + (slack + ball.margin * length)) * per_a;
+        f_store(out->way + i, way);
+        f_store(out->sure + i, f_select(fm_and(outside, f_lt(zero, inner_room)), sure, f_set(HUGE_VALF)));
+        may |= fm_bits(near) << i;
+    }
+    return may;
+}
+
+/// Notes a sphere that the ray may enter.
+static inline void R(note_ball)(R(lone_ray) * ray, uint32_t id, float way, float sure)
+{
+    if (id == ray->leaving)
+        return;
+    if (way < ray->way[0]) {
+        ray->next = ray->way[1];
+        ray->way[1] = ray->way[0];
+        ray->prim[1] = ray->prim[0];
+        ray->way[0] = way;
+        ray->prim[0] = id;
+    } else if (way < ray->way[1]) {
+        ray->next = ray->way[1];
+        ray->way[1] = way;
+        ray->prim[1] = id;
+    } else {
+        ray->next = smaller(ray->next, way);
+    }
+    ray->far = smaller(ray->far, sure);
+}
+
+/// What remains to be decided of a ray.
+static inline void R(pair_ray)(const glint_cast_args *args, const R(lone_ray) * ray, uint32_t at, R(ray_pairs) * pairs)
+{
+    const bool two = ray->prim[1] != GLINT_MISS && ray->way[1] <= ray->far;
+    if (ray->prim[0] == GLINT_MISS || !(ray->way[0] <= ray->far))
+        return;
+    if (two)
+        R(add_pair)(args, pairs, at, ray->prim[1], HUGE_VALF);
+    R(add_pair)(args, pairs, at, ray->prim[0], two ? ray->next : smaller(ray->way[1], ray->next));
+}

@@ -1,5 +1,5 @@
-// cast_rays: the nearest hit of rays that start anywhere. A lone ray walks the index; those of an orthographic camera's tile walk
-// it together (parallel.h). Contract: stages.h.
+// cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else each ray walks the
+// index; those of an orthographic camera's tile walk it together (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -146,6 +146,56 @@ static void R(walk_ray)(const glint_cast_args *args, uint32_t g, const R(ray_gro
     }
 }
 
+/// The primitives of a node in the slots of `mask`: spheres are noted, others decided.
+static inline void R(meet_node)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays, int lane,
+                                const glint_node *node, unsigned mask, R(lone_ray) * ray)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const bool mixed = geometry->triangles || geometry->solids;
+    R(balls_on_ray) balls;
+    unsigned spheres = R(meet_balls)(node, ray, &balls) & mask;
+    for (unsigned left = mixed ? mask : spheres; left; left &= left - 1) {
+        const int slot = __builtin_ctz(left);
+        const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
+        if (!mixed || geometry->prims[id].kind == GLINT_PRIM_SPHERE) {
+            if (spheres >> slot & 1)
+                R(note_ball)(ray, id, balls.way[slot], balls.sure[slot]);
+        } else if (R(near_rays)(rays, &geometry->prims[id]) >> lane & 1 && R(decide_rays)(args, g, id, 1u << lane)) {
+            const size_t at = (size_t)g * GLINT_GROUP + (size_t)lane;
+            ray->far = smaller(ray->far, R(reach_in_index)(args, ((const real *)args->t)[at]));
+        }
+    }
+}
+
+/// Walks the index with one ray, by float as far as spheres are concerned.
+static void R(walk_lone_ray)(const glint_cast_args *args, uint32_t g, const R(ray_group) * rays,
+                             const R(lone_rays) * lone, int lane, R(ray_pairs) * pairs)
+{
+    const glint_geometry_table *geometry = args->geometry;
+    const bool mixed = geometry->triangles || geometry->solids;
+    const size_t at = (size_t)g * GLINT_GROUP + (size_t)lane;
+    R(lone_ray) ray;
+    walk_entry stack[WALK_STACK];
+    int height = 0;
+    R(load_lone_ray)(args, at, rays, lone, &ray);
+    stack[height++] = (walk_entry) { 0, 0 };
+    while (height > 0) {
+        const walk_entry top = stack[--height];
+        if (ray.far < top.depth)
+            continue;
+        _Alignas(64) float depth[GLINT_NODE_WIDTH];
+        int order[GLINT_NODE_WIDTH];
+        const glint_node *node = &geometry->nodes[top.node];
+        const unsigned prims = prims_of_node(node), leaf = mixed ? 0 : prims | lanes_equal(node->child, 0); // 0: no child
+        const unsigned mask = leaf == 0xffff ? prims : R(boxes_of_lone_ray)(node, &ray, depth);
+        if (mask & prims)
+            R(meet_node)(args, g, rays, lane, node, mask & prims, &ray);
+        for (int i = sort_slots(mask & ~prims, depth, order); i-- > 0;)
+            stack[height++] = (walk_entry) { node->child[order[i]], depth[order[i]] };
+    }
+    R(pair_ray)(args, &ray, (uint32_t)at, pairs);
+}
+
 static void R(cast_parallel)(const glint_cast_args *args);
 
 /// A group's rays as filter and walk see them. local: room for their origins.
@@ -235,24 +285,47 @@ static void R(cast_few_rays)(const glint_cast_args *args)
     }
 }
 
+/// Of a scene with many.
+static void R(cast_many_rays)(const glint_cast_args *args)
+{
+    _Alignas(64) float local[3][GLINT_GROUP];
+    R(ray_group) rays;
+    R(lone_rays) lone;
+    R(ray_pairs) pairs = { .count = 0 };
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        R(begin_rays)(args, g, local, &rays);
+        R(load_lone_rays)(&rays, &lone);
+        for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
+            if (GLINT_REAL == 64 && lone.usual & lanes & -lanes)
+                R(walk_lone_ray)(args, g, &rays, &lone, __builtin_ctz(lanes), &pairs);
+            else
+                R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+    }
+    R(decide_ray_pairs)(args, &pairs);
+    for (uint32_t g = 0; g < args->group_count; g++) {
+        if (pairs.undecided[g])
+            R(make_ray_group)(args, g, local, &rays);
+        for (unsigned lanes = pairs.undecided[g]; lanes; lanes &= lanes - 1)
+            R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
+        R(finish_group)(args, g);
+    }
+}
+
 static void R(cast_rays)(const glint_cast_args *args)
 {
     const glint_geometry_table *geometry = args->geometry;
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
-    if (args->camera && geometry->nodes) {
+    if (geometry->nodes && args->camera) {
         R(cast_parallel)(args);
-        return;
-    }
-    if (geometry->nodes && geometry->prim_count <= GLINT_FEW) {
+    } else if (geometry->nodes && geometry->prim_count > GLINT_FEW) {
+        R(cast_many_rays)(args);
+    } else if (geometry->nodes) {
         R(cast_few_rays)(args);
-        return;
-    }
-    for (uint32_t g = 0; g < args->group_count; g++) {
-        R(begin_rays)(args, g, local, &rays);
-        if (geometry->nodes)
-            for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
-                R(walk_ray)(args, g, &rays, __builtin_ctz(lanes));
-        R(finish_group)(args, g);
+    } else {
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            R(begin_rays)(args, g, local, &rays);
+            R(finish_group)(args, g);
+        }
     }
 }

@@ -44,8 +44,9 @@ INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_pri
     if (range == R(RANGE_ANY)) {
         const rm near = r_lt(DOT(f, f), r_set(GLINT_SPHERE_NEAR));
         vr far[3];
-        R(far_normal)(f, d, r_set(prim->r2), far);
-        for (int k = 0; k < 3; k++)
+        if (rm_bits(near) != (1u << VR) - 1)
+            R(far_normal)(f, d, r_set(prim->r2), far);
+        for (int k = 0; k < 3 && rm_bits(near) != (1u << VR) - 1; k++)
             n[k] = r_select(near, n[k], far[k]);
     }
     for (int k = 0; k < 3; k++)
