@@ -15,14 +15,22 @@ static inline vf plane_product(const float *factor, const float *plane, double c
     return f_load(factor) * color;
 }
 
+/// The plane of a material's reflectance in a channel; term 0: diffuse, else specular. NULL: it is the table's.
+static inline const float *plane_of(const glint_shade_args *args, const glint_shade_material *material, int term, int c,
+                                    size_t at)
+{
+    const bool has = material->planes & (term ? GLINT_PLANE_SPECULAR : GLINT_PLANE_DIFFUSE);
+    return has ? (term ? args->planes->specular : args->planes->diffuse)[c] + at : NULL;
+}
+
 /// One light's share of a term in a channel.
 static inline void plane_share(const glint_shade_args *args, const glint_shade_material *material,
                                const light_factors *factors, uint32_t k, int term, int c, size_t at,
                                float share[GLINT_GROUP])
 {
     const glint_shade_light *light = factors->light[k];
-    const bool specular = term > 0, has = material->planes & (specular ? GLINT_PLANE_SPECULAR : GLINT_PLANE_DIFFUSE);
-    const float *plane = has ? (specular ? args->planes->specular : args->planes->diffuse)[c] + at : NULL;
+    const bool specular = term > 0;
+    const float *plane = plane_of(args, material, term, c, at);
     const double constant = (specular ? material->specular : material->diffuse)[c];
     const double strength = (specular ? light->specular : light->diffuse)[c];
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -97,18 +105,37 @@ static inline void sum_plane_shares(const glint_shade_args *args, const glint_sh
         d_store_f(sum + i, total[i / VD]);
 }
 
+/// As shade_whole.
+static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
+                                                   bool shines, const light_factors *factors, size_t at)
+{
+    const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
+    for (int c = 0; c < 3; c++) {
+        const float *diffuse = plane_of(args, material, 0, c, at), *specular = plane_of(args, material, 1, c, at);
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const size_t k = at + (size_t)i;
+            vf sum = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
+            if (light)
+                sum = sum + plane_product(factors->diffuse[0] + i, diffuse ? diffuse + i : NULL, material->diffuse[c],
+                                          light->diffuse[c]);
+            if (light && shines)
+                sum = sum + plane_product(factors->specular[0] + i, specular ? specular + i : NULL, material->specular[c],
+                                          light->specular[c]);
+            f_store(args->beauty[c] + k, sum);
+        }
+    }
+}
+
 /// As shade_direct.
 static __attribute__((noinline)) void shade_planes(const glint_shade_args *args, const glint_shade_material *material,
-                                                   bool specular, uint32_t g, unsigned lanes, group_terms *terms)
+                                                   bool specular, const light_factors *factors, size_t at,
+                                                   unsigned lanes, group_terms *terms)
 {
-    const size_t at = (size_t)g * GLINT_GROUP;
     _Alignas(64) float light[2][3][GLINT_GROUP], ambient[GLINT_GROUP];
-    light_factors factors;
-    find_plane_factors(args, material, specular, g, &factors);
-    const int kinds = factors.count == 0 ? 0 : specular ? 2 : 1;
+    const int kinds = factors->count == 0 ? 0 : specular ? 2 : 1;
     for (int k = 0; k < kinds; k++)
         for (int c = 0; c < 3; c++)
-            sum_plane_shares(args, material, &factors, k, c, at, light[k][c]);
+            sum_plane_shares(args, material, factors, k, c, at, light[k][c]);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < GLINT_GROUP; i += VD)
             d_store_f(ambient + i, plane_ambient(args, material, c, at + (size_t)i));

@@ -300,22 +300,25 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         lanes = left;
         const glint_shade_material *material = material_of(args, at, &lanes);
         const bool specular = args->highlights && material->highlight;
-        if (GLINT_WITH_PROGRAM && material->planes) {
-            if (!begun)
-                start_direct(args, g, &terms);
-            begun = true;
-            shade_planes(args, material, specular, g, lanes, &terms);
-            continue;
-        }
-        find_factors(args, material, specular, g, &factors);
+        const bool planes = GLINT_WITH_PROGRAM && material->planes;
+        if (planes)
+            find_plane_factors(args, material, specular, g, &factors);
+        else
+            find_factors(args, material, specular, g, &factors);
         if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
-            shade_whole(args, material, specular, &factors, at);
+            if (planes)
+                whole_planes(args, material, specular && factors.shiny, &factors, at);
+            else
+                shade_whole(args, material, specular, &factors, at);
             return;
         }
         if (!begun)
             start_direct(args, g, &terms);
         begun = true;
-        shade_direct(material, specular, &factors, lanes, &terms);
+        if (planes)
+            shade_planes(args, material, specular, &factors, at, lanes, &terms);
+        else
+            shade_direct(material, specular, &factors, lanes, &terms);
     }
     if (!begun)
         start_direct(args, g, &terms);
