@@ -305,8 +305,8 @@ typedef enum glint_distribution { GLINT_DISTRIBUTION_GGX, GLINT_DISTRIBUTION_BEC
 /// that is NaN or below 0 is taken as 0, above 2^100 as that, and counted: see glint_frame_stats. A program whose outputs are
 /// numbers is these numbers: they are what glint_material_get gives.
 typedef struct glint_material_programs {
-    glint_program *diffuse, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number for a grey;
-        ///< `ambient` follows that of `diffuse` until it is set
+    glint_program *diffuse, *ambient, *specular, *mirror, *transmission; ///< patterns of a colour, or of one number for
+        ///< a grey; without one of its own, and until it is set, `ambient` follows that of `diffuse`
     glint_program *shininess, *roughness; ///< patterns of one number; above 1, `roughness` is 1
     glint_program *bump; ///< pattern of one number, the height over the surface in world units: light, mirrors and glass see
         ///< the normal unit(n - (g - (g.n) n)), g the height's gradient by `p` and `world`. Only where n.l > 0 with the

@@ -21,6 +21,7 @@ static const glintL_field FIELDS[] = {
       .kind = GLINTL_COLOR,
       .offset = AT(ambient),
       .set_offset = AT(has_ambient),
+      .program_offset = AT(program.ambient),
       .follows = "diffuse" },
     { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .program_offset = AT(program.diffuse) },
     { .name = "specular",

@@ -68,7 +68,7 @@ function vector:reflect(n) end
 
 ---@class glint.material_fields
 ---@field model? "phong"|"blinn_phong"|"lambert"|"cook_torrance"|glint.shader  how the highlight falls off; "lambert" has none; "cook_torrance" is of microfacets. Default "phong"
----@field ambient? glint.color  reflectance >= 0 of ambient light. Follows `diffuse` until set; nil: follows again
+---@field ambient? glint.color|glint.pattern|glint.texture  reflectance >= 0 of ambient light. Follows `diffuse` until set; nil: follows again
 ---@field diffuse? glint.color|glint.pattern|glint.texture  reflectance >= 0; above 1 is allowed and warned about once. Default 0.8
 ---@field specular? glint.color|glint.pattern|glint.texture  strength >= 0 of the highlight. Default 0; with "cook_torrance" 1, nil: follows again
 ---@field shininess? number|glint.pattern  exponent >= 0 of the highlight: higher is smaller and sharper. Default 32
@@ -761,7 +761,7 @@ function triple:unpack() end
 ---@field ks glint.triple  of shaders: the material's specular
 ---@field shininess number  of shaders: the material's
 
---- A colour or a number at each point. Of a material's fields diffuse, specular, mirror, transmission, shininess,
+--- A colour or a number at each point. Of a material's fields diffuse, ambient, specular, mirror, transmission, shininess,
 --- roughness, bump and opacity take one, of a scene's background. `#pattern` is the length of its program, `tostring(pattern)` the program; `pattern(p, s)`
 --- calls the function. NaN and what is below 0 count as 0.
 ---@class glint.pattern

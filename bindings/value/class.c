@@ -82,8 +82,8 @@ static void push_value(lua_State *L, const glintL_class *class, const glintL_fie
 static bool push_source(lua_State *L, const glintL_class *class, const glintL_field *field, const void *object)
 {
     description desc;
-    if (field->program_offset)
-        return glintL_push_kept(L, 1, field->name);
+    if (field->program_offset && glintL_push_kept(L, 1, field->name))
+        return true;
     if (!field->follows)
         return false;
     class->get(object, &desc);

@@ -71,6 +71,8 @@ static double surface_light(const glint_plan *plan, uint32_t i)
     double sum = brightest_of(m->ambient) + (plan->indirect.samples ? brightest_of(plan->indirect.rest[i]) : 0);
     if (plan->patterns && plan->patterns->of[i].made >> GLINT_FIELD_DIFFUSE & 1)
         sum += diffuse * brightest_of(plan->ambient);
+    if (plan->patterns && plan->patterns->of[i].program[GLINT_FIELD_AMBIENT])
+        sum += GLINT_REFLECTANCE_MAX * brightest_of(plan->ambient);
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *light = &plan->lights[k];
         const double c0 = light->coefficients[0];

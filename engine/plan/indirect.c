@@ -14,7 +14,8 @@ static bool is_matt(const glint_plan *plan, uint32_t i)
     return kd[0] > 0 || kd[1] > 0 || kd[2] > 0;
 }
 
-/// Parts a material's ambient light. Where a program gives the diffuse reflectance, so do the stages pattern and indirect.
+/// Parts a material's ambient light. Where a program gives it, or the diffuse reflectance, so do the stages pattern and
+/// indirect.
 static void part_ambient(glint_plan *plan, uint32_t i, double rest[3])
 {
     glint_shade_material *material = &plan->materials[i];

@@ -13,8 +13,8 @@
 
 const char *glint_field_name(int field)
 {
-    static const char *const names[] = { "diffuse",   "ambient", "specular", "mirror", "transmission", "shininess",
-                                         "roughness", "bump",    "opacity",  "model",  "background" };
+    static const char *const names[] = { "diffuse",   "ambient",   "ambient", "specular", "mirror", "transmission",
+                                         "shininess", "roughness", "bump",    "opacity",  "model",  "background" };
     return names[field];
 }
 
@@ -23,6 +23,8 @@ static const glint_program *program_of(const glint_material_programs *programs, 
     switch (field) {
     case GLINT_FIELD_DIFFUSE:
         return programs->diffuse;
+    case GLINT_FIELD_AMBIENT:
+        return programs->ambient;
     case GLINT_FIELD_SPECULAR:
         return programs->specular;
     case GLINT_FIELD_MIRROR:
@@ -70,7 +72,9 @@ static uint32_t made_by(const glint_plan_pattern *pattern, bool indirect)
         made |= pattern->program[field] ? 1u << field : 0;
     if (made >> GLINT_FIELD_SHININESS & 1 && desc->normalized && !pattern->program[GLINT_FIELD_SHADER])
         made |= 1u << GLINT_FIELD_SPECULAR; // whose factor depends on the exponent
-    if (made >> GLINT_FIELD_DIFFUSE & 1 && indirect && !pattern->ambient_follows)
+    if (pattern->program[GLINT_FIELD_AMBIENT])
+        made |= indirect ? 1u << GLINT_FIELD_REST : 0;
+    else if (made >> GLINT_FIELD_DIFFUSE & 1 && indirect && !pattern->ambient_follows)
         made |= 1u << GLINT_FIELD_AMBIENT;
     return made;
 }
@@ -83,10 +87,10 @@ static glint_key numbers_key(const glint_plan_pattern *pattern)
     glint_key key = glint_key_add((glint_key) { 0 }, kind, sizeof kind);
     if (pattern->program[GLINT_FIELD_SHADER] || pattern->made >> GLINT_FIELD_SHININESS & 1)
         key = glint_key_add(key, desc->specular, sizeof desc->specular);
-    if (pattern->program[GLINT_FIELD_SHADER]) {
+    if (pattern->program[GLINT_FIELD_SHADER] || pattern->made >> GLINT_FIELD_REST & 1)
         key = glint_key_add(key, desc->diffuse, sizeof desc->diffuse);
+    if (pattern->program[GLINT_FIELD_SHADER])
         key = glint_key_add(key, &desc->shininess, sizeof desc->shininess);
-    }
     return pattern->made >> GLINT_FIELD_AMBIENT & 1 ? glint_key_add(key, desc->ambient, sizeof desc->ambient) : key;
 }
 
@@ -110,7 +114,7 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
 {
     pattern->desc = *desc;
     glint_material_desc_resolve(&pattern->desc);
-    pattern->ambient_follows = !desc->has_ambient;
+    pattern->ambient_follows = !desc->has_ambient && !desc->program.ambient;
     for (int c = 0; c < 3; c++)
         pattern->desc.diffuse[c] = desc->program.diffuse ? 1 : fmin(desc->diffuse[c], STRENGTH_MAX);
     for (int field = 0; field < GLINT_FIELD_COUNT; field++) {

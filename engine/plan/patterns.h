@@ -10,6 +10,7 @@
 typedef enum glint_field {
     GLINT_FIELD_DIFFUSE,
     GLINT_FIELD_AMBIENT, ///< where it is neither a number nor the diffuse reflectance: see glint_plan_find_indirect
+    GLINT_FIELD_REST, ///< of a program's ambient: what indirect light stands for; no program's own
     GLINT_FIELD_SPECULAR,
     GLINT_FIELD_MIRROR,
     GLINT_FIELD_TRANSMISSION,

@@ -55,6 +55,8 @@ static void take_planes(glint_shade_material *out, glint_material_desc *d, bool 
     const glint_material_programs *programs = &d->program;
     if (programs->diffuse)
         out->planes |= GLINT_PLANE_DIFFUSE | (ambient_follows ? GLINT_PLANE_AMBIENT_IS_DIFFUSE : 0u);
+    if (programs->ambient)
+        out->planes |= GLINT_PLANE_AMBIENT;
     if (programs->specular)
         out->planes |= GLINT_PLANE_SPECULAR;
     for (int c = 0; c < 3; c++) {
@@ -78,11 +80,11 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
     glint_material_desc d = *desc;
     glint_material_desc_resolve(&d);
     *out = (glint_shade_material) { 0 };
-    take_planes(out, &d, !desc->has_ambient);
-    for (int c = 0; c < 3 && !(out->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE); c++)
+    take_planes(out, &d, !desc->has_ambient && !desc->program.ambient);
+    for (int c = 0; c < 3 && !(out->planes & (GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT)); c++)
         out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
     if (d.program.shader) {
-        out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE; // the rest is the shader's
+        out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT; // the rest is the shader's
         return;
     }
     bounded(out->diffuse, d.diffuse, 1);

@@ -71,6 +71,7 @@ typedef struct program_field {
 
 static const program_field program_fields[] = {
     { "diffuse", AT(program.diffuse), AT(diffuse), 3, GLINT_REFLECTANCE_MAX, 0 },
+    { "ambient", AT(program.ambient), AT(ambient), 3, GLINT_REFLECTANCE_MAX, AT(has_ambient) },
     { "specular", AT(program.specular), AT(specular), 3, GLINT_REFLECTANCE_MAX, AT(has_specular) },
     { "mirror", AT(program.mirror), AT(mirror), 3, GLINT_REFLECTANCE_MAX, AT(has_mirror) },
     { "transmission", AT(program.transmission), AT(transmission), 3, GLINT_REFLECTANCE_MAX, 0 },

@@ -139,13 +139,24 @@ static void finish_exponent(const glint_plan_pattern *own, const glint_pattern_p
     }
 }
 
-/// What is left of a number of ambient light where indirect light stands for as much of it as the diffuse reflectance.
+/// What is left of ambient light where indirect light stands for as much of it as the diffuse reflectance; of a program's
+/// also how much that is.
 static void finish_ambient(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
                            uint32_t i)
 {
-    for (int c = 0; c < 3; c++)
-        plane_at(points, plan, GLINT_FIELD_AMBIENT, c)[i] =
-            (float)fmax(own->desc.ambient[c] - (double)plane_at(points, plan, GLINT_FIELD_DIFFUSE, c)[i], 0);
+    const bool program = own->program[GLINT_FIELD_AMBIENT];
+    if (program && !(own->made >> GLINT_FIELD_REST & 1))
+        return; // there is no indirect light
+    for (int c = 0; c < 3; c++) {
+        float *ambient = &plane_at(points, plan, GLINT_FIELD_AMBIENT, c)[i];
+        const double ka = program ? (double)*ambient : own->desc.ambient[c];
+        const double kd = own->made >> GLINT_FIELD_DIFFUSE & 1
+                              ? (double)plane_at(points, plan, GLINT_FIELD_DIFFUSE, c)[i]
+                              : own->desc.diffuse[c];
+        if (program)
+            plane_at(points, plan, GLINT_FIELD_REST, c)[i] = (float)fmin(ka, kd);
+        *ambient = (float)fmax(ka - kd, 0);
+    }
 }
 
 static void finish_roughness(const glint_plan_pattern *own, const glint_pattern_points *points, const glint_plan *plan,
@@ -368,6 +379,8 @@ double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, u
     const uint32_t material = tile->surface.material[i];
     const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;
     double room[3];
+    if (own && own->made >> GLINT_FIELD_REST & 1)
+        return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_REST, c)[i] * plan->ambient[c];
     if (!own || !(own->made >> GLINT_FIELD_DIFFUSE & 1))
         return plan->indirect.rest[material][c];
     const double kd = glint_tile_diffuse(tile, plan, i, room)[c];

@@ -26,7 +26,7 @@ local function raises(want, call)
   check(not good and tostring(message):find(want, 1, true), "'%s' expected, got %s", want, tostring(message))
 end
 
-local FIELDS = { "diffuse", "specular", "mirror", "transmission", "shininess", "roughness" }
+local FIELDS = { "diffuse", "ambient", "specular", "mirror", "transmission", "shininess", "roughness" }
 local tests = {}
 
 function tests.fields_read_as_their_pattern()
@@ -50,7 +50,7 @@ end
 function tests.other_fields_take_none()
   local pattern = glint.pattern(function(p) return p.x end)
   local shader = glint.shader(function(s) return s.kd end)
-  for _, field in ipairs { "ambient", "ior", "absorption", "f0", "fresnel", "model", "name", "matched" } do
+  for _, field in ipairs { "ior", "absorption", "f0", "fresnel", "model", "name", "matched" } do
     raises("expected, got pattern", function() return glint.material { [field] = pattern } end)
   end
   for _, field in ipairs { "diffuse", "shininess", "bump" } do
