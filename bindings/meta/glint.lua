@@ -814,6 +814,15 @@ function texture:evaluate(at) end
 ---@return glint.texture
 function glint.texture(fields) end
 
+--- A function that gives the colour of a number: viridis, magma and cividis run evenly from dark to light, turbo through the
+--- rainbow, coolwarm from blue over grey to red, for numbers on both sides of a middle. Numbers beyond the range have the
+--- colours of its ends. Inside a pattern it takes symbols, too, and gives the same bits.
+---@param name "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"
+---@param low? number  what the first colour stands for. Default 0
+---@param high? number  what the last one stands for, another number than low. Default 1
+---@return fun(x: number): glint.triple
+function glint.colormap(name, low, high) end
+
 -- ---- Operations ----
 
 -- Of numbers, with the same bits on every machine; inside a pattern of symbols, with the same bits again. Those of

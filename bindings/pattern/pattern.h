@@ -10,6 +10,7 @@
 ///   points.c      the same function with plain numbers, against the program
 ///   functions.c   the objects that glint.pattern and glint.shader make
 ///   texture.c     the objects that glint.texture makes
+///   colormap.c    glint.colormap: colours of numbers
 ///   reflection.c  material:evaluate with patterns and shaders
 ///   patterns.c    opens all of them
 ///   patterned.c   materials whose fields hold patterns: traced when a frame is planned
@@ -122,6 +123,11 @@ glintL_pattern *glintL_to_pattern(lua_State *L, int index);
 glintL_pattern *glintL_push_pattern(lua_State *L, glint_program_kind kind, const char *type);
 int glintL_pattern_evaluate(lua_State *L); ///< the method
 
+// ---- texture.c ----
+
+/// Red, green, blue and alpha of a texture at u, v, of a footprint; numbers give numbers.
+void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4]);
+
 // ---- What patterns.c opens ----
 
 void glintL_open_symbol(lua_State *L);
@@ -131,6 +137,7 @@ void glintL_open_tiling(lua_State *L);
 void glintL_open_input(lua_State *L);
 void glintL_open_trace(lua_State *L);
 void glintL_open_texture(lua_State *L);
+void glintL_open_colormap(lua_State *L);
 void glintL_open_functions(lua_State *L);
 
 #endif

@@ -32,5 +32,6 @@ void glintL_open_patterns(lua_State *L)
     glintL_open_input(L);
     glintL_open_trace(L);
     glintL_open_texture(L);
+    glintL_open_colormap(L);
     glintL_open_functions(L);
 }

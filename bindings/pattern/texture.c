@@ -109,7 +109,7 @@ static glint_status apply(glint_builder *builder, const glint_texture *texture, 
 }
 
 // With plain numbers alone there may be no builder at hand: one is made for the call.
-static void apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
+void glintL_apply_texture(lua_State *L, const glint_texture *texture, const glintL_term in[3], glintL_term out[4])
 {
     const glintL_trace *trace = glintL_current_trace(L);
     glint_builder *builder = trace ? trace->builder : NULL;
@@ -140,7 +140,7 @@ static int look_up(lua_State *L)
         in[2] = glintL_read_term(L, next, "texture: footprint");
     if (lua_gettop(L) > next)
         return glintL_error(L, "texture: u, v and a footprint, or s.uv and a footprint expected, got more");
-    apply_texture(L, pattern->texture, in, out);
+    glintL_apply_texture(L, pattern->texture, in, out);
     glintL_push_triple(L, out);
     lua_pushliteral(L, "a");
     glintL_push_term(L, out[3]);

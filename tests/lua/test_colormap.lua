@@ -1,0 +1,143 @@
+-- glint.colormap: published colours at the ends, in the middle and between, Moreland's map by his formula, ranges, and the same
+-- bits in a pattern and outside.
+local tally = dofile "tests/lua/tally.lua"
+local check, near = tally.check, tally.near
+local glint = require "glint"
+
+-- The sRGB code, with its fraction, of linear light.
+local function code(x) return 255 * (x <= 0.0031308 and 12.92 * x or 1.055 * x ^ (1 / 2.4) - 0.055) end
+local function light(c) return c / 255 <= 0.04045 and c / 255 / 12.92 or ((c / 255 + 0.055) / 1.055) ^ 2.4 end
+
+-- From the papers and their programs: of 256 colours the numbers 0, 64, 128, 192 and 255.
+local PUBLISHED = {
+  viridis = { "440154", "3b528b", "21918c", "5ec962", "fde725" },
+  magma = { "000004", "51127c", "b73779", "fc8961", "fcfdbf" },
+  cividis = { "00224e", "434e6c", "7d7c78", "bcae6c", "fee838" },
+  turbo = { "30123b", "28bceb", "a4fc3c", "fb7e21", "7a0403" },
+  coolwarm = { "3b4cc0", "8db0fe", "dddddd", "f49a7b", "b40426" },
+}
+
+local tests = {}
+
+function tests.published_colours()
+  for name, list in pairs(PUBLISHED) do
+    local map = glint.colormap(name)
+    for i, hex in ipairs(list) do
+      local color = map((i - 1) / 4) -- between the numbers 63 and 64 ...
+      for c = 1, 3 do
+        near(code(color[c]), tonumber(hex:sub(2 * c - 1, 2 * c), 16), i % 2 == 1 and i ~= 3 and 1e-3 or 3,
+          ("%s at %g, component %d"):format(name, (i - 1) / 4, c))
+      end
+    end
+  end
+end
+
+-- K. Moreland: CIELAB in polar coordinates, over white; Table and listing of "Diverging Color Maps for Scientific
+-- Visualization (Expanded)".
+local function moreland(share)
+  local function to_msh(r, g, b)
+    r, g, b = light(r), light(g), light(b)
+    local function f(t) return t > 0.008856 and t ^ (1 / 3) or 7.787 * t + 16 / 116 end
+    local x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505)
+    local y = f(0.2126 * r + 0.7152 * g + 0.0722 * b)
+    local z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089)
+    local l, s, t = 116 * y - 16, 500 * (x - y), 200 * (y - z)
+    local m = math.sqrt(l * l + s * s + t * t)
+    return { m, math.acos(l / m), math.atan(t, s) }
+  end
+  local function hue(color, m) -- of white, so that the way there from the colour is straight
+    if color[1] >= m then return color[3] end
+    local turn = color[2] * math.sqrt(m * m - color[1] ^ 2) / (color[1] * math.sin(color[2]))
+    return color[3] > -math.pi / 3 and color[3] + turn or color[3] - turn
+  end
+  local blue, red = to_msh(59, 76, 192), to_msh(180, 4, 38)
+  local m = math.max(blue[1], red[1], 88)
+  local from, to, t = blue, { m, 0, hue(blue, m) }, 2 * share
+  if share >= 0.5 then from, to, t = { m, 0, hue(red, m) }, red, 2 * share - 1 end
+  local p = {}
+  for i = 1, 3 do p[i] = from[i] + t * (to[i] - from[i]) end
+  local l, a, b = p[1] * math.cos(p[2]), p[1] * math.sin(p[2]) * math.cos(p[3]), p[1] * math.sin(p[2]) * math.sin(p[3])
+  local function inverse(v) return v ^ 3 > 0.008856 and v ^ 3 or (v - 16 / 116) / 7.787 end
+  local y = (l + 16) / 116
+  local x, z = 0.9505 * inverse(a / 500 + y), 1.089 * inverse(y - b / 200)
+  y = inverse(y)
+  return { 3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z, 0.0557 * x - 0.204 * y + 1.057 * z }
+end
+
+function tests.coolwarm_is_morelands()
+  local map = glint.colormap "coolwarm"
+  for i = 0, 255 do
+    local got, want = map(i / 255), moreland(i / 255)
+    for c = 1, 3 do near(code(got[c]), code(want[c]), 0.75, ("colour %d, component %d"):format(i, c)) end
+  end
+end
+
+function tests.light_between_two_colours()
+  for name in pairs(PUBLISHED) do
+    local map = glint.colormap(name)
+    for i = 0, 254 do
+      local a, b, middle = map(i / 255), map((i + 1) / 255), map((i + 0.5) / 255)
+      for c = 1, 3 do
+        near(middle[c], (a[c] + b[c]) / 2, 2e-7, ("%s between %d and the next, component %d"):format(name, i, c))
+        check(math.abs(code(a[c]) - math.floor(code(a[c]) + 0.5)) < 2e-3, "%s: colour %d is a code", name, i)
+      end
+    end
+  end
+end
+
+function tests.ranges()
+  local map, back = glint.colormap("viridis", -3, 5), glint.colormap("viridis", 5, -3)
+  local plain = glint.colormap "viridis"
+  for _, x in ipairs { -3, -1, 0, 1, 4.5, 5 } do
+    local want = plain((x + 3) / 8)
+    for c = 1, 3 do
+      check(map(x)[c] == want[c], "at %g", x)
+      near(back(2 - x)[c], want[c], 1e-6, "turned round")
+    end
+  end
+  for _, beyond in ipairs { -1e300, -1, -1 / 0 } do check(plain(beyond)[1] == plain(0)[1], "below is the lowest") end
+  for _, beyond in ipairs { 1.001, 7, 1 / 0 } do check(plain(beyond)[3] == plain(1)[3], "above is the highest") end
+  local color = plain(0 / 0)
+  check(color[1] >= 0 and color[1] <= 1, "not a number has a colour, too, got %s", color[1])
+end
+
+-- A material of the number, and of the pattern, show the same bits.
+function tests.in_patterns()
+  for name in pairs(PUBLISHED) do
+    local map, k = glint.colormap(name, 0.5, 2.5), 0
+    local pattern = glint.pattern(function(p) return map(p.x * p.x) end)
+    local constant = glint.pattern(function() return map(k) end)
+    for i = 0, 20 do
+      local x = i / 12
+      k = x * x
+      local got, want, also = pattern:evaluate { p = { x, 0, 0 } }, map(k), constant:evaluate { p = { 0, 0, 0 } }
+      for c = 1, 3 do
+        check(got[c] == want[c] and also[c] == want[c], "%s at %g, component %d: %a, %a, %a", name, k, c, want[c], got[c], also[c])
+      end
+    end
+    check(#pattern <= 6, "%s is short, got %d instructions", name, #pattern)
+    local material = glint.material { diffuse = map(1.25) }
+    check(material.diffuse[2] == map(1.25)[2], "a field takes what it gives")
+  end
+end
+
+function tests.refused()
+  local function raises(want, ...)
+    local good, message = pcall(...)
+    check(not good and tostring(message):find(want, 1, true), "<%s> expected, got %s", want, message)
+  end
+  raises('did you mean "viridis"?', glint.colormap, "virdis")
+  raises("colormap.name: ", glint.colormap)
+  raises("colormap.name: ", glint.colormap, 3)
+  raises("colormap.high: another number than low (1.0) expected, got 1.0", glint.colormap, "turbo", 1)
+  raises("colormap.low: finite number expected, got ", glint.colormap, "turbo", 0 / 0)
+  raises("colormap.high: ", glint.colormap, "turbo", 0, "2")
+  raises("colormap.high: another number than low", glint.colormap, "turbo", -1e308, 1e308)
+  local map = glint.colormap "magma"
+  raises("colormap: number, symbol or vector expected, got nil", map, nil)
+  raises("colormap: ", map, { 1, 2, 3 })
+  raises("colormap: one number or symbol expected, got 2 values", map, 1, 2)
+end
+
+tally.run(tests)
+tally.finish()
