@@ -67,6 +67,7 @@ picture soft_shadows --frames 11 --samples 4
 picture sphereflake --samples 4
 picture spotlights --size 320x180
 picture toon_teapot --frames 1
+picture trajectory --frames 9
 picture wood_and_marble
 picture workshop --samples 9
 

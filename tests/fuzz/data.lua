@@ -11,6 +11,17 @@ local function walk(frames)
   end
 end
 
+-- The columns of all frames by name, and the frames once more in another order.
+local function run(reader)
+  return function()
+    local film = reader.film(path)
+    for n = film:length(), 1, -2 do
+      local frame = film:frame(n)
+      for _ in frame:atoms(table.unpack(frame.columns, 1, 30)) do end
+    end
+  end
+end
+
 local function load(name) return require("glint." .. name) end
 local readers = {
   walk(load "xyz".frames),
@@ -18,6 +29,9 @@ local readers = {
   walk(load "lammps".frames),
   function() for _ in load "points".frame(path):atoms() do end end,
   function() load "nff".load(path) end,
+  run(load "xyz"),
+  run(load "pdb"),
+  run(load "lammps"),
 }
 
 return function(bytes)

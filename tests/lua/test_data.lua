@@ -213,6 +213,171 @@ function tests.points()
   refuses("x,y,z\n1,2,\"3\n", 2, 'a closing quote in this line expected, got "1,2,\\"3"', read_points)
 end
 
+-- What frame:atoms(...) gives beyond the radius, of all atoms.
+local function columns_of(frame, ...)
+  local list = {}
+  for _, _, _, _, _, a, b, c in frame:atoms(...) do list[#list + 1] = { a, b, c } end
+  return list
+end
+
+local EXTENDED = '2\nLattice="4 0 0 1 5 0 0 0.5 6" Properties=vel:R:3:pos:R:3:species:S:1:q:R:1:s:R:2 pbc="T F T" Origin="-1 0 2"\n' ..
+  "1 2 3 0.5 0.25 0.125 Na -1 7 8\n4 5 6 1.5 1.25 1.125 Cl 1e0 x 9\n"
+
+function tests.columns_by_name()
+  local path = write("e.xyz", EXTENDED .. EXTENDED)
+  local frame = xyz.frame(path)
+  check(table.concat(frame.columns, " ") == "vel_x vel_y vel_z x y z species q s_1 s_2", "names: %s",
+    table.concat(frame.columns, " "))
+  local atoms = {}
+  for label, x, y, z, radius, q, v in frame:atoms("q", "vel_y") do atoms[#atoms + 1] = { label, x, y, z, radius, q, v } end
+  check(#atoms == 2 and atoms[1][1] == "Na" and atoms[1][3] == 0.25 and atoms[2][4] == 1.125 and not atoms[1][5],
+    "species after pos")
+  check(atoms[1][6] == -1 and atoms[1][7] == 2 and atoms[2][6] == 1 and atoms[2][7] == 5, "charge and velocity")
+  local odd = columns_of(xyz.frame(path, 2), "s_1", "species", "vel_x")
+  check(odd[1][1] == 7 and odd[2][1] == "x" and odd[1][2] == "Na" and odd[2][3] == 4, "text stays text")
+  local message = select(2, pcall(function() return xyz.frame(path):atoms "speed" end))
+  check(message:find(path .. ': a column among vel_x, vel_y, vel_z, x, y, z, species, q, s_1, s_2 expected, got "speed"', 1, true),
+    "got %s", message)
+  local plain = write("p.xyz", "1\n\nC 1 2 3 4.5 six\n")
+  local list = columns_of(xyz.frame(plain), "5", "6", "x")
+  check(list[1][1] == 4.5 and list[1][2] == "six" and list[1][3] == 1, "by number")
+  check(not pcall(function() return xyz.frame(plain):atoms "q" end), "and by no other name")
+  check(columns_of(xyz.frame(plain), "7")[1][1] == nil, "a number that the line does not have is nothing")
+  local dumped = write("q.dump", dump(7, 1, BOX, "id type xs ys zs vx c_pe", "9 1 0 0 0 -2.5 1e3\n"))
+  list = columns_of(lammps.frame(dumped), "c_pe", "id", "vx")
+  check(list[1][1] == 1000 and list[1][2] == 9 and list[1][3] == -2.5, "of a dump")
+  local csv = write("m.csv", 'x,"the mass",y,z,name\n1,2.5,3,4,"a, b"\n')
+  list = columns_of(points.frame(csv), "name", "the mass")
+  check(list[1][1] == "a, b" and list[1][2] == 2.5, "of CSV")
+  local record = write("b.pdb", ATOM)
+  list = columns_of(pdb.frame(record), "name", "resname", "bfactor")
+  check(list[1][1] == "CA" and list[1][2] == "ALA" and list[1][3] == 0, "of PDB")
+  refuses("1\nProperties=pos:R:3\nC 0 0 0\n", 2, 'species and pos among the Properties expected, got "Properties=pos:R:3"', read_xyz)
+  refuses("1\nProperties=species:S\nC 0 0 0\n", 2, 'Properties=name:type:count:... expected, got "Properties=species:S"', read_xyz)
+  local wide = "1\nProperties=f:R:95:species:S:1:pos:R:3:q:R:1\n" .. ("1 "):rep(95) .. "C 1 2 3 4\n"
+  refuses(wide, 2, 'species and pos among the first 90 columns expected, got "' .. wide:sub(3, 42) .. '"...', read_xyz)
+  wide = write("wide.xyz", "1\nProperties=species:S:1:pos:R:3:f:R:95\nC 1 2 3 " .. ("1 "):rep(95) .. "\n")
+  check(columns_of(xyz.frame(wide), "f_86")[1][1] == 1, "number 90")
+  check(not pcall(columns_of, xyz.frame(wide), "f_87"), "not number 91")
+  refuses(dump(0, 1, BOX, "type x y z" .. (" f"):rep(87), ""), 9, 'at most 90 columns expected, got " type x y z' ..
+    (" f"):rep(14) .. ' "...', read_lammps)
+  refuses('1\nLattice="1 0 0"\nC 0 0 0\n', 2, '9 numbers for Lattice expected, got "Lattice=\\"1 0 0\\""', read_xyz)
+  refuses('1\nLattice="1 0 0 0 a 0 0 0 1"\nC 0 0 0\n', 2, 'Lattice (a finite number) expected, got "a"', read_xyz)
+end
+
+function tests.cell_of_xyz()
+  local frame = xyz.frame(write("e.xyz", EXTENDED))
+  local cell, box = frame.cell, frame.box
+  check(cell.origin[1] == -1 and cell.b[1] == 1 and cell.c[2] == 0.5 and cell.c[3] == 6, "sides")
+  check(box.low[3] == 2 and box.size[2] == 5 and box.xy == 1 and box.xz == 0 and box.yz == 0.5, "box")
+  check(box.periodic[1] and not box.periodic[2] and box.periodic[3], "pbc")
+  local turned = xyz.frame(write("t.xyz", '1\nLattice="0 4 0 4 0 0 0 0 4"\nC 0 0 0\n'))
+  check(turned.cell.a[2] == 4 and turned.box == nil, "sides that lie otherwise are a cell alone")
+  check(xyz.frame("scripts/data/caffeine.xyz").cell == nil, "none")
+end
+
+function tests.edges()
+  local boxes = require "glint.box"
+  local group = boxes.edges({ size = { 4, 5, 6 }, low = { -1, 0, 2 }, xy = 1, yz = 0.5 }, { radius = 0.25 })
+  check(group.count == 8 + 12, "eight corners, twelve edges, got %d", group.count)
+  local scene = glint.scene { group }
+  near(scene:cast({ 1, 9, 2 }, { 0, -1, 0 }).point.y, 5.25, 1e-9, "the top of the far edge along a")
+  local hit = scene:cast({ -0.5, 3, 9 }, { 0, 0, -1 }) -- b goes from -1, 0 to 0, 5; above it c is 0.5 further in y
+  near(hit.point.z, 8.25, 1e-9, "the top of the upper edge along b")
+  local cell = boxes.edges { origin = { 0, 0, 0 }, a = { 0, 4, 0 }, b = { 4, 0, 0 }, c = { 0, 0, 4 } }
+  near(glint.scene { cell }:cast({ 2, 9, 0 }, { 0, -1, 0 }).t, 5 - math.sqrt(48) / 250, 1e-9, "a cell; the radius is 1/250")
+  check(select(2, pcall(boxes.edges, { size = { 1, 1 } })):find("box.size: three finite numbers expected", 1, true), "no box")
+  check(select(2, pcall(boxes.edges, { size = { 1, 1, 1 } }, { raduis = 1 })):find("box.raduis: no such option", 1, true), "options")
+end
+
+-- Frames in any order, each as a walk from the start gives it; the file is read once.
+function tests.films()
+  local texts = { xyz = {}, pdb = {}, lammps = {} }
+  for n = 1, 9 do
+    local rows, records, list = {}, {}, {}
+    for i = 1, n do
+      rows[i] = ("Ar %d %d %d"):format(i, n, i * n)
+      records[i] = ("ATOM  %5d AR   AR  A%4d    %8.3f%8.3f%8.3f\n"):format(i, i, i, n, i * n)
+      list[i] = ("%d 1 %d %d %d\n"):format(i, i, n, i * n)
+    end
+    texts.xyz[n] = ("%d\nframe %d\n%s\n"):format(n, n, table.concat(rows, "\n")) .. (n % 3 == 0 and "\n" or "")
+    texts.pdb[n] = ("MODEL %8d\n%sENDMDL\n"):format(n, table.concat(records))
+    texts.lammps[n] = dump(n, n, BOX, "id type x y z", table.concat(list))
+  end
+  for name, reader in pairs { xyz = xyz, pdb = pdb, lammps = lammps } do
+    for _, ending in ipairs { "", "cut" } do
+      local text = table.concat(texts[name])
+      local film = reader.film(write("film." .. name, ending == "" and text or text:sub(1, -2)))
+      for _, n in ipairs { 3, 1, 3, 9, 2, 9, 4, 4, 5, 6 } do
+        local frame = film:frame(n)
+        local partly = n == 4 and frame:atoms()
+        if partly then partly() end -- the next call reads the rest over
+        local list = n ~= 4 and all(frame) or {}
+        check(frame.number == n and (n == 4 or #list == n and list[n][2] == n and list[n][3] == n and list[n][4] == n * n),
+          "%s: frame %d", name, n)
+      end
+      check(film:length() == 9, "%s: nine frames, got %d", name, film:length())
+      check(#all(film:frame(2)) == 2, "%s: after the end is known", name)
+      local message = select(2, pcall(film.frame, film, 10))
+      check(message:find("film." .. name .. ": frame 10 expected, got a file of 9", 1, true), "got %s", message)
+      check(not pcall(film.frame, film, 0) and not pcall(film.frame, film, 1.5), "no such number")
+      film:close()
+      check(#all(film:frame(7)) == 7, "%s: after it was closed", name)
+    end
+  end
+  refuses("1\n\nC 0 0 0\n2\n\nC 0 0 0\n", 7, "atom 2 of 2 expected, got the end of the file", function(path)
+    xyz.film(path):length()
+  end)
+  local large = {} -- a walk reads each block once: the last frames take no longer than the first
+  for n = 1, 400 do large[n] = ("50\n%d\n"):format(n) .. ("C 1 2 3\n"):rep(50) end
+  local film, reads = xyz.film(write("large.xyz", table.concat(large))), 0
+  local file = film.source.file
+  film.source.file = setmetatable({}, { __index = function(_, name)
+    return function(_, ...)
+      reads = reads + (name == "read" and 1 or 0)
+      return file[name](file, ...)
+    end
+  end })
+  for n = 1, 400 do check(film:frame(n).comment == tostring(n), "frame %d", n) end
+  check(reads <= 5, "a file of 165 KB is read in blocks of 64, each once, got %d", reads)
+end
+
+function tests.colours_by_a_column()
+  local path = write("c.xyz", '3\nProperties=species:S:1:pos:R:3:q:R:1\nC 0 0 0 -1\nO 5 0 0 0\nC 9 0 0 1\n')
+  local set = particles.new { color_by = { column = "q", map = "coolwarm" }, radius = 1, material = { specular = 0.25 } }
+  set:add_frame(xyz.frame(path))
+  local low, high = set:range()
+  check(low == -1 and high == 1, "the range is that of the values")
+  local spheres, map = set:spheres(), glint.colormap "coolwarm"
+  local scene = glint.scene { spheres, ambient = 1, camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }
+  check(#spheres.materials == 256 and spheres.materials[3].specular.r == 0.25, "a material a step")
+  for x, value in pairs { [0] = 0, [5] = 0.5, [9] = 1 } do
+    scene.camera = glint.camera { eye = { x, 0, 9 }, at = { x, 0, 0 } }
+    local got, want = { scene:render { width = 3, height = 3 }:pixel(1, 1) }, map(value)
+    for c = 1, 3 do near(got[c], want[c], 0.01, ("value %g, component %d"):format(value, c)) end
+  end
+  set = particles.new { color_by = { column = "q", low = 0, high = 2 }, format = "f32" }
+  for i = 1, 1000 do set:add("C", i, 0, 0, nil, i / 400) end
+  check(set:range() == 0 and set:spheres().count == 1000, "a range of one's own; what is beyond has its ends")
+  local function raises(want, f, ...)
+    local ok, message = pcall(f, ...)
+    check(not ok and tostring(message):find(want, 1, true), "<%s> expected, got %s", want, message)
+  end
+  raises('a finite number in the column "q" expected, got "nil"', set.add, particles.new { color_by = { column = "q" } }, "C", 0, 0, 0)
+  raises("a column among species, x, y, z, q expected, got \"p\"", function()
+    particles.new { color_by = { column = "p" } }:add_frame(xyz.frame(path))
+  end)
+  raises('c.xyz:3: a finite number in the column "species" expected, got "C"', function()
+    particles.new { color_by = { column = "species" } }:add_frame(xyz.frame(path))
+  end)
+  raises("particles.color_by.column: string expected, got nil", particles.new, { color_by = {} })
+  raises("particles.color_by.colunm: no such option", particles.new, { color_by = { colunm = "q" } })
+  raises("particles.color_by: { column = ... } expected, got q", particles.new, { color_by = "q" })
+  raises("particles.color_by.high: a number above low (2) expected, got 1", particles.new, { color_by = { column = "q", low = 2, high = 1 } })
+  raises('did you mean "magma"', particles.new, { color_by = { column = "q", map = "magna" } })
+  raises("a set with color_by expected", particles.new().range, particles.new())
+end
+
 function tests.particles()
   for _, format in ipairs { "f64", "f32" } do
     local set = particles.new { format = format, scale = 2, material = { specular = 0.25 }, kinds = {

@@ -1,5 +1,8 @@
 -- The box of a simulation: { low, size, periodic, xy, xz, yz } as glint.lammps gives it; its sides are {size x, 0, 0},
 -- {xy, size y, 0} and {xz, yz, size z}. By hand { size = { 10, 10, 10 } } is enough: from 0, upright, periodic.
+--     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; of frame.cell of glint.xyz, too
+local glint = require "glint"
+
 local box = {}
 
 local function three(value, name, kind)
@@ -28,6 +31,60 @@ function box.check(given, name)
     periodic = three(given.periodic or { true, true, true }, name .. ".periodic", "boolean"),
     xy = tilt[1], xz = tilt[2], yz = tilt[3],
   }
+end
+
+local CORNERS = {
+  { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 0 }, { 1, 0, 1 }, { 0, 1, 1 }, { 1, 1, 1 },
+}
+
+-- The corner and the three sides of a box, or of a cell { origin, a, b, c }, whose sides may lie anyhow.
+local function sides_of(given, name)
+  if type(given) == "table" and given.a then
+    local sides = {}
+    for i, side in ipairs { "a", "b", "c" } do sides[i] = three(given[side], name .. "." .. side, "number") end
+    return three(given.origin or { 0, 0, 0 }, name .. ".origin", "number"), sides
+  end
+  local b = box.check(given, name)
+  return b.low, { { b.size[1], 0, 0 }, { b.xy, b.size[2], 0 }, { b.xz, b.yz, b.size[3] } }
+end
+
+--- The edges of a box, or of a cell { origin, a, b, c } as glint.xyz gives it: twelve thin cylinders that end in balls,
+--- as one group.
+---@param given table
+---@param options? { radius: number, material: table }  radius of the cylinders (default 1/250 of the box's diagonal);
+--- their material (default dark grey)
+---@return table group
+function box.edges(given, options)
+  options = options or {}
+  for name in pairs(options) do
+    if name ~= "radius" and name ~= "material" then
+      error(("box.%s: no such option; radius, material are"):format(name), 2)
+    end
+  end
+  local origin, sides = sides_of(given, "box")
+  local function place(corner)
+    local p = {}
+    for i = 1, 3 do
+      p[i] = origin[i] + corner[1] * sides[1][i] + corner[2] * sides[2][i] + corner[3] * sides[3][i]
+    end
+    return p
+  end
+  local far, square = place { 1, 1, 1 }, 0
+  for i = 1, 3 do square = square + (far[i] - origin[i]) ^ 2 end
+  local material = options.material or glint.material { diffuse = 0.12, name = "cell" }
+  local radius, parts = options.radius or math.sqrt(square) / 250, {}
+  for _, corner in ipairs(CORNERS) do
+    parts[#parts + 1] = glint.sphere { center = place(corner), radius = radius, material = material }
+    for i = 1, 3 do
+      if corner[i] == 0 then
+        local to = { table.unpack(corner) }
+        to[i] = 1
+        parts[#parts + 1] = glint.cylinder { base = place(corner), top = place(to), radius = radius, capped = false,
+          material = material }
+      end
+    end
+  end
+  return glint.group(parts)
 end
 
 --- A point from its shares of the box.

@@ -2,32 +2,109 @@
 --     for frame in xyz.frames(path) do for label, x, y, z, radius in frame:atoms() do ... end end
 -- A frame has number (from 1), count (nil where the format does not say it ahead), and what its format tells. Atoms
 -- that a script does not look at are read over, and checked all the same. Nothing is kept: a file of any size takes
--- the memory of a line.
+-- the memory of a line. Columns by name come after the radius, numbers where they are numbers, else text:
+--     for label, x, y, z, radius, charge, speed in frame:atoms("q", "speed") do ... end
+-- frame.columns lists the names. A film has the frames of a file in any order, as the pictures call for them:
+--     local film = xyz.film "melt.xyz"
+--     set:add_frame(film:frame(n))
+-- It remembers where each frame that it has passed begins, and goes on from there.
 local lines = require "glint.lines"
 
 local frames = {}
 
+frames.WORDS = 90 -- of a line, that a pattern of Lua's can tell apart
+
 local frame = {}
 frame.__index = frame
 
---- Iterates over the atoms: label, x, y, z and, where the file has it, radius. Once a frame.
-function frame:atoms()
+--- Iterates over the atoms: label, x, y, z, radius (nil where the file has none), and the columns named. Once a frame.
+---@param ... string  names among frame.columns
+function frame:atoms(...)
   if self.is_taken then error(("%s: the atoms of frame %d have been read"):format(self.source.path, self.number), 0) end
+  local names = { ... }
+  for _, name in ipairs(names) do
+    if not self.places[name] then
+      error(("%s: a column among %s expected, got %q"):format(self.source.path, table.concat(self.columns, ", "),
+        tostring(name)), 2)
+    end
+  end
   self.is_taken = true
+  if #names > 0 then self.named = self.pick(names) end
   return function()
     if not self.is_done then return self:take(self.next_atom()) end
   end
 end
 
 -- Passes an atom on, and remembers when there was none.
-function frame:take(label, ...)
-  if label == nil then self.is_done = true end
-  return label, ...
+function frame:take(label, x, y, z, radius)
+  if label == nil then
+    self.is_done = true
+    return nil
+  end
+  if not self.named then return label, x, y, z, radius end
+  return label, x, y, z, radius, self.named(self.line)
 end
 
 --- Raises an error at the file and line that the last atom came from.
 function frame:fail(expected, got)
   self.source:fail(expected, got)
+end
+
+-- What is captured of a line, as numbers where it can be.
+local function values(...)
+  local list = { ... }
+  for i = 1, select("#", ...) do list[i] = tonumber(list[i]) or list[i] end
+  return table.unpack(list, 1, select("#", ...))
+end
+
+--- For frames whose lines are words: a function (names) that gives a function of a line, the words of these columns.
+---@param places table<string, integer>  the number of the word of each name, from 1
+function frames.words(places)
+  return function(names)
+    local last, parts, rank, order = 0, {}, {}, {}
+    for _, name in ipairs(names) do last = math.max(last, places[name]) end
+    for i = 1, last do parts[i] = "%S+" end
+    for _, name in ipairs(names) do parts[places[name]] = "(%S+)" end
+    for i = 1, last do
+      if parts[i] == "(%S+)" then
+        order[#order + 1] = i
+        rank[i] = #order
+      end
+    end
+    if #order > 30 then error(("at most 30 columns at once expected, got %d"):format(#order), 3) end
+    if last > frames.WORDS then
+      error(("columns among the first %d of a line expected, got number %d"):format(frames.WORDS, last), 3)
+    end
+    local pattern, in_order = "^%s*" .. table.concat(parts, "%s+"), true
+    for i, name in ipairs(names) do in_order = in_order and rank[places[name]] == i end
+    if in_order then return function(line) return values(line:match(pattern)) end end
+    return function(line)
+      local found, list = { line:match(pattern) }, {}
+      for i, name in ipairs(names) do list[i] = found[rank[places[name]]] end
+      return values(table.unpack(list, 1, #names))
+    end
+  end
+end
+
+--- Gives a frame's fields its columns: names in their order, where each is, and how they are taken out of fields.line.
+function frames.name_columns(fields, names, pick)
+  fields.columns, fields.places = names, {}
+  for i, name in ipairs(names) do fields.places[name] = fields.places[name] or i end
+  fields.pick = pick or frames.words(fields.places)
+end
+
+-- What is left of a frame.
+local function read_over(last)
+  if not last or last.is_done then return end
+  repeat until last.next_atom() == nil
+  last.is_done = true
+end
+
+local function begin(source, start, number)
+  local fields, next_atom = start(source, number)
+  if not fields then return nil end
+  fields.source, fields.number, fields.next_atom = source, number, next_atom
+  return setmetatable(fields, frame)
 end
 
 --- Iterates over the frames of a file.
@@ -36,20 +113,78 @@ end
 function frames.each(path, start)
   local source, last, number = lines.open(path), nil, 0
   return function()
-    if last and not last.is_done then
-      repeat until last.next_atom() == nil
-      last.is_done = true
-    end
-    local fields, next_atom = start(source, number + 1)
-    if not fields then
+    read_over(last)
+    last = begin(source, start, number + 1)
+    if not last then
       source:close()
       return nil
     end
     number = number + 1
-    fields.source, fields.number, fields.next_atom = source, number, next_atom
-    last = setmetatable(fields, frame)
     return last
   end
+end
+
+local film = {}
+film.__index = film
+
+--- The frames of a file in any order; film:frame(n) ends the reading of the frame that was given before.
+---@param path string
+---@param start function  as of frames.each
+function frames.film(path, start)
+  local source = lines.open(path)
+  return setmetatable({ path = path, source = source, start = start, places = { { 0, 0 } } }, film)
+end
+
+-- Begins frame `number`, whose place is known; nil where the file ends.
+local function film_begin(self, number)
+  local source, place = self.source, self.places[number]
+  local at = source:tell()
+  if at ~= place[1] or not source.file then source:go(place[1], place[2]) end
+  self.last = begin(source, self.start, number)
+  return self.last
+end
+
+-- Finds the place of the frame after the last one that is known. False: there is none.
+local function film_step(self)
+  local known = #self.places
+  if self.count and known > self.count then return false end
+  if not self.last or self.last.number ~= known then
+    if not film_begin(self, known) then
+      self.count = known - 1
+      return false
+    end
+  end
+  read_over(self.last)
+  self.places[known + 1] = { self.source:tell() }
+  self.last = nil
+  return true
+end
+
+--- The frame `number`, from 1; its atoms are there until the next call. Raises when the file has fewer.
+---@param number integer
+function film:frame(number)
+  local whole = math.tointeger(number)
+  if not whole or whole < 1 then
+    error(("film.frame: a whole number >= 1 expected, got %s"):format(tostring(number)), 2)
+  end
+  while #self.places < whole and film_step(self) do end
+  local found = #self.places >= whole and film_begin(self, whole)
+  if found then return found end
+  self.count = math.min(self.count or math.huge, #self.places - 1)
+  error(("%s: frame %d expected, got a file of %d"):format(self.path, whole, self.count), 2)
+end
+
+--- How many frames the file has; reads it to its end, once.
+---@return integer
+function film:length()
+  while film_step(self) do end
+  self.last = nil
+  return self.count
+end
+
+--- Closes the file.
+function film:close()
+  self.source:close()
 end
 
 --- One frame of what a reader's frames() iterates over. Raises when there are fewer.

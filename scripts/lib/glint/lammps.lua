@@ -5,7 +5,8 @@
 --     end
 -- Columns are found by their names, in any order: x y z or xu yu zu (lengths), xs ys zs or xsu ysu zsu (shares of the
 -- box); `radius` or `diameter` where it is given. A label is the column `element`, or `types[type]` of the options, or
--- "type1", "type2" ... The u columns lie outside a periodic box where an atom has left it: wrap = true brings it back.
+-- "type1", "type2" ... All columns are there by name: frame:atoms("vx", "c_pe"). The u columns
+-- lie outside a periodic box where an atom has left it: wrap = true brings it back.
 local frames, boxes = require "glint.frames", require "glint.box"
 
 local lammps = {}
@@ -56,6 +57,7 @@ local function find_columns(source, header)
   local names, place, used = words(header), {}, {}
   for i, name in ipairs(names) do place[name] = i end
   local columns, position = { count = #names, captures = {} }, nil
+  if #names > frames.WORDS then source:fail(("at most %d columns"):format(frames.WORDS), header) end
   for _, set in ipairs(POSITIONS) do
     if not position and place[set[1]] and place[set[2]] and place[set[3]] then position = set end
   end
@@ -89,6 +91,7 @@ end
 local function read_atom(source, frame, columns, options)
   local line = source:next()
   if not line then source:fail(("atom %d of %d"):format(frame.done, frame.count), nil) end
+  frame.line = line
   local list = columns.captures
   list[1], list[2], list[3], list[4], list[5] = line:match(columns.pattern)
   if not list[1] then
@@ -145,6 +148,7 @@ local function start(source, number, options)
     if not frame[name] then source:fail(("the %s of the frame above ITEM: ATOMS"):format(name), "ITEM: ATOMS") end
   end
   local columns = find_columns(source, header)
+  frames.name_columns(frame, words(header))
   return frame, function()
     if frame.done == frame.count then return nil end
     frame.done = frame.done + 1
@@ -166,6 +170,13 @@ end
 ---@param options? { types: string[], wrap: boolean }
 function lammps.frame(path, number, options)
   return frames.pick(path, lammps.frames(path, options), number)
+end
+
+--- The frames of a file in any order: film:frame(n), film:length().
+---@param path string
+---@param options? { types: string[], wrap: boolean }
+function lammps.film(path, options)
+  return frames.film(path, function(source, number) return start(source, number, options or {}) end)
 end
 
 return lammps

@@ -26,7 +26,7 @@ function lines.open(path)
   local file, message
   if path == "-" then file = io.stdin else file, message = io.open(path, "rb") end
   if not file then error(message, 0) end
-  return setmetatable({ path = path, number = 0, file = file, block = "", at = 1 }, source)
+  return setmetatable({ path = path, number = 0, file = file, block = "", at = 1, base = 0, line_at = 0 }, source)
 end
 
 -- Where the line at hand ends, once the block has grown until it holds that. After the last block: its end.
@@ -40,6 +40,7 @@ local function line_end(self)
     local more, message = self.file:read(BLOCK)
     if message then error(("%s: %s"):format(self.path, message), 0) end
     if not more then self:close() end
+    self.base = self.base + self.at - 1
     self.block, self.at = rest .. (more or ""), 1
     local to = self.block:find("\n", #rest + 1, true)
     if to then return to end
@@ -58,6 +59,7 @@ function source:next()
   local to = self.block:find("\n", self.at, true) or line_end(self)
   if not self.file and self.at > #self.block then return nil end
   local line = self.block:sub(self.at, to - 1)
+  self.line_at = self.base + self.at - 1
   self.at, self.number = to + 1, self.number + 1
   return line:byte(-1) == 13 and line:sub(1, -2) or line
 end
@@ -107,9 +109,27 @@ function source:whole(text, what, least)
   return value
 end
 
+--- Where the next line begins: its place in the file, bytes, and how many lines stand before it.
+---@return integer place
+---@return integer number
+function source:tell()
+  return self.held ~= nil and self.line_at or self.base + self.at - 1, self.number
+end
+
+--- Goes on from where tell() was; the file may have been read to its end, but not be standard input.
+---@param place integer
+---@param number integer
+function source:go(place, number)
+  if self.path == "-" then error("standard input is read once: a file, or a frame further on expected", 0) end
+  if not self.file then self.file = lines.open(self.path).file end
+  self.file:seek("set", place)
+  self.base, self.number, self.block, self.at, self.held = place, number, "", 1, nil
+end
+
 --- Closes the file before its end.
 function source:close()
   if self.file and self.file ~= io.stdin then self.file:close() end
+  self.base = self.base + self.at - 1
   self.file, self.held, self.block, self.at = nil, nil, "", 1
 end
 

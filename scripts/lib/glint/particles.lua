@@ -4,6 +4,8 @@
 --     scene:add(set:spheres())
 -- A label is a kind of options.kinds, an element (color and radius from glint.elements), "type1" ... "type999" (a
 -- palette, radius 0.5: LAMMPS's reduced units) or "point" (grey, radius 0.5).
+-- Colours by a column of the file, in place of the kinds':
+--     local set = particles.new { color_by = { column = "speed", map = "viridis" } }     -- also low, high: its range
 -- Memory: numbers are packed in chunks, there is no table for each sphere. A sphere takes 36 bytes (20 as "f32"), twice
 -- that for the moment in which spheres() puts the chunks together. Then the engine has it: some 260 bytes a sphere from
 -- the first picture on, 380 while the index is built.
@@ -17,19 +19,44 @@ local LARGE = 100000 -- spheres: their strings are collected once the engine has
 local PALETTE = { "#4e79a7", "#f28e2b", "#59a14f", "#e15759", "#b07aa1", "#edc948", "#76b7b2", "#9c755f" }
 local POINT = { color = "#b8b8b8", radius = 0.5 }
 
+local OPTIONS = { kinds = true, scale = true, radius = true, material = true, format = true, color_by = true }
+local STEPS = 256 -- of colours by a column, each a material
+
 local set = {}
 set.__index = set
+
+-- The option color_by; raises where something is wrong with it.
+local function check_colors(given)
+  local names = { column = "string", map = "string", low = "number", high = "number" }
+  if type(given) ~= "table" then error("particles.color_by: { column = ... } expected, got " .. tostring(given), 3) end
+  for name, value in pairs(given) do
+    if not names[name] then
+      error(("particles.color_by.%s: no such option; column, map, low, high are"):format(name), 3)
+    end
+    if type(value) ~= names[name] or value ~= value then
+      error(("particles.color_by.%s: %s expected, got %s"):format(name, names[name], tostring(value)), 3)
+    end
+  end
+  if not given.column then error("particles.color_by.column: string expected, got nil", 3) end
+  if given.low and given.high and given.low >= given.high then
+    error(("particles.color_by.high: a number above low (%.14g) expected, got %.14g"):format(given.low, given.high), 3)
+  end
+  glint.colormap(given.map or "viridis") -- the name, at once
+  return given
+end
 
 --- An empty set.
 --- The options: kinds, { [label] = { color, radius } } before the known ones (radius 0.5 by default; `material` may
 --- stand in place of color); scale, what the kinds' radii are multiplied by (default 1); radius, of every kind instead;
---- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory.
+--- material, fields for each material such as { specular = 0.3 }; format, "f64" (default) or "f32" for half the memory;
+--- color_by, { column, map, low, high }: spheres have the colour of their value in a map of glint.colormap (default
+--- viridis) from low to high (default: the lowest and highest value there is), in 256 steps; labels give the radii.
 ---@param options? table
 function particles.new(options)
   options = options or {}
   for name in pairs(options) do
-    if not ("kinds scale radius material format"):find(name, 1, true) then
-      error(("particles.%s: no such option; kinds, scale, radius, material, format are"):format(name), 2)
+    if not OPTIONS[name] then
+      error(("particles.%s: no such option; kinds, scale, radius, material, format, color_by are"):format(name), 2)
     end
   end
   local format = options.format or "f64"
@@ -37,6 +64,8 @@ function particles.new(options)
     error(("particles.format: \"f32\" or \"f64\" expected, got %q"):format(format), 2)
   end
   return setmetatable({
+    color_by = options.color_by and check_colors(options.color_by), values = {}, pending_values = {},
+    lowest = math.huge, highest = -math.huge,
     count = 0, format = format, options = options, kinds = {}, materials = {}, counts = {},
     low = { math.huge, math.huge, math.huge }, high = { -math.huge, -math.huge, -math.huge },
     data = {}, index = {}, numbers = {}, places = {}, pending = 0,
@@ -79,6 +108,9 @@ local function pack(self)
   if n == 0 then return end
   self.data[#self.data + 1] = (self.code:rep(4 * n)):pack(table.unpack(self.numbers, 1, 4 * n))
   self.index[#self.index + 1] = (("I4"):rep(n)):pack(table.unpack(self.places, 1, n))
+  if self.color_by then
+    self.values[#self.values + 1] = (("d"):rep(n)):pack(table.unpack(self.pending_values, 1, n))
+  end
   self.pending = 0
 end
 
@@ -92,19 +124,29 @@ local function stretch(self, x, y, z, radius)
   if z + radius > high[3] then high[3] = z + radius end
 end
 
+-- Notes the value that the sphere's colour stands for.
+local function put_value(self, value)
+  self.pending_values[self.pending] = value
+  self.lowest, self.highest = math.min(self.lowest, value), math.max(self.highest, value)
+end
+
 -- Adds a sphere. Returns false, what was expected and what was got when it cannot be.
-local function put(self, label, x, y, z, radius)
+local function put(self, label, x, y, z, radius, value)
   local kind = self.kinds[label] or kind_of(self, label)
   if not kind then
     return false, "an element, its number, or one of the option kinds", label
   end
   radius = radius or kind.radius
   if radius <= 0 then return false, "a radius > 0", ("%.14g"):format(radius) end
+  if self.color_by and (math.type(value) == nil or value - value ~= 0) then
+    return false, ("a finite number in the column %q"):format(self.color_by.column), tostring(value)
+  end
   local numbers, at = self.numbers, 4 * self.pending
   numbers[at + 1], numbers[at + 2], numbers[at + 3], numbers[at + 4] = x, y, z, radius
   stretch(self, x, y, z, radius)
   self.pending = self.pending + 1
   self.places[self.pending] = kind.place
+  if self.color_by then put_value(self, value) end
   self.count = self.count + 1
   self.counts[kind.name] = self.counts[kind.name] + 1
   if self.pending == CHUNK then pack(self) end
@@ -114,8 +156,9 @@ end
 --- Adds one sphere.
 ---@param label string
 ---@param radius? number  Default: the kind's
-function set:add(label, x, y, z, radius)
-  local done, expected, got = put(self, label, x, y, z, radius)
+---@param value? number  what color_by is to show
+function set:add(label, x, y, z, radius, value)
+  local done, expected, got = put(self, label, x, y, z, radius, value)
   if not done then error(("%s expected, got %q"):format(expected, got), 2) end
 end
 
@@ -136,8 +179,8 @@ end
 ---@return table set  the same
 function set:add_frame(frame)
   if frame.box then keep_box(self, frame.box) end
-  for label, x, y, z, radius in frame:atoms() do
-    local done, expected, got = put(self, label, x, y, z, radius)
+  for label, x, y, z, radius, value in frame:atoms(self.color_by and self.color_by.column) do
+    local done, expected, got = put(self, label, x, y, z, radius, value)
     if not done then frame:fail(expected, got) end
   end
   return self
@@ -161,6 +204,38 @@ function set:places_of_all()
   return x, y, z, place
 end
 
+--- The range of color_by: the numbers that the ends of its map stand for.
+---@return number low
+---@return number high
+function set:range()
+  local by = self.color_by
+  if not by then error("particles.range: a set with color_by expected", 2) end
+  local low, high = by.low or self.lowest, by.high or self.highest
+  if low < high then return low, high end
+  return low, low + 1 -- all values are one
+end
+
+-- Materials and, packed, one of them for each sphere, by the values.
+local function color(self, all)
+  local low, high = self:range()
+  local map, scale, index = glint.colormap(self.color_by.map or "viridis"), STEPS / (high - low), {}
+  all.materials = {}
+  for i = 1, STEPS do
+    local fields = { diffuse = map((i - 1) / (STEPS - 1)) }
+    for field, value in pairs(self.options.material or {}) do fields[field] = value end
+    all.materials[i] = glint.material(fields)
+  end
+  for n, chunk in ipairs(self.values) do
+    local list = { (("d"):rep(#chunk // 8)):unpack(chunk) }
+    list[#list] = nil -- where it ends
+    for i, value in ipairs(list) do
+      list[i] = math.floor(math.max(0, math.min((value - low) * scale, STEPS - 1))) + 1
+    end
+    index[n] = (("I4"):rep(#list)):pack(table.unpack(list))
+  end
+  all.index, self.values = table.concat(index), nil
+end
+
 --- The spheres, as one shape. The set's own copy of them goes: to be called once.
 ---@param fields? table  further fields of the shape, such as { name = "melt" }
 function set:spheres(fields)
@@ -170,6 +245,7 @@ function set:spheres(fields)
   local all = { format = self.format, materials = self.materials }
   all.data, self.data = table.concat(self.data), nil
   all.index, self.index = table.concat(self.index), nil
+  if self.color_by then color(self, all) end
   for name, value in pairs(fields or {}) do all[name] = value end
   local shape = glint.spheres(all)
   if self.count >= LARGE then

@@ -1,7 +1,9 @@
 -- PDB: the ATOM and HETATM records of the Protein Data Bank's format 3.3, by columns. Each MODEL is a frame.
 --     for label, x, y, z in pdb.frame "1crn.pdb":atoms() do ... end
 -- The element is that of columns 77-78, and where these are empty that of the atom's name (columns 13-16). Of atoms at
--- alternate locations the first (blank or A, column 17) is taken. Other records are passed over.
+-- alternate locations the first (blank or A, column 17) is taken. Other records are passed over. The other
+-- fields are there by name, frame:atoms("chain", "bfactor"): serial, name, resname, chain, resseq, occupancy, bfactor,
+-- element, charge.
 local elements = require "glint.elements"
 local frames = require "glint.frames"
 
@@ -18,7 +20,24 @@ local function element_of(name)
   return name:match "%a"
 end
 
-local function read_atom(source, line)
+local COLUMNS = { "serial", "name", "resname", "chain", "resseq", "occupancy", "bfactor", "element", "charge" }
+local WHERE = { serial = { 7, 11 }, name = { 13, 16 }, resname = { 18, 20 }, chain = { 22, 22 }, resseq = { 23, 26 },
+  occupancy = { 55, 60 }, bfactor = { 61, 66 }, element = { 77, 78 }, charge = { 79, 80 } }
+
+-- A function that takes the wanted fields out of a record, without the blanks around them.
+local function pick(wanted)
+  return function(line)
+    local found = {}
+    for i, name in ipairs(wanted) do
+      local text = line:sub(WHERE[name][1], WHERE[name][2]):match "^%s*(.-)%s*$"
+      found[i] = tonumber(text) or text
+    end
+    return table.unpack(found, 1, #wanted)
+  end
+end
+
+local function read_atom(source, fields, line)
+  fields.line = line
   if #line < LAST_COLUMN then source:fail("a record of at least 54 columns (z is in 47-54)", line) end
   local label = line:sub(77, 78):match "%a+" or element_of(line:sub(13, 16))
   if not label then source:fail("an element in columns 77-78 or an atom's name in 13-16", line) end
@@ -41,7 +60,9 @@ local function start(source, number, options)
   if not name then source:fail("an ATOM or HETATM record", nil) end
   local is_model = name == "MODEL"
   if not is_model then source:back(line) end
-  return { model = is_model and source:whole(line:sub(7), "the number of the model", 0) or nil }, function()
+  local fields = { model = is_model and source:whole(line:sub(7), "the number of the model", 0) or nil }
+  frames.name_columns(fields, COLUMNS, pick)
+  return fields, function()
     while true do
       name, line = next_record(source)
       if not name and is_model then source:fail("ENDMDL", nil) end
@@ -49,7 +70,7 @@ local function start(source, number, options)
       if name ~= "ATOM" and name ~= "HETATM" then return nil end
       local alternate = line:sub(17, 17)
       if (name == "ATOM" or options.hetatm ~= false) and (alternate == " " or alternate == "A" or alternate == "") then
-        return read_atom(source, line)
+        return read_atom(source, fields, line)
       end
     end
   end
@@ -68,6 +89,13 @@ end
 ---@param options? { hetatm: boolean }
 function pdb.frame(path, number, options)
   return frames.pick(path, pdb.frames(path, options), number)
+end
+
+--- The frames of a file in any order: film:frame(n), film:length().
+---@param path string
+---@param options? { hetatm: boolean }
+function pdb.film(path, options)
+  return frames.film(path, function(source, number) return start(source, number, options or {}) end)
 end
 
 return pdb

@@ -1,9 +1,9 @@
 -- Points from columns of text: CSV, TSV, or numbers with blanks between them.
 --     for label, x, y, z, radius in points.frame "stars.csv":atoms() do ... end
 -- The first line may name the columns: x, y, z, and where they are there radius and label, in any order and case;
--- others are passed over. Without names the columns are x, y, z, radius; options.columns = { "label", "x", ... } says
--- otherwise. The separator is the first of tab, semicolon and comma in that line, else blanks. A field may stand "in
--- quotes", with "" for a quote. Lines that are empty or begin with # are passed over.
+-- others are there by name: frame:atoms("mass"). Without names the columns are x, y, z, radius; options.columns =
+-- { "label", "x", ... } says otherwise. The separator is the first of tab, semicolon and comma in that line, else
+-- blanks. A field may stand "in quotes", with "" for a quote. Lines that are empty or begin with # are passed over.
 local frames = require "glint.frames"
 
 local points = {}
@@ -54,8 +54,9 @@ local function places(source, names, line)
   return place
 end
 
-local function read_point(source, line, place, separator, count)
+local function read_point(source, fields, line, place, separator, count)
   local list = split(source, line, separator)
+  fields.line = list
   if #list ~= count then
     source:fail(("%d columns, as many as in the first line,"):format(count), line)
   end
@@ -63,6 +64,18 @@ local function read_point(source, line, place, separator, count)
   local label = place.label and list[place.label] or DEFAULT_LABEL
   return label, number "x", number "y", number "z",
     place.radius and number "radius" or nil
+end
+
+-- A function that takes the wanted columns out of the fields of a line.
+local function pick(columns, wanted)
+  return function(list)
+    local found = {}
+    for i, name in ipairs(wanted) do
+      local text = list[columns[name]]
+      found[i] = tonumber(text) or text
+    end
+    return table.unpack(found, 1, #wanted)
+  end
 end
 
 local function start(source, number, options)
@@ -79,9 +92,11 @@ local function start(source, number, options)
   local names = is_header and first or options.columns or { table.unpack(DEFAULT_COLUMNS, 1, math.min(#first, 4)) }
   local place, count = places(source, names, line), #first
   if not is_header then source:back(line) end
-  return {}, function()
+  local fields = {}
+  frames.name_columns(fields, names, function(wanted) return pick(fields.places, wanted) end)
+  return fields, function()
     local text = source:next_full()
-    if text then return read_point(source, text, place, separator, count) end
+    if text then return read_point(source, fields, text, place, separator, count) end
   end
 end
 

@@ -3,16 +3,99 @@
 --       print(frame.comment, frame.count)
 --       for label, x, y, z in frame:atoms() do ... end
 --     end
--- Columns after the fourth (charges, velocities, the properties of extended XYZ) are not looked at.
+-- Extended XYZ says in its comment what the columns are and where the periodic cell is:
+--     Lattice="10 0 0 0 10 0 0 0 10" Properties=species:S:1:pos:R:3:vel:R:3:charge:R:1 pbc="T T F"
+-- frame.columns are then species, x, y, z, vel_x, vel_y, vel_z, charge (of a property of 2 or of more than 3 numbers
+-- name_1 ...); frame.cell = { origin, a, b, c } has the cell's corner and sides, and frame.box is the same as a box
+-- (glint.box) where a lies along x and b in the plane of x and y. Without Properties the columns after the fourth are
+-- "5", "6" ...
 local frames = require "glint.frames"
 
 local xyz = {}
 
-local function read_atom(source, line, index, count)
-  if not line then source:fail(("atom %d of %d"):format(index, count), nil) end
-  local label, x, y, z = line:match "^%s*(%S+)%s+(%S+)%s+(%S+)%s+(%S+)"
-  if not label then source:fail(("atom %d of %d (element x y z)"):format(index, count), line) end
+local AXES = { "_x", "_y", "_z" }
+
+local function read_atom(source, frame, index)
+  local line = source:next()
+  if not line then source:fail(("atom %d of %d"):format(index, frame.count), nil) end
+  frame.line = line
+  local label, x, y, z = line:match(frame.pattern)
+  if frame.swaps and label then x, y, z, label = label, x, y, z end
+  if not label then source:fail(("atom %d of %d (%s)"):format(index, frame.count, frame.form), line) end
   return label, source:number_of(x, "x"), source:number_of(y, "y"), source:number_of(z, "z")
+end
+
+-- The value of a key of the comment: key=word or key="words", whatever the case of the key.
+local function value_of(comment, key)
+  local text, at = " " .. comment, (" " .. comment:lower()):find("%s" .. key:lower() .. "%s*=")
+  if not at then return nil end
+  local rest = text:sub(at):match "=%s*(.*)"
+  return rest:match '^"([^"]*)"' or rest:match "^[%[{]([^%]}]*)[%]}]" or rest:match "^%S+"
+end
+
+-- The names of the columns, from name:type:count:name:type:count ...
+local function property_names(source, text, comment)
+  local names, is_good = {}, true
+  for name, kind, count in (text .. ":"):gmatch "([^:]+):([^:]+):(%d+):" do
+    count = tonumber(count)
+    is_good = is_good and kind:find "^[SRIL]$" and count > 0 and count < 1000 and #names < 1000
+    for i = 1, is_good and count or 0 do
+      local ending = count == 3 and AXES[i] or "_" .. i
+      names[#names + 1] = name:lower() == "pos" and AXES[i] and AXES[i]:sub(2) or count == 1 and name or name .. ending
+    end
+  end
+  if not is_good or #names == 0 then source:fail("Properties=name:type:count:...", comment) end
+  return names
+end
+
+-- How a line is read: one pattern for the four columns that every frame has.
+local function find_columns(source, fields)
+  local text = value_of(fields.comment, "Properties")
+  local names, place = text and property_names(source, text, fields.comment) or { "element", "x", "y", "z" }, {}
+  for i, name in ipairs(names) do place[name] = place[name] or i end
+  local label = place.species or place.element or place.Z or place.type
+  if not (label and place.x and place.y == place.x + 1 and place.z == place.x + 2) then
+    source:fail("species and pos among the Properties", fields.comment)
+  end
+  if math.max(label, place.z) > frames.WORDS then
+    source:fail(("species and pos among the first %d columns"):format(frames.WORDS), fields.comment)
+  end
+  local parts = {}
+  for i = 1, math.max(label, place.z) do parts[i] = "%S+" end
+  for _, i in ipairs { label, place.x, place.y, place.z } do parts[i] = "(%S+)" end
+  fields.pattern, fields.swaps = "^%s*" .. table.concat(parts, "%s+"), label > place.x
+  fields.form = text and table.concat(names, " ") or "element x y z"
+  frames.name_columns(fields, names)
+  if not text then
+    setmetatable(fields.places, { __index = function(_, name)
+      local number = type(name) == "string" and name:find "^[1-9]%d?$" and math.tointeger(tonumber(name))
+      return number or nil
+    end })
+  end
+end
+
+local function numbers_of(source, text, count, what, comment)
+  local list = {}
+  for word in text:gmatch "%S+" do list[#list + 1] = source:number_of(word, what) end
+  if #list ~= count then source:fail(("%d numbers for %s"):format(count, what), comment) end
+  return list
+end
+
+-- The cell of a frame, and its box where the sides lie as those of a box.
+local function find_cell(source, fields)
+  local text = value_of(fields.comment, "Lattice")
+  if not text then return end
+  local v = numbers_of(source, text, 9, "Lattice", fields.comment)
+  local origin = numbers_of(source, value_of(fields.comment, "Origin") or "0 0 0", 3, "Origin", fields.comment)
+  local periodic, i = { true, true, true }, 0
+  for word in (value_of(fields.comment, "pbc") or ""):gmatch "%a+" do
+    i = i + 1
+    if i <= 3 then periodic[i] = word:find "^[Tt]" ~= nil end
+  end
+  fields.cell = { origin = origin, a = { v[1], v[2], v[3] }, b = { v[4], v[5], v[6] }, c = { v[7], v[8], v[9] } }
+  if v[2] == 0 and v[3] == 0 and v[6] == 0 and v[1] > 0 and v[5] > 0 and v[9] > 0 then
+    fields.box = { low = origin, size = { v[1], v[5], v[9] }, periodic = periodic, xy = v[4], xz = v[7], yz = v[8] }
+  end
 end
 
 -- Blank lines may stand before a count, and nowhere else.
@@ -25,9 +108,12 @@ local function start(source, number)
   local count, index = source:whole(line, "the number of atoms", 1), 0
   local comment = source:next()
   if not comment then source:fail("a line of comment", nil) end
-  return { count = count, comment = comment }, function()
+  local fields = { count = count, comment = comment }
+  find_columns(source, fields)
+  find_cell(source, fields)
+  return fields, function()
     index = index + 1
-    if index <= count then return read_atom(source, source:next(), index, count) end
+    if index <= count then return read_atom(source, fields, index) end
   end
 end
 
@@ -42,6 +128,12 @@ end
 ---@param number? integer
 function xyz.frame(path, number)
   return frames.pick(path, xyz.frames(path), number)
+end
+
+--- The frames of a file in any order: film:frame(n), film:length().
+---@param path string
+function xyz.film(path)
+  return frames.film(path, start)
 end
 
 return xyz
