@@ -368,16 +368,18 @@ $(BUILD)/tests/bench/glint_side: $(call bench_c,glint_main glint_scene glint_fra
 $(BUILD)/tests/bench/hand:       $(call bench_c,hand hand_program packet picture options scenes)
 $(BUILD)/tests/bench/embree:     $(call bench_c,embree packet picture options scenes)
 $(BUILD)/tests/bench/peers:      $(call bench_c,peers options scenes)
+$(BUILD)/tests/bench/plain:      $(call bench_c,plain options scenes)
+$(BUILD)/tests/bench/embree_lone: $(call bench_c,embree_lone options scenes)
 
 $(BUILD)/tests/bench/glint_side: $(BENCH_H) $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(filter %.c,$^) $(LINK) $(BUILD)/libglint.a $(LIBS) -o $@
 
-$(addprefix $(BUILD)/tests/bench/,hand embree peers): $(BENCH_H)
+$(addprefix $(BUILD)/tests/bench/,hand embree peers plain embree_lone): $(BENCH_H)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(FAST) $(filter %.c,$^) -Wl,--as-needed $(if $(filter %/embree,$@),-lembree3) -lpng -lz -lm -o $@
+	$(Q)$(CC) $(FAST) $(filter %.c,$^) -Wl,--as-needed $(if $(filter %/embree %/embree_lone,$@),-lembree3) -lpng -lz -lm -o $@
 
 .PHONY: bench-run bench-programs
 bench: ## glint beside a hand-written program, Embree, POV-Ray and Tachyon: one table; BENCH=frame,jobs picks parts, RUNS=7
@@ -388,7 +390,7 @@ bench-programs: $(PROGRAMS)
 	@:
 
 bench-run: all
-	@$(MAKE) --no-print-directory bench-programs PROGRAMS='$(addprefix $(BUILD)/tests/bench/,glint_side peers $(PACKETS))'
+	@$(MAKE) --no-print-directory bench-programs PROGRAMS='$(addprefix $(BUILD)/tests/bench/,glint_side peers plain $(if $(EMBREE),embree_lone) $(PACKETS))'
 	@$(LUA) tests/bench/bench.lua $(BUILD) '$(CC) $(shell $(CC) -dumpfullversion 2>/dev/null), $(filter-out $(UNWANTED),$(CFLAGS))' \
 	    '$(BENCH)' '$(RUNS)'
 

@@ -58,6 +58,13 @@ local measurements = {
   { "e.1M.2", "embree", "frame scene=1M threads=2" },
   { "e.mesh", "embree", "frame scene=mesh" },
 
+  -- rays that go every way
+  { "g.ways", "glint", "frame indirect=16" },
+  { "g.ways.1k", "glint", "frame scene=1k indirect=16" },
+  { "c.ways", "plain", "frame indirect=16", runs = 3 },
+  { "e.ways.1k", "embree_lone", "frame scene=1k indirect=16", runs = 3 },
+  { "g.glass", "glint", "frame scene=glass" },
+
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
@@ -88,6 +95,7 @@ local measurements = {
   { "p.marble.function", "povray", "frame pattern=marble-function", runs = 3 },
   { "p.1k", "povray", "frame scene=1k", runs = 3 },
   { "p.box", "povray", "frame scene=box shadows=0", runs = 1 },
+  { "p.glass", "povray", "frame scene=glass", runs = 3 },
   { "p.1M", "povray", "frame scene=1M", runs = 1 },
   { "p.light", "povray", "job change=light threads=2", runs = 1 },
   { "p.shininess", "povray", "job change=shininess threads=2", runs = 1 },
@@ -159,6 +167,11 @@ local rows = {
   { "many", "500,000 triangles, render", "g.mesh:render", "e.mesh:render", bar = 1 },
   { "many", "500,000 triangles, index build", "g.mesh.build:build", "e.mesh:build" },
   { "many", "500,000 triangles, scene to first ray", "g.mesh.build:ready", nil },
+
+  { "Rays that go every way, one thread: 16 of indirect light a pixel, one bounce; mirrors and glass" },
+  { "ways", "indirect light, workshop", "g.ways:render", "c.ways:render", bar = 0.30 },
+  { "ways", "indirect light, 1,000 spheres", "g.ways.1k:render", "e.ways.1k:render", bar = 1 },
+  { "peers", "24 mirrors, glass and matt spheres", "g.glass:render", "p.glass:render", bar = 12, more = true },
 
   { "A point of a pattern or a shader, by the kernel alone" },
   { "programs", "Phong as a program", "g.program:phong", "h.program:phong", bar = 2 },

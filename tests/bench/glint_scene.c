@@ -36,8 +36,13 @@ static void make_materials(side_scene *s)
         const bench_material *p = &s->plain.materials[m];
         glint_material_desc d = glint_material_desc_default();
         widen(p->diffuse, d.diffuse);
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             d.specular[c] = (double)p->specular;
+            d.mirror[c] = (double)p->mirror;
+            d.transmission[c] = (double)p->transmission;
+        }
+        d.has_mirror = p->mirror > 0;
+        d.ior = 1.5;
         d.shininess = (double)p->shininess;
         set_program(s, m, 0.05, &d);
         side_must(glint_material_create(&d, &s->materials[m], &error), &error);
@@ -107,7 +112,7 @@ static void add_mesh(side_scene *s)
     free(sizes);
 }
 
-static void set_camera(side_scene *s)
+static void set_camera(side_scene *s, const bench_options *options)
 {
     glint_error error;
     glint_camera_desc c = glint_camera_desc_default();
@@ -124,6 +129,9 @@ static void set_camera(side_scene *s)
     d.camera = camera;
     widen(s->plain.ambient, d.ambient);
     widen(s->plain.background, d.background);
+    d.has_indirect = options->indirect > 0;
+    d.indirect_samples = options->indirect;
+    d.indirect_bounces = 1;
     side_must(glint_scene_set(s->scene, &d, &error), &error);
     glint_camera_release(camera);
 }
@@ -145,7 +153,7 @@ side_scene side_scene_create(const bench_options *options)
     l.shadows = options->shadows;
     side_must(glint_light_create(&l, &s.lamp, &error), &error);
     side_must(glint_scene_add_light(s.scene, s.lamp, &error), &error);
-    set_camera(&s);
+    set_camera(&s, options);
     return s;
 }
 

@@ -4,6 +4,7 @@ local M = {}
 local absent = {
   hand = "not built: needs AVX-512",
   embree = "not built: needs AVX-512 and libembree-dev",
+  embree_lone = "not built: needs libembree-dev",
   povray = "povray is not installed",
   tachyon = "tachyon is not installed",
 }

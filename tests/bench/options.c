@@ -35,6 +35,8 @@ static void read_word(bench_options *o, const char *word)
         o->threads = atoi(value);
     else if (strcmp(name, "samples") == 0)
         o->samples = atoi(value);
+    else if (strcmp(name, "indirect") == 0)
+        o->indirect = atoi(value);
     else if (strcmp(name, "float") == 0)
         o->is_float = on;
     else if (strcmp(name, "reuse") == 0)
@@ -57,6 +59,8 @@ bench_options bench_options_read(int argc, char **argv)
         read_word(&o, argv[i]);
     if (o.threads < 1 || o.threads > 64 || o.samples < 1 || o.samples > 64)
         bench_fail("threads, samples", "1 .. 64 expected");
+    if (o.indirect < 0 || o.indirect > 1024)
+        bench_fail("indirect", "0 .. 1024 expected");
     return o;
 }
 

@@ -16,6 +16,7 @@ typedef struct bench_options {
         ///< of all; for POV-Ray "checker" and "marble", or "checker-function" and "marble-function". "none" (default)
     int threads; ///< default 1
     int samples; ///< a pixel; default 1
+    int indirect; ///< ways of indirect light a pixel, of one bounce; default 0
     bool is_float; ///< glint alone
     bool no_reuse; ///< glint alone
     bool shadows; ///< default true

@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|1k|1M|box] [shadows=0] [samples=N] [area=1] [change=light|shininess] [pattern=NAME]
+///   peers povray|tachyon [scene=workshop|1k|1M|glass|box] [shadows=0] [samples=N] [area=1] [change=light|shininess] [pattern=NAME]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
 /// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
@@ -65,7 +65,7 @@ static void povray_pigment(const bench_material *p, const char *pattern)
 static void write_povray(const bench_scene *s, const bench_options *o)
 {
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
-    puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 }");
+    puts("#version 3.7;\nglobal_settings { assumed_gamma 1.0 ambient_light rgb 1 max_trace_level 6 }"); // glint's max_depth 5
     if (strstr(o->pattern, "-function"))
         puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as functions.inc has it
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
@@ -74,8 +74,15 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     for (int m = 0; m < s->material_count; m++) {
         const bench_material *p = &s->materials[m];
         printf("#declare M = texture { ");
+        if (p->transmission > 0) {
+            printf("pigment { rgb 0 transmit %.9g } finish { ambient 0 diffuse 0 specular 0 } }\n", (double)p->transmission);
+            printf("#declare M%d = M;\n", m);
+            continue;
+        }
         povray_pigment(p, m == 0 ? o->pattern : "none");
         print3(" finish { ambient <%.9g, %.9g, %.9g> diffuse 1 specular 0", s->ambient);
+        if (p->mirror > 0)
+            printf(" reflection { rgb %.9g }", (double)p->mirror);
         if (p->specular > 0 && shines)
             printf(" phong %.9g phong_size 8*pow(2, (frame_number-1)/10)", (double)p->specular);
         else if (p->specular > 0)
@@ -85,7 +92,8 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     for (size_t i = 0; i < s->sphere_count; i++) {
         const float *p = s->spheres + 4 * i;
         print3("sphere { <%.9g, %.9g, %.9g>", p);
-        printf(", %.9g texture { M%u } }\n", (double)p[3], (unsigned)s->sphere_material[i]);
+        printf(", %.9g texture { M%u }%s }\n", (double)p[3], (unsigned)s->sphere_material[i],
+               s->materials[s->sphere_material[i]].transmission > 0 ? " interior { ior 1.5 }" : "");
     }
 }
 

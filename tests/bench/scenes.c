@@ -40,11 +40,13 @@ static void make_workshop(bench_scene *s)
                                          { 5.8F, 3, -1, 3 },
                                          { -6.6F, 2.5F, 0.5F, 2.5F },
                                          { 0.6F, 2, 4.2F, 2 } };
-    static const bench_material materials[5] = { { { 0.42F, 0.40F, 0.37F }, 0, 128 },
-                                                 { { 0.70F, 0.10F, 0.08F }, 0.7F, 128 },
-                                                 { { 0.85F, 0.55F, 0.10F }, 0.7F, 128 },
-                                                 { { 0.10F, 0.35F, 0.62F }, 0.7F, 128 },
-                                                 { { 0.16F, 0.48F, 0.20F }, 0.7F, 128 } };
+    static const bench_material materials[5] = {
+        { .diffuse = { 0.42F, 0.40F, 0.37F }, .specular = 0, .shininess = 128 },
+        { .diffuse = { 0.70F, 0.10F, 0.08F }, .specular = 0.7F, .shininess = 128 },
+        { .diffuse = { 0.85F, 0.55F, 0.10F }, .specular = 0.7F, .shininess = 128 },
+        { .diffuse = { 0.10F, 0.35F, 0.62F }, .specular = 0.7F, .shininess = 128 },
+        { .diffuse = { 0.16F, 0.48F, 0.20F }, .specular = 0.7F, .shininess = 128 },
+    };
     make_spheres(s, 5);
     memcpy(s->spheres, spheres, sizeof spheres);
     memcpy(s->materials, materials, sizeof materials);
@@ -57,8 +59,6 @@ static void make_workshop(bench_scene *s)
     set3(s->light, 0, 20, 0);
 }
 
-// ---- Many spheres, in a box of 32 x 18 x 18 seen from outside ----
-
 /// splitmix64, as a number in 0 .. 1 of 24 bits.
 static float random_unit(uint64_t *state)
 {
@@ -67,6 +67,34 @@ static float random_unit(uint64_t *state)
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return (float)((z ^ (z >> 31)) >> 40) * 0x1p-24F;
 }
+
+// ---- Mirrors and glass ----
+
+static void make_glass(bench_scene *s)
+{
+    static const bench_material materials[4] = { { .diffuse = { 0.45F, 0.42F, 0.38F } },
+                                                 { .diffuse = { 0.1F, 0.1F, 0.12F }, .mirror = 0.8F },
+                                                 { .transmission = 0.9F },
+                                                 { .diffuse = { 0.7F, 0.3F, 0.1F } } };
+    uint64_t state = 24;
+    memcpy(s->materials, materials, sizeof materials);
+    s->material_count = 4;
+    make_spheres(s, 25);
+    s->spheres[1] = -10000;
+    s->spheres[3] = 10000;
+    for (uint32_t i = 1; i < 25; i++) {
+        float *p = s->spheres + 4 * i, radius = 0.7F + 0.5F * random_unit(&state);
+        set3(p, 2.6F * ((float)((i - 1) % 6) - 2.5F), radius + random_unit(&state), 2.6F * ((float)((i - 1) / 6) - 2));
+        p[3] = radius;
+        s->sphere_material[i] = 1 + i % 3;
+    }
+    set3(s->eye, 0, 6, 15);
+    set3(s->at, 0, 0.8F, -1);
+    s->fov_y_degrees = 42;
+    set3(s->light, 6, 20, 8);
+}
+
+// ---- Many spheres, in a box of 32 x 18 x 18 seen from outside ----
 
 static void make_palette(bench_scene *s, uint64_t *state)
 {
@@ -130,7 +158,7 @@ static void make_mesh(bench_scene *s)
             triangle += 6;
         }
     s->material_count = 1;
-    s->materials[0] = (bench_material) { { 0.6F, 0.5F, 0.4F }, 0.5F, 64 };
+    s->materials[0] = (bench_material) { .diffuse = { 0.6F, 0.5F, 0.4F }, .specular = 0.5F, .shininess = 64 };
     set3(s->eye, 0, 13, 17);
     s->fov_y_degrees = 42;
     set3(s->light, 9, 14, 4);
@@ -149,6 +177,8 @@ bool bench_scene_create(const char *name, bench_scene *out)
         make_cloud(out, 1000000);
     else if (strcmp(name, "box") == 0)
         make_box(out);
+    else if (strcmp(name, "glass") == 0)
+        make_glass(out);
     else if (strcmp(name, "mesh") == 0)
         make_mesh(out);
     else
