@@ -237,14 +237,6 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
     } while (from < lights);
 }
 
-double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
-{
-    double light = batch->tile.film.sum[0][c][i];
-    for (int k = 1; k < GLINT_TERM_LOCAL; k++)
-        light += batch->tile.film.sum[k][c][i];
-    return light;
-}
-
 double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
 {
     return glint_batch_has_sample(batch, ray) ? glint_batch_found(batch, c, batch->sample[ray]) : plan->background[c];
@@ -290,16 +282,32 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
         args.reflected[c] = batch->reflected[c];
         args.refracted[c] = batch->refracted[c];
     }
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        double ratio = 1;
-        if (glint_has_lane(batch->wanted, i))
-            ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->surface.material[i],
-                                glint_has_lane(tile->hit.back, i));
-        glint_real_put(batch->ratio, precision, i, ratio);
-    }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            const double ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->surface.material[i],
+                                             glint_has_lane(tile->hit.back, i));
+            glint_real_put(batch->ratio, precision, i, ratio);
+        }
     if (glint_plan_bumps(frame->plan))
         glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);
     frame->stages->geometry[precision].bounce(&args);
+}
+
+/// What a ray that goes on has of the one that came.
+static void inherit(const glint_rays *rays, const glint_plan *plan, uint32_t i, glint_ray *ray)
+{
+    for (int c = 0; c < 3; c++)
+        ray->weight[c] = rays->weight[c][i];
+    ray->way = rays->way[i];
+    ray->least = rays->least[i];
+    ray->pixel = rays->pixel[i];
+    ray->point = rays->point[i];
+    ray->depth = rays->depth[i];
+    ray->scatters = rays->scatters[i];
+    ray->term = rays->term[i];
+    if (plan->transmits)
+        ray->media = rays->media[i];
 }
 
 glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
@@ -307,7 +315,7 @@ glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile
 {
     glint_ray ray = { .weight = { 1, 1, 1 }, .pixel = i };
     if (tile == &batch->tile)
-        ray = glint_rays_get(batch->rays, frame->plan, batch->ray_of[i]);
+        inherit(batch->rays, frame->plan, batch->ray_of[i], &ray);
     else if (frame->plan->transmits)
         ray.media = frame->plan->eye_media;
     if (frame->plan->patterns)
@@ -332,7 +340,7 @@ static void send(glint_ray *ray, const double (*way)[GLINT_TILE_SAMPLES], glint_
 {
     for (int c = 0; c < 3; c++) {
         ray->direction[c] = glint_real_at(way[c], precision, i);
-        ray->weight[c] = fmin(ray->weight[c] * (share[c] * factor), GLINT_WEIGHT_MAX);
+        ray->weight[c] = glint_weight(ray->weight[c] * (share[c] * factor));
     }
 }
 

@@ -9,6 +9,9 @@
 
 #define GLINT_WEIGHT_MAX 1e150 ///< products with what a surface gives stay finite
 
+/// A weight, bounded.
+static inline double glint_weight(double x) { return x < GLINT_WEIGHT_MAX ? x : GLINT_WEIGHT_MAX; }
+
 typedef struct glint_batch {
     glint_tile tile; ///< its samples are what the rays have met, packed; `group_count` and `active` say which there are
     glint_rays *rays; ///< that are cast
@@ -45,7 +48,14 @@ void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool a
 /// The same of those hits whose light is worked out for themselves.
 void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// The light of all local terms of sample `i`, in channel `c`.
-double glint_batch_found(const glint_batch *batch, int c, uint32_t i);
+static inline double glint_batch_found(const glint_batch *batch, int c, uint32_t i)
+{
+    const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
+    double light = sum[0][c][i];
+    for (int k = 1; k < GLINT_TERM_LOCAL; k++)
+        light += sum[k][c][i];
+    return light;
+}
 /// The light along ray `ray`.
 double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray);
 /// Where light goes on from the samples of `tile` in batch->wanted: mirrored and refracted. `tile` is the batch's own, or

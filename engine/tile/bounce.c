@@ -115,7 +115,7 @@ static void stand_for_both(glint_ray *a, glint_ray *b)
     const bool first = lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a);
     glint_ray *one = first ? a : b, *other = first ? b : a;
     for (int c = 0; c < 3; c++) {
-        one->weight[c] = fmin(one->weight[c] + other->weight[c], GLINT_WEIGHT_MAX);
+        one->weight[c] = glint_weight(one->weight[c] + other->weight[c]);
         other->weight[c] = 0;
     }
 }
@@ -131,7 +131,7 @@ static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const g
         through.term = GLINT_TERM_TRANSMISSION;
     } else if (glint_has_lane(bounce->batch.total, i)) { // both go the same way
         for (int c = 0; c < 3; c++)
-            mirror.weight[c] = fmin(mirror.weight[c] + through.weight[c], GLINT_WEIGHT_MAX);
+            mirror.weight[c] = glint_weight(mirror.weight[c] + through.weight[c]);
         through.weight[0] = through.weight[1] = through.weight[2] = 0;
     } else if (mirror.depth > GLINT_BOUNCE_SPLITS) {
         stand_for_both(&mirror, &through);

@@ -162,7 +162,7 @@ static glint_ray first_ray(const struct glint_indirect *indirect, const glint_ti
     ray.scatters++;
     for (int c = 0; c < 3; c++) {
         ray.direction[c] = 0;
-        ray.weight[c] = fmin(ray.weight[c] * (diffuse[c] * part), GLINT_WEIGHT_MAX);
+        ray.weight[c] = glint_weight(ray.weight[c] * (diffuse[c] * part));
     }
     return ray;
 }
@@ -351,7 +351,7 @@ static turn choose(struct glint_indirect *indirect, const glint_tile_frame *fram
     const double chance = share[chosen] / all;
     *next = chosen ? split[chosen - 1] : glint_batch_start_ray(batch, &batch->tile, frame, i);
     for (int c = 0; c < 3; c++) {
-        next->weight[c] = fmin(next->weight[c] / chance, GLINT_WEIGHT_MAX);
+        next->weight[c] = glint_weight(next->weight[c] / chance);
         least = fmax(least, next->weight[c] * (chosen ? 1 : diffuse[c]));
     }
     if (least <= rays->least[ray])
@@ -370,7 +370,7 @@ static void leave(const struct glint_indirect *indirect, const glint_tile_frame 
     next->scatters[i]++;
     for (int c = 0; c < 3; c++) {
         glint_real_put(next->direction[c], precision, i, glint_real_at(indirect->direction[c], precision, i));
-        next->weight[c][i] = fmin(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)), GLINT_WEIGHT_MAX);
+        next->weight[c][i] = glint_weight(next->weight[c][i] * (diffuse[c] * (free ? 1 : 0)));
     }
 }
 
@@ -381,6 +381,8 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     const glint_tile *tile = &batch->tile;
     glint_rays *rays = &indirect->next[step & 1];
     unsigned any = 0;
+    if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all of them have been scattered so often
+        return false;
     find_ways(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {

@@ -374,7 +374,7 @@ const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const g
     return room;
 }
 
-double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
+double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
 {
     const uint32_t material = tile->surface.material[i];
     const glint_plan_pattern *own = plan->patterns ? &plan->patterns->of[material] : NULL;

@@ -108,8 +108,14 @@ static inline const double *glint_tile_diffuse(const glint_tile *tile, const gli
 /// What the surface of a tile's sample sends on; `room`: for what programs give of it.
 const glint_bounce_material *glint_tile_bouncing(const glint_tile *tile, const glint_plan *plan, uint32_t i,
                                                  glint_bounce_material *room);
-/// The ambient light of a tile's sample that indirect light stands for, in channel c.
-double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);
+/// The ambient light of a tile's sample that indirect light stands for, in channel c: where a program gives the diffuse
+/// reflectance, and of any.
+double glint_tile_pattern_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c);
+static inline double glint_tile_ambient_rest(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
+{
+    return plan->patterns ? glint_tile_pattern_rest(tile, plan, i, c)
+                          : plan->indirect.rest[tile->surface.material[i]][c];
+}
 
 /// What shade reads of a tile's planes. Returns NULL where no material has any.
 const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,

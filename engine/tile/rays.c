@@ -30,27 +30,3 @@ void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const 
     if (plan->transmits)
         rays->media[i] = ray->media;
 }
-
-glint_ray glint_rays_get(const glint_rays *rays, const glint_plan *plan, uint32_t i)
-{
-    const glint_precision precision = plan->desc.precision;
-    glint_ray ray;
-    for (int c = 0; c < 3; c++) {
-        ray.origin[c] = glint_real_at(rays->origin[c], precision, i);
-        ray.direction[c] = glint_real_at(rays->direction[c], precision, i);
-        ray.weight[c] = rays->weight[c][i];
-    }
-    ray.leaving = rays->leaving[i];
-    ray.way = rays->way[i];
-    ray.least = rays->least[i];
-    ray.pixel = rays->pixel[i];
-    ray.point = rays->point[i];
-    ray.depth = rays->depth[i];
-    ray.scatters = rays->scatters[i];
-    ray.term = rays->term[i];
-    ray.inward = glint_has_lane(rays->inward, i);
-    ray.media.count = 0;
-    if (plan->transmits)
-        ray.media = rays->media[i];
-    return ray;
-}

@@ -36,6 +36,5 @@ typedef struct glint_rays {
 void glint_rays_clear(glint_rays *rays, uint32_t group_count);
 /// Puts a ray into lane i, which becomes active.
 void glint_rays_put(glint_rays *rays, const glint_plan *plan, uint32_t i, const glint_ray *ray);
-glint_ray glint_rays_get(const glint_rays *rays, const glint_plan *plan, uint32_t i);
 
 #endif

@@ -111,7 +111,8 @@ INNER void R(load_float_rays)(const R(ray_group) * rays, int i, R(float_rays) * 
     out->usual = fm_and(fm_and(f_lt(f_set(0x1p-40f), a), f_lt(a, f_set(0x1p40f))), f_lt(out->bound, f_set(1)));
 }
 
-/// The lanes that may enter a sphere, or are in it, and how far they go before, in the index's units; infinite in the others.
+/// The lanes that may enter a sphere, or are in it, and where there are any, how far all go before: infinitely in the others. In the
+/// index's units.
 INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *way)
 {
     vf f[3];
@@ -121,6 +122,8 @@ INNER fm R(way_to_ball)(const R(float_rays) * rays, const glint_prim *prim, vf *
     const vf x[3] = { f[1] * d[2] - f[2] * d[1], f[2] * d[0] - f[0] * d[2], f[0] * d[1] - f[1] * d[0] };
     const vf limit = (f_set(prim->filter_bound) + rays->bound) * rays->length;
     const vf room = limit * limit - DOT(x, x), b = -DOT(f, d);
+    if (!fm_bits(f_le(f_set(0), room)))
+        return fm_from_bits(0);
     const vf half = f_sqrt(f_max(room, f_set(0)));
     const vf slack = f_set(NEAREST_SLACK) * (f_abs(b) + limit);
     const fm near = fm_and(f_le(f_set(0), room), f_le(f_set(0), (b + half) + slack));
@@ -139,6 +142,9 @@ typedef struct R(first_met) {
 static inline void R(find_first)(const glint_cast_args *args, const R(ray_group) * rays, size_t at,
                                  const uint32_t *list, int count, R(first_met) * out)
 {
+    const uint32_t common = args->leaving && lanes_equal(args->leaving + at, args->leaving[at]) == 0xffff
+                                ? args->leaving[at]
+                                : GLINT_MISS; // what all of them leave
     out->usual = 0;
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         R(float_rays) lanes;
@@ -147,7 +153,7 @@ static inline void R(find_first)(const glint_cast_args *args, const R(ray_group)
         const vi leaving = args->leaving ? i_load(args->leaving + at + i) : i_set(GLINT_MISS);
         for (int n = 0; n < count; n++) {
             vf own;
-            if (!fm_bits(R(way_to_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
+            if (list[n] == common || !fm_bits(R(way_to_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
                 continue;
             own = f_select(i_eq(leaving, i_set(list[n])), f_set(HUGE_VALF), own);
             first = f_select(f_lt(own, way), f_from_bits(i_set(list[n])), first);
@@ -291,6 +297,8 @@ static inline unsigned R(meet_balls)(const glint_node *node, const R(lone_ray) *
         const vf limit = ball.most + ball.margin, inner = f_max(ball.least - ball.margin, zero);
         const vf x2 = DOT(x, x), b = -DOT(f, d), reach = limit * length, least = inner * length;
         const vf room = reach * reach - x2, inner_room = least * least - x2;
+        if (!fm_bits(f_le(zero, room)))
+            continue;
         const vf half = f_sqrt(f_max(room, zero)), slack = f_set(NEAREST_SLACK) * (f_abs(b) + reach);
         const vf way = f_max((b - half) - slack, zero) * per_a;
         const fm near = fm_and(fm_and(f_le(zero, room), f_le(zero, (b + half) + slack)), f_le(way, f_set(ray->far)));
