@@ -3,8 +3,8 @@
 ///
 /// Paths do not branch. Where one meets a surface it takes the light that the lights send there, and goes on in one of the
 /// directions the surface sends light on to: scattered, mirrored or refracted, chosen with probability as the shares, and
-/// weighed by one over it. So the memory is one batch, however long paths are. They stay in the lane of their point: what
-/// a path finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
+/// weighed by one over it. So the memory is a batch and three sets of rays, however long paths are. They stay in the lane of
+/// their point: what a path finds depends on its pixel, on the numbers of its sample and of its turns, and on the seed.
 ///
 /// Of an area light each path takes one sample at each point, another from path to path. Light that is computed at each point
 /// and found by chance as well would count twice: paths do not see lights, whether rays of the eye do or not.

@@ -209,17 +209,20 @@ static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, fl
         R(narrow)((const real *)args->direction[k] + at, rays->direction[k]);
 }
 
-/// Starts a group with what it meets without the index: what it is in, and what has no end.
-static inline void R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
+/// Starts a group with what it meets without the index: what it is in, and what has no end. False: it has no rays.
+static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                  R(ray_group) * rays)
 {
     const glint_geometry_table *geometry = args->geometry;
     R(start_group)(args, g);
+    if (!args->active[g])
+        return false;
     R(make_ray_group)(args, g, local, rays);
     if (args->leaving)
         R(cast_inward)(args, g);
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         R(cast_on_group)(args, g, rays, geometry->unbounded[i]);
+    return true;
 }
 
 /// The primitives of a small index: spheres from the front of the list on, others from its end.
@@ -272,7 +275,8 @@ static void R(cast_few_rays)(const glint_cast_args *args)
     R(ray_pairs) pairs = { .count = 0 };
     R(list_few)(args->geometry, &few);
     for (uint32_t g = 0; g < args->group_count; g++) {
-        R(begin_rays)(args, g, local, &rays);
+        if (!R(begin_rays)(args, g, local, &rays))
+            continue;
         for (int n = GLINT_FEW - few.others; n < GLINT_FEW; n++)
             R(cast_on_group)(args, g, &rays, few.id[n]);
         R(cast_spheres)(args, g, &rays, few.id, few.spheres, &pairs);
@@ -293,7 +297,8 @@ static void R(cast_many_rays)(const glint_cast_args *args)
     R(lone_rays) lone;
     R(ray_pairs) pairs = { .count = 0 };
     for (uint32_t g = 0; g < args->group_count; g++) {
-        R(begin_rays)(args, g, local, &rays);
+        if (!R(begin_rays)(args, g, local, &rays))
+            continue;
         R(load_lone_rays)(&rays, &lone);
         for (unsigned lanes = args->active[g]; lanes; lanes &= lanes - 1)
             if (GLINT_REAL == 64 && lone.usual & lanes & -lanes)
