@@ -16,8 +16,7 @@ typedef struct entry {
     bool dull; ///< illum 0 or 1: without a highlight
     bool lacks_uv; ///< a face has it and a corner without coordinates
     char *map; ///< map_Kd; NULL: none
-    double scale[2], offset[2]; ///< of the map's coordinates
-    bool clamp;
+    glint_mesh_map place; ///< of the map
 } entry;
 
 typedef struct picture {
@@ -184,11 +183,11 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, entry 
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
         at = skip_option(text, at, words,
-                         glint_mesh_is_word(at, "-o")   ? to->offset
-                         : glint_mesh_is_word(at, "-s") ? to->scale
+                         glint_mesh_is_word(at, "-o")   ? to->place.offset
+                         : glint_mesh_is_word(at, "-s") ? to->place.scale
                                                         : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
-            to->clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
+            to->place.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
     }
     if (!*at)
         return glint_mesh_refuse(text, "the name of a picture", at);
@@ -226,7 +225,7 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, entr
 /// newmtl: the entry that the lines below are about. A second one of a name is another.
 static glint_status begin(glint_mesh_library *library, const glint_mesh_text *text, const char *name, uint32_t *number)
 {
-    entry made = { .key = key_of(name), .desc = glint_material_desc_default(), .scale = { 1, 1 } };
+    entry made = { .key = key_of(name), .desc = glint_material_desc_default(), .place.scale = { 1, 1 } };
     copy_name(made.desc.name, name);
     glint_status status =
         glint_mesh_find(&library->known_set, &library->known, &made, sizeof(glint_key), number, text->error);
@@ -314,7 +313,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     glint_texture_desc desc = glint_texture_desc_default();
     glint_error inner;
     const size_t before = library->pictures.count;
-    const picture wanted = { .key = glint_key_add(key_of(e->map), &e->clamp, sizeof e->clamp) };
+    const picture wanted = { .key = glint_key_add(key_of(e->map), &e->place.clamp, sizeof e->place.clamp) };
     glint_status status =
         glint_mesh_find(&library->picture_set, &library->pictures, &wanted, sizeof(glint_key), &number, reader->error);
     *out = NULL;
@@ -323,7 +322,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     picture *found = (picture *)library->pictures.items + number;
     if (library->pictures.count > before) {
         desc.path = e->map;
-        desc.wrap = e->clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
+        desc.wrap = e->place.clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
         if (reader->desc->reads)
             reader->desc->reads(reader->desc->context, e->map);
         status = glint_texture_create(&desc, &found->texture, &inner);
@@ -335,64 +334,6 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     }
     *out = found->texture;
     return GLINT_OK;
-}
-
-typedef struct painter {
-    glint_builder *builder;
-    glint_status status;
-    glint_error *error;
-} painter;
-
-static glint_value number_of(painter *p, double number)
-{
-    glint_value out = 0;
-    if (!p->status)
-        p->status = glint_builder_number(p->builder, number, &out, p->error);
-    return out;
-}
-
-static glint_value input_of(painter *p, glint_input input)
-{
-    glint_value out = 0;
-    if (!p->status)
-        p->status = glint_builder_input(p->builder, input, &out, p->error);
-    return out;
-}
-
-static glint_value apply(painter *p, glint_op op, glint_value a, glint_value b)
-{
-    const glint_value operands[] = { a, b };
-    glint_value out = 0;
-    if (!p->status)
-        p->status = glint_builder_op(p->builder, op, operands, &out, p->error);
-    return out;
-}
-
-/// A coordinate times the scale of the map, moved by its offset.
-static glint_value place_of(painter *p, const entry *e, int axis)
-{
-    const glint_value at = input_of(p, axis ? GLINT_INPUT_UV_V : GLINT_INPUT_UV_U);
-    return apply(p, GLINT_OP_ADD, apply(p, GLINT_OP_MUL, at, number_of(p, e->scale[axis])),
-                 number_of(p, e->offset[axis]));
-}
-
-/// The picture times Kd.
-static glint_status paint(const entry *e, const glint_texture *texture, glint_program **out, glint_error *error)
-{
-    painter p = { .error = error };
-    glint_value color[4] = { 0 };
-    p.status = glint_builder_create(GLINT_PROGRAM_PATTERN, &p.builder, error);
-    const glint_value u = place_of(&p, e, 0), v = place_of(&p, e, 1);
-    const glint_value width =
-        apply(&p, GLINT_OP_MUL, input_of(&p, GLINT_INPUT_UV_FOOTPRINT), number_of(&p, e->scale[0]));
-    if (!p.status)
-        p.status = glint_builder_texel(p.builder, texture, u, v, width, color, error);
-    for (int c = 0; c < 3; c++)
-        color[c] = apply(&p, GLINT_OP_MUL, color[c], number_of(&p, e->desc.diffuse[c]));
-    if (!p.status)
-        p.status = glint_builder_finish(p.builder, color, 3, out, error);
-    glint_builder_destroy(p.builder);
-    return p.status;
 }
 
 // ---- Materials ----
@@ -423,7 +364,7 @@ static glint_status make_material(glint_mesh_library *library, const glint_mesh_
     else if (e.map)
         status = find_picture(library, reader, &e, &texture);
     if (!status && texture)
-        status = paint(&e, texture, &e.desc.program.diffuse, reader->error);
+        status = glint_mesh_paint(texture, &e.place, e.desc.diffuse, &e.desc.program.diffuse, reader->error);
     if (!status)
         status = glint_material_create(&e.desc, &material, reader->error);
     glint_program_release(e.desc.program.diffuse);

@@ -4,6 +4,16 @@
 
 #include "engine/scene/mesh_file.h"
 
+/// Where a picture lies: at a shape's coordinates times `scale` plus `offset`.
+typedef struct glint_mesh_map {
+    double scale[2], offset[2];
+    bool clamp; ///< beyond 0 .. 1 is the picture's border, not the picture again
+} glint_mesh_map;
+
+/// A pattern of the picture times a colour.
+glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double kd[3],
+                              glint_program **out, glint_error *error);
+
 /// NULL: out of memory.
 glint_mesh_library *glint_mesh_library_create(void);
 void glint_mesh_library_free(glint_mesh_library *library); ///< NULL: nothing

@@ -54,12 +54,13 @@ static glint_status read_index(reader *r, const char **at, size_t count, const c
     errno = 0;
     const long long value = strtoll(*at, &end, 10);
     const long long index = value < 0 ? (long long)count + value : value - 1;
+    if (end != *at && !errno && value != 0 && index >= 0 && index < (long long)count && index < INT32_MAX) {
+        *at = end;
+        *out = (uint32_t)index;
+        return GLINT_OK;
+    }
     snprintf(expected, sizeof expected, "the number of a %s, 1 .. %zu,", what, count);
-    if (end == *at || errno || value == 0 || index < 0 || index >= (long long)count || index >= INT32_MAX)
-        return complain(r, expected, *at);
-    *at = end;
-    *out = (uint32_t)index;
-    return GLINT_OK;
+    return complain(r, expected, *at);
 }
 
 /// vt of a corner; where the file has none so far, its form alone is checked.

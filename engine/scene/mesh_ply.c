@@ -262,15 +262,18 @@ static double number_of(number_type type, const unsigned char *bytes)
 
 static glint_status read_bytes(body *b, number_type type, double *out)
 {
-    unsigned char bytes[8], turned[8];
+    unsigned char bytes[8] = { 0 };
     const size_t size = SIZES[type];
-    if (fread(bytes, 1, size, b->reader->text.file) != size)
-        return ferror(b->reader->text.file)
-                   ? glint_fail(b->reader->error, GLINT_ERR_IO, "%s: %s", b->reader->text.path, strerror(errno))
-                   : fail_at(b, "a number", "the end of the file");
-    for (size_t i = 0; i < size; i++)
-        turned[i] = bytes[b->head->format == BIG ? size - 1 - i : i];
-    *out = number_of(type, turned);
+    FILE *file = b->reader->text.file;
+    for (size_t i = 0; i < size; i++) {
+        const int c = getc_unlocked(file);
+        if (c == EOF)
+            return ferror(file)
+                       ? glint_fail(b->reader->error, GLINT_ERR_IO, "%s: %s", b->reader->text.path, strerror(errno))
+                       : fail_at(b, "a number", "the end of the file");
+        bytes[b->head->format == BIG ? size - 1 - i : i] = (unsigned char)c;
+    }
+    *out = number_of(type, bytes);
     return GLINT_OK;
 }
 
@@ -279,13 +282,14 @@ static glint_status read_word(body *b, double *out)
     char *end, shown[48];
     b->at = glint_skip_blanks(b->at);
     *out = strtod_l(b->at, &end, b->reader->text.c_locale);
+    if (end != b->at && glint_ends_word(*end)) {
+        b->at = end;
+        return GLINT_OK;
+    }
     snprintf(shown, sizeof shown, "'%.40s'", b->at);
     for (char *c = shown; *c; c++)
         *c = (unsigned char)*c < ' ' || *c == 127 ? ' ' : *c;
-    if (end == b->at || !glint_ends_word(*end))
-        return fail_at(b, "a number", shown);
-    b->at = end;
-    return GLINT_OK;
+    return fail_at(b, "a number", shown);
 }
 
 static glint_status read_number(body *b, number_type type, double *out)
@@ -301,12 +305,13 @@ static glint_status read_whole(body *b, number_type type, double most, const cha
     glint_status status = read_number(b, type, &number);
     if (status)
         return status;
+    if (number >= 0 && number <= most && number == floor(number)) {
+        *out = (uint32_t)number;
+        return GLINT_OK;
+    }
     snprintf(expected, sizeof expected, "%s, 0 .. %.0f,", what, most);
     snprintf(got, sizeof got, "%.15g", number);
-    if (!(number >= 0 && number <= most) || number != floor(number))
-        return fail_at(b, expected, got);
-    *out = (uint32_t)number;
-    return GLINT_OK;
+    return fail_at(b, expected, got);
 }
 
 // ---- Rows ----
