@@ -56,6 +56,7 @@ typedef struct glint_plan_camera {
 typedef struct glint_plan_light {
     bool directional, shadows, attenuated;
     bool joined; ///< a further sample of the area light before it
+    bool alike; ///< without samples or a cone, as the light before it, and to the stage `light` different by its place alone
     bool is_spot;
     glint_spot spot;
     const glint_light_sample *light_samples; ///< of an area light: the pattern of each turn, turn after turn; else NULL

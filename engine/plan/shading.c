@@ -264,6 +264,15 @@ static glint_status make_room(glint_plan *plan, const glint_scene *scene, glint_
     return plan->lights && plan->light_samples ? GLINT_OK : glint_fail_nomem(error);
 }
 
+/// Whether a light is as the one before it but for its place, as far as the stage `light` reads them: neither has samples or a
+/// cone.
+static bool is_alike(const glint_plan_light *a, const glint_plan_light *b)
+{
+    const bool plain = !a->light_samples && !b->light_samples && !a->is_spot && !b->is_spot;
+    return plain && a->directional == b->directional && a->attenuated == b->attenuated && a->scale == b->scale &&
+           memcmp(a->coefficients, b->coefficients, sizeof a->coefficients) == 0;
+}
+
 /// Adds the rows of one light: one, or one a sample. Returns how many lamps they took of `lamps`.
 static size_t add_light(glint_plan *plan, const glint_plan_light *common, const glint_light_desc *desc,
                         glint_light_sample *light_samples)
@@ -284,6 +293,7 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
         light->light_samples = area ? light_samples + (size_t)i * turns : NULL;
         light->turn_count = area ? turns : 0;
         light->cap = is_cap(plan, desc) ? light_samples : NULL;
+        light->alike = plan->light_count > 1 && is_alike(light, light - 1);
         plan->shadow_count += light->shadows;
         plan->spared_count += light->cap || (light->shadows && light->hard && i % GLINT_LIGHT_CHUNK > 0);
     }

@@ -245,6 +245,7 @@ glint_light_args glint_tile_light_args(glint_tile *tile, const glint_tile_frame 
     vec_copy(args.coefficients, light->coefficients);
     for (uint32_t i = 0; i < count; i++) {
         args.light_sample[i] = glint_tile_light_sample_of(tile, &plan->lights[first + slot[i]]);
+        args.place[i] = plan->lights[first + slot[i]].position;
         args.lit[i] = tile->at.light[slot[i]].lit;
         args.cosine[i] = tile->at.light[slot[i]].cosine;
         args.attenuation[i] = tile->at.light[slot[i]].attenuation;

@@ -164,50 +164,74 @@ static bool is_plain(const glint_tile_frame *frame, const walk *w)
            !frame->geometry.solids;
 }
 
-/// What one light does to this sample: `count` rows of the plan from `first + slot` on.
-static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
-                       uint32_t count)
+/// Which lights a light's samples, or several that are alike, leave to be found: `shine` and `occlude` get their slots.
+typedef struct light_work {
+    uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining, occluding;
+} light_work;
+
+/// Of `count` rows of the plan from `first + slot` on.
+static light_work find_light_work(glint_tile *tile, const glint_tile_frame *frame, const walk *w, uint32_t first,
+                                  uint32_t slot, uint32_t count)
 {
-    const glint_plan_light *light = &frame->plan->lights[first + slot];
-    uint32_t shine[GLINT_LIGHT_CHUNK], occlude[GLINT_LIGHT_CHUNK], shining = 0, occluding = 0;
+    light_work work = { .shining = 0 };
     for (uint32_t i = slot; i < slot + count; i++) {
+        const bool shadows = frame->plan->lights[first + i].shadows;
         bool light_known, occlude_known;
         glint_tile_light_memory(tile, frame, w->sample, first + i, i, &light_known, &occlude_known);
         if (light_known)
             glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, true);
         else
-            shine[shining++] = i;
-        if (light->shadows && occlude_known)
+            work.shine[work.shining++] = i;
+        if (shadows && occlude_known)
             glint_tile_count_stage(tile, frame, GLINT_STAGE_OCCLUDE, true);
-        else if (light->shadows)
-            occlude[occluding++] = i;
+        else if (shadows)
+            work.occlude[work.occluding++] = i;
     }
-    if (shining && is_plain(frame, w)) {
+    return work;
+}
+
+/// What is in the way of one light, of its samples together, or of lights that are alike.
+static void find_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, const light_work *work)
+{
+    const uint32_t together = frame->plan->lights[first + work->occlude[0]].light_samples ? work->occluding : 1;
+    for (uint32_t i = 0; i < work->occluding; i += together)
+        glint_tile_occlude(tile, frame, first, work->occlude + i, together);
+}
+
+/// What one light, or lights that are alike, do to this sample: `count` rows of the plan from `first + slot` on.
+static void find_light(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t slot,
+                       uint32_t count)
+{
+    const glint_plan_light *lights = &frame->plan->lights[first];
+    light_work work = find_light_work(tile, frame, w, first, slot, count);
+    if (work.shining && is_plain(frame, w)) {
         need_rays(tile, frame, w);
         glint_tile_find_lit_surfaces(tile, frame, first);
         w->lit = true;
     } else {
-        if (shining || occluding)
+        if (work.shining || work.occluding)
             need_points(tile, frame, w);
-        if (shining == count && glint_tile_sum_light(tile, frame, first, slot, count))
-            occluding = 0;
-        else if (shining)
-            glint_tile_shine(tile, frame, first, shine, shining);
+        if (work.shining == count && glint_tile_sum_light(tile, frame, first, slot, count))
+            work.occluding = 0;
+        else if (work.shining)
+            glint_tile_shine(tile, frame, first, work.shine, work.shining);
     }
-    if (occluding)
-        glint_tile_occlude(tile, frame, first, occlude, occluding);
-    if (frame->plan->runs[GLINT_STAGE_FACET])
-        find_facets(tile, frame, w, first, slot, count);
+    if (work.occluding)
+        find_shadows(tile, frame, first, &work);
+    const uint32_t together = lights[slot].light_samples ? count : 1;
+    for (uint32_t i = slot; frame->plan->runs[GLINT_STAGE_FACET] && i < slot + count; i += together)
+        find_facets(tile, frame, w, first, i, together);
     for (uint32_t i = slot; i < slot + count; i++)
         if (tile->cached && first + i < frame->reuse->light_count)
-            glint_tile_note_light(tile, first + i, i, light->shadows, w->sample);
+            glint_tile_note_light(tile, first + i, i, lights[i].shadows, w->sample);
 }
 
-/// A chunk of lights; the samples of one are found together.
+/// A chunk of lights; the samples of one are found together, and what lights that are alike do to each point.
 static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first, uint32_t count)
 {
     for (uint32_t slot = 0, next; slot < count; slot = next) {
-        for (next = slot + 1; next < count && frame->plan->lights[first + next].joined; next++)
+        const glint_plan_light *lights = &frame->plan->lights[first];
+        for (next = slot + 1; next < count && (lights[next].joined || lights[next].alike); next++)
             continue;
         find_light(tile, frame, w, first, slot, next - slot);
     }

@@ -126,11 +126,25 @@ static void make_lamps(glint_light_args *args, glint_light_sample *lamps, double
     }
 }
 
+/// Several lights that are alike but for where they are.
+static void make_alike(glint_light_args *args, double (*place)[3])
+{
+    args->sample_count = 1 + below(GLINT_LIGHT_CHUNK);
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        random_unit(place[s]);
+        for (int c = 0; c < 3 && !args->directional; c++)
+            place[s][c] *= length3(args->position) * power_of_ten(-1, 1);
+        memcpy(place[s], s ? place[s] : args->position, sizeof place[s]);
+        args->place[s] = place[s];
+    }
+}
+
 /// A light's arguments but for what it writes; returns how many lanes there are.
 static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camera, glint_spot *spot, int precision,
                                 bool odd)
 {
     static glint_light_sample lamps[GLINT_LIGHT_CHUNK];
+    static double place[GLINT_LIGHT_CHUNK][3];
     *args =
         (glint_light_args) { .sample_count = 1, .group_count = 1 + below(GLINT_TILE_GROUPS), .materials = materials };
     const double size = power_of_ten(-4, 6);
@@ -147,6 +161,8 @@ static uint32_t make_light_case(glint_light_args *args, glint_camera_args *camer
         make_spot(args, spot);
     else if (one_in(2))
         make_lamps(args, lamps, size * power_of_ten(-4, 2));
+    else if (one_in(2))
+        make_alike(args, place);
     args->hits = masks(args->group_count);
     make_points(args, precision, odd, size);
     return args->group_count * GLINT_GROUP;

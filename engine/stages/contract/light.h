@@ -60,18 +60,20 @@ typedef struct glint_light_args {
     const uint16_t *dark;
     bool directional;
     double position[3]; ///< of the light; directional: the unit vector towards it; not read of area lights
+    const double *place[GLINT_LIGHT_CHUNK]; ///< of several lights without samples or a cone, which are alike but for it:
+        ///< the position of each; place[0] NULL: there is one light, at `position`
     double
         scale; ///< a power of two that brings distances to the light, of radiant lamps their size, near 1; 1 where that is
         ///< near enough already
     const glint_spot *spot; ///< NULL: light in all directions
-    uint32_t sample_count; ///< of an area light; else 1
+    uint32_t sample_count; ///< of an area light, or how many lights there are
     const glint_light_sample
         *light_sample[GLINT_LIGHT_CHUNK]; ///< the samples; light_sample[0] is NULL when it is no area light
     bool attenuated; ///< false: attenuation is not written; true for spots and radiant lamps
     double coefficients[3]; ///< c0, c1, c2
     bool highlights; ///< false: log2_specular is not written
     bool sparing; ///< highlights that are 0 whatever their strength are left out
-    // out, for each sample:
+    // out, for each sample or light:
     uint16_t *lit[GLINT_LIGHT_CHUNK]; ///< a bit a lane where the light is above the surface's horizon and shines there
     float *cosine[GLINT_LIGHT_CHUNK]; ///< n.l in 0 .. 1; 0 where unlit
     float *attenuation[GLINT_LIGHT_CHUNK]; ///< w; 0 where unlit

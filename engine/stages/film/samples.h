@@ -64,7 +64,7 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
     light_factors factors;
     float ambient[3];
     factors.count = 0;
-    factors.shiny = false;
+    factors.shiny = 0;
     for (uint32_t k = 0; k < frame->count; k++)
         add_factors(&frame->sample[k], material, NULL, specular, g, &factors);
     for (int c = 0; c < 3; c++)

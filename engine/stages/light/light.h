@@ -1,5 +1,6 @@
 // light: what one light does at each point, before shadows and colours. The geometry is real; what needs no more than
-// float (square root, division, logarithm) follows in float over the whole group. Contract: stages.h.
+// float (square root, division, logarithm) follows in float over the whole group. Here are spots and area lights, and what
+// plain.h and lit_surface.h need; the stage itself is in plain.h. Contract: stages.h.
 
 /// What one light or sample does to a group.
 typedef struct R(lit_group) {
@@ -160,10 +161,10 @@ INNER void R(finish_light)(const glint_light_args *args, const int kind, uint32_
     }
 }
 
-INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, const R(lit_group) * group)
+INNER void R(say_brightest)(const glint_light_args *args, uint32_t s, vf brightest)
 {
     if (args->highlights && args->brightest[s])
-        *args->brightest[s] = f_max_all(group->brightest);
+        *args->brightest[s] = f_max_all(brightest);
 }
 
 /// Lanes by the highlight of their material.
@@ -209,7 +210,7 @@ INNER void R(light_group)(const glint_light_args *args, const int kind, const ui
     }
 }
 
-/// All groups. `kind` and `samples` of a light without samples are constants.
+/// All groups. `kind` is a constant, and so is `samples` of a light without.
 static inline void R(light_groups)(const glint_light_args *args, const int kind, const uint32_t samples,
                                    R(light_sample_set) * light_samples, R(lit_group) * groups)
 {
@@ -225,7 +226,7 @@ static inline void R(light_groups)(const glint_light_args *args, const int kind,
         }
     }
     for (uint32_t s = 0; s < samples; s++)
-        R(say_brightest)(args, s, &groups[s]);
+        R(say_brightest)(args, s, groups[s].brightest);
 }
 
 static void R(light_area)(const glint_light_args *args)
@@ -243,15 +244,4 @@ static void R(light_spot)(const glint_light_args *args)
 {
     R(lit_group) group = { .lit = 0 };
     R(light_groups)(args, LIGHT_SPOT, 1, NULL, &group);
-}
-
-static void R(light)(const glint_light_args *args)
-{
-    R(lit_group) group = { .lit = 0 };
-    if (GLINT_WITH_AREA && args->light_sample[0])
-        R(light_area)(args);
-    else if (GLINT_WITH_SPOT && args->spot)
-        R(light_spot)(args);
-    else
-        R(light_groups)(args, LIGHT_PLAIN, 1, NULL, &group);
 }

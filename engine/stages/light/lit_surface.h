@@ -101,8 +101,9 @@ INNER vf R(lit_log2)(const R(lit_whole) * whole, int i)
     return f_select(shiny, f_set(0.5f) * log2, f_set(GLINT_NO_SPECULAR));
 }
 
-/// The float part.
-INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, size_t at, vf *brightest)
+/// The float part, of light or sample s.
+INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * whole, uint32_t s, size_t at,
+                           vf *brightest)
 {
 #pragma GCC unroll 4
     for (int i = 0; i < GLINT_GROUP; i += VF) {
@@ -110,17 +111,17 @@ INNER void R(finish_whole)(const glint_light_args *light, const R(lit_whole) * w
         vf cosine = R(join)(whole->nl + i / VR);
         if (!light->directional)
             cosine = cosine / f_sqrt(R(join)(whole->l2 + i / VR));
-        f_store(light->cosine[0] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
+        f_store(light->cosine[s] + at + i, f_select(lit, f_min(cosine, f_set(1)), f_set(0)));
         if (light->attenuated) {
             vr attenuation[VF / VR];
             for (int j = 0; j < VF / VR; j++)
                 attenuation[j] = R(fall_off)(light, r_sqrt(whole->l2[i / VR + j]) / r_set(light->scale));
             const vf w = f_min(R(join)(attenuation), f_set(GLINT_ATTENUATION_MAX));
-            f_store(light->attenuation[0] + at + i, f_select(lit, w, f_set(0)));
+            f_store(light->attenuation[s] + at + i, f_select(lit, w, f_set(0)));
         }
         if (light->highlights) {
             const vf log2 = R(lit_log2)(whole, i);
-            f_store(light->log2_specular[0] + at + i, log2);
+            f_store(light->log2_specular[s] + at + i, log2);
             *brightest = f_max(*brightest, log2);
         }
     }
@@ -162,7 +163,7 @@ INNER bool R(light_whole)(const glint_surface_args *surface, const glint_light_a
     light->lit[0][place.g] = (uint16_t)whole.lit;
     call->walk.turned = call->walk.turned || whole.back;
     if (whole.lit)
-        R(finish_whole)(light, &whole, at, brightest);
+        R(finish_whole)(light, &whole, 0, at, brightest);
     return true;
 }
 
@@ -194,5 +195,5 @@ static void R(lit_surface)(const glint_surface_args *surface, const glint_light_
         }
     }
     R(end_walk)(surface, &call.walk, &box);
-    R(say_brightest)(light, 0, &group);
+    R(say_brightest)(light, 0, group.brightest);
 }

@@ -42,13 +42,15 @@ static glint_cone_sample NAME(in_own_cone)(const glint_light_sample *light_sampl
     return glint_cone_at(light_sample, scale, slack, at, along, i % GLINT_GROUP);
 }
 
-static NAME(vec3) NAME(to_light)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
+static NAME(vec3) NAME(to_light)(const glint_light_args *args, uint32_t s, uint32_t i)
 {
+    const glint_light_sample *light_sample = args->light_sample[s];
+    const double *place = args->place[0] ? args->place[s] : args->position;
     if (NAME(is_cone)(light_sample)) {
         glint_cone_sample sample = NAME(in_own_cone)(light_sample, args->scale, args->point, args->normal, i);
         return NAME(rounded)(sample.way);
     }
-    NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(args->position);
+    NAME(vec3) position = light_sample ? NAME(lane_of)(light_sample->position, i) : NAME(rounded)(place);
     return args->directional ? position
                              : NAME(times)(NAME(sub)(position, NAME(load)(args->point, i)), (REAL)args->scale);
 }
@@ -92,12 +94,13 @@ static bool NAME(shines)(const glint_light_sample *light_sample, NAME(vec3) l, u
            NAME(light_sample_cosine)(light_sample, l, i) > 0;
 }
 
-static bool NAME(is_lit)(const glint_light_args *args, const glint_light_sample *light_sample, uint32_t i)
+static bool NAME(is_lit)(const glint_light_args *args, uint32_t s, uint32_t i)
 {
+    const glint_light_sample *light_sample = args->light_sample[s];
     uint32_t group = i / GLINT_GROUP, lane = i % GLINT_GROUP;
     if (!(args->hits[group] >> lane & 1) || args->dark[group] >> lane & 1)
         return false;
-    NAME(vec3) l = NAME(to_light)(args, light_sample, i);
+    NAME(vec3) l = NAME(to_light)(args, s, i);
     if (args->spot && !light_sample && !NAME(in_cone)(args->spot, l))
         return false;
     return NAME(shines)(light_sample, l, i) && NAME(dot)(NAME(load)(args->normal, i), l) > 0;
@@ -127,7 +130,7 @@ static void NAME(light_sample)(const glint_light_args *args, uint32_t s, uint32_
 {
     const glint_light_sample *light_sample = args->light_sample[s];
     NAME(vec3) normal = NAME(load)(args->normal, i);
-    NAME(vec3) l = NAME(to_light)(args, light_sample, i);
+    NAME(vec3) l = NAME(to_light)(args, s, i);
     REAL l2 = NAME(length2)(l), nl = NAME(dot)(normal, l);
     if (args->directional) {
         args->cosine[s][i] = min_float((float)nl, 1);
@@ -152,7 +155,7 @@ static void NAME(light_group)(const glint_light_args *args, uint32_t s, uint32_t
 {
     uint32_t first = group * GLINT_GROUP, lit = 0;
     for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
-        lit |= (uint32_t)NAME(is_lit)(args, args->light_sample[s], first + lane) << lane;
+        lit |= (uint32_t)NAME(is_lit)(args, s, first + lane) << lane;
     args->lit[s][group] = (uint16_t)lit;
     for (uint32_t lane = 0; lit && lane < GLINT_GROUP; lane++) {
         uint32_t i = first + lane;

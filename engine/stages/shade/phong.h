@@ -9,7 +9,7 @@ typedef struct light_factors {
     _Alignas(64) float grazing[GLINT_LIGHT_CHUNK][GLINT_GROUP]; ///< of microfacets: specular times Fresnel's rise
     const glint_shade_light *light[GLINT_LIGHT_CHUNK];
     uint32_t count;
-    bool shiny; ///< false: the specular factors are 0
+    uint32_t shiny; ///< a bit for each whose specular factors are not all 0
 } light_factors;
 
 /// w (n.l) and w S of one light or sample, for a group. `exponent`: of each lane of the group; NULL, a constant: the

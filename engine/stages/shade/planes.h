@@ -57,7 +57,7 @@ static inline void find_plane_factors(const glint_shade_args *args, const glint_
                                       uint32_t g, light_factors *factors)
 {
     factors->count = 0;
-    factors->shiny = false;
+    factors->shiny = 0;
     if (material->planes & GLINT_PLANE_SHININESS)
         add_factors(args, material, args->planes->shininess + (size_t)g * GLINT_GROUP, specular, g, factors);
     else

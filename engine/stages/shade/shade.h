@@ -44,7 +44,7 @@ INNER void add_factors(const glint_shade_args *args, const glint_shade_material 
             put_lobe(args, light, material, at, begun, factors->specular[slot], factors->grazing[slot]);
             shiny = true;
         }
-        factors->shiny = factors->shiny || shiny;
+        factors->shiny |= (uint32_t)shiny << slot;
         factors->light[slot] = light;
         begun = true;
     }
@@ -54,7 +54,7 @@ INNER void find_factors(const glint_shade_args *args, const glint_shade_material
                         light_factors *factors)
 {
     factors->count = 0;
-    factors->shiny = false;
+    factors->shiny = 0;
     add_factors(args, material, NULL, specular, g, factors);
 }
 
@@ -99,27 +99,41 @@ typedef struct group_terms {
 /// Writes `x` where the mask is set.
 static inline void put_float(float *to, fm mask, vf x) { f_store(to, f_select(mask, x, f_load(to))); }
 
+/// The lights whose share of a term may be other than 0, a bit each.
+static inline uint32_t sharing_lights(const light_factors *factors, int term)
+{
+    return term ? factors->shiny : (1u << factors->count) - 1;
+}
+
+/// Adds one light's shares to a group's sums in double.
+static inline void add_share(const light_share *share, vd total[GLINT_GROUP / VD])
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vd next[VF / VD];
+        f_split(share_lanes(share, i), next);
+        for (int h = 0; h < VF / VD; h++)
+            total[i / VD + h] = total[i / VD + h] + next[h];
+    }
+}
+
 /// The sum of all lights' shares, in double, rounded. Of one light it is the share itself.
 static inline void add_shares(const light_factors *factors, const glint_shade_material *material, int term, int c,
                               float sum[GLINT_GROUP])
 {
     vd total[GLINT_GROUP / VD];
-    light_share share = share_of(factors, material, 0, term, c);
+    uint32_t lights = sharing_lights(factors, term);
+    light_share share = share_of(factors, material, lights ? (uint32_t)__builtin_ctz(lights) : 0, term, c);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
         const vf first = share_lanes(&share, i);
         f_store(sum + i, first);
         f_split(first, &total[i / VD]);
     }
-    if (factors->count == 1)
+    lights &= lights - 1;
+    if (!lights)
         return;
-    for (uint32_t k = 1; k < factors->count; k++) {
-        share = share_of(factors, material, k, term, c);
-        for (int i = 0; i < GLINT_GROUP; i += VF) {
-            vd next[VF / VD];
-            f_split(share_lanes(&share, i), next);
-            for (int h = 0; h < VF / VD; h++)
-                total[i / VD + h] = total[i / VD + h] + next[h];
-        }
+    for (; lights; lights &= lights - 1) {
+        share = share_of(factors, material, (uint32_t)__builtin_ctz(lights), term, c);
+        add_share(&share, total);
     }
     for (int i = 0; i < GLINT_GROUP; i += VD)
         d_store_f(sum + i, total[i / VD]);
@@ -146,14 +160,16 @@ static inline void shade_direct(const glint_shade_material *material, bool specu
 
 static inline dm lane_mask(unsigned lanes, int i) { return dm_from_bits(lanes >> i & ((1u << VD) - 1)); }
 
-/// Adds to one vector of a sum in the lanes given; `whole`: these are all, of the group.
+/// Stores one vector of a sum in the lanes given; `whole`: these are all, of the group.
+static inline void put_where(double *sum, int i, bool whole, unsigned lanes, vd x)
+{
+    d_store(sum + i, whole ? x : d_select(lane_mask(lanes, i), x, d_load(sum + i)));
+}
+
+/// Adds to one vector of a sum.
 static inline void add_where(double *sum, int i, bool whole, unsigned lanes, vd x)
 {
-    const vd old = d_load(sum + i);
-    vd now = old + x;
-    if (!whole)
-        now = d_select(lane_mask(lanes, i), now, old);
-    d_store(sum + i, now);
+    put_where(sum, i, whole, lanes, d_load(sum + i) + x);
 }
 
 /// Sums in double over samples and lights; `at`: where in them a group is.
@@ -169,16 +185,19 @@ static inline void add_material(const glint_shade_args *args, const glint_shade_
     for (int c = 0; c < 3; c++) {
         for (int i = 0; args->first && i < GLINT_GROUP; i += VD)
             add_where(to->sum[GLINT_TERM_AMBIENT][c] + to->at, i, whole, lanes, d_set(material->ambient[c]));
-        for (int kind = 0; kind < (specular && factors->shiny ? 2 : 1); kind++)
-            for (uint32_t k = 0; k < factors->count; k++) {
-                const light_share share = share_of(factors, material, k, kind, c);
-                for (int i = 0; i < GLINT_GROUP; i += VF) {
-                    vd halves[VF / VD];
-                    f_split(share_lanes(&share, i), halves);
-                    for (int h = 0; h < VF / VD; h++)
-                        add_where(to->sum[GLINT_TERM_DIFFUSE + kind][c] + to->at, i + h * VD, whole, lanes, halves[h]);
-                }
+        for (int kind = 0; kind < (specular && factors->shiny ? 2 : 1); kind++) {
+            double *sum = to->sum[GLINT_TERM_DIFFUSE + kind][c] + to->at;
+            uint32_t lights = sharing_lights(factors, kind);
+            vd total[GLINT_GROUP / VD];
+            for (int i = 0; lights && i < GLINT_GROUP; i += VD)
+                total[i / VD] = d_load(sum + i);
+            for (uint32_t left = lights; left; left &= left - 1) {
+                const light_share share = share_of(factors, material, (uint32_t)__builtin_ctz(left), kind, c);
+                add_share(&share, total);
             }
+            for (int i = 0; lights && i < GLINT_GROUP; i += VD)
+                put_where(sum, i, whole, lanes, total[i / VD]);
+        }
     }
 }
 

@@ -1,0 +1,110 @@
+// plain: what lights without a surface or a cone do, one or several that are alike but for where they are. What does not depend
+// on a light is found once for all of them. The arithmetic is that of light.h. Contract: stages.h.
+
+/// VR points as every light finds them.
+typedef struct R(plain_part) {
+    vr point[3], normal[3], direction[3];
+    vr a, nv; ///< length2(direction), and n.v
+} R(plain_part);
+
+/// Of one light's lanes of a part, (r.v)^2 or (n.h)^2 as a fraction, where there is one and it is not spared. `whole` has
+/// the rest of the light's.
+INNER void R(plain_highlight)(const R(lit_point) * surface, const R(plain_part) * part, const vr l[3], int j,
+                              unsigned lit, R(lit_whole) * whole)
+{
+    const int i = j * VR;
+    const unsigned phong = surface->phong >> i & lit, blinn = GLINT_WITH_BLINN ? surface->blinn >> i & lit : 0;
+    if (!(phong | blinn))
+        return;
+    const vr nl = whole->nl[j], l2 = whole->l2[j], lv = -DOT(l, part->direction);
+    vr num, den;
+    rm some = rm_and(rm_from_bits(phong), R(phong_parts)(nl, part->nv, lv, l2 * part->a, &num, &den));
+    if (blinn) {
+        vr blinn_num, blinn_den;
+        const rm mask = rm_from_bits(blinn);
+        const vr nh = R(blinn_parts)(part->normal, l, part->direction, l2, part->a, &blinn_num, &blinn_den);
+        some = rm_or(some, rm_and(mask, rm_and(r_lt(r_set(0), nh), r_lt(r_set(0), blinn_den))));
+        num = r_select(mask, blinn_num, num);
+        den = r_select(mask, blinn_den, den);
+    }
+    some = rm_andnot(some, r_lt(num, R(load_wide)(surface->least + i) * den));
+    whole->num[j] = num;
+    whole->den[j] = den;
+    whole->some |= rm_bits(some) << i;
+}
+
+/// One light's real part of VR points, of which those in `open` may be lit.
+INNER void R(plain_lanes)(const glint_light_args *args, const R(lit_point) * surface, const R(plain_part) * part,
+                          const double *position, int j, unsigned open, R(lit_whole) * whole)
+{
+    vr l[3];
+    for (int k = 0; k < 3; k++) {
+        l[k] = r_set(position[k]);
+        if (!args->directional)
+            l[k] = (l[k] - part->point[k]) * r_set(args->scale);
+    }
+    whole->nl[j] = DOT(part->normal, l);
+    whole->l2[j] = DOT(l, l);
+    whole->num[j] = whole->den[j] = r_set(0);
+    const unsigned lit = rm_bits(r_lt(r_set(0), whole->nl[j])) & open >> j * VR & ((1u << VR) - 1);
+    whole->lit |= lit << j * VR;
+    R(plain_highlight)(surface, part, l, j, lit, whole);
+}
+
+/// All lights on one group, whose lanes in `open` may be lit.
+static void R(plain_group)(const glint_light_args *args, R(group_place) place, unsigned open, R(lit_point) * surface,
+                           vf brightest[])
+{
+    const size_t at = (size_t)place.g * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, place.x, place.y);
+    R(plain_part) part[LIT_PARTS];
+    R(sort_highlights)(args, at, open, surface);
+    for (int j = 0; j < LIT_PARTS; j++) {
+        R(load3)(args->point, at + (size_t)(j * VR), part[j].point);
+        R(load3)(args->normal, at + (size_t)(j * VR), part[j].normal);
+        part[j].direction[0] = part[j].direction[1] = part[j].direction[2] = r_set(0);
+        if (surface->phong | surface->blinn)
+            R(load_direction)(directions, args->direction, at, j * VR, part[j].direction);
+        part[j].a = DOT(part[j].direction, part[j].direction);
+        part[j].nv = -DOT(part[j].normal, part[j].direction);
+    }
+    for (uint32_t s = 0; s < args->sample_count; s++) {
+        R(lit_whole) whole;
+        whole.lit = whole.some = 0;
+#pragma GCC unroll 8
+        for (int j = 0; j < LIT_PARTS; j++)
+            R(plain_lanes)(args, surface, &part[j], args->place[0] ? args->place[s] : args->position, j, open, &whole);
+        args->lit[s][place.g] = (uint16_t)whole.lit;
+        if (whole.lit)
+            R(finish_whole)(args, &whole, s, at, &brightest[s]);
+    }
+}
+
+static void R(light_plain)(const glint_light_args *args)
+{
+    R(lit_point) surface = { 0 };
+    vf brightest[GLINT_LIGHT_CHUNK];
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        brightest[s] = f_set(GLINT_NO_SPECULAR);
+    for (R(group_place) place = { 0 }; place.g < args->group_count; R(next_group)(args->camera, &place)) {
+        const unsigned open = args->hits[place.g] & ~(unsigned)args->dark[place.g];
+        for (uint32_t s = 0; s < args->sample_count && !open; s++)
+            args->lit[s][place.g] = 0;
+        if (open)
+            R(plain_group)(args, place, open, &surface, brightest);
+    }
+    for (uint32_t s = 0; s < args->sample_count; s++)
+        R(say_brightest)(args, s, brightest[s]);
+}
+
+// ---- Any light ----
+
+static void R(light)(const glint_light_args *args)
+{
+    if (GLINT_WITH_AREA && args->light_sample[0])
+        R(light_area)(args);
+    else if (GLINT_WITH_SPOT && args->spot)
+        R(light_spot)(args);
+    else
+        R(light_plain)(args);
+}
