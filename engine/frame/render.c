@@ -4,6 +4,7 @@
 #include "engine/base/status.h"
 #include "engine/film/image.h"
 #include "engine/film/tone.h"
+#include "engine/frame/grids.h"
 #include "engine/frame/outline.h"
 #include "engine/frame/refine.h"
 #include "engine/reuse/reuse.h"
@@ -30,6 +31,7 @@ struct glint_renderer {
     glint_reuse reuse;
     glint_shading_points_cached shading_points;
     glint_raster raster;
+    glint_grids own_grids, *grids; ///< a renderer of bases has that of its frames
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     /// Pictures given before, whose memory is used again once no other reference holds them.
     glint_image *spare[GLINT_SPARE_IMAGES];
@@ -59,6 +61,7 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
         return glint_fail_nomem(error);
     glint_tone_store_open();
     renderer->stop = &renderer->cancelled;
+    renderer->grids = &renderer->own_grids;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
     glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
@@ -102,6 +105,7 @@ void glint_renderer_destroy(glint_renderer *renderer)
     drop_spares(renderer);
     glint_shading_points_clear(&renderer->shading_points, &renderer->reuse);
     glint_raster_clear(&renderer->raster);
+    glint_grids_clear(&renderer->own_grids);
     glint_reuse_destroy(&renderer->reuse);
     glint_image_release(renderer->last);
     if (!renderer->shares) {
@@ -304,6 +308,13 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     glint_status status = prepare(renderer, plan, &f.shared, tiles, error);
     if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
         memset(image->film, 0, tiles * sizeof *image->film);
+    if (!status && !base) // which made them, for the same lights
+        status = glint_grids_begin(renderer->grids, plan, &f.shared.geometry,
+                                   (double)f.extent.width * f.extent.height * plan->desc.samples,
+                                   glint_pool_threads(renderer->pool), error);
+    for (uint32_t i = 0; i < renderer->grids->count; i++)
+        f.shared.grids[i] = renderer->grids->of[i].grid;
+    f.shared.grid_count = renderer->grids->count;
     if (!status)
         status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)
@@ -415,6 +426,7 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     base->tiles = renderer->tiles;
     base->stages = renderer->stages;
     base->stop = renderer->stop;
+    base->grids = renderer->grids;
     base->time_stages = renderer->time_stages;
     base->count_work = renderer->count_work;
     glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1);

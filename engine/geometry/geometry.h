@@ -74,6 +74,13 @@ glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, 
 glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
                                    glint_error *error);
 
+/// geometry/light_grid.c: makes the grid of a light without samples over an arranged table with its index. position:
+/// directional: the unit vector towards the light. *out NULL: there is none, since too little is small spheres that the light is
+/// outside of and sees to one side.
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+                                     glint_light_grid **out, glint_error *error);
+void glint_light_grid_destroy(glint_light_grid *grid);
+
 /// The number of a primitive's object in order of definition, from 0: a mesh is one object, a sphere of many is one.
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 

@@ -344,6 +344,18 @@ static void occlude_middle(glint_tile *tile, const glint_tile_frame *frame, cons
             samples->open[s][g] = samples->lit[s][g] & open[g];
 }
 
+/// The grid of a light; NULL: it has none.
+static const glint_light_grid *grid_of(const glint_tile_frame *frame, const glint_plan_light *light)
+{
+    for (uint32_t i = 0; i < frame->grid_count; i++) {
+        const glint_light_grid *grid = frame->grids[i];
+        if (grid && grid->directional == light->directional &&
+            memcmp(grid->position, light->position, sizeof grid->position) == 0)
+            return grid;
+    }
+    return NULL;
+}
+
 glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_frame *frame, uint32_t first,
                                            const uint32_t *slot, uint32_t count)
 {
@@ -356,6 +368,7 @@ glint_occlude_args glint_tile_occlude_args(glint_tile *tile, const glint_tile_fr
                                 .directional = light->directional,
                                 .scale = light->scale,
                                 .geometry = &frame->geometry,
+                                .grid = grid_of(frame, light),
                                 .stop = frame->cancelled,
                                 .camera = glint_tile_rays_of(tile),
                                 .slack = tile->surface.slack,

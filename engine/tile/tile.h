@@ -29,6 +29,8 @@ typedef struct glint_tile_counts {
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
 } glint_tile_counts;
 
+#define GLINT_TILE_GRIDS 4 ///< lights that have a grid, at most
+
 /// What all tiles of a frame share.
 typedef struct glint_tile_frame {
     const glint_plan *plan;
@@ -36,6 +38,8 @@ typedef struct glint_tile_frame {
     const uint8_t *refined; ///< of it, a byte a pixel: whether all samples are taken
     const glint_image *last; ///< the last picture, of the same format, or NULL
     glint_geometry_table geometry; ///< the plan's, with its index
+    const glint_light_grid *grids[GLINT_TILE_GRIDS]; ///< of some lights; NULL: that light has none
+    uint32_t grid_count;
     const glint_stages *stages;
     glint_image *image;
     const glint_tone_table *tone_table; ///< NULL: no codes

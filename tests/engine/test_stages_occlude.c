@@ -1,5 +1,6 @@
 /// occlude and soft_light on every instruction set against the scalar reference, which asks every primitive about every point: neither
 /// the index nor the list of a tile nor a filter loses a shadow or makes one.
+#include "engine/geometry/geometry.h"
 #include "tests/engine/cases/stage_scene.h"
 
 enum { CASES = 3000 };
@@ -171,7 +172,25 @@ static void place_on_surfaces(shadow_case *c)
 
 // ---- occlude -----------------------------------------------------------------------------------------------------
 
-static void start_shadows(shadow_case *c, int precision, bool odd)
+/// Makes most primitives small spheres where they are.
+static void shrink(shadow_case *c)
+{
+    uint32_t left = below(2) * below(GLINT_GRID_OTHERS);
+    for (uint32_t i = 0; i < c->scene->table.prim_count; i++) {
+        glint_prim *prim = &c->scene->prims[i];
+        const double small = c->plan.size * power_of_ten(-4, -1.5);
+        double center[3];
+        if (prim->kind == GLINT_PRIM_PLANE || (prim->kind == GLINT_PRIM_SPHERE && prim->radius < small) || (left && left--))
+            continue;
+        memcpy(center, prim->kind == GLINT_PRIM_TRIANGLE ? prim->corner[0] : prim->center, sizeof center);
+        set_sphere(prim, center, small);
+    }
+    free_scene(c->scene);
+    finish_scene(&c->plan, c->scene);
+}
+
+/// `small`: the scene is of small spheres in the main.
+static void start_shadows(shadow_case *c, int precision, bool odd, bool small)
 {
     memset(c, 0, sizeof *c);
     c->precision = precision;
@@ -203,6 +222,8 @@ static void start_shadows(shadow_case *c, int precision, bool odd)
         c->args.lit[s] = masks(groups);
     place_points(c, distance);
     c->scene = random_scene(&c->plan);
+    if (small)
+        shrink(c);
     c->args.geometry = &c->scene->table;
     place_on_surfaces(c);
 }
@@ -247,6 +268,19 @@ static void make_box(const shadow_case *c, glint_point_box *box)
 }
 
 static uint32_t settled; ///< cases in which the whole of an area light settled something
+static uint32_t gridded; ///< cases in which the light had a grid
+
+/// The grid of a light without samples, where it can have one.
+static glint_light_grid *make_grid(const shadow_case *c)
+{
+    glint_light_grid *grid = NULL;
+    glint_error error;
+    if (!c->soft)
+        assert_int_equal(
+            glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, &grid, &error), GLINT_OK);
+    gridded += grid != NULL;
+    return grid;
+}
 
 static void occlude_all(shadow_case *c)
 {
@@ -254,6 +288,8 @@ static void occlude_all(shadow_case *c)
     glint_point_box box;
     make_box(c, &box);
     args.box = one_in(2) ? &box : NULL;
+    glint_light_grid *grid = make_grid(c);
+    args.grid = grid;
     FOR_EACH_TESTED
     {
         uint64_t rays = 5;
@@ -268,6 +304,7 @@ static void occlude_all(shadow_case *c)
         assert_true(rays <= lit_lanes(c) + 5);
         compare_outputs("occlude");
     }
+    glint_light_grid_destroy(grid);
 }
 
 /// Some shadow somewhere, and some light: a test of nothing but one of them would be none.
@@ -404,7 +441,7 @@ static void soft_light_all(const shadow_case *c, bool odd)
 static void soft_light_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision, odd);
+    start_shadows(&c, precision, odd, false);
     if (c.soft)
         soft_light_all(&c, odd);
     free_scene(c.scene);
@@ -421,7 +458,7 @@ static void test_soft_light(void **state)
 static void occlude_case(int precision, bool odd)
 {
     shadow_case c;
-    start_shadows(&c, precision, odd);
+    start_shadows(&c, precision, odd, false);
     for (uint32_t i = 0; odd && i < c.args.group_count * GLINT_GROUP; i++)
         for (int k = 0; k < 3 && one_in(8); k++) {
             c.back[i / GLINT_GROUP] &= (uint16_t) ~(1u << i % GLINT_GROUP); // it is on nothing any more
@@ -439,6 +476,26 @@ static void test_occlude(void **state)
     run_cases(CASES, 9000, occlude_case);
     assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
     assert_true(settled * case_step() > 100);
+}
+
+/// Many small spheres and up to a few other surfaces: what grids are for, where double decides.
+static void occlude_grid_case(int precision, bool odd)
+{
+    shadow_case c;
+    (void)precision;
+    start_shadows(&c, GLINT_DOUBLE, odd, true);
+    occlude_all(&c);
+    count_lanes(&c);
+    free_scene(c.scene);
+}
+
+static void test_occlude_grid(void **state)
+{
+    (void)state;
+    gridded = open_lanes = dark_lanes = 0;
+    run_cases(CASES, 300000, occlude_grid_case);
+    assert_true(gridded * case_step() > 200);
+    assert_true(open_lanes * case_step() > 10000 && dark_lanes * case_step() > 10000);
 }
 
 /// Cases that were wrong.
@@ -466,7 +523,8 @@ static void test_occlude_found(void **state)
 int main(void)
 {
     find_tested();
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_occlude_found),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_occlude), cmocka_unit_test(test_occlude_grid),
+                                        cmocka_unit_test(test_occlude_found),
                                         cmocka_unit_test(test_soft_light) };
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     print_skipped();

@@ -116,6 +116,26 @@ typedef struct glint_facet_args {
 
 // ---- occlude: which points a light reaches ----
 
+/// What stands before a light without samples: small spheres, which it is outside of, in square cells of its view. What is at
+/// (a, b, w) along the axes from the origin has its place at u = a / w and v = b / w, or directional at a and b.
+typedef struct glint_light_grid {
+    bool directional;
+    double position[3]; ///< as in glint_occlude_args
+    double origin[3]; ///< the light's place; directional: the index's
+    double axis[3][3]; ///< across, down and away from the light, as long as the index's unit
+    float first[2], cells; ///< place of the first cell, cells in a unit of place
+    uint32_t count[2]; ///< columns and rows
+    float nearest; ///< least `near`, above 0 where the light has a place
+    bool sorted; ///< in each cell `near` never falls
+    const uint32_t *begin; ///< where each cell's entries begin, row by row, and where the last one's end
+    // of each entry, a sphere in a cell, and of GLINT_GROUP more, which mean nothing:
+    const float *u, *v; ///< place of its middle
+    const float *r2; ///< a segment that meets it has du^2 + dv^2 <= r2 (1 + u^2 + v^2), by its own place; directional: <= r2
+    const float *near; ///< no point that it blocks has a smaller w
+    const uint32_t *id;
+    uint32_t others[GLINT_GRID_OTHERS], other_count; ///< the bounded primitives that are in no cell
+} glint_light_grid;
+
 typedef struct glint_occlude_args {
     uint32_t group_count;
     uint32_t sample_count; ///< as in glint_light_args
@@ -129,6 +149,7 @@ typedef struct glint_occlude_args {
     double position[3]; ///< as in glint_light_args
     double scale; ///< as in glint_light_args
     const glint_geometry_table *geometry;
+    const glint_light_grid *grid; ///< of this light and geometry; NULL: there is none
     const atomic_bool *stop; ///< as in glint_cast_args
     const glint_camera_args *camera; ///< the rays that found the points, of a perspective camera; NULL: in direction
     const void *direction[3];

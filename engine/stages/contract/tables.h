@@ -16,6 +16,7 @@
 #define GLINT_TILE_SAMPLES (GLINT_TILE_WIDTH * GLINT_TILE_HEIGHT)
 #define GLINT_MISS 0xffffffffu ///< in `prim`: nothing hit
 #define GLINT_FILTER_SLACK (16 * 0x1p-24f) ///< what float rounding may add to a distance, of the lengths it came from
+#define GLINT_GRID_OTHERS 12 ///< what a light's grid leaves to be tested one by one, at most
 #define GLINT_LIGHT_CHUNK 16 ///< lights, or samples of one light, that one call of a stage takes at most
 
 // ---- Tables: what the kernels look up, made by plan.c ------------------------------------------------------------

@@ -181,7 +181,7 @@ static void R(occlude_many)(const R(shadow_tile) * tile, R(shadow_group) * group
         R(begin_group)(g, group);
         open[g] = (uint16_t)R(test_unbounded)(tile, NULL, group, open[g]);
     }
-    if (!args->geometry->nodes || R(occlude_beam)(tile))
+    if (!args->geometry->nodes || R(occlude_by_grid)(tile, group) || R(occlude_beam)(tile))
         return;
     group->last_blocker = GLINT_MISS;
     for (uint32_t g = 0; g < args->group_count; g++)

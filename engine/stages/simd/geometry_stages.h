@@ -29,6 +29,7 @@
 #include "engine/stages/occlude/occlude.h"
 #include "engine/stages/occlude/beam_points.h"
 #include "engine/stages/occlude/beam_leaf.h"
+#include "engine/stages/occlude/grid.h"
 #include "engine/stages/occlude/through_beam.h"
 #include "engine/stages/light/caps.h"
 #include "engine/stages/light/soft.h"

@@ -1,0 +1,86 @@
+#include "engine/frame/grids.h"
+
+#include <string.h>
+
+#define FEWEST 4096 ///< primitives; among fewer the walk of the index is as quick
+#define SAMPLES_A_PRIMITIVE 0.5 ///< of a frame: with fewer a grid is never made
+#define SAMPLES_AT_ONCE 4.0 ///< with so many, shared by the threads, it saves more in one frame than it takes; with fewer it is
+    ///< made in the second frame that finds the light and the geometry where they were
+
+void glint_grids_clear(glint_grids *grids)
+{
+    for (uint32_t i = 0; i < grids->count; i++)
+        glint_light_grid_destroy(grids->of[i].grid);
+    *grids = (glint_grids) { .count = 0 };
+}
+
+static bool is_of(const glint_grids *grids, uint32_t i, const glint_plan_light *light)
+{
+    return grids->of[i].directional == light->directional &&
+           memcmp(grids->of[i].position, light->position, sizeof light->position) == 0;
+}
+
+static bool has_grid(const glint_plan_light *light)
+{
+    return light->shadows && !light->light_samples && !light->cap;
+}
+
+/// Marks those of the plan's lights that an earlier frame noted, and drops the rest.
+static void keep_used(glint_grids *grids, const glint_plan *plan)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < grids->count; i++) {
+        grids->of[i].used = false;
+        for (uint32_t k = 0; k < plan->light_count && !grids->of[i].used; k++)
+            grids->of[i].used = has_grid(&plan->lights[k]) && is_of(grids, i, &plan->lights[k]);
+        if (grids->of[i].used)
+            grids->of[kept++] = grids->of[i];
+        else
+            glint_light_grid_destroy(grids->of[i].grid);
+    }
+    grids->count = kept;
+}
+
+/// Notes a light, or makes its grid: at once, or where it was noted by a frame before this one.
+static glint_status add(glint_grids *grids, const glint_plan_light *light, const glint_geometry_table *table,
+                        bool at_once, glint_error *error)
+{
+    uint32_t i = 0;
+    while (i < grids->count && !is_of(grids, i, light))
+        i++;
+    const bool noted = i < grids->count && grids->of[i].used;
+    if (i < grids->count && (grids->of[i].made || !noted))
+        return GLINT_OK;
+    if (i == grids->count) {
+        grids->of[i].directional = light->directional;
+        grids->of[i].used = grids->of[i].made = false;
+        grids->of[i].grid = NULL;
+        memcpy(grids->of[i].position, light->position, sizeof light->position);
+        grids->count++;
+    }
+    if (!noted && !at_once)
+        return GLINT_OK;
+    grids->of[i].made = true;
+    return glint_light_grid_create(table, light->directional, light->position, &grids->of[i].grid, error);
+}
+
+glint_status glint_grids_begin(glint_grids *grids, const glint_plan *plan, const glint_geometry_table *table,
+                               double samples, int threads, glint_error *error)
+{
+    const bool at_once = samples >= SAMPLES_AT_ONCE * table->prim_count * threads;
+    glint_status status = GLINT_OK;
+    if (!glint_key_equal(grids->where, plan->where) || grids->nodes != table->nodes ||
+        grids->plain != plan->geometry->index->plain)
+        glint_grids_clear(grids);
+    grids->where = plan->where;
+    grids->nodes = table->nodes;
+    grids->plain = plan->geometry->index->plain;
+    keep_used(grids, plan);
+    if (!table->nodes || table->prim_count < FEWEST || plan->desc.precision == GLINT_FLOAT ||
+        samples < SAMPLES_A_PRIMITIVE * table->prim_count)
+        return GLINT_OK;
+    for (uint32_t k = 0; k < plan->light_count && grids->count < GLINT_TILE_GRIDS && !status; k++)
+        if (has_grid(&plan->lights[k]))
+            status = add(grids, &plan->lights[k], table, at_once, error);
+    return status;
+}

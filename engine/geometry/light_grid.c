@@ -1,0 +1,373 @@
+/// Makes the grids of lights: where a light sees each small sphere, and which cells of its view that covers.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/geometry/geometry.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SMALLEST_COUNT 64 ///< of spheres; fewer are quicker tested one by one
+#define WIDEST 0.25 ///< bound of a sphere's radius, of its distance; least cosine to the light's axis
+#define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
+#define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
+#define ENTRIES_MAX 6 ///< of each sphere, in the mean
+#define COUNT_MAX 32767 ///< columns, rows
+#define SORTED_FROM 24 ///< entries of a cell, in the mean, from which their order pays
+#define SLICES 1024 ///< of depth, by which they are sorted
+#define PLACE_SLACK 0x1p-21 ///< what float rounding may move a place by, of 1 and the place
+
+/// A small sphere as the light sees it.
+typedef struct seen_sphere {
+    float place[2], reach; ///< its middle, and how far from there a segment that meets it may be
+    float r2, near; ///< see glint_light_entries
+    uint32_t id;
+} seen_sphere;
+
+typedef struct grid_maker {
+    const glint_geometry_table *table;
+    glint_light_grid *grid;
+    seen_sphere *seen;
+    uint32_t count; ///< of these
+    float least[2], most[2]; ///< places that they reach
+    float near, far; ///< least and largest `near`
+} grid_maker;
+
+// ---- The light's view ----
+
+/// From the light to a bounding sphere's middle in the world, and how far it is.
+static double way_to(const grid_maker *maker, const glint_prim *prim, double way[3])
+{
+    vec_sub(way, prim->center, maker->grid->origin);
+    return sqrt(vec_dot(way, way));
+}
+
+/// Whether a primitive is a sphere that looks small from the light.
+static bool is_small(const grid_maker *maker, const glint_prim *prim, double way[3])
+{
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return false;
+    const double distance = way_to(maker, prim, way), radius = (double)prim->filter_bound / maker->table->scale;
+    return maker->grid->directional || radius < WIDEST * distance;
+}
+
+/// Sets the axes along the mean way to what is small. False: there is too little, or it is all around.
+static bool aim(grid_maker *maker)
+{
+    glint_light_grid *grid = maker->grid;
+    const double scale = maker->table->scale;
+    double away[3] = { 0, 0, 0 }, way[3];
+    uint32_t small = 0;
+    for (uint32_t i = 0; i < maker->table->prim_count; i++) {
+        if (!is_small(maker, &maker->table->prims[i], way))
+            continue;
+        const double length = sqrt(vec_dot(way, way));
+        small++;
+        for (int c = 0; c < 3; c++)
+            away[c] += way[c] / length;
+    }
+    for (int c = 0; grid->directional && c < 3; c++)
+        away[c] = -grid->position[c];
+    const double length = sqrt(vec_dot(away, away));
+    if (small < SMALLEST_COUNT || !(length > (grid->directional ? 0.5 : 0.5 * small)))
+        return false;
+    const int least = fabs(away[0]) < fabs(away[1]) ? (fabs(away[0]) < fabs(away[2]) ? 0 : 2)
+                                                    : (fabs(away[1]) < fabs(away[2]) ? 1 : 2);
+    double axis[3][3] = { { 0 } }, side[3] = { 0, 0, 0 };
+    side[least] = 1;
+    for (int c = 0; c < 3; c++)
+        axis[2][c] = away[c] / length;
+    vec_cross(axis[0], side, axis[2]);
+    vec_normalize(axis[0], axis[0]);
+    vec_cross(axis[1], axis[2], axis[0]);
+    for (int j = 0; j < 3; j++)
+        for (int c = 0; c < 3; c++)
+            grid->axis[j][c] = axis[j][c] * scale; // a power of two
+    return true;
+}
+
+/// Where the light sees a sphere. False: too far to the side.
+///
+/// A segment at (u, v) has a distance from the middle whose square is at least w0^2 (du^2 + dv^2) / (1 + u^2 + v^2), so that one
+/// that meets the sphere has du^2 + dv^2 <= (r / w0)^2 (1 + u^2 + v^2). The root of the latter is at most the middle's and
+/// the distance from there together, which bounds that distance.
+static bool see(const grid_maker *maker, const glint_prim *prim, uint32_t id, const double way[3], seen_sphere *out)
+{
+    const glint_light_grid *grid = maker->grid;
+    const double radius = (double)prim->filter_bound, w = vec_dot(grid->axis[2], way);
+    const double per_w = grid->directional ? 1 : 1 / w;
+    const double distance = sqrt(vec_dot(way, way)) * maker->table->scale;
+    if (!grid->directional && !(w > WIDEST * distance && w > 2 * radius))
+        return false;
+    const double u = vec_dot(grid->axis[0], way) * per_w, v = vec_dot(grid->axis[1], way) * per_w;
+    const double wide = sqrt(u * u + v * v), size = grid->directional ? distance : wide;
+    const double r = radius * per_w * (1 + 1e-6) + PLACE_SLACK * (1 + size);
+    const double reach = grid->directional ? r : r * sqrt(1 + wide * wide) / (1 - r);
+    out->place[0] = (float)u;
+    out->place[1] = (float)v;
+    out->reach = (float)((reach + PLACE_SLACK * (1 + size)) * (1 + 1e-6));
+    out->r2 = (float)(r * r * (1 + 1e-6));
+    out->near = (float)((w - radius) - 1e-6 * (distance + radius));
+    out->id = id;
+    return r < 0.5 && isfinite(out->reach) && isfinite(out->near);
+}
+
+/// Notes a primitive that is in no cell; false: there are too many.
+static bool add_other(glint_light_grid *grid, uint32_t id)
+{
+    if (grid->other_count == GLINT_GRID_OTHERS)
+        return false;
+    grid->others[grid->other_count++] = id;
+    return true;
+}
+
+/// All bounded primitives.
+static bool see_all(grid_maker *maker)
+{
+    const glint_geometry_table *table = maker->table;
+    double way[3];
+    for (uint32_t i = 0; i < table->prim_count; i++) {
+        const glint_prim *prim = &table->prims[i];
+        if (prim->kind == GLINT_PRIM_PLANE)
+            continue;
+        if (is_small(maker, prim, way) && see(maker, prim, i, way, &maker->seen[maker->count]))
+            maker->count++;
+        else if (!add_other(maker->grid, i))
+            return false;
+    }
+    return maker->count >= SMALLEST_COUNT;
+}
+
+// ---- The cells ----
+
+static float mean_reach(const grid_maker *maker)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < maker->count; i++)
+        sum += (double)maker->seen[i].reach;
+    return (float)(sum / maker->count);
+}
+
+/// What is larger than `limit` goes to the others. False: that is too much, and nothing has changed.
+static bool take_large(grid_maker *maker, float limit)
+{
+    uint32_t large = 0, kept = 0;
+    for (uint32_t i = 0; i < maker->count; i++)
+        large += maker->seen[i].reach > limit;
+    if (large + maker->grid->other_count > GLINT_GRID_OTHERS)
+        return false;
+    for (uint32_t i = 0; i < maker->count; i++)
+        if (!(maker->seen[i].reach > limit && add_other(maker->grid, maker->seen[i].id)))
+            maker->seen[kept++] = maker->seen[i];
+    maker->count = kept;
+    return true;
+}
+
+static void bound_places(grid_maker *maker)
+{
+    for (int j = 0; j < 2; j++) {
+        maker->least[j] = HUGE_VALF;
+        maker->most[j] = -HUGE_VALF;
+    }
+    maker->near = HUGE_VALF;
+    maker->far = -HUGE_VALF;
+    for (uint32_t i = 0; i < maker->count; i++) {
+        const seen_sphere *s = &maker->seen[i];
+        for (int j = 0; j < 2; j++) {
+            maker->least[j] = fminf(maker->least[j], s->place[j] - s->reach);
+            maker->most[j] = fmaxf(maker->most[j], s->place[j] + s->reach);
+        }
+        maker->near = fminf(maker->near, s->near);
+        maker->far = fmaxf(maker->far, s->near);
+    }
+}
+
+/// First and last cell of a sphere along an axis, by the float arithmetic of the stage, which never falls.
+static void cells_of(const glint_light_grid *grid, const seen_sphere *s, int axis, uint32_t *first, uint32_t *last)
+{
+    const float from = ((s->place[axis] - s->reach) - grid->first[axis]) * grid->cells;
+    const float to = ((s->place[axis] + s->reach) - grid->first[axis]) * grid->cells;
+    const float most = (float)(grid->count[axis] - 1);
+    *first = (uint32_t)fminf(fmaxf(from, 0), most);
+    *last = (uint32_t)fminf(fmaxf(to, 0), most);
+}
+
+/// How many entries cells of this side would have; above `limit`: at least so many.
+static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
+{
+    glint_light_grid *grid = maker->grid;
+    uint64_t entries = 0;
+    grid->cells = 1 / side;
+    for (int j = 0; j < 2; j++) {
+        const double cells = ((double)maker->most[j] - (double)maker->least[j]) / (double)side + 1;
+        grid->first[j] = maker->least[j];
+        if (!(cells < COUNT_MAX))
+            return limit + 1;
+        grid->count[j] = (uint32_t)cells + 1;
+    }
+    if ((uint64_t)grid->count[0] * grid->count[1] > limit)
+        return limit + 1;
+    for (uint32_t i = 0; i < maker->count && entries <= limit; i++) {
+        uint32_t first[2], last[2];
+        for (int j = 0; j < 2; j++)
+            cells_of(grid, &maker->seen[i], j, &first[j], &last[j]);
+        entries += (uint64_t)(last[0] - first[0] + 1) * (last[1] - first[1] + 1);
+    }
+    return entries;
+}
+
+/// Chooses the least cells that are large enough, and returns their entries; 0: none are.
+static uint64_t choose_cells(grid_maker *maker)
+{
+    const uint64_t limit = (uint64_t)ENTRIES_MAX * maker->count + 1024;
+    float side = (float)CELLS_A_RADIUS * mean_reach(maker);
+    int tries = 0;
+    while (!take_large(maker, (float)COVERED_MAX * side) && tries++ < 32)
+        side *= 2;
+    if (tries > 32 || maker->count < SMALLEST_COUNT)
+        return 0;
+    bound_places(maker);
+    for (; tries++ < 64; side *= 1.5F) {
+        const uint64_t entries = count_entries(maker, side, limit);
+        if (entries <= limit)
+            return entries;
+    }
+    return 0;
+}
+
+// ---- The entries ----
+
+/// Sorts the spheres by slices of depth, whose front becomes their `near`.
+static bool sort_by_depth(grid_maker *maker)
+{
+    seen_sphere *sorted = glint_alloc_large(maker->count, sizeof *sorted);
+    uint32_t next[SLICES + 1] = { 0 };
+    const float depth = maker->far - maker->near, slices = depth > 0 ? (SLICES - 1) / depth : 0;
+    if (!sorted)
+        return false;
+    for (uint32_t i = 0; i < maker->count; i++)
+        next[(uint32_t)((maker->seen[i].near - maker->near) * slices) + 1]++;
+    float front[SLICES];
+    for (uint32_t k = 0; k < SLICES; k++) {
+        next[k + 1] += next[k];
+        front[k] = HUGE_VALF;
+    }
+    for (uint32_t i = 0; i < maker->count; i++) {
+        const uint32_t slice = (uint32_t)((maker->seen[i].near - maker->near) * slices);
+        front[slice] = fminf(front[slice], maker->seen[i].near);
+    }
+    for (uint32_t i = 0; i < maker->count; i++) {
+        const uint32_t slice = (uint32_t)((maker->seen[i].near - maker->near) * slices);
+        seen_sphere *to = &sorted[next[slice]++];
+        *to = maker->seen[i];
+        to->near = front[slice];
+    }
+    free(maker->seen);
+    maker->seen = sorted;
+    return true;
+}
+
+/// What is written of a grid's entries.
+typedef struct grid_entries {
+    float *u, *v, *r2, *near;
+    uint32_t *id;
+} grid_entries;
+
+/// Counts each cell's spheres in `next`, or with `entries` puts each of them where its cell's `next` says.
+static void spread(const grid_maker *maker, uint32_t *next, const grid_entries *entries)
+{
+    const glint_light_grid *grid = maker->grid;
+    for (uint32_t i = 0; i < maker->count; i++) {
+        const seen_sphere *s = &maker->seen[i];
+        uint32_t first[2], last[2];
+        for (int j = 0; j < 2; j++)
+            cells_of(grid, s, j, &first[j], &last[j]);
+        for (uint32_t row = first[1]; row <= last[1]; row++)
+            for (uint32_t column = first[0]; column <= last[0]; column++) {
+                const uint32_t at = next[(size_t)row * grid->count[0] + column]++;
+                if (!entries)
+                    continue;
+                entries->u[at] = s->place[0];
+                entries->v[at] = s->place[1];
+                entries->r2[at] = s->r2;
+                entries->near[at] = s->near;
+                entries->id[at] = s->id;
+            }
+    }
+}
+
+/// Memory for the entries and what the stage loads behind the last, in one piece, which begins at `u`.
+static bool make_entries(glint_light_grid *grid, uint64_t count, grid_entries *out)
+{
+    const size_t length = (size_t)count + GLINT_GROUP;
+    float *memory = glint_alloc_large(length, 4 * sizeof *memory + sizeof(uint32_t));
+    if (!memory)
+        return false;
+    *out = (grid_entries) { memory, memory + length, memory + 2 * length, memory + 3 * length,
+                            (uint32_t *)(void *)(memory + 4 * length) };
+    for (size_t k = 1; k <= 4; k++)
+        memset(memory + k * length - GLINT_GROUP, 0, GLINT_GROUP * sizeof *memory);
+    grid->u = out->u;
+    grid->v = out->v;
+    grid->r2 = out->r2;
+    grid->near = out->near;
+    grid->id = out->id;
+    return true;
+}
+
+/// Fills the cells. False: no memory.
+static bool fill(grid_maker *maker, uint64_t count)
+{
+    glint_light_grid *grid = maker->grid;
+    const size_t cells = (size_t)grid->count[0] * grid->count[1];
+    uint32_t *begin = glint_alloc(cells + 2, sizeof *begin);
+    grid_entries entries;
+    grid->sorted = count / cells >= SORTED_FROM;
+    grid->begin = begin;
+    if (!begin || !make_entries(grid, count, &entries) || (grid->sorted && !sort_by_depth(maker)))
+        return false;
+    uint32_t *next = begin + 1; // begin[cell + 1] runs from a cell's begin to its end
+    spread(maker, next + 1, NULL);
+    for (size_t cell = 0; cell < cells; cell++)
+        next[cell + 1] += next[cell];
+    spread(maker, next, &entries);
+    grid->nearest = maker->near;
+    return true;
+}
+
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+                                     glint_light_grid **out, glint_error *error)
+{
+    grid_maker maker = { .table = table };
+    bool enough = true;
+    *out = NULL;
+    if (!table->nodes || table->prim_count < SMALLEST_COUNT)
+        return GLINT_OK;
+    maker.grid = glint_alloc(1, sizeof *maker.grid);
+    maker.seen = glint_alloc_large(table->prim_count, sizeof *maker.seen);
+    if (maker.grid && maker.seen) {
+        *maker.grid = (glint_light_grid) { .directional = directional };
+        vec_copy(maker.grid->position, position);
+        vec_copy(maker.grid->origin, directional ? table->reference : position);
+        const uint64_t entries = aim(&maker) && see_all(&maker) ? choose_cells(&maker) : 0;
+        enough = entries == 0 || (entries < UINT32_MAX && fill(&maker, entries));
+        if (entries && enough)
+            *out = maker.grid;
+    } else {
+        enough = false;
+    }
+    free(maker.seen);
+    if (!*out)
+        glint_light_grid_destroy(maker.grid);
+    return enough ? GLINT_OK : glint_fail_nomem(error);
+}
+
+void glint_light_grid_destroy(glint_light_grid *grid)
+{
+    if (!grid)
+        return;
+    free((void *)(uintptr_t)grid->begin);
+    free((void *)(uintptr_t)grid->u); // with what follows
+    free(grid);
+}

@@ -1,0 +1,277 @@
+// grid: points of a tile against what their light has in the cells of its own view (glint_light_grid). Each point finds the
+// entries that may block it in one cell, nearest to the light first; what is found is decided a vector at a time, each
+// lane with a sphere of its own, until every point is blocked or has no entry left. Contract: stages.h, occlude.
+
+#if GLINT_REAL == 64
+
+#define GRID_FAR 0x1p20 // of directional light, in the index's units: from farther away a place is not known well enough
+
+/// Points that may be blocked, and how far each has come.
+typedef struct grid_points {
+    uint32_t count, live_count;
+    uint16_t live[GLINT_TILE_SAMPLES]; ///< those that are not decided yet
+    float u[GLINT_TILE_SAMPLES], v[GLINT_TILE_SAMPLES], w[GLINT_TILE_SAMPLES];
+    float reach[GLINT_TILE_SAMPLES]; ///< what r2 is multiplied by
+    uint32_t next[GLINT_TILE_SAMPLES], end[GLINT_TILE_SAMPLES]; ///< entries of its cell to be looked at
+    uint16_t at[GLINT_TILE_SAMPLES]; ///< number of the sample
+} grid_points;
+
+/// Pairs of a point and the sphere that it is tested against.
+typedef struct grid_pairs {
+    uint32_t count;
+    uint32_t id[GLINT_TILE_SAMPLES];
+    uint16_t point[GLINT_TILE_SAMPLES]; ///< index in the points
+} grid_pairs;
+
+// ---- Places ----
+
+/// A group's places as the light sees them.
+typedef struct grid_places {
+    _Alignas(64) float place[2][GLINT_GROUP], w[GLINT_GROUP], reach[GLINT_GROUP];
+    _Alignas(64) uint32_t cell[GLINT_GROUP];
+    unsigned known; ///< lanes whose numbers mean something
+} grid_places;
+
+/// VD lanes from i on.
+static void grid_place_lanes(const glint_occlude_args *args, size_t at, int i, grid_places *out)
+{
+    const glint_light_grid *grid = args->grid;
+    const vd one = d_set(1);
+    vd x[3], seen[3], size = d_set(0), reach = one;
+    for (int k = 0; k < 3; k++)
+        x[k] = d_load((const double *)args->point[k] + at + i) - d_set(grid->origin[k]);
+    for (int j = 0; j < 3; j++) {
+        seen[j] = (d_set(grid->axis[j][0]) * x[0] + d_set(grid->axis[j][1]) * x[1]) + d_set(grid->axis[j][2]) * x[2];
+        size = size + abs_f64(seen[j]);
+    }
+    for (int j = 0; j < 2; j++) {
+        vd place = seen[j];
+        if (!grid->directional) {
+            place = place / seen[2];
+            reach = reach + place * place;
+        }
+        d_store_f(out->place[j] + i, place);
+    }
+    d_store_f(out->w + i, seen[2]);
+    d_store_f(out->reach + i, reach);
+    out->known |= dm_bits(d_lt(size, d_set(grid->directional ? GRID_FAR : 0x1p100))) << i;
+}
+
+/// Returns the lanes that are in a cell, and behind the nearest of all.
+static unsigned grid_cells(const glint_light_grid *grid, grid_places *places)
+{
+    unsigned inside = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vi cell[2];
+        fm in = f_le(f_set(grid->nearest), f_load(places->w + i));
+        for (int j = 0; j < 2; j++) {
+            const vf x = (f_load(places->place[j] + i) - f_set(grid->first[j])) * f_set(grid->cells);
+            in = fm_and(in, fm_and(f_le(f_set(0), x), f_lt(x, f_set((float)grid->count[j]))));
+            cell[j] = i_from_f(f_select(in, x, f_set(0)));
+        }
+        i_store(places->cell + i, i_or(i_shl(cell[1], 16), cell[0])); // a row and a column
+        inside |= fm_bits(in) << i;
+    }
+    return inside;
+}
+
+/// The lanes of `back`, seen from behind, that are on a sphere in a cell: the light is outside of it, so that it blocks them.
+static unsigned grid_own(const glint_occlude_args *args, size_t at, unsigned back)
+{
+    const glint_light_grid *grid = args->grid;
+    unsigned blocked = 0;
+    for (; back; back &= back - 1) {
+        const uint32_t id = args->prim[at + (unsigned)__builtin_ctz(back)];
+        bool other = id == GLINT_MISS || args->geometry->prims[id].kind != GLINT_PRIM_SPHERE;
+        for (uint32_t k = 0; k < grid->other_count && !other; k++)
+            other = grid->others[k] == id;
+        blocked |= other ? 0 : back & -back;
+    }
+    return blocked;
+}
+
+static inline void grid_prefetch(const glint_light_grid *grid, uint32_t entry)
+{
+    __builtin_prefetch(grid->u + entry);
+    __builtin_prefetch(grid->v + entry);
+    __builtin_prefetch(grid->r2 + entry);
+    __builtin_prefetch(grid->near + entry);
+}
+
+/// Adds the open points of a group that may be blocked. False: some place is not known.
+static bool grid_add_group(const glint_occlude_args *args, uint32_t g, grid_points *points)
+{
+    const glint_light_grid *grid = args->grid;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    grid_places places;
+    places.known = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VD)
+        grid_place_lanes(args, at, i, &places);
+    if (args->open[0][g] & ~places.known)
+        return false;
+    args->open[0][g] &= (uint16_t)~grid_own(args, at, args->open[0][g] & args->back[g]);
+    for (unsigned left = args->open[0][g] & grid_cells(grid, &places); left; left &= left - 1) {
+        const unsigned lane = (unsigned)__builtin_ctz(left);
+        const uint32_t cell = (places.cell[lane] >> 16) * grid->count[0] + (places.cell[lane] & 0xffff), k = points->count;
+        points->next[k] = grid->begin[cell];
+        points->end[k] = grid->begin[cell + 1];
+        if (points->next[k] == points->end[k])
+            continue;
+        grid_prefetch(grid, points->next[k]);
+        points->u[k] = places.place[0][lane];
+        points->v[k] = places.place[1][lane];
+        points->w[k] = places.w[lane];
+        points->reach[k] = places.reach[lane];
+        points->at[k] = (uint16_t)(at + lane);
+        points->live[k] = (uint16_t)k;
+        points->count++;
+    }
+    return true;
+}
+
+// ---- The filter ----
+
+/// The next entry that may block point k, whose own primitive is `own`; GLINT_MISS: none.
+static uint32_t grid_next(const glint_light_grid *grid, const grid_points *points, uint32_t k, uint32_t own)
+{
+    const uint32_t end = points->end[k];
+    const vf u = f_set(points->u[k]), v = f_set(points->v[k]), w = f_set(points->w[k]), reach = f_set(points->reach[k]);
+    for (uint32_t from = points->next[k]; from < end; from += VF) {
+        const unsigned there = end - from < VF ? (1u << (end - from)) - 1 : (1u << VF) - 1;
+        const vf du = f_load_any(grid->u + from) - u, dv = f_load_any(grid->v + from) - v;
+        const unsigned before = fm_bits(f_le(f_load_any(grid->near + from), w)) & there;
+        unsigned near = before & fm_bits(f_le(du * du + dv * dv, f_load_any(grid->r2 + from) * reach));
+        for (; near; near &= near - 1)
+            if (grid->id[from + (unsigned)__builtin_ctz(near)] != own)
+                return from + (unsigned)__builtin_ctz(near);
+        if (grid->sorted && before != there) // what follows is behind the point
+            break;
+    }
+    return GLINT_MISS;
+}
+
+/// Makes a pair of each point that is not decided and its next entry. Those without one are open.
+static void grid_pair(const glint_occlude_args *args, grid_points *points, grid_pairs *pairs)
+{
+    pairs->count = 0;
+    for (uint32_t i = 0; i < points->live_count; i++) {
+        const uint32_t k = points->live[i];
+        const uint32_t entry = grid_next(args->grid, points, k, args->prim[points->at[k]]), n = pairs->count;
+        if (entry == GLINT_MISS)
+            continue;
+        points->next[k] = entry + 1;
+        pairs->id[n] = args->grid->id[entry];
+        pairs->point[n] = (uint16_t)k;
+        pairs->count++;
+        const char *prim = (const char *)&args->geometry->prims[pairs->id[n]];
+        __builtin_prefetch(prim);
+        __builtin_prefetch(prim + 64);
+    }
+}
+
+// ---- The decision ----
+
+/// VD pairs, as the decision reads them.
+typedef struct grid_lanes {
+    _Alignas(64) double center[3][VD], scale[VD], r2[VD], r2_low[VD], point[3][VD];
+} grid_lanes;
+
+/// The lanes whose sphere keeps the light, which is outside of it, from the point. As sphere_blocks.
+static unsigned grid_blocked(const glint_occlude_args *args, const grid_lanes *lanes)
+{
+    const vd zero = d_set(0), scale = d_load(lanes->scale), r2 = d_load(lanes->r2);
+    vd f[3], d[3];
+    for (int k = 0; k < 3; k++) {
+        const vd p = d_load(lanes->point[k]);
+        f[k] = (p - d_load(lanes->center[k])) * scale;
+        d[k] = d_set(args->position[k]);
+        if (!args->directional)
+            d[k] = (d[k] - p) * d_set(args->scale);
+    }
+    const vd c = exact_power_f64(f, r2, d_load(lanes->r2_low)), a = DOT(d, d), b = -DOT(f, d);
+    dm blocked = dm_and(d_lt(zero, b), d_le(zero, discriminant_f64(f, d, a, b, c, r2)));
+    if (!args->directional)
+        blocked = dm_and(blocked, d_lt(b * d_set(args->scale), a * scale));
+    return dm_bits(dm_or(d_lt(c, zero), blocked));
+}
+
+/// Decides all pairs. Points that are blocked are closed; the others of the pairs are not decided yet.
+static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs, grid_points *points)
+{
+    grid_lanes lanes;
+    points->live_count = 0;
+    for (uint32_t first = 0; first < pairs->count; first += VD) {
+        const uint32_t there = pairs->count - first < VD ? pairs->count - first : VD;
+        for (uint32_t n = 0; n < VD; n++) { // lanes without a pair have that of the first
+            const uint32_t pair = first + (n < there ? n : 0), at = points->at[pairs->point[pair]];
+            const glint_prim *prim = &args->geometry->prims[pairs->id[pair]];
+            for (int k = 0; k < 3; k++) {
+                lanes.center[k][n] = prim->center[k];
+                lanes.point[k][n] = ((const double *)args->point[k])[at];
+            }
+            lanes.scale[n] = prim->scale;
+            lanes.r2[n] = prim->r2;
+            lanes.r2_low[n] = prim->r2_low;
+        }
+        count_tests(args->tests, (1u << there) - 1);
+        const unsigned blocked = grid_blocked(args, &lanes);
+        for (uint32_t n = 0; n < there; n++) {
+            const uint32_t k = pairs->point[first + n], at = points->at[k];
+            if (blocked >> n & 1)
+                args->open[0][at / GLINT_GROUP] &= (uint16_t) ~(1u << at % GLINT_GROUP);
+            else
+                points->live[points->live_count++] = (uint16_t)k;
+        }
+    }
+}
+
+/// Takes out of args->open what is blocked by primitives that are in no cell.
+static void grid_others(const shadow_tile_f64 *tile, shadow_group_f64 *group)
+{
+    const glint_occlude_args *args = tile->args;
+    const glint_light_grid *grid = args->grid;
+    for (uint32_t k = 0; k < grid->other_count; k++) {
+        const glint_prim *prim = &args->geometry->prims[grid->others[k]];
+        if (sphere_apart_f64(prim, tile->lower, tile->upper, &tile->light))
+            continue;
+        const occluder_f64 occluder = { grid->others[k], seen_sides_f64(tile, NULL, prim) };
+        for (uint32_t g = 0; g < args->group_count; g++) {
+            begin_group_f64(g, group);
+            if (args->open[0][g])
+                args->open[0][g] &= (uint16_t)~blocked_by_f64(tile, occluder, group, args->open[0][g]);
+        }
+    }
+}
+
+/// Takes out of args->open what the index blocks. False: not all places are known, and some is left to be done.
+static bool occlude_grid(const shadow_tile_f64 *tile, shadow_group_f64 *group)
+{
+    const glint_occlude_args *args = tile->args;
+    grid_points points;
+    grid_pairs pairs;
+    grid_others(tile, group);
+    points.count = 0;
+    for (uint32_t g = 0; g < args->group_count; g++)
+        if (args->open[0][g] && !grid_add_group(args, g, &points))
+            return false;
+    points.live_count = points.count;
+    while (points.live_count && !is_stopped(args->stop)) {
+        grid_pair(args, &points, &pairs);
+        grid_decide(args, &pairs, &points);
+    }
+    return true;
+}
+
+#endif
+
+/// Whether a grid is there and has done it. Where float decides, what may be met is not what it shows.
+static inline bool R(occlude_by_grid)(const R(shadow_tile) * tile, R(shadow_group) * group)
+{
+#if GLINT_REAL == 64
+    return tile->args->grid && occlude_grid(tile, group);
+#else
+    (void)tile;
+    (void)group;
+    return false;
+#endif
+}
