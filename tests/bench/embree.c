@@ -3,7 +3,7 @@
 /// are Embree's native triangles. Shading, samples and bands are those of the hand-written program. What its callbacks
 /// leave out (a ray that starts inside a sphere, normals of what is later hidden) is in its favour.
 ///
-///   embree frame scene=workshop|1k|1M|mesh [threads=N] [samples=N] [shadows=0] [area=1]    ms: build, render
+///   embree frame scene=NAME [threads=N] [samples=N] [shadows=0] [area=1]    ms: build, render
 ///   embree picture out=FILE scene=...
 #include <embree3/rtcore.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /// glint, measured by its public API: what a program that links it gets, in its default double precision.
 ///
-///   glint_side frame scene=workshop|1k|1M|glass [threads=N] [samples=N] [shadows=0] [indirect=N] [isa=NAME] [float=1] [pattern=NAME]
+///   glint_side frame scene=NAME [lamps=N] [threads=N] [samples=N] [shadows=0] [indirect=N] [isa=NAME] [float=1] [pattern=NAME]
 ///   glint_side build scene=1M [threads=N]                ms of the index, and of a scene's first (small) frame
 ///   glint_side stages [isa=NAME]                         ns a pixel
 ///   glint_side reuse change=light|sphere|shininess|number [pattern=NAME]  ms of a frame anew, and of one from what was kept

@@ -136,6 +136,20 @@ static void set_camera(side_scene *s, const bench_options *options)
     glint_camera_release(camera);
 }
 
+/// Adds one of the lamps; `lamp` is the last.
+static void add_lamp(side_scene *s, const bench_options *options, int i)
+{
+    glint_error error;
+    glint_light_desc l = glint_light_desc_default(options->area ? GLINT_LIGHT_SPHERE : GLINT_LIGHT_POINT);
+    bench_lamp(&s->plain, i, options->lamps, l.position);
+    l.intensity = 1.0 / options->lamps;
+    l.radius = (double)s->plain.light_radius;
+    l.shadows = options->shadows;
+    glint_light_release(s->lamp);
+    side_must(glint_light_create(&l, &s->lamp, &error), &error);
+    side_must(glint_scene_add_light(s->scene, s->lamp, &error), &error);
+}
+
 side_scene side_scene_create(const bench_options *options)
 {
     glint_error error;
@@ -147,12 +161,8 @@ side_scene side_scene_create(const bench_options *options)
     add_spheres(&s);
     if (s.plain.triangle_count)
         add_mesh(&s);
-    glint_light_desc l = glint_light_desc_default(options->area ? GLINT_LIGHT_SPHERE : GLINT_LIGHT_POINT);
-    widen(s.plain.light, l.position);
-    l.radius = (double)s.plain.light_radius;
-    l.shadows = options->shadows;
-    side_must(glint_light_create(&l, &s.lamp, &error), &error);
-    side_must(glint_scene_add_light(s.scene, s.lamp, &error), &error);
+    for (int i = 0; i < options->lamps; i++)
+        add_lamp(&s, options, i);
     set_camera(&s, options);
     return s;
 }

@@ -37,6 +37,8 @@ static void read_word(bench_options *o, const char *word)
         o->samples = atoi(value);
     else if (strcmp(name, "indirect") == 0)
         o->indirect = atoi(value);
+    else if (strcmp(name, "lamps") == 0)
+        o->lamps = atoi(value);
     else if (strcmp(name, "float") == 0)
         o->is_float = on;
     else if (strcmp(name, "reuse") == 0)
@@ -51,7 +53,7 @@ static void read_word(bench_options *o, const char *word)
 
 bench_options bench_options_read(int argc, char **argv)
 {
-    bench_options o = { .scene = "workshop", .change = "none", .pattern = "none", .threads = 1, .samples = 1, .shadows = true };
+    bench_options o = { .scene = "workshop", .change = "none", .pattern = "none", .threads = 1, .samples = 1, .lamps = 1, .shadows = true };
     if (argc < 2)
         bench_fail(argv[0], "a mode expected");
     o.mode = argv[1];
@@ -61,6 +63,8 @@ bench_options bench_options_read(int argc, char **argv)
         bench_fail("threads, samples", "1 .. 64 expected");
     if (o.indirect < 0 || o.indirect > 1024)
         bench_fail("indirect", "0 .. 1024 expected");
+    if (o.lamps < 1 || o.lamps > 1024)
+        bench_fail("lamps", "1 .. 1024 expected");
     return o;
 }
 

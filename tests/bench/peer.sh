@@ -1,6 +1,6 @@
 #!/bin/sh
 # Renders a scene with POV-Ray or Tachyon, and prints what the driver reads: name, unit, value.
-#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1]
+#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N]
 #       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything
 #   peer.sh povray job change=light|shininess [threads=N]
 #       seconds for the job's 60 frames: its first FRAMES are rendered, and the time multiplied

@@ -1,6 +1,7 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|1k|1M|glass|box] [shadows=0] [samples=N] [area=1] [change=light|shininess] [pattern=NAME]
+///   peers povray|tachyon [scene=workshop|1k|1M|glass|box|floor100] [shadows=0] [samples=N] [area=1] [lamps=N] [change=light|shininess]
+///       [pattern=NAME]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
 /// the job's frame `frame_number`. Tachyon: Phong as well; it has no area lights, and writes linear codes.
@@ -31,13 +32,13 @@ static void povray_camera(const bench_scene *s)
     printf(" up <%.9g, %.9g, %.9g> }\n", up[0], up[1], up[2]);
 }
 
-static void povray_light(const bench_scene *s, const bench_options *o, bool moves)
+static void povray_light(const bench_scene *s, const bench_options *o, const double at[3], bool moves)
 {
     if (moves)
         printf("light_source { <13*cos(2*pi*(frame_number-1)/%d), 20, 13*sin(2*pi*(frame_number-1)/%d)> rgb 1",
                BENCH_FRAMES, BENCH_FRAMES);
     else
-        print3("light_source { <%.9g, %.9g, %.9g> rgb 1", s->light);
+        printf("light_source { <%.9g, %.9g, %.9g> rgb %.9g", at[0], at[1], at[2], 1.0 / o->lamps);
     double side = 2 * (double)s->light_radius;
     if (o->area)
         printf(" area_light <%g, 0, 0>, <0, 0, %g>, 4, 4 circular orient", side, side);
@@ -70,7 +71,11 @@ static void write_povray(const bench_scene *s, const bench_options *o)
         puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as functions.inc has it
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
     povray_camera(s);
-    povray_light(s, o, changes && !shines);
+    for (int i = 0; i < o->lamps; i++) {
+        double at[3];
+        bench_lamp(s, i, o->lamps, at);
+        povray_light(s, o, at, changes && !shines);
+    }
     for (int m = 0; m < s->material_count; m++) {
         const bench_material *p = &s->materials[m];
         printf("#declare M = texture { ");

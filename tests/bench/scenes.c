@@ -33,7 +33,7 @@ static void make_spheres(bench_scene *s, size_t count)
 
 // ---- The workshop: scripts/workshop.lua ----
 
-static void make_workshop(bench_scene *s)
+static void make_workshop(bench_scene *s, size_t count)
 {
     static const float spheres[5][4] = { { 0, -10000, 0, 10000 },
                                          { -1, 4, -4.5F, 4 },
@@ -47,7 +47,7 @@ static void make_workshop(bench_scene *s)
         { .diffuse = { 0.10F, 0.35F, 0.62F }, .specular = 0.7F, .shininess = 128 },
         { .diffuse = { 0.16F, 0.48F, 0.20F }, .specular = 0.7F, .shininess = 128 },
     };
-    make_spheres(s, 5);
+    make_spheres(s, count);
     memcpy(s->spheres, spheres, sizeof spheres);
     memcpy(s->materials, materials, sizeof materials);
     s->material_count = 5;
@@ -70,7 +70,7 @@ static float random_unit(uint64_t *state)
 
 // ---- Mirrors and glass ----
 
-static void make_glass(bench_scene *s)
+static void make_glass(bench_scene *s, size_t count)
 {
     static const bench_material materials[4] = { { .diffuse = { 0.45F, 0.42F, 0.38F } },
                                                  { .diffuse = { 0.1F, 0.1F, 0.12F }, .mirror = 0.8F },
@@ -79,10 +79,10 @@ static void make_glass(bench_scene *s)
     uint64_t state = 24;
     memcpy(s->materials, materials, sizeof materials);
     s->material_count = 4;
-    make_spheres(s, 25);
+    make_spheres(s, count + 1);
     s->spheres[1] = -10000;
     s->spheres[3] = 10000;
-    for (uint32_t i = 1; i < 25; i++) {
+    for (uint32_t i = 1; i <= count; i++) {
         float *p = s->spheres + 4 * i, radius = 0.7F + 0.5F * random_unit(&state);
         set3(p, 2.6F * ((float)((i - 1) % 6) - 2.5F), radius + random_unit(&state), 2.6F * ((float)((i - 1) / 6) - 2));
         p[3] = radius;
@@ -129,30 +129,61 @@ static void make_cloud(bench_scene *s, size_t count)
 }
 
 /// As materials scientists look at particles: all of a box of them, by parallel rays.
-static void make_box(bench_scene *s)
+static void make_box(bench_scene *s, size_t count)
 {
-    make_cloud(s, 100000);
+    make_cloud(s, count);
     s->height = 18;
 }
 
-// ---- A mesh: a knobbly torus of 500 x 500 quadrangles ----
+// ---- Spheres that rest on a floor, and throw shadows on it and on each other ----
 
-static void make_mesh(bench_scene *s)
+/// The floor is 40 x 40 of a large ball's top; the radii go with the spacing, as in a cloud.
+static void make_floor(bench_scene *s, size_t count)
 {
-    enum { SIDE = 500 };
-    s->vertex_count = SIDE * SIDE;
-    s->triangle_count = 2 * SIDE * SIDE;
+    static const float ground[4] = { 0, -1000, 0, 1000 }, side = 40;
+    uint64_t state = count + 1;
+    make_palette(s, &state);
+    make_spheres(s, count + 1);
+    memcpy(s->spheres, ground, sizeof ground);
+    float spacing = side / sqrtf((float)count);
+    for (size_t i = 1; i <= count; i++) {
+        float *p = s->spheres + 4 * i;
+        p[0] = (random_unit(&state) - 0.5F) * side;
+        p[2] = (random_unit(&state) - 0.5F) * side;
+        p[3] = spacing * (0.15F + 0.3F * random_unit(&state));
+        p[1] = p[3] - (p[0] * p[0] + p[2] * p[2]) / 2000;
+        s->sphere_material[i] = (uint32_t)i % BENCH_MATERIALS;
+    }
+    set3(s->eye, 0, 13, 34);
+    s->fov_y_degrees = 36;
+    set3(s->light, 9, 20, 6);
+}
+
+static void make_cloud_over_floor(bench_scene *s, size_t count)
+{
+    static const float ground[4] = { 0, -1009, 0, 1000 };
+    make_cloud(s, count + 1);
+    memcpy(s->spheres, ground, sizeof ground);
+}
+
+// ---- A mesh: a knobbly torus of quadrangles, as many around as along ----
+
+static void make_mesh(bench_scene *s, size_t quadrangles)
+{
+    const uint32_t side = (uint32_t)sqrt((double)quadrangles);
+    s->vertex_count = side * side;
+    s->triangle_count = 2 * side * side;
     s->vertices = need(s->vertex_count, 3 * sizeof *s->vertices);
     s->triangles = need(s->triangle_count, 3 * sizeof *s->triangles);
     uint32_t *triangle = s->triangles;
-    for (uint32_t i = 0; i < SIDE; i++)
-        for (uint32_t j = 0; j < SIDE; j++) {
-            double u = 2 * PI * i / SIDE, v = 2 * PI * j / SIDE;
+    for (uint32_t i = 0; i < side; i++)
+        for (uint32_t j = 0; j < side; j++) {
+            double u = 2 * PI * i / side, v = 2 * PI * j / side;
             double tube = 2.5 + 0.2 * sin(24 * u) * sin(9 * v), ring = 6 + tube * cos(v);
-            set3(s->vertices + 3 * (SIDE * i + j), (float)(ring * cos(u)), (float)(tube * sin(v)),
+            set3(s->vertices + 3 * (side * i + j), (float)(ring * cos(u)), (float)(tube * sin(v)),
                  (float)(ring * sin(u)));
-            uint32_t a = SIDE * i + j, b = SIDE * i + (j + 1) % SIDE;
-            uint32_t c = SIDE * ((i + 1) % SIDE) + j, d = SIDE * ((i + 1) % SIDE) + (j + 1) % SIDE;
+            uint32_t a = side * i + j, b = side * i + (j + 1) % side;
+            uint32_t c = side * ((i + 1) % side) + j, d = side * ((i + 1) % side) + (j + 1) % side;
             uint32_t two[6] = { a, b, c, b, d, c };
             memcpy(triangle, two, sizeof two);
             triangle += 6;
@@ -164,26 +195,34 @@ static void make_mesh(bench_scene *s)
     set3(s->light, 9, 14, 4);
 }
 
+static const struct {
+    const char *name;
+    void (*make)(bench_scene *s, size_t count);
+    size_t count;
+} scenes[] = { { "workshop", make_workshop, 5 },
+               { "1k", make_cloud, 1000 },
+               { "1M", make_cloud, 1000000 },
+               { "over1k", make_cloud_over_floor, 1000 },
+               { "over1M", make_cloud_over_floor, 1000000 },
+               { "floor100", make_floor, 100 },
+               { "floor1k", make_floor, 1000 },
+               { "floor1M", make_floor, 1000000 },
+               { "glass", make_glass, 24 },
+               { "box", make_box, 100000 },
+               { "mesh", make_mesh, 250000 },
+               { "mesh100k", make_mesh, 50176 } };
+
 bool bench_scene_create(const char *name, bench_scene *out)
 {
     *out = (bench_scene) { .light_radius = 2 };
     set3(out->ambient, 0.16F, 0.17F, 0.20F);
     set3(out->background, 0.28F, 0.45F, 0.69F);
-    if (strcmp(name, "workshop") == 0)
-        make_workshop(out);
-    else if (strcmp(name, "1k") == 0)
-        make_cloud(out, 1000);
-    else if (strcmp(name, "1M") == 0)
-        make_cloud(out, 1000000);
-    else if (strcmp(name, "box") == 0)
-        make_box(out);
-    else if (strcmp(name, "glass") == 0)
-        make_glass(out);
-    else if (strcmp(name, "mesh") == 0)
-        make_mesh(out);
-    else
-        return false;
-    return true;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
+        if (strcmp(name, scenes[i].name) == 0) {
+            scenes[i].make(out, scenes[i].count);
+            return true;
+        }
+    return false;
 }
 
 void bench_scene_free(bench_scene *scene)
@@ -194,7 +233,15 @@ void bench_scene_free(bench_scene *scene)
     free(scene->triangles);
 }
 
-// ---- Jobs and the camera ----
+// ---- Lamps, jobs and the camera ----
+
+void bench_lamp(const bench_scene *scene, int i, int count, double position[3])
+{
+    const double angle = 2 * PI * i / count, radius = count > 1 ? 13 : 0;
+    const double off[3] = { radius * cos(angle), 0, radius * sin(angle) };
+    for (int c = 0; c < 3; c++)
+        position[c] = (double)scene->light[c] + off[c];
+}
 
 void bench_job_light(int frame, double position[3])
 {

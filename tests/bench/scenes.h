@@ -31,9 +31,18 @@ typedef struct bench_scene {
     float ambient[3], background[3];
 } bench_scene;
 
-/// "workshop", "1k", "1M" (spheres), "glass" (24 mirrors, glass and matt spheres on a floor), "box" (100,000 spheres, an orthographic view) or "mesh" (500,000 triangles). False when there is no such scene.
+/// False when there is no such scene. There are:
+///   workshop                 four balls on a large one
+///   1k, 1M                   a cloud of so many spheres; over1k, over1M: above the top of a large ball
+///   floor100, floor1k, floor1M   so many spheres resting on such a floor
+///   glass                    24 mirrors, glass and matt spheres on a floor
+///   box                      100,000 spheres, an orthographic view
+///   mesh, mesh100k           500,000 and 100,000 triangles
 bool bench_scene_create(const char *name, bench_scene *out);
 void bench_scene_free(bench_scene *scene);
+
+/// Where lamp `i` of `count` hangs: one in the scene's place, several on a ring around it.
+void bench_lamp(const bench_scene *scene, int i, int count, double position[3]);
 
 /// The jobs of 60 frames, counted from 0: a lamp that goes round once, and a highlight that shrinks.
 void bench_job_light(int frame, double position[3]);
