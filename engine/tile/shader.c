@@ -46,10 +46,13 @@ static void gather_light(const glint_tile *tile, const glint_plan *plan, const s
     }
 }
 
-/// A number of a material, or what a program gave of it, of group g.
+/// A number of a material, or what a program gave of it, of group g: group k of an input's row, if it is read.
 static void gather_field(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own, glint_field field,
-                         int channel, double number, uint32_t g, double *restrict to)
+                         int channel, double number, uint32_t g, int input, uint32_t k)
 {
+    double *restrict to = row(tile, input, k);
+    if (!(own->program[GLINT_FIELD_SHADER]->inputs >> input & 1))
+        return;
     const bool made = own->made >> field & 1;
     const float *plane = made ? glint_plane_of(tile->at.planes, plan, field, channel) + (size_t)g * GLINT_GROUP : NULL;
     for (int i = 0; i < GLINT_GROUP; i++)
@@ -60,11 +63,11 @@ static void gather_material(const glint_tile *tile, const glint_plan *plan, cons
                             const double *diffuse, uint32_t g, uint32_t k)
 {
     for (int c = 0; c < 3; c++) {
-        gather_field(tile, plan, own, GLINT_FIELD_DIFFUSE, c, diffuse[c], g, row(tile, GLINT_INPUT_KD_R + c, k));
-        gather_field(tile, plan, own, GLINT_FIELD_SPECULAR, c, own->desc.specular[c], g,
-                     row(tile, GLINT_INPUT_KS_R + c, k));
+        gather_field(tile, plan, own, GLINT_FIELD_DIFFUSE, c, diffuse[c], g, GLINT_INPUT_KD_R + c, k);
+        gather_field(tile, plan, own, GLINT_FIELD_SPECULAR, c, own->desc.specular[c], g, GLINT_INPUT_KS_R + c,
+                     k);
     }
-    gather_field(tile, plan, own, GLINT_FIELD_SHININESS, 0, own->desc.shininess, g, row(tile, GLINT_INPUT_SHININESS, k));
+    gather_field(tile, plan, own, GLINT_FIELD_SHININESS, 0, own->desc.shininess, g, GLINT_INPUT_SHININESS, k);
 }
 
 /// Adds what the shader gave to the sums.
