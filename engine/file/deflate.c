@@ -65,8 +65,8 @@ static size_t band_by_zlib(int level, const uint8_t *data, size_t size, bool las
 
 // Level 1 files the third position of its input in the bucket of its hash table that its own stream's address gives, instead of
 // the bucket of the bytes there (ISA-L 2.30 on x86, icf body without history): the bytes written would depend on where the
-// stream lies. So it lies where the address gives the right bucket. ThreadSanitizer allows no such places.
-#if defined __x86_64__ && defined MAP_FIXED_NOREPLACE && !defined __SANITIZE_THREAD__
+// stream lies. So it lies where the address gives the right bucket.
+#if defined __x86_64__ && defined MAP_FIXED_NOREPLACE
 #define BUCKET_BITS 13
 #define PLACE_SHIFT 16 // of an address, to what is hashed
 #define FIRST_PLACE UINT32_C(0x20000000) // shifted; from here on, 2^29 places lie where programs have nothing
