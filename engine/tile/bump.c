@@ -115,9 +115,12 @@ static bool is_above(const glint_tile *tile, const glint_plan *plan, const glint
     const glint_light_sample *from = light->light_sample[sample];
     const double *place = light->place[0] ? light->place[sample] : light->position;
     double n[3], l[3];
+    if (from)
+        glint_tile_sample_place(tile, plan->desc.precision, from, light->scale, i, l);
+    else
+        vec_copy(l, place);
     for (int c = 0; c < 3; c++) {
         n[c] = glint_real_at(tile->unbumped[c], plan->desc.precision, i);
-        l[c] = from ? from->position[c][i % GLINT_GROUP] : place[c];
         if (!light->directional)
             l[c] -= glint_real_at(tile->surface.point[c], plan->desc.precision, i);
     }

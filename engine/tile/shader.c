@@ -1,4 +1,5 @@
 /// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
+#include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/tile/pattern_work.h"
 
@@ -16,15 +17,28 @@ static double *row(const glint_tile *tile, int input, uint32_t k)
     return &tile->pattern->inputs.row[input][(size_t)k * GLINT_GROUP];
 }
 
+/// Where group g sees the light, or its sample; of a directional one the way there.
+static void place_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
+                        double out[3][GLINT_GROUP])
+{
+    double place[3];
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        vec_copy(place, from->light->position);
+        if (from->sample)
+            glint_tile_sample_place(tile, plan->desc.precision, from->sample, from->light->scale, g * GLINT_GROUP + i, place);
+        for (int c = 0; c < 3; c++)
+            out[c][i] = place[c];
+    }
+}
+
 /// What of group g depends on the light: group k of the rows. Lanes without a hit get anything.
 static void gather_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
                          uint32_t k)
 {
     const glint_plan_light *light = from->light;
     double l[3][GLINT_GROUP], point[GLINT_GROUP], length[GLINT_GROUP];
+    place_light(tile, plan, from, g, l);
     for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < GLINT_GROUP; i++)
-            l[c][i] = from->sample ? from->sample->position[c][i] : light->position[c];
         if (light->directional)
             continue;
         glint_reals_of(tile->surface.point[c], plan->desc.precision, g, point);

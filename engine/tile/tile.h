@@ -340,6 +340,9 @@ void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transpare
 void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
 uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
+/// Where sample i sees a light sample. `scale`: see glint_light_args. The point is found, and for GLINT_EMIT_CONE the normal.
+void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
+                             double scale, uint32_t i, double out[3]);
 /// Where sample i's ray to a light goes, from its point: directional: the way there.
 void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                              uint32_t i, double out[3]);
