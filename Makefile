@@ -334,7 +334,7 @@ soak-run: all $(HARD_BIN) $(BUILD)/tests/engine/test_reuse $(BUILD)/tests/engine
 	@GLINT_SOAK_SECONDS=$(SOAK_SECONDS) GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_reuse
 	@GLINT_SEED=$(SOAK_SEED) $(BUILD)/tests/engine/test_carry
 	@tests/hard/soak.sh $(BUILD)/tests/hard $(SOAK_RAYS)
-	@STEP=1 BUILD=$(BUILD) tests/command/faults.sh
+	@STEP=1 BUILD=$(BUILD) bash tests/command/faults.sh
 
 gallery: all ## renders the pictures of scripts/README.md anew, where they are not what the scripts render
 	@BUILD=$(BUILD) tests/command/gallery.sh update
