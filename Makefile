@@ -325,7 +325,7 @@ SOAK_RAYS ?= 1e8
 SOAK_SECONDS ?= 300
 SOAK_SEED ?= 7
 
-soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases with SOAK_RAYS rays (1e8: a quarter of an hour)
+soak: ## random edits against fresh frames for SOAK_SECONDS, then the hard cases with SOAK_RAYS rays (1e8: half an hour)
 	@tests/deps.sh build test
 	@$(MAKE) --no-print-directory soak-run
 

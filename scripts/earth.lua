@@ -44,13 +44,7 @@ local function paint(width)
   return picture
 end
 
-local file = P.file
-if file == "" then
-  file = os.tmpname() .. ".png"
-  paint(P.width):save(file)
-end
-local map = glint.texture { file = file }
-if P.file == "" then os.remove(file) end
+local map = P.file == "" and paint(P.width):texture() or glint.texture { file = P.file }
 
 local turn = 0
 local function clouds(p)

@@ -54,13 +54,7 @@ local function paint(width)
   return picture
 end
 
-local file = P.file
-if file == "" then
-  file = os.tmpname() .. ".png"
-  paint(P.width):save(file)
-end
-local picture = glint.texture { file = file }
-if P.file == "" then os.remove(file) end
+local picture = P.file == "" and paint(P.width):texture() or glint.texture { file = P.file }
 
 local camera = glint.camera { eye = { 0, 1.7, 7.2 }, at = { 0, 0.75, 0 }, fov = 38 }
 local function matt(diffuse) return glint.material { diffuse = diffuse } end

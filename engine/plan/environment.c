@@ -1,5 +1,6 @@
 /// A background that a program gives, by the direction in which rays leave the scene.
 #include "engine/base/alloc.h"
+#include "engine/base/maker.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/plan/plan.h"
@@ -9,50 +10,20 @@
 
 #define TURN 0x1.921fb54442d18p+2 // 2 pi
 
-/// A builder and its first error: calls after it do nothing.
-typedef struct maker {
-    glint_builder *builder;
-    glint_status status;
-    glint_error *error;
-} maker;
-
-static glint_value number(maker *m, double x)
-{
-    glint_value out = 0;
-    if (!m->status)
-        m->status = glint_builder_number(m->builder, x, &out, m->error);
-    return out;
-}
-
-static glint_value input(maker *m, glint_input which)
-{
-    glint_value out = 0;
-    if (!m->status)
-        m->status = glint_builder_input(m->builder, which, &out, m->error);
-    return out;
-}
-
-static glint_value apply(maker *m, glint_op op, glint_value a, glint_value b)
-{
-    const glint_value operands[GLINT_OPERANDS_MAX] = { a, b };
-    glint_value out = 0;
-    if (!m->status)
-        m->status = glint_builder_op(m->builder, op, operands, &out, m->error);
-    return out;
-}
-
 /// Where a direction is in a picture of all of them.
 static glint_status make_uv(glint_builder *builder, glint_program **out, glint_error *error)
 {
-    maker m = { .builder = builder, .error = error };
-    const glint_value ahead = apply(&m, GLINT_OP_NEG, input(&m, GLINT_INPUT_P_Z), 0);
-    const glint_value around = apply(&m, GLINT_OP_ATAN2, input(&m, GLINT_INPUT_P_X), ahead);
-    const glint_value down = apply(&m, GLINT_OP_NEG, input(&m, GLINT_INPUT_P_Y), 0);
-    const glint_value cosine =
-        apply(&m, GLINT_OP_MIN, apply(&m, GLINT_OP_MAX, down, number(&m, -1)), number(&m, 1)); // but for rounding
-    const glint_value turned = apply(&m, GLINT_OP_DIV, around, number(&m, TURN));
-    const glint_value uv[] = { apply(&m, GLINT_OP_ADD, turned, number(&m, 0.5)),
-                               apply(&m, GLINT_OP_DIV, apply(&m, GLINT_OP_ACOS, cosine, 0), number(&m, TURN / 2)) };
+    glint_maker m = { .builder = builder, .error = error };
+    const glint_value x = glint_maker_input(&m, GLINT_INPUT_P_X), y = glint_maker_input(&m, GLINT_INPUT_P_Y),
+                      z = glint_maker_input(&m, GLINT_INPUT_P_Z);
+    const glint_value around = glint_maker_apply(&m, GLINT_OP_ATAN2, x, glint_maker_apply(&m, GLINT_OP_NEG, z, 0));
+    const glint_value down = glint_maker_apply(&m, GLINT_OP_NEG, y, 0);
+    const glint_value least = glint_maker_with(&m, GLINT_OP_MAX, down, -1); // rounding may leave -1 .. 1
+    const glint_value cosine = glint_maker_with(&m, GLINT_OP_MIN, least, 1);
+    const glint_value turned = glint_maker_with(&m, GLINT_OP_DIV, around, TURN);
+    glint_value uv[2];
+    uv[0] = glint_maker_with(&m, GLINT_OP_ADD, turned, 0.5);
+    uv[1] = glint_maker_with(&m, GLINT_OP_DIV, glint_maker_apply(&m, GLINT_OP_ACOS, cosine, 0), TURN / 2);
     return m.status ? m.status : glint_program_make(builder, uv, 2, out, error);
 }
 

@@ -1,5 +1,4 @@
 /// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
-#include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/tile/pattern_work.h"
 
@@ -21,11 +20,12 @@ static double *row(const glint_tile *tile, int input, uint32_t k)
 static void place_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
                         double out[3][GLINT_GROUP])
 {
-    double place[3];
-    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        vec_copy(place, from->light->position);
-        if (from->sample)
-            glint_tile_sample_place(tile, plan->desc.precision, from->sample, from->light->scale, g * GLINT_GROUP + i, place);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[c][i] = from->light->position[c];
+    for (uint32_t i = 0; from->sample && i < GLINT_GROUP; i++) {
+        double place[3];
+        glint_tile_sample_place(tile, plan->desc.precision, from->sample, from->light->scale, g * GLINT_GROUP + i, place);
         for (int c = 0; c < 3; c++)
             out[c][i] = place[c];
     }

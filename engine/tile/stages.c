@@ -2,6 +2,7 @@
 #include "engine/tile/pattern.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
+#include "engine/stages/light/cone_sample.h"
 #include "engine/stages/simd/coefficients.h"
 #include "engine/tile/cut_out.h"
 
@@ -284,6 +285,33 @@ void glint_tile_find_lit_surfaces(glint_tile *tile, const glint_tile_frame *fram
     glint_tile_count_light(tile, frame, 1);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SURFACE, false);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_LIGHT, false);
+}
+
+void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
+                             double scale, uint32_t i, double out[3])
+{
+    double point[3], normal[3];
+    for (int c = 0; c < 3; c++)
+        out[c] = light_sample->position[c][i % GLINT_GROUP];
+    if (light_sample->emission != GLINT_EMIT_CONE)
+        return;
+    for (int c = 0; c < 3; c++) {
+        point[c] = glint_real_at(tile->surface.point[c], precision, i);
+        normal[c] = glint_real_at(tile->surface.normal[c], precision, i);
+    }
+    const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
+    const glint_cone_sample sample = glint_cone_at(light_sample, scale, slack, point, normal, i % GLINT_GROUP);
+    vec_copy(out, sample.place);
+}
+
+void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                             uint32_t i, double out[3])
+{
+    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
+    if (light_sample)
+        glint_tile_sample_place(tile, frame->plan->desc.precision, light_sample, light->scale, i, out);
+    else
+        vec_copy(out, light->position);
 }
 
 /// What is seen of a light, times its attenuation; within its radius a radiant one is as strong as at it.

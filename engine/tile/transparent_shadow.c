@@ -6,7 +6,6 @@
 /// point stays dark.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/stages/light/cone_sample.h"
 #include "engine/tile/batch.h"
 #include "engine/tile/cut_out.h"
 
@@ -84,33 +83,6 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
             return true;
     }
     return false;
-}
-
-void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, const glint_light_sample *light_sample,
-                             double scale, uint32_t i, double out[3])
-{
-    double point[3], normal[3];
-    for (int c = 0; c < 3; c++)
-        out[c] = light_sample->position[c][i % GLINT_GROUP];
-    if (light_sample->emission != GLINT_EMIT_CONE)
-        return;
-    for (int c = 0; c < 3; c++) {
-        point[c] = glint_real_at(tile->surface.point[c], precision, i);
-        normal[c] = glint_real_at(tile->surface.normal[c], precision, i);
-    }
-    const double slack = precision == GLINT_FLOAT ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE;
-    const glint_cone_sample sample = glint_cone_at(light_sample, scale, slack, point, normal, i % GLINT_GROUP);
-    vec_copy(out, sample.place);
-}
-
-void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
-                             uint32_t i, double out[3])
-{
-    const glint_light_sample *light_sample = glint_tile_light_sample_of(tile, light);
-    if (light_sample)
-        glint_tile_sample_place(tile, frame->plan->desc.precision, light_sample, light->scale, i, out);
-    else
-        vec_copy(out, light->position);
 }
 
 /// Finds where sample i's ray goes to, from its first point.

@@ -3,8 +3,10 @@
 --     local picture = png.new(64, 32)
 --     picture:set(x, y, { 0.5, 0.2, 0.1 })     -- from 0, 0 at the top left; linear, 0 .. 1
 --     picture:save "picture.png"
+--     local texture = picture:texture()
 --     local mask = png.grey(64, 32)            -- one channel
 --     mask:set(x, y, 1)
+local glint = require "glint"
 local png = {}
 local picture = {}
 picture.__index = picture
@@ -77,6 +79,16 @@ function picture:save(path)
   assert(file:write("\x89PNG\r\n\x1a\n", chunk("IHDR", head), chunk("sRGB", "\0"),
     chunk("IDAT", store(table.concat(lines))), chunk("IEND", "")))
   assert(file:close())
+end
+
+--- The picture as a texture, by way of a file that is gone afterwards.
+function picture:texture()
+  local name = os.tmpname()
+  self:save(name .. ".png")
+  local texture = glint.texture { file = name .. ".png" }
+  os.remove(name)
+  os.remove(name .. ".png")
+  return texture
 end
 
 return png
