@@ -83,9 +83,9 @@ LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) -Wl,--as-needed
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
-ifneq ($(if $(PORTABLE),,$(findstring x86_64,$(shell $(CC) -dumpmachine))),x86_64)
-  ENGINE_SRC := $(filter-out $(addprefix engine/stages/simd/isa_,sse2.c avx2.c avx512.c),$(ENGINE_SRC))
-endif
+# The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
+KERNELS := generic $(if $(PORTABLE),,$(if $(findstring x86_64,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512))
+ENGINE_SRC   := $(filter-out engine/stages/simd/isa_%,$(ENGINE_SRC)) $(KERNELS:%=engine/stages/simd/isa_%.c)
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
 COMMAND_OBJ  := $(BUILD)/bindings/command/main.o $(BUILD)/bindings/command/untrusted.o $(BUILD)/bindings/command/walls.o # the command has them, the module has not
@@ -116,6 +116,7 @@ $(BUILD)/engine/stages/simd/isa_generic.o: ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
+$(BUILD)/engine/stages/simd/select.o: ISA := $(KERNELS:%=-DGLINT_KERNEL_%)
 $(addprefix $(BUILD)/engine/,compare/flip.o tile/pattern_inputs.o tile/shader.o): ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 
@@ -171,7 +172,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library build/libglint.so.$(VERSION)
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS)' > $@
+	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(KERNELS)' > $@
 
 need:
 	@tests/deps.sh need

@@ -51,12 +51,10 @@ typedef struct glint_stages {
     void (*tone)(const glint_tone_args *args);
 } glint_stages;
 
-extern const glint_stages glint_stages_ref, glint_stages_generic;
-#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
-extern const glint_stages glint_stages_sse2, glint_stages_avx2, glint_stages_avx512;
-#endif
+extern const glint_stages glint_stages_ref, glint_stages_generic, glint_stages_sse2, glint_stages_avx2,
+    glint_stages_avx512;
 
-/// The stages by name, NULL-terminated, best last.
+/// Those that are in this build, NULL-terminated, best last.
 extern const glint_stages *const glint_stages_built[];
 bool glint_stages_usable(const glint_stages *stages);
 /// By name; NULL takes the environment's GLINT_ISA, else the best usable. Returns NULL with *unknown telling whether

@@ -1,4 +1,4 @@
-/// The only reader of the processor's flags.
+/// The only reader of the processor's flags. The Makefile defines GLINT_KERNEL_x for each instruction set that it compiles.
 #include "engine/stages/stages.h"
 
 #include <stdlib.h>
@@ -6,10 +6,16 @@
 
 const glint_stages *const glint_stages_built[] = {
     &glint_stages_ref,
+#ifdef GLINT_KERNEL_generic
     &glint_stages_generic,
-#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
+#endif
+#ifdef GLINT_KERNEL_sse2
     &glint_stages_sse2,
+#endif
+#ifdef GLINT_KERNEL_avx2
     &glint_stages_avx2,
+#endif
+#ifdef GLINT_KERNEL_avx512
     &glint_stages_avx512,
 #endif
     NULL,
@@ -17,13 +23,13 @@ const glint_stages *const glint_stages_built[] = {
 
 bool glint_stages_usable(const glint_stages *stages)
 {
-#if defined(__x86_64__) && !defined(GLINT_PORTABLE)
+#ifdef __x86_64__
     __builtin_cpu_init();
     const bool bits =
         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
-    if (stages == &glint_stages_avx2)
+    if (strcmp(stages->name, "avx2") == 0)
         return bits && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (stages == &glint_stages_avx512)
+    if (strcmp(stages->name, "avx512") == 0)
         return bits && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
                __builtin_cpu_supports("fma");
