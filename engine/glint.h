@@ -470,8 +470,13 @@ typedef struct glint_camera_desc {
     double fov_y_rad; ///< vertical field of view of a perspective camera, in (0, pi); default 40 degrees
     double height; ///< vertical extent of an orthographic camera, world units, > 0; default 10
     double pixel_offset; ///< where in a pixel a single sample lies, 0 .. 1; default 0.5, its centre
+    /// How long the shutter is open, as a share of the time from one frame to the next, 0 .. 1; default 0, an instant. Of use to
+    /// those who make frames of several times, see glint_plan_create_exposed
+    double shutter;
+    double shutter_times; ///< at how many times they look while it is open, 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_camera_desc;
+#define GLINT_SHUTTER_TIMES_MAX 1024
 
 /// A perspective camera at (0, 0, 10) that looks at the origin, every field at its default.
 glint_camera_desc glint_camera_desc_default(void);
@@ -873,6 +878,16 @@ typedef struct glint_ray_counts {
 /// Fails when the scene has no camera, or a field of `desc` is out of range.
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
+/// What each time of a frame with an open shutter is planned by: the passes that have a mean, and no codes.
+glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
+/// Plans a frame that is seen while a shutter is open: light, alpha and albedo are the mean of `times`, `count` plans of the scene
+/// as it was then, by glint_shutter_desc(desc); 1 .. GLINT_SHUTTER_TIMES_MAX. All else is of `scene` as it is now: what the
+/// plan says, and depth, normal, object_id, outline and refined. Where lights alone differ, each that does becomes one light for each
+/// time, with its share of the strength.
+///
+/// Takes over the plans and the list, which is from malloc, also when it fails.
+glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
+                                       size_t count, glint_plan **out, glint_error *error);
 /// Frees the plan; images rendered from it stay. NULL: nothing.
 void glint_plan_destroy(glint_plan *plan);
 /// The frame as planned: passes that others are made of are added. Belongs to the plan.

@@ -3,7 +3,8 @@
 //     glint.animation { scene = s, frames = 120, fps = 24, cyclic = true, frame = function(t, n) ... end }
 //
 // t = (n-1)/frames when cyclic, else (n-1)/(frames-1), and 0 for a single frame. `frame` may depend on t and n alone:
-// it is called for the selected frames only, so that one frame must not build on another.
+// it is called for the selected frames only, so that one frame must not build on another. While the camera's shutter is open it
+// is called for several t around the frame's own, and for that one last.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -209,15 +210,33 @@ static int to_string(lua_State *L)
 
 // ---- One frame ----
 
-void glintL_job_build(lua_State *L, int index, int64_t n)
+static double steps_of(const glintL_job *job) { return (double)(job->cyclic ? job->frames : job->frames - 1); }
+
+double glintL_job_time(const glintL_job *job, int64_t n)
+{
+    double steps = steps_of(job);
+    return steps > 0 ? (double)(n - 1) / steps : 0;
+}
+
+double glintL_job_shutter_time(const glintL_job *job, int64_t n, double share, int k, int times)
+{
+    double steps = steps_of(job), within = (k + 0.5) / times;
+    if (steps < 1)
+        return share * within;
+    double t = ((double)(n - 1) + share * (within - 0.5)) / steps;
+    if (job->cyclic)
+        return t - floor(t);
+    return fmin(fmax(t, 0), 1);
+}
+
+void glintL_job_build(lua_State *L, int index, int64_t n, double t)
 {
     const glintL_job *job = lua_touserdata(L, index);
     luaL_checkstack(L, 4, "frame");
     if (job->kind == GLINTL_JOB_SWEEP) {
         glintL_sweep_build(L, index, n);
     } else if (lua_getiuservalue(L, index, GLINTL_JOB_FRAME) == LUA_TFUNCTION) { // a scene alone has none
-        int64_t steps = job->cyclic ? job->frames : job->frames - 1;
-        lua_pushnumber(L, steps > 0 ? (lua_Number)(n - 1) / (lua_Number)steps : 0);
+        lua_pushnumber(L, t);
         lua_pushinteger(L, n);
         lua_call(L, 2, 0);
     } else {

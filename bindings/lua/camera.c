@@ -23,6 +23,8 @@ static const glintL_field FIELDS[] = {
     { .name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS },
     { .name = "height", .kind = GLINTL_NUMBER, .offset = AT(height) },
     { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
+    { .name = "shutter", .kind = GLINTL_NUMBER, .offset = AT(shutter) },
+    { .name = "shutter_times", .kind = GLINTL_NUMBER, .offset = AT(shutter_times) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };

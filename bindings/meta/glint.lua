@@ -251,6 +251,8 @@ function glint.sphere_light(fields) end
 ---@field projection? "perspective"|"orthographic"  Default "perspective"
 ---@field height? number  vertical extent of an orthographic camera, world units, > 0. Default 10
 ---@field pixel_offset? number  where in its pixel a single sample lies, 0 .. 1. Default 0.5, the centre
+---@field shutter? number  how long the shutter is open, a share of the time from one frame to the next, 0 .. 1. An animation's frame function is then called for several times around the frame's own, and the picture's light is their mean. Default 0, an instant
+---@field shutter_times? integer  how many times those are, 1 .. 1024. Default 8
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.camera: glint.camera_fields

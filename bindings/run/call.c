@@ -181,6 +181,8 @@ static int render_selected(lua_State *L, glintL_run *run, const glint_scene *sce
     if (!glintL_run_open(run, &error) || glintL_work_create(scene, render, run->count, writes, true, &work, &error))
         return glintL_error(L, PATH "%s", error.message);
     work->build_ms = build_ms;
+    if (glint_camera_get(glint_scene_get(scene)->camera)->shutter > 0)
+        glintL_warn_of_shutter(run);
     bool open = is_open(run, render);
     bool good = render_call(run, work, open);
     if (good)

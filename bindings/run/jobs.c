@@ -83,6 +83,7 @@ typedef struct job_walk {
     lua_Integer settled; // jobs of the list that left the scene as they leave it
     const glintL_job *job;
     glintL_render render; // with what the command line says
+    double time; // of the moment that is built
     char pattern[GLINTL_PATH_SIZE];
     glintL_naming naming;
 } job_walk;
@@ -175,7 +176,8 @@ static bool open_film(job_walk *walk)
 
 static int build(lua_State *L)
 {
-    glintL_job_build(L, 1, lua_tointeger(L, 2));
+    const job_walk *walk = lua_touserdata(L, 3);
+    glintL_job_build(L, 1, lua_tointeger(L, 2), walk->time);
     return 0;
 }
 
@@ -213,6 +215,13 @@ static bool call(job_walk *walk, lua_CFunction function, int64_t n, int64_t numb
     return status == LUA_OK;
 }
 
+// Sets the scene to frame n at its own time. False: the run has failed.
+static bool build_frame(job_walk *walk, int64_t n, int64_t number)
+{
+    walk->time = glintL_job_time(walk->job, n);
+    return call(walk, build, n, number);
+}
+
 // A job begins with the scene as the jobs before it leave it, whichever of their frames are rendered here: an animation
 // after its last frame, a sweep as it found it. So a shard's pictures are those of the whole. False: the run has
 // failed.
@@ -228,7 +237,7 @@ static bool settle_before(job_walk *walk, lua_Integer i, int64_t first)
         take_job(walk, walk->settled + 1);
         last += walk->job->frames;
         if (walk->job->kind == GLINTL_JOB_ANIMATION)
-            good = call(walk, build, walk->job->frames, last);
+            good = build_frame(walk, walk->job->frames, last);
         lua_settop(walk->L, job_index);
     }
     walk->job = job;
@@ -260,27 +269,103 @@ static glint_scene *scene_of(job_walk *walk)
     return scene;
 }
 
-// Sets the scene to frame n and plans it. NULL: the run has failed.
-static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
+// Keeps an engine's failure at a frame. False.
+static bool fail_at(job_walk *walk, int64_t number, const glint_error *error)
+{
+    return glintL_run_fail(walk->run, glintL_run_exit_code(error->status), number, "frame %" PRId64 ": %s", number,
+                           error->message);
+}
+
+// The same, where it is still open. NULL: the run has failed.
+static glint_scene *open_scene(job_walk *walk, int64_t number)
+{
+    glint_scene *scene = scene_of(walk);
+    if (!scene)
+        glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "frame %" PRId64 ": the scene is closed", number);
+    return scene;
+}
+
+// ---- While the shutter is open ----
+
+// Plans frame n at each time that the shutter looks. False: the run has failed; what is planned is in the list.
+static bool plan_times(job_walk *walk, const glintL_work *work, int64_t n, const glint_camera_desc *camera,
+                       glint_plan **plans)
+{
+    glint_error error;
+    glint_render_desc desc = glint_shutter_desc(&work->render.desc);
+    double share = camera->shutter;
+    int times = (int)camera->shutter_times;
+    for (int k = 0; k < times; k++) {
+        walk->time = glintL_job_shutter_time(walk->job, n, share, k, times);
+        const glint_scene *scene = call(walk, build, n, work->index) ? open_scene(walk, work->index) : NULL;
+        if (!scene)
+            return false;
+        if (glint_plan_create(scene, &desc, &plans[k], &error))
+            return fail_at(walk, work->index, &error);
+    }
+    return build_frame(walk, n, work->index) && open_scene(walk, work->index);
+}
+
+// Whether the job's scene is another at another time: an animation with a frame function.
+static bool moves(job_walk *walk)
+{
+    bool is_function = lua_getiuservalue(walk->L, walk->job_index, GLINTL_JOB_FRAME) == LUA_TFUNCTION;
+    lua_pop(walk->L, 1);
+    return is_function && walk->job->kind == GLINTL_JOB_ANIMATION;
+}
+
+// Makes of a planned frame the mean of the times that the camera's shutter is open, if it is. False: the run has failed.
+static bool expose(job_walk *walk, glintL_work *work, int64_t n)
+{
+    glint_error error;
+    const glint_camera_desc camera = *glint_camera_get(glint_scene_get(scene_of(walk))->camera);
+    size_t count = (size_t)camera.shutter_times;
+    if (camera.shutter == 0)
+        return true;
+    if (!moves(walk)) {
+        glintL_warn_of_shutter(walk->run);
+        return walk->run->exit_code == 0;
+    }
+    glint_plan **plans = calloc(count, sizeof *plans);
+    if (!plans)
+        return glintL_run_fail(walk->run, GLINTL_EXIT_FAILED, work->index, "out of memory");
+    if (!plan_times(walk, work, n, &camera, plans)) {
+        for (size_t k = 0; k < count; k++)
+            glint_plan_destroy(plans[k]);
+        free(plans);
+        return false;
+    }
+    return glintL_work_expose(work, scene_of(walk), plans, count, &error) == GLINT_OK ||
+           fail_at(walk, work->index, &error);
+}
+
+// Sets the scene to frame n and plans what is seen in an instant. NULL: the run has failed.
+static glintL_work *plan_instant(job_walk *walk, int64_t n, int64_t number)
 {
     glint_error error;
     glintL_work *work = NULL;
-    double start = glintL_now_ms();
-    if (!call(walk, build, n, number) || !call(walk, observe, number, number) || walk->run->exit_code)
+    if (!build_frame(walk, n, number) || !call(walk, observe, number, number) || walk->run->exit_code)
         return NULL;
-    const glint_scene *scene = scene_of(walk);
-    if (!scene) {
-        glintL_run_fail(walk->run, GLINTL_EXIT_USAGE, number, "frame %" PRId64 ": the scene is closed", number);
+    const glint_scene *scene = open_scene(walk, number);
+    if (!scene)
         return NULL;
-    }
     glint_status status = glintL_work_create(scene, &walk->render, number, walk->naming.pattern != NULL,
                                              walk->run->keeps_images, &work, &error);
     if (status)
-        glintL_run_fail(walk->run, glintL_run_exit_code(status), number, "frame %" PRId64 ": %s", number,
-                        error.message);
-    else if (!keep_place(walk, work))
+        fail_at(walk, number, &error);
+    return !status && keep_place(walk, work) ? work : NULL;
+}
+
+// The same of what is seen while the shutter is open.
+static glintL_work *plan_frame(job_walk *walk, int64_t n, int64_t number)
+{
+    double start = glintL_now_ms();
+    glintL_work *work = plan_instant(walk, n, number);
+    if (work && !expose(walk, work, n)) {
+        glintL_work_destroy(work);
         return NULL;
-    else
+    }
+    if (work)
         work->build_ms = glintL_now_ms() - start;
     return work;
 }

@@ -288,6 +288,8 @@ int glintL_message_handler(lua_State *L);
 void glintL_run_warn(glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /// The same with the position of the Lua code that called: "<position>: <message>".
 void glintL_warn(lua_State *L, const char *message);
+/// That a camera's shutter has no frame function to look at several times.
+void glintL_warn_of_shutter(glintL_run *run);
 /// Says what a later run goes on from: no mistake, so that it stays no failure under --warnings=error.
 void glintL_run_note(const glintL_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void glintL_forget_warnings(glintL_run *run);
@@ -313,6 +315,10 @@ void glintL_report_black(glintL_run *run);
 /// Plans a frame. `keep_image`: the script will look at the linear picture.
 glint_status glintL_work_create(const glint_scene *scene, const glintL_render *render, int64_t index, bool writes,
                                 bool keep_image, glintL_work **out, glint_error *error);
+/// Makes of the frame the mean of `count` plans, which it takes over with their list, by glint_shutter_desc. `scene` is as it is
+/// in the frame's own instant.
+glint_status glintL_work_expose(glintL_work *work, const glint_scene *scene, glint_plan **times, size_t count,
+                                glint_error *error);
 void glintL_work_destroy(glintL_work *work);
 /// Names the files and takes their keys.
 glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, glint_error *error);
@@ -384,8 +390,14 @@ void glintL_sweep_build(lua_State *L, int index, int64_t n);
 /// Pushes a userdata with default fields; see GLINTL_JOB_... for its user values.
 glintL_job *glintL_push_job(lua_State *L, glintL_job_kind kind);
 const char *glintL_job_name(glintL_job_kind kind); ///< "animation", "sweep"
-/// Sets the scene to frame n of the job, 1 .. frames; 1: the job. May raise.
-void glintL_job_build(lua_State *L, int index, int64_t n);
+/// When frame n of the job is, 0 .. 1.
+double glintL_job_time(const glintL_job *job, int64_t n);
+/// When the shutter looks the k-th time of `times`, from 0, at frame n: `share` of the frame's time lies around the frame's own.
+/// A cyclic animation goes around; one that is not stands still before 0 and after 1; a single frame lasts from 0 to 1, and its
+/// shutter opens at 0.
+double glintL_job_shutter_time(const glintL_job *job, int64_t n, double share, int k, int times);
+/// Sets the scene to frame n of the job, 1 .. frames, at time t; 1: the job. May raise.
+void glintL_job_build(lua_State *L, int index, int64_t n, double t);
 /// Puts back what a sweep has changed, so that the next job does not depend on which frames were rendered.
 void glintL_sweep_restore(lua_State *L, int index);
 /// Pushes the object, the name of the field and the list of values of axis `i` of those at `axes`; returns the object's

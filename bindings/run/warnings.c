@@ -89,6 +89,11 @@ void glintL_warn(lua_State *L, const char *message)
     lua_pop(L, 1);
 }
 
+void glintL_warn_of_shutter(glintL_run *run)
+{
+    glintL_run_warn(run, "camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things");
+}
+
 void glintL_run_note(const glintL_run *run, const char *format, ...)
 {
     char message[GLINTL_MESSAGE_SIZE];

@@ -47,6 +47,18 @@ glint_status glintL_work_create(const glint_scene *scene, const glintL_render *r
     return GLINT_OK;
 }
 
+glint_status glintL_work_expose(glintL_work *work, const glint_scene *scene, glint_plan **times, size_t count,
+                                glint_error *error)
+{
+    glint_plan *plan;
+    glint_status status = glint_plan_create_exposed(scene, &work->render.desc, times, count, &plan, error);
+    if (status)
+        return status;
+    glint_plan_destroy(work->plan);
+    work->plan = plan;
+    return GLINT_OK;
+}
+
 void glintL_work_destroy(glintL_work *work)
 {
     if (!work)

@@ -7,6 +7,7 @@
 #include "engine/frame/grids.h"
 #include "engine/frame/outline.h"
 #include "engine/frame/refine.h"
+#include "engine/frame/render.h"
 #include "engine/reuse/reuse.h"
 #include "engine/tile/tile.h"
 
@@ -341,6 +342,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     return GLINT_OK;
 }
 
+glint_pool *glint_renderer_pool(const glint_renderer *renderer) { return renderer->pool; }
+
 /// The key of the whole picture.
 static glint_key picture_key(const glint_plan *plan)
 {
@@ -409,9 +412,6 @@ static glint_status take_image(glint_renderer *renderer, const glint_render_desc
 
 // ---- Adaptive sampling ----
 
-static glint_status render_frame(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
-                                 glint_frame_stats *stats, glint_error *error);
-
 /// A renderer that keeps its own, half of what may be kept, and shares the rest.
 static glint_status open_base(glint_renderer *renderer, glint_error *error)
 {
@@ -434,33 +434,48 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     return GLINT_OK;
 }
 
+void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more, double share)
+{
+    to->build_ms += more->build_ms;
+    to->render_ms += more->render_ms + more->tone_ms;
+    to->rays.primary += more->rays.primary;
+    to->rays.shadow += more->rays.shadow;
+    to->rays.mirror += more->rays.mirror;
+    to->rays.refraction += more->rays.refraction;
+    to->rays.indirect += more->rays.indirect;
+    to->work.tests += more->work.tests;
+    to->work.light_samples += more->work.light_samples;
+    to->work.powers += more->work.powers;
+    to->work.sites += more->work.sites;
+    to->work.lights_seen += more->work.lights_seen;
+    to->work.patterns += more->work.patterns;
+    to->work.environment += more->work.environment;
+    to->work.overlaps += more->work.overlaps;
+    if (!to->odd && more->odd) {
+        to->odd_field = more->odd_field;
+        memcpy(to->odd_material, more->odd_material, sizeof to->odd_material);
+        memcpy(to->odd_point, more->odd_point, sizeof to->odd_point);
+    }
+    to->odd += more->odd;
+    for (int i = 0; i < to->stage_count; i++)
+        for (int k = 0; k < more->stage_count; k++) {
+            if (to->stage_name[i] != more->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
+                continue;
+            to->stage_ms[i] += more->stage_ms[k];
+            to->stage_reused[i] += share * (more->stage_reused[k] - to->stage_reused[i]);
+        }
+}
+
 /// Adds what the base took, and the choice.
-static void add_stats(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
+static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
 {
     const double pixels = (double)to->pixels;
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
-    to->build_ms += base->build_ms;
-    to->render_ms += base->render_ms + base->tone_ms;
-    to->rays.primary += base->rays.primary;
-    to->rays.shadow += base->rays.shadow;
-    to->rays.mirror += base->rays.mirror;
-    to->rays.refraction += base->rays.refraction;
-    to->rays.indirect += base->rays.indirect;
-    to->work.tests += base->work.tests;
-    to->work.light_samples += base->work.light_samples;
-    to->work.powers += base->work.powers;
-    to->work.sites += base->work.sites;
-    to->work.lights_seen += base->work.lights_seen;
-    for (int i = 0; i < to->stage_count; i++) {
+    glint_frame_stats_add(to, base, pixels / all);
+    to->render_ms += choose_ms;
+    for (int i = 0; i < to->stage_count; i++)
         if (to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
             to->stage_ms[i] = choose_ms;
-        for (int k = 0; k < base->stage_count; k++) {
-            if (to->stage_name[i] != base->stage_name[k] || to->stage_name[i] == glint_stage_names[GLINT_STAGE_TONE])
-                continue;
-            to->stage_ms[i] += base->stage_ms[k];
-            to->stage_reused[i] = base->stage_reused[k] * pixels / all;
-        }
-    }
 }
 
 /// The base of a frame, then the pixels that are worth it, then those.
@@ -471,7 +486,7 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
     glint_frame_stats first;
     glint_status status = open_base(renderer, error);
     if (!status)
-        status = render_frame(renderer->base, plan->base, &base, &first, error);
+        status = glint_render_instant(renderer->base, plan->base, &base, &first, error);
     if (status)
         return status;
     const double start = now_ms();
@@ -484,14 +499,12 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
     if (status)
         return status;
     stats->refined = renderer->refine.count;
-    add_stats(stats, &first, plan, renderer->time_stages ? choose_ms : 0);
-    stats->render_ms += choose_ms;
+    add_base(stats, &first, plan, renderer->time_stages ? choose_ms : 0);
     return GLINT_OK;
 }
 
-/// In an image of the whole frame's size, of which the plan's extent is rendered.
-static glint_status render_frame(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
-                                 glint_frame_stats *stats, glint_error *error)
+glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *plan, glint_image **out,
+                                  glint_frame_stats *stats, glint_error *error)
 {
     const glint_render_desc *desc = &plan->desc;
     glint_image *image = NULL;
@@ -528,9 +541,12 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
 {
     const double *r = plan->desc.region;
     glint_image *whole = NULL;
-    if (r[2] == 0)
-        return render_frame(renderer, plan, out, stats, error);
-    glint_status status = render_frame(renderer, plan, &whole, stats, error);
+    glint_status status = plan->times ? glint_render_times(renderer, plan, &whole, stats, error)
+                                      : glint_render_instant(renderer, plan, &whole, stats, error);
+    if (!status && r[2] == 0) {
+        *out = whole;
+        return GLINT_OK;
+    }
     if (!status)
         status = glint_image_crop(whole, (int)r[0], (int)r[1], (int)r[2], (int)r[3], out, error);
     glint_image_release(whole);

@@ -315,6 +315,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
+    one(e, plan->shutter_times, "shutter", "camera: mean of %u times", plan->shutter_times);
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);
     one(e, plan->runs[GLINT_STAGE_REFINE], "samples only where needed", "adaptive = %g", plan->desc.adaptive);
     one(e, plan->desc.precision == GLINT_FLOAT, "float decides hits and shadows", "precision = float");

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
     "camera", "cast",   "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude", "vertex",
@@ -151,7 +152,8 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
 }
 
-static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error *error)
+/// times: of `shutter_times`, whose lights the frame has; NULL: it has its own.
+static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan *const *times, glint_error *error)
 {
     glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
@@ -161,6 +163,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
         status = glint_plan_find_patterns(plan, scene->desc.has_indirect && scene->desc.indirect_bounces > 0, error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
+    if (!status && times)
+        status = glint_plan_take_lights(plan, times, plan->shutter_times, error);
     if (!status)
         status = glint_plan_visible_lights(plan, scene, error);
     if (!status)
@@ -178,8 +182,9 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_error
     return status ? status : glint_plan_explain(plan, scene, error);
 }
 
-glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
-                               glint_error *error)
+/// times: see `fill`. shutter_times: 0, or how many times the frame has, however they are rendered.
+static glint_status create(const glint_scene *scene, const glint_render_desc *desc, glint_plan *const *times,
+                           uint32_t shutter_times, glint_plan **out, glint_error *error)
 {
     glint_status status = check_render_desc(desc, error);
     if (status)
@@ -190,13 +195,14 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     if (!plan)
         return glint_fail_nomem(error);
     plan->desc = *desc;
+    plan->shutter_times = shutter_times;
     if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
         plan->desc.passes |= 1u << GLINT_PASS_ALPHA;
     if (desc->outline)
         plan->desc.passes |= 1u << GLINT_PASS_OUTLINE;
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
-    status = fill(plan, scene, error);
+    status = fill(plan, scene, times, error);
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
         const glint_render_desc base = glint_plan_base(&plan->desc);
         status = glint_plan_create(scene, &base, &plan->base, error);
@@ -209,10 +215,54 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     return GLINT_OK;
 }
 
+glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
+                               glint_error *error)
+{
+    return create(scene, desc, NULL, 0, out, error);
+}
+
+static glint_status check_times(glint_plan *const *times, size_t count, const glint_render_desc *desc,
+                                glint_error *error)
+{
+    const glint_render_desc expected = glint_shutter_desc(desc);
+    if (count < 1 || count > GLINT_SHUTTER_TIMES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "times: 1 .. %d expected, got %zu", GLINT_SHUTTER_TIMES_MAX, count);
+    for (size_t k = 0; k < count; k++) {
+        const glint_render_desc *d = &times[k]->desc;
+        if (d->width != expected.width || d->height != expected.height || d->codes ||
+            (d->passes & expected.passes) != expected.passes || memcmp(d->region, expected.region, sizeof d->region))
+            return glint_fail(error, GLINT_ERR_INVALID, "times: a plan by glint_shutter_desc of the frame expected");
+    }
+    return GLINT_OK;
+}
+
+glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
+                                       size_t count, glint_plan **out, glint_error *error)
+{
+    glint_plan *plan = NULL, *all = NULL;
+    glint_status status = check_times(times, count, desc, error);
+    if (!status)
+        status = create(scene, desc, NULL, (uint32_t)count, &plan, error);
+    if (!status && glint_plan_adds_up(plan, times, count))
+        status = create(scene, desc, times, (uint32_t)count, &all, error);
+    if (all || status) {
+        glint_plan_destroy(plan);
+        glint_plan_free_times(times, count);
+        plan = all;
+    } else {
+        plan->times = times;
+    }
+    if (!status)
+        *out = plan;
+    return status;
+}
+
 void glint_plan_destroy(glint_plan *plan)
 {
     if (!plan)
         return;
+    if (plan->times)
+        glint_plan_free_times(plan->times, plan->shutter_times);
     glint_plan_destroy(plan->base);
     glint_geometry_release(plan->geometry);
     free(plan->lights);
@@ -269,6 +319,15 @@ glint_extent glint_plan_extent(const glint_render_desc *desc)
     return e;
 }
 
+static void add_rays(glint_ray_counts *to, glint_ray_counts more)
+{
+    to->primary += more.primary;
+    to->shadow += more.shadow;
+    to->mirror += more.mirror;
+    to->refraction += more.refraction;
+    to->indirect += more.indirect;
+}
+
 glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
 {
     const glint_extent extent = glint_plan_extent(&plan->desc);
@@ -276,6 +335,10 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
     const uint64_t samples = (uint64_t)extent.width * (uint64_t)extent.height * each;
     const uint64_t sides = 2 * (uint64_t)plan->geometry->table.shading_point_count;
     glint_ray_counts rays = { 0 };
+    for (uint32_t k = 0; plan->times && k < plan->shutter_times; k++)
+        add_rays(&rays, glint_plan_expected_rays(plan->times[k]));
+    if (plan->times)
+        return rays;
     if (plan->runs[GLINT_STAGE_CAMERA])
         rays.primary = samples;
     if (plan->runs[GLINT_STAGE_OCCLUDE])
@@ -288,11 +351,19 @@ glint_ray_counts glint_plan_expected_rays(const glint_plan *plan)
     return rays;
 }
 
+glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
+{
+    glint_key key = plan->keys[stage];
+    for (uint32_t k = 0; plan->times && k < plan->shutter_times; k++)
+        key = glint_key_add(key, &plan->times[k]->keys[GLINT_STAGE_OUTLINE], sizeof key);
+    return key;
+}
+
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
     const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
-    glint_key key = glint_key_add(plan->keys[GLINT_STAGE_REFINE], options, sizeof options);
+    glint_key key = glint_key_add(glint_plan_picture_key(plan, GLINT_STAGE_REFINE), options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);

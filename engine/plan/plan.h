@@ -10,6 +10,7 @@
 ///   plan/visible_lights.c       lights that are seen
 ///   plan/environment.c a background that a program gives
 ///   plan/indirect.c   light that surfaces get from other surfaces and the background
+///   plan/exposure.c   several times of a frame, while a shutter is open
 ///   plan/explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
@@ -123,6 +124,8 @@ typedef struct glint_text_line {
 
 struct glint_plan {
     glint_render_desc desc;
+    uint32_t shutter_times; ///< light is the mean of so many times of the scene; 0: of one instant
+    struct glint_plan **times; ///< these, each rendered by itself, owned; NULL: lights alone differ, and are in `lights`
     struct glint_plan *base; ///< of the picture that adaptive sampling looks at, of one sample a pixel; NULL: it is off
     glint_plan_camera camera;
 
@@ -203,6 +206,15 @@ glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_e
 /// The passes that `outline` is made of.
 #define GLINT_OUTLINE_READS (1u << GLINT_PASS_DEPTH | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID)
 
+#define GLINT_LIGHT_PASSES \
+    (((1u << (GLINT_PASS_TRANSMISSION + 1)) - 1) | 1u << GLINT_PASS_ALPHA | 1u << GLINT_PASS_ALBEDO) ///< those that have a mean
+
+/// Whether a frame's plan and those of its times differ in lights alone, and light adds up in the frame.
+bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count);
+/// Gives a plan the lights of all times, each with its share, in place of its own. After shading.
+glint_status glint_plan_take_lights(glint_plan *plan, glint_plan *const *times, size_t count, glint_error *error);
+void glint_plan_free_times(glint_plan **times, size_t count); ///< and the list; NULL: nothing
+
 /// The base frame of adaptive sampling, of one sample a pixel: the passes of `desc`, and the geometry and codes that are compared.
 glint_render_desc glint_plan_base(const glint_render_desc *desc);
 
@@ -222,6 +234,8 @@ void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2])
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
 /// Fills materials and the lights that give light.
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
+/// Says which lights are alike, and how many cast shadows.
+void glint_plan_count_lights(glint_plan *plan);
 /// Fills one material's row. `light_ambient` is Ia.
 void glint_shade_material_init(glint_shade_material *out, const glint_material_desc *desc, const double ambient[3]);
 
@@ -245,6 +259,8 @@ glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scen
 bool glint_light_shows(const glint_light_desc *desc, double shown[3]);
 
 glint_status glint_plan_keys(glint_plan *plan, glint_error *error);
+/// The key of the whole picture up to a stage, with all times of it.
+glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage);
 
 /// A plan's keys as they would be if its surfaces were elsewhere: a copy that owns nothing of the plan's.
 typedef struct glint_plan_twin {

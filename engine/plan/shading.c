@@ -293,11 +293,21 @@ static size_t add_light(glint_plan *plan, const glint_plan_light *common, const 
         light->light_samples = area ? light_samples + (size_t)i * turns : NULL;
         light->turn_count = area ? turns : 0;
         light->cap = is_cap(plan, desc) ? light_samples : NULL;
-        light->alike = plan->light_count > 1 && is_alike(light, light - 1);
-        plan->shadow_count += light->shadows;
-        plan->spared_count += light->cap || (light->shadows && light->hard && i % GLINT_LIGHT_CHUNK > 0);
     }
     return area ? (size_t)samples * turns : is_cap(plan, desc);
+}
+
+void glint_plan_count_lights(glint_plan *plan)
+{
+    uint32_t row = 0; // of its light
+    plan->shadow_count = plan->spared_count = 0;
+    for (uint32_t i = 0; i < plan->light_count; i++) {
+        glint_plan_light *light = &plan->lights[i];
+        row = light->joined ? row + 1 : 0;
+        light->alike = i > 0 && is_alike(light, light - 1);
+        plan->shadow_count += light->shadows;
+        plan->spared_count += light->cap || (light->shadows && light->hard && row % GLINT_LIGHT_CHUNK > 0);
+    }
 }
 
 /// Caps are of spheres and planes, which let no light through and have no holes.
@@ -334,5 +344,6 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
     plan->powers = powers && glossy_light;
     plan->facets = facets && glossy_light;
     plan->highlights = plan->powers || plan->facets;
+    glint_plan_count_lights(plan);
     return GLINT_OK;
 }

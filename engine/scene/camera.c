@@ -14,7 +14,8 @@ glint_camera_desc glint_camera_desc_default(void)
                                  .direction = { 0, 0, -1 },
                                  .fov_y_rad = 40 * PI / 180,
                                  .height = 10,
-                                 .pixel_offset = 0.5 };
+                                 .pixel_offset = 0.5,
+                                 .shutter_times = 8 };
 }
 
 static glint_status check_view(const glint_camera_desc *desc, glint_error *error)
@@ -51,6 +52,10 @@ static glint_status check(const glint_camera_desc *desc, glint_error *error)
         status = glint_fail(error, GLINT_ERR_INVALID, "height: number > 0 expected, got %.15g", desc->height);
     if (!status)
         status = glint_check_range("pixel_offset", desc->pixel_offset, 0, 1, "number 0 .. 1", error);
+    if (!status)
+        status = glint_check_range("shutter", desc->shutter, 0, 1, "number 0 .. 1", error);
+    if (!status)
+        status = glint_check_whole("shutter_times", desc->shutter_times, 1, GLINT_SHUTTER_TIMES_MAX, error);
     return status;
 }
 

@@ -62,6 +62,7 @@ picture roughness --size 400x160
 picture shaders --samples 4
 picture shading --size 400x200 --frames 5
 picture shininess_sweep --frames 5 --samples 4
+picture shutter --frames 5
 picture sky --frames 1 --set samples=64
 picture soft_shadows --frames 11 --samples 4
 picture sphereflake --samples 4

@@ -61,5 +61,7 @@ picture bricks_0001 scripts/bricks.lua -f 1
 picture shaders scripts/shaders.lua
 picture toon_teapot_0001 scripts/toon_teapot.lua -f 1
 picture lantern_0001 scripts/lantern.lua -f 1
+picture shutter_0001 scripts/shutter.lua -f 1
+picture shutter_lamp_0001 scripts/shutter.lua -f 1 --set moves=lamp
 picture gr_scene scripts/gr_scene.lua --dialect gr
 exit $bad

@@ -46,6 +46,22 @@ for n in 1 2 3; do
     check "frame $n of parts" "$glint" join film/*_$n.png -o film/joined.png -q
     check "is frame $n" cmp film/joined.png film/$n.png
 done
+# An open shutter: lights of all times, and pictures of all times; and a file is kept while the shutter stays as it is.
+scene=$root/scripts/shutter.lua
+for moves in lamp all; do
+    options="-f 2 --set moves=$moves --set times=3 -o f.png --alpha --bits 16"
+    check "$moves: the whole" eval '"$glint" "$scene" --size 150x90 -q $options && mv f_0002.png whole.png'
+    check "$moves: other threads, kernels and nothing kept" eval 'GLINT_ISA=generic "$glint" "$scene" --size 150x90 -q $options \
+        --no-reuse -t 3 && cmp f_0002.png whole.png'
+    check "$moves: its parts" eval '"$glint" "$scene" --size 150x90 -q -f 2 --set moves=$moves --set times=3 --alpha --bits 16 --region 0,0,70,90 -o l.png &&
+        "$glint" "$scene" --size 150x90 -q -f 2 --set moves=$moves --set times=3 --alpha --bits 16 --region 70,0,80,90 -o r.png &&
+        "$glint" join l_0002.png r_0002.png -o both.png -q && cmp both.png whole.png'
+    check "$moves: it is kept" eval '"$glint" "$scene" --size 150x90 -q $options --json | grep -q "\"kept\":1"'
+    check "$moves: not with another shutter" eval '"$glint" "$scene" --size 150x90 -q $options --set shutter=0.7 --json |
+        grep -q "\"kept\":0"'
+done
+check "a shutter is explained" eval '"$glint" explain "$scene" --set times=3 | grep -q "shutter  *camera: mean of 3 times"'
+scene=$root/scripts/mirror_and_glass.lua
 check "floats of a part are those of the whole" eval '"$glint" "$scene" --size 40x30 -q -o w.pfm --passes depth &&
     "$glint" "$scene" --size 40x30 -q -o p.pfm --passes depth --region 0,0,40,30 && cmp w.pfm p.pfm && cmp w.depth.pfm p.depth.pfm'
 cat >say.lua <<'END'

@@ -46,6 +46,16 @@ silent "a specular that comes in a frame"
 scene 'local m = glint.material { shininess = 64, model = "lambert" }'
 silent "a model without highlights"
 
+# ---- A shutter that nothing moves under ----
+
+still='local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, shutter = 0.5 }, ambient = 1, glint.sphere { center = { 0, 0, 0 }, radius = 2 } }'
+for job in 'scene' 'glint.sweep { scene = scene, over = { { scene.camera, "fov", { 40, 50 } } } }' \
+    'scene:render { width = 9, height = 9 }'; do
+    printf '%s\n' 'local glint = require "glint"' "$still" "return $job" >scene.lua
+    case $job in scene:*) sed -i 's/^return //' scene.lua ;; esac
+    warns "an open shutter: $job" 'camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things'
+done
+
 # ---- A light inside a closed sphere ----
 
 inside='objects = { glint.sphere { center = { 0, 0, 0 }, radius = 2, name = "ball" } }'

@@ -101,7 +101,7 @@ static const field camera_fields[] = {
 #define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
     C(projection, CHOICE, 0, 2),   C(eye, VECTOR, -2, 8), C(has_direction, FLAG, 0, 1), C(at, VECTOR, -1, 1),
     C(direction, VECTOR, -1, 1),   C(up, VECTOR, -1, 1),  C(fov_y_rad, NUMBER, 0.3, 2), C(height, NUMBER, 1, 10),
-    C(pixel_offset, NUMBER, 0, 1), C(name, FIXED, 0, 0),
+    C(pixel_offset, NUMBER, 0, 1), C(shutter, FIXED, 0, 0), C(shutter_times, FIXED, 0, 0), C(name, FIXED, 0, 0),
 #undef C
 };
 

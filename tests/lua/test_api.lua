@@ -361,6 +361,11 @@ function tests.camera()
   raises("camera.up: vector that is not zero expected, got {0, 0, 0}", function() c.up = { 0, 0, 0 } end)
   raises("camera.height: number > 0 expected, got 0", function() c.height = 0 end)
   raises("camera.pixel_offset: number 0 .. 1 expected, got 1.5", function() c.pixel_offset = 1.5 end)
+  raises("camera.shutter: number 0 .. 1 expected, got -0.1", function() c.shutter = -0.1 end)
+  raises("camera.shutter: number 0 .. 1 expected, got 2", function() c.shutter = 2 end)
+  for _, times in ipairs { 0, 2.5, 1025 } do
+    raises("camera.shutter_times: whole number 1 .. 1024 expected, got " .. times, function() c.shutter_times = times end)
+  end
   raises('camera.projection: "perspective" or "orthographic" expected, got string "fisheye"',
     function() c.projection = "fisheye" end)
   raises("camera.x: no such field", function() return c.x end)
