@@ -91,7 +91,8 @@ void glintL_warn(lua_State *L, const char *message)
 
 void glintL_warn_of_shutter(glintL_run *run)
 {
-    glintL_run_warn(run, "camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things");
+    glintL_run_warn(
+        run, "camera.shutter: nothing moves while it is open; the frame function of a glint.animation moves things");
 }
 
 void glintL_run_note(const glintL_run *run, const char *format, ...)

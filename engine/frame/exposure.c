@@ -32,7 +32,10 @@ typedef struct exposure {
 } exposure;
 
 /// Rows of the extent are the items of all that follows.
-static size_t row_at(const exposure *e, size_t index) { return ((size_t)e->extent.y + index) * (size_t)e->image->width; }
+static size_t row_at(const exposure *e, size_t index)
+{
+    return ((size_t)e->extent.y + index) * (size_t)e->image->width;
+}
 
 static void add_row(void *context, size_t index, int worker)
 {
@@ -76,10 +79,10 @@ static void tone_row(const exposure *e, size_t row, uint64_t counts[2])
     const float gain = glint_tone_gain(tone);
     char *codes = (char *)e->image->codes + at * glint_image_pixel_bytes(e->image);
     if (e->plan->desc.alpha)
-        glint_tone_row_alpha(e->table, gain, rgb, e->alpha + at, count, codes, &counts[0],
-                             &counts[1]);
+        glint_tone_row_alpha(e->table, gain, rgb, e->alpha + at, count, codes, &counts[0], &counts[1]);
     else if (tone->bits == 16)
-        glint_tone_row16(e->table, gain, rgb[0], rgb[1], rgb[2], count, (uint16_t *)(void *)codes, &counts[0], &counts[1]);
+        glint_tone_row16(e->table, gain, rgb[0], rgb[1], rgb[2], count, (uint16_t *)(void *)codes, &counts[0],
+                         &counts[1]);
     else
         glint_tone_row8(e->table, gain, rgb[0], rgb[1], rgb[2], count, (uint8_t *)codes, &counts[0], &counts[1]);
 }

@@ -87,7 +87,10 @@ static bool same_rows(glint_plan *const *times, size_t count)
 }
 
 /// Light samples of a row.
-static size_t samples_of(const glint_plan_light *light) { return light->cap ? 1 : light->light_samples ? light->turn_count : 0; }
+static size_t samples_of(const glint_plan_light *light)
+{
+    return light->cap ? 1 : light->light_samples ? light->turn_count : 0;
+}
 
 /// What is filled.
 typedef struct lights {

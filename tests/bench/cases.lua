@@ -31,6 +31,8 @@ local measurements = {
   -- render only, in one process, frame after frame of a job
   { "g.moved", "glint", "reuse change=light" },
   { "g.ball", "glint", "reuse change=sphere" },
+  { "g.shutter.light", "glint", "reuse change=light times=8" },
+  { "g.shutter.ball", "glint", "reuse change=sphere times=8" },
   { "g.shiny", "glint", "reuse change=shininess" },
 
   -- 60 frames to 60 PNG files
@@ -153,6 +155,8 @@ local rows = {
   { "jobs", "double / float, 60-frame light job", "g.light.2:job", "g.light.float:job", bar = 1.10 },
   { "reuse", "moved light / full frame", "g.moved:kept", "g.moved:fresh", bar = 0.65 },
   { "reuse", "moved sphere / full frame", "g.ball:kept", "g.ball:fresh" },
+  { "reuse", "open shutter, 8 times of a moved light / full frame", "g.shutter.light:kept", "g.shutter.light:fresh", bar = 4 },
+  { "reuse", "open shutter, 8 times of a moved sphere / full frame", "g.shutter.ball:kept", "g.shutter.ball:fresh" },
   { "reuse", "changed shininess / full frame", "g.shiny:kept", "g.shiny:fresh", bar = 0.15 },
   { "jobs", "60-frame light job, two threads / one", "g.light.2:job", "g.light.1:job", bar = 0.55 },
   { "jobs", "60-frame shininess job, two threads / one", "g.shininess.2:job", "g.shininess.1:job", bar = 0.55 },

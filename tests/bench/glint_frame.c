@@ -136,7 +136,8 @@ void side_run_stages(const bench_options *options)
     side_scene_free(&scene);
 }
 
-/// Frames of a job in a row, each rendered anew by one renderer and with what it kept by another.
+/// Frames of a job in a row, each rendered anew by one renderer and with what it kept by another, which sees several times of it
+/// where the options say so.
 void side_run_reuse(const bench_options *options)
 {
     bench_options fresh_options = *options;
@@ -148,7 +149,12 @@ void side_run_reuse(const bench_options *options)
         glint_frame_stats stats;
         side_scene_set_frame(&scene, options->change, round + 2);
         glint_plan *plan = side_plan_create(&scene, options);
-        double f = render(fresh, plan, &stats), k = render(keeping, plan, &stats);
+        double f = render(fresh, plan, &stats);
+        if (options->times) {
+            glint_plan_destroy(plan);
+            plan = side_plan_create_exposed(&scene, options, round + 2);
+        }
+        double k = render(keeping, plan, &stats);
         if (round >= 0) {
             fresh_ms[round] = f;
             kept_ms[round] = k;

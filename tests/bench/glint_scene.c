@@ -223,9 +223,8 @@ glint_renderer *side_renderer_create(const bench_options *options)
     return renderer;
 }
 
-glint_plan *side_plan_create(const side_scene *s, const bench_options *options)
+static glint_render_desc frame_desc(const bench_options *options)
 {
-    glint_error error;
     glint_render_desc d = glint_render_desc_default();
     d.width = BENCH_WIDTH;
     d.height = BENCH_HEIGHT;
@@ -233,7 +232,29 @@ glint_plan *side_plan_create(const side_scene *s, const bench_options *options)
     d.precision = options->is_float ? GLINT_FLOAT : GLINT_DOUBLE;
     d.passes = 0;
     d.codes = true;
+    return d;
+}
+
+glint_plan *side_plan_create(const side_scene *s, const bench_options *options)
+{
+    glint_error error;
     glint_plan *plan;
+    const glint_render_desc d = frame_desc(options);
     side_must(glint_plan_create(s->scene, &d, &plan, &error), &error);
+    return plan;
+}
+
+glint_plan *side_plan_create_exposed(side_scene *s, const bench_options *options, int frame)
+{
+    glint_error error;
+    glint_plan *plan, **times = calloc((size_t)options->times, sizeof *times);
+    const glint_render_desc d = frame_desc(options), each = glint_shutter_desc(&d);
+    if (!times)
+        bench_fail("times", "out of memory");
+    for (int k = 0; k < options->times; k++) {
+        side_scene_set_frame(s, options->change, frame * options->times + k);
+        side_must(glint_plan_create(s->scene, &each, &times[k], &error), &error);
+    }
+    side_must(glint_plan_create_exposed(s->scene, &d, times, (size_t)options->times, &plan, &error), &error);
     return plan;
 }

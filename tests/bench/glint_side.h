@@ -29,6 +29,8 @@ void side_scene_set_frame(side_scene *scene, const char *change, int frame);
 glint_renderer *side_renderer_create(const bench_options *options);
 /// 1920 x 1080, codes and no passes.
 glint_plan *side_plan_create(const side_scene *scene, const bench_options *options);
+/// The same, seen at several times of frame `frame` of a job.
+glint_plan *side_plan_create_exposed(side_scene *scene, const bench_options *options, int frame);
 
 void side_run_frame(const bench_options *options);
 void side_run_build(const bench_options *options);

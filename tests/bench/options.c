@@ -37,6 +37,8 @@ static void read_word(bench_options *o, const char *word)
         o->samples = atoi(value);
     else if (strcmp(name, "indirect") == 0)
         o->indirect = atoi(value);
+    else if (strcmp(name, "times") == 0)
+        o->times = atoi(value);
     else if (strcmp(name, "lamps") == 0)
         o->lamps = atoi(value);
     else if (strcmp(name, "float") == 0)

@@ -17,6 +17,7 @@ typedef struct bench_options {
     int threads; ///< default 1
     int samples; ///< a pixel; default 1
     int indirect; ///< ways of indirect light a pixel, of one bounce; default 0
+    int times; ///< of a shutter that is open from one frame of a job to the next; glint's `reuse` alone; 0 (default): none
     int lamps; ///< point lights that share the light, default 1; above 1 for glint and POV-Ray alone
     bool is_float; ///< glint alone
     bool no_reuse; ///< glint alone
