@@ -10,7 +10,7 @@
 ///           expected, got -1".
 /// Ownership `_create` returns a reference the caller owns and gives back with `_release`; `_retain` takes another.
 ///           `_release(NULL)` does nothing. What a description struct points to is borrowed for the call only.
-/// Threads   described objects (material, light, camera, shape, scene) belong to one thread at a time. A plan is
+/// Threads   described objects (material, light, camera, shape, overlay, scene) belong to one thread at a time. A plan is
 ///           immutable; images are, once rendered. A renderer renders one frame at a time.
 #ifndef GLINT_H
 #define GLINT_H
@@ -671,6 +671,85 @@ double glint_mesh_bend(const glint_shape *shape);
 /// The arguments of glint_sphere_mesh_create; false, and nothing written, when the shape was not made by it.
 bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *radius, double *segments);
 
+// ---- Overlays -----------------------------------------------------------------------------------------------------
+
+/// A label, a colour bar or axes: drawn over a finished picture, on its codes. Shared by reference between scenes.
+///
+/// Overlays are in .png files of beauty alone: other passes, planes and linear files are without. They lie over each other in
+/// the order in which they were added. No stage reads them: another text makes no ray run again. Lengths in points are
+/// dpi / 72 pixels where the file says its dpi, else a pixel.
+typedef struct glint_overlay glint_overlay;
+
+/// What an overlay is; it says which fields of its description mean anything.
+typedef enum glint_overlay_kind {
+    GLINT_OVERLAY_LABEL, ///< `text`
+    GLINT_OVERLAY_COLORBAR, ///< the colours of a map with numbers beside them; `text` is its title
+    GLINT_OVERLAY_AXES ///< directions x, y and z of the world as the camera has them, each with its name
+} glint_overlay_kind;
+
+/// A table of 256 colours, from the lowest number to the highest.
+typedef enum glint_colormap {
+    GLINT_COLORMAP_VIRIDIS, ///< these two N. Smith and S. van der Walt, 2015
+    GLINT_COLORMAP_MAGMA, ///< likewise
+    GLINT_COLORMAP_CIVIDIS, ///< J. R. Nunez, C. R. Anderton and R. S. Renslow, 2018
+    GLINT_COLORMAP_TURBO, ///< A. Mikhailov, 2019
+    GLINT_COLORMAP_COOLWARM, ///< K. Moreland, 2009
+    GLINT_COLORMAP_COUNT ///< how many there are
+} glint_colormap;
+
+/// "viridis", ...; NULL when out of range.
+const char *glint_colormap_name(glint_colormap map);
+/// The 256 colours of a map as sRGB codes 0xRRGGBB; static. NULL when out of range.
+const uint32_t *glint_colormap_table(glint_colormap map);
+
+/// Which way a colour bar runs: from bottom to top, or from left to right.
+typedef enum glint_orientation { GLINT_VERTICAL, GLINT_HORIZONTAL } glint_orientation;
+
+#define GLINT_OVERLAY_TEXT_SIZE 384 ///< bytes of an overlay's text, with the ending NUL
+#define GLINT_OVERLAY_TICKS_MAX 16 ///< numbers beside a colour bar
+#define GLINT_AXIS_NAME_SIZE 16 ///< bytes of an axis's name, with the ending NUL
+
+/// The fields of an overlay; each kind reads those that name it, and those that name none.
+typedef struct glint_overlay_desc {
+    glint_overlay_kind kind; ///< not changed by glint_overlay_set
+    char text[GLINT_OVERLAY_TEXT_SIZE]; ///< label, colour bar: UTF-8, lines divided by newlines; "": none
+    /// Where it is: shares of the room that it leaves within the margin, 0 left or top, 1 right or bottom. Default label
+    /// {0, 0}, colour bar {1, 0.5}, axes {0, 1}
+    double at[2];
+    bool has_position; ///< true: in place of `at`, `position`
+    double position[2]; ///< its upper left corner, in pixels from that of the picture; finite, may lie outside
+    bool has_size; ///< false: a 36th of the picture's height in pixels, and no less than 10
+    double size; ///< of its letters, points, 1 .. 10000
+    bool has_margin; ///< false: half of `size`
+    double margin; ///< to the picture's border, points, 0 .. 10000
+    double color[3]; ///< of letters and lines, linear RGB, finite, >= 0; above 1 as 1; default 1. Not toned
+    bool has_background; ///< false: nothing behind it
+    double background[3]; ///< a rectangle behind it; linear RGB as `color`
+    double opacity; ///< of the background, 0 .. 1; default 1
+    bool has_length; ///< false: colour bar 10 times `size`, axes 2.5 times
+    double length; ///< colour bar, axes: of the bar, of an axis that lies in the picture; points, 1 .. 10000
+    glint_colormap map; ///< colour bar
+    double low, high; ///< colour bar: the numbers at its ends; finite, not the same; default 0, 1
+    glint_orientation orientation; ///< colour bar; default vertical
+    double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: numbers written beside it, from low to high
+    size_t tick_count; ///< 0: round numbers, about five
+    char names[3][GLINT_AXIS_NAME_SIZE]; ///< axes: of x, y and z
+    char name[GLINT_NAME_SIZE]; ///< for messages; "": none
+} glint_overlay_desc;
+
+/// Every field of an overlay of this kind at its default.
+glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind);
+/// Makes an overlay of a copy of `desc`. GLINT_ERR_INVALID names the field that is out of range; GLINT_ERR_NOMEM.
+glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error);
+/// Replaces the description by a copy, of the same kind; on error nothing changes.
+glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error);
+/// The description; borrowed, valid until the overlay is set or released.
+const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay);
+/// Takes another reference; returns its argument.
+glint_overlay *glint_overlay_retain(glint_overlay *overlay);
+/// Gives a reference back; the last one frees the overlay. NULL: nothing.
+void glint_overlay_release(glint_overlay *overlay);
+
 // ---- Scene --------------------------------------------------------------------------------------------------------
 
 /// Shapes and lights under one camera.
@@ -721,13 +800,17 @@ glint_status glint_scene_add_shape(glint_scene *scene, glint_shape *shape, glint
 glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint_error *error);
 glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error);
 glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, glint_error *error);
-/// How many shapes and lights were added; a group counts as one.
+glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
+glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error);
+/// How many shapes, lights and overlays were added; a group counts as one.
 size_t glint_scene_shape_count(const glint_scene *scene);
 size_t glint_scene_light_count(const glint_scene *scene);
+size_t glint_scene_overlay_count(const glint_scene *scene);
 
 /// One of them, `index` < the count, in the order they were added; borrowed from the scene.
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index);
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index);
+glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index);
 
 /// What a ray meets first; lengths in units of its direction or of the world.
 typedef struct glint_hit {

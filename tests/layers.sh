@@ -29,15 +29,17 @@ stages='engine/stages engine/stages/simd'
 layer engine/base
 layer engine/scene engine/stages $base
 layer engine/geometry engine/scene engine/stages $base
-layer engine/film engine/stages $base
+layer engine/text $base
+layer engine/overlay engine/text $base
+layer engine/film engine/overlay engine/stages $base
 layer engine/program engine/file $stages $base
-layer engine/plan engine/program engine/geometry engine/scene engine/film $stages $base
+layer engine/plan engine/program engine/geometry engine/scene engine/overlay engine/film $stages $base
 layer engine/reuse engine/plan engine/film $stages $base
 layer engine/tile engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
-layer engine/file engine/film engine/stages $base
+layer engine/file engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
-layer engine/sheet engine/file $base
+layer engine/sheet engine/text engine/file $base
 
 layer bindings/value
 layer bindings/run bindings/value

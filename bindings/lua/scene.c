@@ -107,30 +107,42 @@ static void drop_object(lua_State *L, int index, const void *object)
     lua_pop(L, 1);
 }
 
-// The shape or light at `value`; one of the two is NULL.
-static void check_member(lua_State *L, int value, const char *path, glint_shape **shape, glint_light **light)
+// What a scene holds; two of the three are NULL.
+typedef struct member {
+    glint_shape *shape;
+    glint_light *light;
+    glint_overlay *overlay;
+} member;
+
+static member check_member(lua_State *L, int value, const char *path)
 {
-    *shape = glintL_test_object(L, value, GLINTL_SHAPE);
-    *light = glintL_test_object(L, value, GLINTL_LIGHT);
-    if (!*shape && !*light)
-        glintL_refuse(L, value, path, "shape or light");
+    member m = { .shape = glintL_test_object(L, value, GLINTL_SHAPE), .light = glintL_test_object(L, value, GLINTL_LIGHT),
+                 .overlay = glintL_test_object(L, value, GLINTL_OVERLAY) };
+    if (!m.shape && !m.light && !m.overlay)
+        glintL_refuse(L, value, path, "shape, light, label, colorbar or axes");
+    return m;
+}
+
+static const void *object_of(const member *m)
+{
+    return m->shape ? (const void *)m->shape : m->light ? (const void *)m->light : m->overlay;
 }
 
 static void add_member(lua_State *L, int index, int value, const char *path)
 {
-    glint_shape *shape;
-    glint_light *light;
     glint_status status;
     glint_error error;
-    check_member(L, value, path, &shape, &light);
-    const void *object = shape ? (const void *)shape : light;
+    member m = check_member(L, value, path);
+    const void *object = object_of(&m);
     bool was_kept = keep_object(L, index, object, value);
-    check_member(L, value, path, &shape, &light); // again: keeping allocates, and may run finalizers
+    m = check_member(L, value, path); // again: keeping allocates, and may run finalizers
     glint_scene *scene = glintL_check_object(L, index, GLINTL_SCENE);
-    if (shape)
-        status = glint_scene_add_shape(scene, shape, &error);
+    if (m.shape)
+        status = glint_scene_add_shape(scene, m.shape, &error);
+    else if (m.light)
+        status = glint_scene_add_light(scene, m.light, &error);
     else
-        status = glint_scene_add_light(scene, light, &error);
+        status = glint_scene_add_overlay(scene, m.overlay, &error);
     if (status && !was_kept)
         drop_object(L, index, object);
     glintL_check_status(L, "scene", &error, status);
@@ -149,19 +161,19 @@ static int add(lua_State *L)
 
 static int drop(lua_State *L)
 {
-    glint_shape *shape;
-    glint_light *light;
     glint_status status;
     glint_error error;
     glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
     glintL_refuse_within_trace(L, "scene.remove");
-    check_member(L, 2, "scene.remove", &shape, &light);
-    if (shape)
-        status = glint_scene_remove_shape(scene, shape, &error);
+    const member m = check_member(L, 2, "scene.remove");
+    if (m.shape)
+        status = glint_scene_remove_shape(scene, m.shape, &error);
+    else if (m.light)
+        status = glint_scene_remove_light(scene, m.light, &error);
     else
-        status = glint_scene_remove_light(scene, light, &error);
+        status = glint_scene_remove_overlay(scene, m.overlay, &error);
     glintL_check_status(L, "scene", &error, status);
-    drop_object(L, 1, shape ? (const void *)shape : light);
+    drop_object(L, 1, object_of(&m));
     return 0;
 }
 

@@ -493,6 +493,70 @@ function group:close() end
 ---@return glint.group
 function glint.group(fields) end
 
+-- ---- Overlays: labels, colour bars, axes ----
+
+--- What is drawn over a finished picture: in .png files of beauty alone, not in other passes and not in .pfm, .npy and .exr.
+--- Lengths in points are dpi / 72 pixels where `dpi` is set, else pixels.
+---@class glint.overlay_fields
+---@field at? "top left"|"top"|"top right"|"left"|"center"|"right"|"bottom left"|"bottom"|"bottom right"|number[]  where it is, or {x, y} in shares of the room it leaves within the margin. Default of a label "top left", a colour bar "right", axes "bottom left"
+---@field position? number[]  {x, y} of its upper left corner in pixels from that of the picture, in place of `at`
+---@field size? number  of its letters, points, 1 .. 10000. Default nil: a 36th of the picture's height, 10 pixels at least
+---@field margin? number  to the picture's border, points. Default nil: half of `size`
+---@field color? glint.color  of letters and lines; not toned. Default 1
+---@field background? glint.color  of a rectangle behind it. Default nil: none
+---@field opacity? number  of the background, 0 .. 1. Default 1
+---@field name? string  for messages, at most 63 bytes. Default ""
+
+---@class glint.label_fields: glint.overlay_fields
+---@field text string  UTF-8, lines divided by newlines, at most 383 bytes; "" shows nothing
+
+--- A text over the picture. Set in frame(t), it makes a picture of its own key, and nothing is rendered again for it.
+---@class glint.label: glint.label_fields
+local label = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function label:close() end
+
+---@param fields glint.label_fields
+---@return glint.label
+function glint.label(fields) end
+
+---@class glint.colorbar_fields: glint.overlay_fields
+---@field map "viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  as of glint.colormap
+---@field low number  what its first colour stands for
+---@field high number  and its last; not the same
+---@field title? string  above it; as the text of a label. Default ""
+---@field ticks? number[]  1 .. 16 numbers written beside it, from low to high. Default nil: round ones, as many as there is room for
+---@field orientation? "vertical"|"horizontal"  Default "vertical", low at the bottom
+---@field length? number  of the bar, points. Default nil: 10 times `size`
+
+---@class glint.colorbar: glint.colorbar_fields
+local colorbar = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function colorbar:close() end
+
+---@param fields glint.colorbar_fields
+---@return glint.colorbar
+function glint.colorbar(fields) end
+
+---@class glint.axes_fields: glint.overlay_fields
+---@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
+---@field length? number  of an axis that lies in the picture, points. Default nil: 2.5 times `size`
+
+--- The directions x (red), y (green) and z (blue) as the camera has them.
+---@class glint.axes: glint.axes_fields
+local axes = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function axes:close() end
+
+---@param fields glint.axes_fields
+---@return glint.axes
+function glint.axes(fields) end
+
+---@alias glint.overlay glint.label|glint.colorbar|glint.axes
+
 -- ---- Scene ----
 
 --- Read from a scene its fields are only read: assign a whole table.
@@ -508,19 +572,19 @@ function glint.group(fields) end
 ---@field indirect? glint.indirect  light from surface to surface instead of `ambient`; what a material's `ambient` has beyond its `diffuse` is its own light and stays. Default nil: off
 
 ---@class glint.scene_table: glint.scene_fields
----@field [integer] glint.shape|glint.light  the objects, numbered in this order, without holes
+---@field [integer] glint.shape|glint.light|glint.overlay  the objects, numbered in this order, without holes
 
 ---@class glint.scene: glint.scene_fields
 local scene = {}
 
---- Adds a shape or light, numbered after those that are there. Raises when it is there already.
----@generic T: glint.shape|glint.light
+--- Adds a shape, light or overlay, numbered after those of its kind that are there. Raises when it is there already.
+---@generic T: glint.shape|glint.light|glint.overlay
 ---@param object T
 ---@return T object  the same
 function scene:add(object) end
 
---- Takes a shape or light out. Raises when it is not there.
----@param object glint.shape|glint.light
+--- Takes a shape, light or overlay out. Raises when it is not there.
+---@param object glint.shape|glint.light|glint.overlay
 function scene:remove(object) end
 
 ---@class glint.hit

@@ -1,29 +1,24 @@
 // glint.colormap: a function that gives the colour of a number, within patterns and outside.
 #include "bindings/pattern/pattern.h"
 
-#include "bindings/pattern/colormap_table.h"
-
 #include <math.h>
 
 #define COLORMAP "glint.colormap" // the type of the userdata that hold the tables as textures
 #define ENTRIES 256
 
-typedef enum map { MAP_VIRIDIS, MAP_MAGMA, MAP_CIVIDIS, MAP_TURBO, MAP_COOLWARM, MAP_COUNT } map;
-
-static const char *const NAMES[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
-
-static const uint32_t *const TABLES[MAP_COUNT] = { VIRIDIS, MAGMA, CIVIDIS, TURBO, COOLWARM };
+const char *const glintL_colormaps[] = { "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
+_Static_assert(sizeof glintL_colormaps / sizeof *glintL_colormaps == GLINT_COLORMAP_COUNT + 1, "a name each");
 
 static const char TEXTURES; // its address is the registry's key of those that were made, by number
 
 // A table as a picture of one row, between whose texels light is mixed.
-static glint_status make_texture(map which, glint_texture **out, glint_error *error)
+static glint_status make_texture(glint_colormap which, glint_texture **out, glint_error *error)
 {
     uint8_t rgb[ENTRIES][3];
     glint_texture_desc desc = glint_texture_desc_default();
     for (int i = 0; i < ENTRIES; i++)
         for (int c = 0; c < 3; c++)
-            rgb[i][c] = (uint8_t)(TABLES[which][i] >> (16 - 8 * c));
+            rgb[i][c] = (uint8_t)(glint_colormap_table(which)[i] >> (16 - 8 * c));
     desc.rgb = rgb[0];
     desc.width = ENTRIES;
     desc.height = 1;
@@ -31,7 +26,7 @@ static glint_status make_texture(map which, glint_texture **out, glint_error *er
     return glint_texture_create(&desc, out, error);
 }
 
-static void push_texture(lua_State *L, map which)
+static void push_texture(lua_State *L, glint_colormap which)
 {
     glint_error error;
     glintL_push_table(L, &TEXTURES);
@@ -86,14 +81,14 @@ static double read_end(lua_State *L, int index, const char *path, double otherwi
 
 static int new_colormap(lua_State *L)
 {
-    static const glintL_field field = { .name = "name", .kind = GLINTL_ENUM, .names = NAMES };
+    static const glintL_field field = { .name = "name", .kind = GLINTL_ENUM, .names = glintL_colormaps };
     unsigned which = 0;
     lua_settop(L, 3);
     glintL_read_field(L, 1, "colormap", &field, &which);
     const double low = read_end(L, 2, "colormap.low", 0), high = read_end(L, 3, "colormap.high", 1);
     if (!(low != high && isfinite(high - low)))
         return glintL_error(L, "colormap.high: another number than low (%f) expected, got %f", low, high);
-    push_texture(L, (map)which);
+    push_texture(L, (glint_colormap)which);
     lua_pushnumber(L, low);
     lua_pushnumber(L, high);
     lua_pushcclosure(L, color_of, 3);

@@ -201,6 +201,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         if (!lua_isnil(L, index))
             glintL_refuse(L, index, full, "pattern");
         break;
+    case GLINTL_CUSTOM:
+        field->read(L, index, full, desc);
+        break;
     case GLINTL_OTHER:
         break;
     }
@@ -246,25 +249,41 @@ static int each_part(lua_State *L)
     return 3;
 }
 
-// An empty table that reads as one of the fields' values: assigning to a field of what was read would not reach the object.
-static void push_nested(lua_State *L, const glintL_field *field, const void *desc)
+static int count_parts(lua_State *L)
 {
-    luaL_checkstack(L, 6, "field");
+    lua_pushinteger(L, (lua_Integer)lua_rawlen(L, lua_upvalueindex(1)));
+    return 1;
+}
+
+void glintL_freeze(lua_State *L, const char *name)
+{
+    luaL_checkstack(L, 4, "field");
     lua_newtable(L);
     lua_newtable(L); // its metatable
-    lua_newtable(L); // the values
+    lua_pushvalue(L, -3);
+    lua_pushcclosure(L, each_part, 1);
+    lua_setfield(L, -2, "__pairs");
+    lua_pushvalue(L, -3);
+    lua_pushcclosure(L, count_parts, 1);
+    lua_setfield(L, -2, "__len");
+    lua_pushvalue(L, -3);
+    lua_setfield(L, -2, "__index");
+    lua_pushstring(L, name);
+    lua_pushcclosure(L, refuse_part, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_setmetatable(L, -2);
+    lua_remove(L, -2);
+}
+
+static void push_nested(lua_State *L, const glintL_field *field, const void *desc)
+{
+    luaL_checkstack(L, 2, "field");
+    lua_newtable(L);
     for (const glintL_field *f = field->nested; f->name; f++) {
         glintL_push_field(L, f, desc);
         lua_setfield(L, -2, f->name);
     }
-    lua_pushvalue(L, -1);
-    lua_pushcclosure(L, each_part, 1);
-    lua_setfield(L, -3, "__pairs");
-    lua_setfield(L, -2, "__index");
-    lua_pushstring(L, field->name);
-    lua_pushcclosure(L, refuse_part, 1);
-    lua_setfield(L, -2, "__newindex");
-    lua_setmetatable(L, -2);
+    glintL_freeze(L, field->name);
 }
 
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc)
@@ -311,6 +330,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         break;
     case GLINTL_NESTED:
         push_nested(L, field, desc);
+        break;
+    case GLINTL_CUSTOM:
+        field->push(L, desc);
         break;
     case GLINTL_PROGRAM: // what the userdata keeps is read before
     case GLINTL_OTHER:

@@ -27,6 +27,7 @@ typedef enum glintL_kind {
     GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
     GLINTL_PROGRAM, ///< a pattern or nil; see program_offset
     GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
+    GLINTL_CUSTOM, ///< `read` and `push` of the field do it
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
 
@@ -42,6 +43,8 @@ typedef struct glintL_field {
     /// Of a glint_program * that stands in the number's place where the field has a pattern (an enum: a shader); read as
     /// NULL, and set when a frame is planned. The object's userdata keeps the pattern under the field's name. 0: none
     size_t program_offset;
+    void (*read)(lua_State *L, int index, const char *path, void *desc); ///< GLINTL_CUSTOM: raises for a wrong value
+    void (*push)(lua_State *L, const void *desc); ///< likewise
     const char *follows; ///< the field whose pattern it has while it is not set, or NULL
 } glintL_field;
 
@@ -55,6 +58,9 @@ void glintL_check_status(lua_State *L, const char *path, const glint_error *erro
 void glintL_read_field(lua_State *L, int index, const char *path, const glintL_field *field, void *desc);
 /// Pushes the field's value as Lua sees it.
 void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc);
+/// Puts in place of the table on top of the stack an empty one that reads as it does: assigning to a part of what was read from an
+/// object's field of this name would not reach the object, and raises.
+void glintL_freeze(lua_State *L, const char *name);
 /// Reads every key of the table at `index`; raises on an unknown key (naming the nearest known one), a non-string key
 /// (unless allow_array, when integer keys are left to the caller) and a missing required field.
 void glintL_read_table(lua_State *L, int index, const char *path, const glintL_field *fields, void *desc,
@@ -168,6 +174,7 @@ void glintL_open_patterns(lua_State *L);
 #define GLINTL_LIGHT "glint.light"
 #define GLINTL_CAMERA "glint.camera"
 #define GLINTL_SHAPE "glint.shape"
+#define GLINTL_OVERLAY "glint.overlay"
 #define GLINTL_SCENE "glint.scene"
 #define GLINTL_IMAGE "glint.image"
 #define GLINTL_PARAMS "glint.params"
@@ -257,6 +264,7 @@ void glintL_open_light(lua_State *L);
 void glintL_open_camera(lua_State *L);
 void glintL_open_transform(lua_State *L);
 void glintL_open_shape(lua_State *L);
+void glintL_open_overlay(lua_State *L); ///< label, colorbar and axes
 void glintL_open_scene(lua_State *L);
 void glintL_open_image(lua_State *L);
 void glintL_open_math(lua_State *L);
@@ -299,6 +307,7 @@ void glintL_open_run(lua_State *L); ///< makes one, which the state owns, where 
 /// files. Pushes an image, or nil and "skipped". Returns the number of results.
 int glintL_render_call(lua_State *L, glint_scene *scene, int index);
 
+extern const char *const glintL_colormaps[]; ///< names of glint_colormap, NULL at the end
 extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
 
 #endif

@@ -10,6 +10,7 @@
 #include "engine/film/tone.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -24,6 +25,8 @@ typedef struct picture {
     float gain; ///< likewise
     double nearest; ///< of all depths
     const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
+    const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
+    glint_stamps stamps; ///< the overlays
 } picture;
 
 /// A pipe or a device: what has no ending to go by is written as PNG there.
@@ -127,6 +130,19 @@ static const void *row_of_outlined(const void *user, int y, void *scratch)
     return scratch;
 }
 
+/// Beauty under its overlays.
+static const void *row_of_covered_up(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    const glint_image *image = p->image;
+    const size_t channels = image->alpha ? 4 : 3;
+    const void *row = p->plain(user, y, scratch);
+    if (row != scratch)
+        memcpy(scratch, row, (size_t)image->width * channels * (size_t)p->tone.bits / 8);
+    glint_stamps_row(&p->stamps, image->part_x, image->part_y + y, image->width, (int)channels, scratch);
+    return scratch;
+}
+
 /// A share, 0 .. 1.
 static const void *row_of_shares(const void *user, int y, void *scratch)
 {
@@ -214,6 +230,30 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
 }
 
+/// Draws the overlays into the rows. Where they are the stamps of rows of tiles promise nothing.
+/// stamps  written: those of the source from now on, to be freed.
+static glint_status lay_over(picture *p, glint_png_source *source, double dpi, uint64_t **stamps, glint_error *error)
+{
+    const glint_image *image = p->image;
+    const size_t count = glint_image_stamps(image);
+    glint_status status =
+        glint_overlays_draw(image->overlays, dpi, p->tone.transfer, p->tone.bits, &p->stamps, error);
+    if (status)
+        return status;
+    p->plain = source->row;
+    source->row = row_of_covered_up;
+    if (!source->stamp)
+        return GLINT_OK;
+    if (!(*stamps = malloc(count * sizeof **stamps)))
+        return glint_fail_nomem(error);
+    for (size_t i = 0; i < count; i++)
+        (*stamps)[i] = glint_stamps_touch(&p->stamps, image->part_y + (int)i * GLINT_TILE_HEIGHT, GLINT_TILE_HEIGHT)
+                           ? 0
+                           : source->stamp[i];
+    source->stamp = *stamps;
+    return GLINT_OK;
+}
+
 /// Of an open store of tables.
 static glint_status encode_rows(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,
                                 glint_bytes *out, double *reused, glint_error *error)
@@ -249,7 +289,14 @@ static glint_status encode_rows(const glint_image *image, const glint_write_desc
         source.row = row_of_outlined;
         source.stamp = NULL; // of the codes without lines
     }
-    return status ? status : glint_png_encode(bands, &source, &png, out, reused, error);
+    uint64_t *stamps = NULL;
+    if (!status && desc->pass == GLINT_PASS_BEAUTY && image->overlays)
+        status = lay_over(&p, &source, desc->dpi, &stamps, error);
+    if (!status)
+        status = glint_png_encode(bands, &source, &png, out, reused, error);
+    glint_stamps_free(&p.stamps);
+    free(stamps);
+    return status;
 }
 
 static glint_status encode_png(const glint_image *image, const glint_write_desc *desc, glint_bands *bands,

@@ -129,6 +129,32 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
     return GLINT_OK;
 }
 
+glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int x, int y, glint_image **out,
+                               glint_error *error)
+{
+    glint_image *image = calloc(1, sizeof *image);
+    if (!image) {
+        glint_image_release(under);
+        return glint_fail_nomem(error);
+    }
+    atomic_init(&image->references, 1);
+    image->width = under->width;
+    image->height = under->height;
+    memcpy(image->plane, under->plane, sizeof image->plane);
+    image->codes = under->codes;
+    image->alpha = under->alpha;
+    image->outline = under->outline;
+    image->channels = under->channels;
+    image->code_tone = under->code_tone;
+    image->row_stamp = under->row_stamp;
+    image->under = under;
+    image->overlays = glint_overlays_retain(overlays);
+    image->part_x = x;
+    image->part_y = y;
+    *out = image;
+    return GLINT_OK;
+}
+
 static bool is_black_code(const glint_image *image, size_t i)
 {
     const size_t at = i * (size_t)image->channels;
@@ -171,6 +197,12 @@ void glint_image_release(glint_image *image)
 {
     if (!image || atomic_fetch_sub_explicit(&image->references, 1, memory_order_acq_rel) != 1)
         return;
+    glint_overlays_release(image->overlays);
+    if (image->under) {
+        glint_image_release(image->under);
+        free(image);
+        return;
+    }
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             free(image->plane[pass][c]);

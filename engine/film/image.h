@@ -4,6 +4,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
+#include "engine/overlay/overlay.h"
 #include "engine/stages/stages.h"
 
 #include <stdatomic.h>
@@ -27,6 +28,9 @@ struct glint_image {
     glint_film_stamp *film; ///< one a tile, left to right, top to bottom. may be NULL. Owned
     uint64_t *row_stamp; ///< one for every GLINT_TILE_HEIGHT rows of codes, top first; NULL: no codes. Equal stamps in
         ///< two images of one size and tone promise equal codes in these rows; 0 promises nothing
+    glint_image *under; ///< that this one shows with its overlays, and whose planes and codes it shares; NULL: none. Owned
+    glint_overlays *overlays; ///< drawn over beauty in a PNG; NULL: none. Owned
+    int part_x, part_y; ///< where in the whole picture its first pixel is, which the overlays are placed in
 };
 
 /// Stamps of an image: how many rows of tiles it has.
@@ -53,6 +57,11 @@ glint_status glint_image_create_for(const glint_render_desc *desc, glint_image *
 /// A part of an image as an image of its own.
 glint_status glint_image_crop(const glint_image *image, int x, int y, int width, int height, glint_image **out,
                               glint_error *error);
+
+/// The same picture with overlays, of which it takes references; x, y: where in the whole picture its first pixel is.
+/// Takes over the reference to `under`, in case of an error too.
+glint_status glint_image_cover(glint_image *under, glint_overlays *overlays, int x, int y, glint_image **out,
+                               glint_error *error);
 
 /// Bytes of one pixel's codes.
 static inline size_t glint_image_pixel_bytes(const glint_image *image)

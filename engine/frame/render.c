@@ -540,15 +540,17 @@ glint_status glint_render(glint_renderer *renderer, const glint_plan *plan, glin
                           glint_error *error)
 {
     const double *r = plan->desc.region;
-    glint_image *whole = NULL;
+    glint_image *whole = NULL, *part = NULL;
     glint_status status = plan->times ? glint_render_times(renderer, plan, &whole, stats, error)
                                       : glint_render_instant(renderer, plan, &whole, stats, error);
-    if (!status && r[2] == 0) {
-        *out = whole;
-        return GLINT_OK;
+    if (!status && r[2] > 0) {
+        status = glint_image_crop(whole, (int)r[0], (int)r[1], (int)r[2], (int)r[3], &part, error);
+        glint_image_release(whole);
+        whole = part;
     }
+    if (!status && plan->overlays)
+        status = glint_image_cover(whole, plan->overlays, (int)r[0], (int)r[1], &whole, error);
     if (!status)
-        status = glint_image_crop(whole, (int)r[0], (int)r[1], (int)r[2], (int)r[3], out, error);
-    glint_image_release(whole);
+        *out = whole;
     return status;
 }

@@ -254,6 +254,22 @@ static void veil(explainer *e)
     add_line(e, "absorption before the eye", caller);
 }
 
+static void overlays(explainer *e, const glint_scene *scene)
+{
+    static const char *const kinds[] = { "label", "colorbar", "axes" };
+    char caller[2 * GLINT_NAME_SIZE];
+    begin(e, "drawn over the picture");
+    for (size_t i = 0; i < glint_scene_overlay_count(scene); i++) {
+        const glint_overlay_desc *desc = glint_overlay_get(glint_scene_overlay_at(scene, i));
+        if (desc->name[0])
+            snprintf(caller, sizeof caller, "%s '%s'", kinds[desc->kind], desc->name);
+        else
+            snprintf(caller, sizeof caller, "%s #%zu", kinds[desc->kind], i + 1);
+        called_by(e, caller);
+    }
+    end(e);
+}
+
 static void list_effects(explainer *e, const glint_scene *scene)
 {
     const glint_plan *plan = e->plan;
@@ -314,6 +330,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     veil(e);
     static const char *const inks[] = { "none", "black", "white" };
     one(e, plan->desc.outline, "outline", "outline = %s", inks[plan->desc.outline]);
+    overlays(e, scene);
     one(e, plan->desc.alpha, "transparent background", "alpha = true");
     one(e, plan->shutter_times, "shutter", "camera: mean of %u times", plan->shutter_times);
     one(e, plan->desc.samples > 1, "several samples a pixel", "samples = %.0f", plan->desc.samples);

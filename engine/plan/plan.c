@@ -203,6 +203,12 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
     status = fill(plan, scene, times, error);
+    if (!status) {
+        const glint_plan_camera *c = &plan->camera;
+        const double view[3][3] = { { c->right[0], c->right[1], c->right[2] }, { c->up[0], c->up[1], c->up[2] },
+                                    { c->forward[0], c->forward[1], c->forward[2] } };
+        status = glint_overlays_take(scene, (int)desc->width, (int)desc->height, view, &plan->overlays, error);
+    }
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
         const glint_render_desc base = glint_plan_base(&plan->desc);
         status = glint_plan_create(scene, &base, &plan->base, error);
@@ -265,6 +271,7 @@ void glint_plan_destroy(glint_plan *plan)
         glint_plan_free_times(plan->times, plan->shutter_times);
     glint_plan_destroy(plan->base);
     glint_geometry_release(plan->geometry);
+    glint_overlays_release(plan->overlays);
     free(plan->lights);
     free(plan->light_samples);
     free(plan->visible_lights);
@@ -367,6 +374,8 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->desc.outline)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
+    if (desc->pass == GLINT_PASS_BEAUTY && plan->overlays)
+        key = glint_overlays_key(plan->overlays, key);
     if (desc->dpi > 0)
         key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);
     key = glint_key_add_string(key, GLINT_VERSION);

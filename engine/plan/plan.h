@@ -17,6 +17,7 @@
 
 #include "engine/geometry/geometry.h"
 #include "engine/geometry/media.h"
+#include "engine/overlay/overlay.h"
 #include "engine/plan/patterns.h"
 
 /// In the order a frame runs them.
@@ -162,6 +163,8 @@ struct glint_plan {
     bool tints; ///< some light casts shadows, and something transmits
     bool dims; ///< and something absorbs what goes through it
     double brightest; ///< bound of what any ray can bring; may be infinite
+
+    glint_overlays *overlays; ///< drawn over the finished picture; NULL: none
 
     bool runs[GLINT_STAGE_COUNT];
     glint_key where; ///< the geometry's, of its places

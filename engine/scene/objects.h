@@ -67,7 +67,7 @@ void glint_geometry_release(glint_geometry *geometry); ///< NULL: nothing
 struct glint_scene {
     size_t references;
     glint_scene_desc desc;
-    glint_list shapes, lights;
+    glint_list shapes, lights, overlays;
     glint_geometry *geometry; ///< made from the shapes by the last plan; a cache, see geometry.h
 };
 

@@ -84,11 +84,14 @@ void glint_scene_release(glint_scene *scene)
         glint_shape_release(glint_scene_shape(scene, i));
     for (size_t i = 0; i < scene->lights.count; i++)
         glint_light_release(glint_scene_light(scene, i));
+    for (size_t i = 0; i < scene->overlays.count; i++)
+        glint_overlay_release(glint_scene_overlay_at(scene, i));
     glint_camera_release(scene->desc.camera);
     glint_program_release(scene->desc.background_program);
     glint_geometry_release(scene->geometry);
     glint_list_free(&scene->shapes);
     glint_list_free(&scene->lights);
+    glint_list_free(&scene->overlays);
     free(scene);
 }
 
@@ -124,6 +127,14 @@ glint_status glint_scene_add_light(glint_scene *scene, glint_light *light, glint
     return status;
 }
 
+glint_status glint_scene_add_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error)
+{
+    glint_status status = add(&scene->overlays, overlay, "overlay", error);
+    if (!status)
+        glint_overlay_retain(overlay);
+    return status;
+}
+
 glint_status glint_scene_remove_shape(glint_scene *scene, glint_shape *shape, glint_error *error)
 {
     glint_status status = drop(&scene->shapes, shape, "shape", error);
@@ -140,10 +151,22 @@ glint_status glint_scene_remove_light(glint_scene *scene, glint_light *light, gl
     return status;
 }
 
+glint_status glint_scene_remove_overlay(glint_scene *scene, glint_overlay *overlay, glint_error *error)
+{
+    glint_status status = drop(&scene->overlays, overlay, "overlay", error);
+    if (!status)
+        glint_overlay_release(overlay);
+    return status;
+}
+
 size_t glint_scene_shape_count(const glint_scene *scene) { return scene->shapes.count; }
 
 size_t glint_scene_light_count(const glint_scene *scene) { return scene->lights.count; }
 
+size_t glint_scene_overlay_count(const glint_scene *scene) { return scene->overlays.count; }
+
 glint_shape *glint_scene_shape_at(const glint_scene *scene, size_t index) { return glint_scene_shape(scene, index); }
 
 glint_light *glint_scene_light_at(const glint_scene *scene, size_t index) { return glint_scene_light(scene, index); }
+
+glint_overlay *glint_scene_overlay_at(const glint_scene *scene, size_t index) { return scene->overlays.items[index]; }

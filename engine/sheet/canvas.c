@@ -1,6 +1,6 @@
 #include "engine/sheet/canvas.h"
 
-#include "engine/sheet/font.h"
+#include "engine/text/font.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 #include "engine/base/status.h"
 #include "engine/sheet/canvas.h"
 #include "engine/file/file.h"
-#include "engine/sheet/font.h"
+#include "engine/text/font.h"
 #include "engine/file/png.h"
 #include "engine/file/write.h"
 

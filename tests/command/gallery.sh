@@ -43,6 +43,7 @@ picture earth --frames 1
 picture furnace
 picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
+picture labels --frames 13
 picture lamps
 picture lampshade
 picture lantern --frames 1

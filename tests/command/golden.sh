@@ -45,6 +45,7 @@ picture mirror_and_glass scripts/mirror_and_glass.lua
 picture mirror_and_glass_float scripts/mirror_and_glass.lua --precision float
 picture soft_shadows_0011 scripts/soft_shadows.lua -f 11
 picture soft_shadows_window_0009 scripts/soft_shadows.lua --set lamp=window -f 9
+picture labels_0013 scripts/labels.lua -f 13
 picture lamps scripts/lamps.lua
 picture lampshade scripts/lampshade.lua
 picture caps_0006 scripts/caps.lua -f 6

@@ -5,7 +5,7 @@
 
 #include "engine/file/pfm.h"
 #include "engine/sheet/canvas.h"
-#include "engine/sheet/font.h"
+#include "engine/text/font.h"
 
 // ---- Drafts -------------------------------------------------------------------------------------------------------
 

@@ -52,6 +52,9 @@ local FIELDS = {
   material = { "model", "diffuse", "specular", "shininess", "ambient", "mirror", "transmission", "ior", "fresnel", "roughness", "absorption",
     "distribution", "normalized" },
   camera = { "eye", "at", "direction", "up", "fov", "projection", "height" },
+  label = { "text", "at", "position", "size", "margin", "color", "background", "opacity" },
+  colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
+  axes = { "labels", "length", "at", "position", "size" },
 }
 local NAMES = {}
 for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end
@@ -77,6 +80,7 @@ local GOOD = {
   disk_light = { position = { 0, 5, 0 }, normal = { 0, -1, 0 }, radius = 1 },
   polygon_light = { vertices = { { 0, 5, 0 }, { 1, 5, 0 }, { 0, 5, 1 } } }, sphere_light = { position = { 0, 5, 0 }, radius = 1 },
   material = {}, camera = { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
+  label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
 }
 
 local function field_value(field, made)

@@ -1,6 +1,6 @@
-#include "engine/sheet/font.h"
+#include "engine/text/font.h"
 
-#include "engine/sheet/font_table.h"
+#include "engine/text/font_table.h"
 
 #define UNKNOWN 0xfffdu
 

@@ -1,6 +1,6 @@
 /// A small bitmap font for labels. Internal.
-#ifndef GLINT_IMAGE_FONT_H
-#define GLINT_IMAGE_FONT_H
+#ifndef GLINT_TEXT_FONT_H
+#define GLINT_TEXT_FONT_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,0 +1,273 @@
+// glint.label, glint.colorbar, glint.axes
+#include <string.h>
+
+#include "bindings/value/glintL.h"
+
+typedef glint_overlay_desc desc_type;
+_Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
+
+#define AT(member) offsetof(desc_type, member)
+
+// ---- Fields of their own sort ----
+
+static const char *const PLACES[3][3] = {
+    { "top left", "top", "top right" }, { "left", "center", "right" }, { "bottom left", "bottom", "bottom right" }
+};
+
+static void read_pair(lua_State *L, int index, const char *path, const char *expected, double out[2])
+{
+    if (!lua_istable(L, index) || lua_rawlen(L, index) != 2)
+        glintL_refuse(L, index, path, expected);
+    glintL_check_list(L, index, path, false);
+    luaL_checkstack(L, 1, "pair");
+    for (int i = 0; i < 2; i++) {
+        lua_rawgeti(L, index, i + 1);
+        out[i] = glintL_read_number(L, -1, path);
+        lua_pop(L, 1);
+    }
+}
+
+static void push_pair(lua_State *L, const double pair[2], const char *name)
+{
+    lua_createtable(L, 2, 0);
+    for (int i = 0; i < 2; i++) {
+        lua_pushnumber(L, pair[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    glintL_freeze(L, name);
+}
+
+static void read_at(lua_State *L, int index, const char *path, void *desc)
+{
+    static const char expected[] = "\"top left\", \"top\", \"top right\", \"left\", \"center\", \"right\", \"bottom left\", "
+                                   "\"bottom\", \"bottom right\" or {x, y} in shares of the picture";
+    desc_type *d = desc;
+    if (lua_type(L, index) != LUA_TSTRING) {
+        read_pair(L, index, path, expected, d->at);
+        return;
+    }
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            if (strcmp(lua_tostring(L, index), PLACES[y][x]) == 0) {
+                d->at[0] = x / 2.0;
+                d->at[1] = y / 2.0;
+                return;
+            }
+    glintL_refuse(L, index, path, expected);
+}
+
+static void push_at(lua_State *L, const void *desc)
+{
+    const desc_type *d = desc;
+    const double x = 2 * d->at[0], y = 2 * d->at[1];
+    if (d->has_position)
+        lua_pushnil(L);
+    else if (x == (int)x && y == (int)y)
+        lua_pushstring(L, PLACES[(int)y][(int)x]);
+    else
+        push_pair(L, d->at, "at");
+}
+
+static void read_position(lua_State *L, int index, const char *path, void *desc)
+{
+    read_pair(L, index, path, "{x, y} in pixels", ((desc_type *)desc)->position);
+}
+
+static void push_position(lua_State *L, const void *desc) { push_pair(L, ((const desc_type *)desc)->position, "position"); }
+
+static void copy_text(lua_State *L, int index, const char *path, char *out, size_t room)
+{
+    size_t length;
+    if (lua_type(L, index) != LUA_TSTRING)
+        glintL_refuse(L, index, path, "string");
+    const char *text = lua_tolstring(L, index, &length);
+    if (length >= room)
+        glintL_error(L, "%s: at most %d bytes expected, got %d", path, (int)room - 1, (int)length);
+    if (memchr(text, '\0', length))
+        glintL_error(L, "%s: string without a zero byte expected", path);
+    memset(out, 0, room);
+    memcpy(out, text, length);
+}
+
+static void read_text(lua_State *L, int index, const char *path, void *desc)
+{
+    copy_text(L, index, path, ((desc_type *)desc)->text, GLINT_OVERLAY_TEXT_SIZE);
+}
+
+static void push_text(lua_State *L, const void *desc) { lua_pushstring(L, ((const desc_type *)desc)->text); }
+
+static void read_ticks(lua_State *L, int index, const char *path, void *desc)
+{
+    desc_type *d = desc;
+    d->tick_count = 0;
+    if (lua_isnil(L, index))
+        return;
+    if (!lua_istable(L, index))
+        glintL_refuse(L, index, path, "list of numbers");
+    const size_t count = glintL_check_list(L, index, path, false);
+    if (count < 1 || count > GLINT_OVERLAY_TICKS_MAX)
+        glintL_error(L, "%s: 1 .. %d numbers expected, got %d", path, GLINT_OVERLAY_TICKS_MAX, (int)count);
+    luaL_checkstack(L, 1, "ticks");
+    for (size_t i = 0; i < count; i++) {
+        lua_rawgeti(L, index, (lua_Integer)i + 1);
+        d->ticks[i] = glintL_read_number(L, -1, path);
+        lua_pop(L, 1);
+    }
+    d->tick_count = count;
+}
+
+static void push_ticks(lua_State *L, const void *desc)
+{
+    const desc_type *d = desc;
+    if (d->tick_count == 0) {
+        lua_pushnil(L);
+        return;
+    }
+    lua_createtable(L, (int)d->tick_count, 0);
+    for (size_t i = 0; i < d->tick_count; i++) {
+        lua_pushnumber(L, d->ticks[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    glintL_freeze(L, "ticks");
+}
+
+static void read_names(lua_State *L, int index, const char *path, void *desc)
+{
+    if (!lua_istable(L, index) || lua_rawlen(L, index) != 3)
+        glintL_refuse(L, index, path, "list of three strings");
+    glintL_check_list(L, index, path, false);
+    luaL_checkstack(L, 1, "names");
+    for (int i = 0; i < 3; i++) {
+        lua_rawgeti(L, index, i + 1);
+        copy_text(L, lua_gettop(L), path, ((desc_type *)desc)->names[i], GLINT_AXIS_NAME_SIZE);
+        lua_pop(L, 1);
+    }
+}
+
+static void push_names(lua_State *L, const void *desc)
+{
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        lua_pushstring(L, ((const desc_type *)desc)->names[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    glintL_freeze(L, "labels");
+}
+
+// ---- The objects ----
+
+static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
+
+// clang-format off
+#define EVERY_OVERLAY \
+    {.name = "at", .kind = GLINTL_CUSTOM, .read = read_at, .push = push_at}, \
+    {.name = "position", .kind = GLINTL_CUSTOM, .set_offset = AT(has_position), .read = read_position, .push = push_position}, \
+    {.name = "size", .kind = GLINTL_NUMBER, .offset = AT(size), .set_offset = AT(has_size)}, \
+    {.name = "margin", .kind = GLINTL_NUMBER, .offset = AT(margin), .set_offset = AT(has_margin)}, \
+    {.name = "color", .kind = GLINTL_COLOR, .offset = AT(color)}, \
+    {.name = "background", .kind = GLINTL_COLOR, .offset = AT(background), .set_offset = AT(has_background)}, \
+    {.name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity)}, \
+    {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
+
+#define LENGTH {.name = "length", .kind = GLINTL_NUMBER, .offset = AT(length), .set_offset = AT(has_length)}
+// clang-format on
+
+static const glintL_field LABEL_FIELDS[] = {
+    { .name = "text", .kind = GLINTL_CUSTOM, .required = true, .read = read_text, .push = push_text },
+    EVERY_OVERLAY,
+    { .name = NULL },
+};
+
+static const glintL_field COLORBAR_FIELDS[] = {
+    { .name = "map", .kind = GLINTL_ENUM, .offset = AT(map), .names = glintL_colormaps, .required = true },
+    { .name = "low", .kind = GLINTL_NUMBER, .offset = AT(low), .required = true },
+    { .name = "high", .kind = GLINTL_NUMBER, .offset = AT(high), .required = true },
+    { .name = "title", .kind = GLINTL_CUSTOM, .read = read_text, .push = push_text },
+    { .name = "ticks", .kind = GLINTL_CUSTOM, .read = read_ticks, .push = push_ticks },
+    { .name = "orientation", .kind = GLINTL_ENUM, .offset = AT(orientation), .names = ORIENTATIONS },
+    LENGTH,
+    EVERY_OVERLAY,
+    { .name = NULL },
+};
+
+static const glintL_field AXES_FIELDS[] = {
+    { .name = "labels", .kind = GLINTL_CUSTOM, .read = read_names, .push = push_names },
+    LENGTH,
+    EVERY_OVERLAY,
+    { .name = NULL },
+};
+
+static const glintL_variant VARIANTS[] = {
+    [GLINT_OVERLAY_LABEL] = { .name = "label", .fields = LABEL_FIELDS },
+    [GLINT_OVERLAY_COLORBAR] = { .name = "colorbar", .fields = COLORBAR_FIELDS },
+    [GLINT_OVERLAY_AXES] = { .name = "axes", .fields = AXES_FIELDS },
+};
+
+static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_overlay_get(object)->kind]; }
+
+static void get(const void *object, void *desc) { memcpy(desc, glint_overlay_get(object), sizeof(desc_type)); }
+
+static glint_status set(void *object, const void *desc, glint_error *error)
+{
+    return glint_overlay_set(object, desc, error);
+}
+
+static void *retain(void *object) { return glint_overlay_retain(object); }
+
+static void release(void *object) { glint_overlay_release(object); }
+
+// The one of at and position set last is the one used.
+static void assigned(lua_State *L, const glintL_field *field, void *desc)
+{
+    (void)L;
+    if (field->read == read_at)
+        ((desc_type *)desc)->has_position = false;
+}
+
+static const glintL_class CLASS = {
+    .type = GLINTL_OVERLAY,
+    .variant = variant,
+    .get = get,
+    .set = set,
+    .retain = retain,
+    .release = release,
+    .assigned = assigned,
+};
+
+static int new_overlay(lua_State *L, glint_overlay_kind kind)
+{
+    desc_type desc = glint_overlay_desc_default(kind);
+    glint_overlay *overlay = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    glintL_box *box = glintL_new_box(L, GLINTL_OVERLAY);
+    glintL_read_table(L, 1, VARIANTS[kind].name, VARIANTS[kind].fields, &desc, false);
+    lua_pushliteral(L, "at");
+    if (lua_rawget(L, 1) != LUA_TNIL && desc.has_position)
+        return glintL_error(L, "%s: at or position expected, got both", VARIANTS[kind].name);
+    lua_pop(L, 1);
+    glintL_check_status(L, VARIANTS[kind].name, &error, glint_overlay_create(&desc, &overlay, &error));
+    box->object = overlay;
+    glintL_remember(L, overlay);
+    return 1;
+}
+
+static int new_label(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_LABEL); }
+
+static int new_colorbar(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_COLORBAR); }
+
+static int new_axes(lua_State *L) { return new_overlay(L, GLINT_OVERLAY_AXES); }
+
+void glintL_open_overlay(lua_State *L)
+{
+    static const luaL_Reg constructors[] = {
+        { "label", new_label },
+        { "colorbar", new_colorbar },
+        { "axes", new_axes },
+        { NULL, NULL },
+    };
+    glintL_open_class(L, &CLASS);
+    for (size_t i = 0; i < sizeof VARIANTS / sizeof *VARIANTS; i++)
+        glintL_list_object(L, &VARIANTS[i], &CLASS);
+    luaL_setfuncs(L, constructors, 0);
+}

@@ -1,0 +1,98 @@
+/// The axes of the world as the camera has them: three lines from one point, seen from afar, the nearest drawn last.
+#include "engine/overlay/layout.h"
+
+#include "engine/base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+#define THICK 0.18 ///< of a line, in sizes of letters
+#define NAME_ROOM 0.75 ///< from an axis's end to the middle of its name, likewise
+
+/// x, y and z: red, green and blue, linear.
+static const double colors[3][3] = { { 0.80, 0.07, 0.05 }, { 0.10, 0.52, 0.06 }, { 0.07, 0.19, 0.90 } };
+
+typedef struct axis {
+    double end[2]; ///< from the point where they meet, pixels to the right and down
+    double away; ///< from the eye, 1: straight
+    double name[2]; ///< the middle of its name
+} axis;
+
+static axis find_axis(const glint_layout *layout, int i)
+{
+    const double(*view)[3] = layout->overlays->view;
+    const double across = view[0][i], down = -view[1][i], shown = sqrt(across * across + down * down);
+    const double room = shown > 0 ? NAME_ROOM * layout->em / shown : 0;
+    axis a = { .away = view[2][i] };
+    a.end[0] = across * layout->length;
+    a.end[1] = down * layout->length;
+    a.name[0] = a.end[0] + across * room;
+    a.name[1] = a.end[1] + down * room;
+    return a;
+}
+
+/// Half of the square that all of them take, whatever the view is: turning it moves nothing else.
+static int reach(const glint_layout *layout)
+{
+    int widest = 0;
+    for (int i = 0; i < 3; i++) {
+        const char *name = layout->desc->names[i];
+        const int width = glint_typeface_width(&layout->typeface, name, strlen(name));
+        widest = width > widest ? width : widest;
+    }
+    return (int)ceil(layout->length + NAME_ROOM * layout->em + (widest > layout->typeface.height ? widest : layout->typeface.height) / 2.0);
+}
+
+void glint_axes_measure(glint_layout *layout) { layout->width = layout->height = 2 * reach(layout) + 1; }
+
+/// How far a point is from the line from 0 to `end`.
+static double distance_to(const double end[2], double x, double y)
+{
+    const double square = end[0] * end[0] + end[1] * end[1];
+    const double along = square > 0 ? fmin(fmax((x * end[0] + y * end[1]) / square, 0), 1) : 0;
+    const double dx = x - along * end[0], dy = y - along * end[1];
+    return sqrt(dx * dx + dy * dy);
+}
+
+static void draw_line(const glint_layout *layout, const double middle[2], const axis *a, const double color[3])
+{
+    const double half = fmax(THICK * layout->em / 2, 0.75);
+    const int x0 = (int)floor(middle[0] + fmin(0, a->end[0]) - half - 1), y0 = (int)floor(middle[1] + fmin(0, a->end[1]) - half - 1);
+    const int x1 = (int)ceil(middle[0] + fmax(0, a->end[0]) + half + 1), y1 = (int)ceil(middle[1] + fmax(0, a->end[1]) + half + 1);
+    glint_stamp stamp;
+    if (!glint_layout_mask(layout, x0, y0, x1 - x0, y1 - y0, &stamp))
+        return;
+    for (int y = 0; y < stamp.height; y++)
+        for (int x = 0; x < stamp.width; x++) {
+            const double d = distance_to(a->end, stamp.x + x + 0.5 - middle[0], stamp.y + y + 0.5 - middle[1]);
+            const double covered = fmin(fmax(half + 0.5 - d, 0), 1);
+            stamp.coverage[(size_t)y * (size_t)stamp.width + (size_t)x] = (uint8_t)(covered * 255 + 0.5);
+        }
+    glint_stamps_add(layout->stamps, stamp, color);
+}
+
+void glint_axes_draw(const glint_layout *layout, int x, int y)
+{
+    const int half = reach(layout);
+    const double middle[2] = { x + half + 0.5, y + half + 0.5 };
+    axis axes[3];
+    int order[3] = { 0, 1, 2 };
+    for (int i = 0; i < 3; i++)
+        axes[i] = find_axis(layout, i);
+    for (int i = 0; i < 2; i++) // the farthest first
+        for (int k = 0; k < 2 - i; k++)
+            if (axes[order[k]].away < axes[order[k + 1]].away) {
+                const int swapped = order[k];
+                order[k] = order[k + 1];
+                order[k + 1] = swapped;
+            }
+    for (int i = 0; i < 3; i++) {
+        const axis *a = &axes[order[i]];
+        const char *name = layout->desc->names[order[i]];
+        const int wide = glint_typeface_width(&layout->typeface, name, strlen(name));
+        draw_line(layout, middle, a, colors[order[i]]);
+        glint_layout_text(layout, name, (int)floor(middle[0] + a->name[0] - wide / 2.0 + 0.5),
+                          (int)floor(middle[1] + a->name[1] - layout->typeface.height / 2.0 + 0.5), wide, 0,
+                          layout->desc->color);
+    }
+}

@@ -1,0 +1,126 @@
+#include "engine/overlay/layout.h"
+
+#include "engine/base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LEAST_SIZE 10.0 ///< pixels of letters whose size is not said
+#define SIZE_SHARE 36.0 ///< of the picture's height that they otherwise are
+#define PADDING 0.35 ///< between what is drawn and the border of what lies behind, in sizes
+
+int glint_layout_measure(const glint_layout *layout, const char *text, int *lines)
+{
+    int widest = 0;
+    for (*lines = 0; *text; ++*lines) {
+        const size_t size = strcspn(text, "\n");
+        const int width = glint_typeface_width(&layout->typeface, text, size);
+        widest = width > widest ? width : widest;
+        text += size + (text[size] == '\n');
+    }
+    return widest;
+}
+
+bool glint_layout_mask(const glint_layout *layout, int x, int y, int width, int height, glint_stamp *stamp)
+{
+    const int x0 = x > 0 ? x : 0, y0 = y > 0 ? y : 0;
+    const int x1 = x + width < layout->overlays->width ? x + width : layout->overlays->width;
+    const int y1 = y + height < layout->overlays->height ? y + height : layout->overlays->height;
+    if (x0 >= x1 || y0 >= y1)
+        return false;
+    *stamp = (glint_stamp) { .x = x0, .y = y0, .width = x1 - x0, .height = y1 - y0, .opacity = 255 };
+    stamp->coverage = calloc((size_t)stamp->width, (size_t)stamp->height);
+    if (!stamp->coverage)
+        layout->stamps->lost = true;
+    return stamp->coverage != NULL;
+}
+
+void glint_layout_text(const glint_layout *layout, const char *text, int x, int y, int width, double align,
+                       const double color[3])
+{
+    for (; *text; y += layout->typeface.line) {
+        const size_t size = strcspn(text, "\n");
+        const int wide = glint_typeface_width(&layout->typeface, text, size);
+        const int at = x + (int)floor((width - wide) * align);
+        glint_stamp stamp;
+        if (glint_layout_mask(layout, at, y, wide, layout->typeface.height, &stamp)) {
+            glint_mask mask = { stamp.width, stamp.height, stamp.coverage };
+            glint_typeface_draw(&layout->typeface, text, size, at - stamp.x, y - stamp.y, &mask);
+            glint_stamps_add(layout->stamps, stamp, color);
+        }
+        text += size + (text[size] == '\n');
+    }
+}
+
+void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int height, const double color[3],
+                       double opacity)
+{
+    const int x1 = x + width, y1 = y + height, wide = layout->overlays->width, high = layout->overlays->height;
+    glint_stamp stamp = { .x = x > 0 ? x : 0, .y = y > 0 ? y : 0, .opacity = (uint8_t)(opacity * 255 + 0.5) };
+    stamp.width = (x1 < wide ? x1 : wide) - stamp.x;
+    stamp.height = (y1 < high ? y1 : high) - stamp.y;
+    if (stamp.width > 0 && stamp.height > 0)
+        glint_stamps_add(layout->stamps, stamp, color);
+}
+
+static void measure_label(glint_layout *layout)
+{
+    int lines;
+    layout->width = glint_layout_measure(layout, layout->desc->text, &lines);
+    layout->height = (lines - 1) * layout->typeface.line + layout->typeface.height;
+}
+
+static void draw_label(const glint_layout *layout, int x, int y)
+{
+    const glint_overlay_desc *desc = layout->desc;
+    glint_layout_text(layout, desc->text, x, y, layout->width, desc->has_position ? 0 : desc->at[0], desc->color);
+}
+
+/// Pixels of a length in points, no more than a side of a picture.
+static double pixels_of(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
+
+static glint_layout begin(const glint_overlays *overlays, size_t i, double dpi, glint_stamps *stamps)
+{
+    static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5 };
+    const glint_overlay_desc *desc = &overlays->of[i];
+    glint_layout layout = { .overlays = overlays, .desc = desc, .stamps = stamps };
+    layout.em = desc->has_size ? pixels_of(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
+    layout.typeface = glint_typeface_open(layout.em);
+    if (desc->kind != GLINT_OVERLAY_LABEL)
+        layout.length = desc->has_length ? pixels_of(desc->length, dpi) : lengths[desc->kind] * layout.em;
+    return layout;
+}
+
+static void draw(glint_layout *layout, double dpi)
+{
+    static void (*const measures[])(glint_layout *) = { measure_label, glint_colorbar_measure, glint_axes_measure };
+    static void (*const draws[])(const glint_layout *, int, int) = { draw_label, glint_colorbar_draw, glint_axes_draw };
+    const glint_overlay_desc *desc = layout->desc;
+    const double margin = desc->has_margin ? pixels_of(desc->margin, dpi) : layout->em / 2;
+    const int padding = desc->has_background ? (int)ceil(PADDING * layout->em) : 0;
+    const int sides[2] = { layout->overlays->width, layout->overlays->height };
+    int corner[2];
+    measures[desc->kind](layout);
+    const int size[2] = { layout->width + 2 * padding, layout->height + 2 * padding };
+    for (int i = 0; i < 2; i++)
+        corner[i] = (int)floor(desc->has_position ? desc->position[i]
+                                                  : margin + (sides[i] - 2 * margin - size[i]) * desc->at[i]);
+    if (desc->has_background)
+        glint_layout_fill(layout, corner[0], corner[1], size[0], size[1], desc->background, desc->opacity);
+    draws[desc->kind](layout, corner[0] + padding, corner[1] + padding);
+}
+
+glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
+                                 glint_stamps *out, glint_error *error)
+{
+    *out = (glint_stamps) { .transfer = transfer, .bits = bits };
+    for (size_t i = 0; i < overlays->count; i++) {
+        glint_layout layout = begin(overlays, i, dpi, out);
+        draw(&layout, dpi);
+    }
+    if (!out->lost)
+        return GLINT_OK;
+    glint_stamps_free(out);
+    return glint_fail_nomem(error);
+}

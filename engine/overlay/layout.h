@@ -1,0 +1,35 @@
+/// One overlay on its way into stamps. Internal.
+#ifndef GLINT_OVERLAY_LAYOUT_H
+#define GLINT_OVERLAY_LAYOUT_H
+
+#include "engine/overlay/overlay.h"
+#include "engine/text/typeface.h"
+
+typedef struct glint_layout {
+    const glint_overlays *overlays;
+    const glint_overlay_desc *desc;
+    glint_stamps *stamps;
+    glint_typeface typeface;
+    double em; ///< size of its letters, pixels
+    double length; ///< of a colour bar or an axis, pixels
+    int width, height; ///< of all that it draws, without what lies behind; pixels
+} glint_layout;
+
+/// Width of the widest line, and how many there are.
+int glint_layout_measure(const glint_layout *layout, const char *text, int *lines);
+/// Draws the lines of a text from x, y on, each at the share `align` of the room that a width leaves.
+void glint_layout_text(const glint_layout *layout, const char *text, int x, int y, int width, double align,
+                       const double color[3]);
+/// A rectangle, cut off at the picture's borders.
+void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int height, const double color[3],
+                       double opacity);
+/// A mask for a rectangle, cut off at the picture's borders: *stamp says where it lies. False: nothing of it is left, or
+/// there is no memory.
+bool glint_layout_mask(const glint_layout *layout, int x, int y, int width, int height, glint_stamp *stamp);
+
+void glint_colorbar_measure(glint_layout *layout);
+void glint_colorbar_draw(const glint_layout *layout, int x, int y);
+void glint_axes_measure(glint_layout *layout);
+void glint_axes_draw(const glint_layout *layout, int x, int y);
+
+#endif

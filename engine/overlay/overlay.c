@@ -1,0 +1,133 @@
+#include "engine/overlay/overlay.h"
+
+#include "engine/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct glint_overlay {
+    size_t references;
+    glint_overlay_desc desc;
+};
+
+#define POINTS_MAX 10000.0
+
+glint_overlay_desc glint_overlay_desc_default(glint_overlay_kind kind)
+{
+    glint_overlay_desc desc = { .kind = kind, .color = { 1, 1, 1 }, .opacity = 1, .high = 1, .names = { "x", "y", "z" } };
+    if (kind == GLINT_OVERLAY_COLORBAR) {
+        desc.at[0] = 1;
+        desc.at[1] = 0.5;
+    }
+    if (kind == GLINT_OVERLAY_AXES)
+        desc.at[1] = 1;
+    return desc;
+}
+
+static glint_status check_text(const char *name, const char *text, size_t size, glint_error *error)
+{
+    if (memchr(text, '\0', size))
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %zu bytes expected", name, size - 1);
+}
+
+static glint_status check_place(const glint_overlay_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    for (int i = 0; i < 2 && !status; i++)
+        status = glint_check_range("at", desc->at[i], 0, 1, "shares 0 .. 1", error);
+    for (int i = 0; i < 2 && !status && desc->has_position; i++)
+        status = glint_check_range("position", desc->position[i], -1e6, 1e6, "pixels -1000000 .. 1000000", error);
+    if (!status && desc->has_size)
+        status = glint_check_range("size", desc->size, 1, POINTS_MAX, "points 1 .. 10000", error);
+    if (!status && desc->has_margin)
+        status = glint_check_range("margin", desc->margin, 0, POINTS_MAX, "points 0 .. 10000", error);
+    if (!status && desc->has_length)
+        status = glint_check_range("length", desc->length, 1, POINTS_MAX, "points 1 .. 10000", error);
+    return status;
+}
+
+static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if ((unsigned)desc->map >= GLINT_COLORMAP_COUNT)
+        return glint_fail(error, GLINT_ERR_INVALID, "map: no such colour map");
+    if ((unsigned)desc->orientation > GLINT_HORIZONTAL)
+        return glint_fail(error, GLINT_ERR_INVALID, "orientation: vertical or horizontal expected");
+    if (!isfinite(desc->low))
+        return glint_fail(error, GLINT_ERR_INVALID, "low: finite number expected, got %g", desc->low);
+    if (desc->low == desc->high || !isfinite(desc->high - desc->low))
+        return glint_fail(error, GLINT_ERR_INVALID, "high: another number than low (%.15g) expected, got %.15g",
+                          desc->low, desc->high);
+    if (desc->tick_count > GLINT_OVERLAY_TICKS_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "ticks: at most %d numbers expected, got %zu",
+                          GLINT_OVERLAY_TICKS_MAX, desc->tick_count);
+    const double low = fmin(desc->low, desc->high), high = fmax(desc->low, desc->high);
+    for (size_t i = 0; i < desc->tick_count && !status; i++)
+        if (!(desc->ticks[i] >= low && desc->ticks[i] <= high))
+            status = glint_fail(error, GLINT_ERR_INVALID, "ticks[%zu]: number %.15g .. %.15g expected, got %.15g", i + 1,
+                                low, high, desc->ticks[i]);
+    return status;
+}
+
+static glint_status check(const glint_overlay_desc *desc, glint_error *error)
+{
+    if ((unsigned)desc->kind > GLINT_OVERLAY_AXES)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: no such overlay");
+    glint_status status = check_text("text", desc->text, sizeof desc->text, error);
+    for (int i = 0; i < 3 && !status; i++)
+        status = check_text("names", desc->names[i], sizeof desc->names[i], error);
+    if (!status)
+        status = check_text("name", desc->name, sizeof desc->name, error);
+    if (!status)
+        status = check_place(desc, error);
+    if (!status)
+        status = glint_check_color("color", desc->color, error);
+    if (!status && desc->has_background)
+        status = glint_check_color("background", desc->background, error);
+    if (!status)
+        status = glint_check_range("opacity", desc->opacity, 0, 1, "number 0 .. 1", error);
+    if (!status && desc->kind == GLINT_OVERLAY_COLORBAR)
+        status = check_bar(desc, error);
+    return status;
+}
+
+glint_status glint_overlay_create(const glint_overlay_desc *desc, glint_overlay **out, glint_error *error)
+{
+    glint_status status = check(desc, error);
+    if (status)
+        return status;
+    glint_overlay *overlay = malloc(sizeof *overlay);
+    if (!overlay)
+        return glint_fail_nomem(error);
+    *overlay = (glint_overlay) { .references = 1, .desc = *desc };
+    *out = overlay;
+    return GLINT_OK;
+}
+
+glint_status glint_overlay_set(glint_overlay *overlay, const glint_overlay_desc *desc, glint_error *error)
+{
+    if (desc->kind != overlay->desc.kind)
+        return glint_fail(error, GLINT_ERR_INVALID, "kind: that of the overlay expected");
+    glint_status status = check(desc, error);
+    if (!status)
+        overlay->desc = *desc;
+    return status;
+}
+
+const glint_overlay_desc *glint_overlay_get(const glint_overlay *overlay) { return &overlay->desc; }
+
+glint_overlay *glint_overlay_retain(glint_overlay *overlay)
+{
+    if (overlay)
+        overlay->references++;
+    return overlay;
+}
+
+void glint_overlay_release(glint_overlay *overlay)
+{
+    if (overlay && --overlay->references == 0)
+        free(overlay);
+}

@@ -1,0 +1,63 @@
+/// What is drawn over a finished picture: labels, colour bars, axes. Internal.
+///
+///     overlay.c    the described objects, checked
+///     overlays.c   all of one frame, as a plan and its image hold them; their key
+///     layout.c     where each one lies, in stamps; colorbar.c, axes.c: what they are made of
+///     stamp.c      stamps on rows of codes
+#ifndef GLINT_OVERLAY_H
+#define GLINT_OVERLAY_H
+
+#include "engine/base/hash.h"
+#include "engine/glint.h"
+
+#include <stdatomic.h>
+
+/// The overlays of one frame. Immutable, reference counted; any thread.
+typedef struct glint_overlays {
+    atomic_int references;
+    int width, height; ///< of the whole picture, pixels
+    double view[3][3]; ///< unit: to the right, up and away from the eye
+    size_t count;
+    glint_overlay_desc of[]; ///< in the order in which they are drawn
+} glint_overlays;
+
+/// A copy of the scene's overlays; NULL where there are none, or nothing to be seen of them.
+/// view  to the right, up and away from the eye; need not be unit.
+glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const double view[3][3],
+                                 glint_overlays **out, glint_error *error);
+glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: nothing
+void glint_overlays_release(glint_overlays *overlays); ///< NULL: nothing
+/// Continues a key with all that their pixels are made from, but for the codes under them and the file's dpi.
+glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key);
+
+/// A rectangle of one colour, as codes of one picture.
+typedef struct glint_stamp {
+    int x, y, width, height; ///< pixels of the whole picture; may lie outside
+    uint8_t *coverage; ///< width x height; NULL: 255 everywhere. Owned
+    uint8_t opacity; ///< that the coverage is multiplied by, 255: all
+    uint16_t ink[3]; ///< codes
+} glint_stamp;
+
+/// Stamps in the order in which they are drawn, for one picture.
+typedef struct glint_stamps {
+    glint_stamp *of;
+    size_t count, capacity;
+    bool lost; ///< out of memory: some are missing
+    glint_transfer transfer; ///< of the codes
+    int bits; ///< likewise: 8 or 16
+} glint_stamps;
+
+/// dpi  pixels an inch; 0: not said.
+glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
+                                 glint_stamps *out, glint_error *error);
+void glint_stamps_free(glint_stamps *stamps);
+/// Adds a stamp of a linear colour; its coverage is freed with the others, or at once where there is no memory.
+void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);
+/// Whether some stamp has a pixel in the rows from `first`, `count` of them, of the whole picture.
+bool glint_stamps_touch(const glint_stamps *stamps, int first, int count);
+/// Draws on a row of codes.
+/// codes     `width` pixels of 3 or 4 channels, of the stamps' bits; alpha is not multiplied in.
+/// x, y      of the first of them, in the whole picture.
+void glint_stamps_row(const glint_stamps *stamps, int x, int y, int width, int channels, void *codes);
+
+#endif

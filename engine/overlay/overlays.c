@@ -1,0 +1,79 @@
+#include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/overlay/overlay.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// A label without text shows nothing.
+static bool shows(const glint_overlay_desc *desc) { return desc->kind != GLINT_OVERLAY_LABEL || desc->text[0]; }
+
+glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const double view[3][3],
+                                 glint_overlays **out, glint_error *error)
+{
+    const size_t count = glint_scene_overlay_count(scene);
+    size_t shown = 0;
+    for (size_t i = 0; i < count; i++)
+        shown += shows(glint_overlay_get(glint_scene_overlay_at(scene, i)));
+    *out = NULL;
+    if (!shown)
+        return GLINT_OK;
+    glint_overlays *overlays = malloc(sizeof *overlays + shown * sizeof *overlays->of);
+    if (!overlays)
+        return glint_fail_nomem(error);
+    atomic_init(&overlays->references, 1);
+    overlays->width = width;
+    overlays->height = height;
+    overlays->count = 0;
+    for (int i = 0; i < 3; i++)
+        vec_normalize(overlays->view[i], view[i]);
+    for (size_t i = 0; i < count; i++) {
+        const glint_overlay_desc *desc = glint_overlay_get(glint_scene_overlay_at(scene, i));
+        if (shows(desc))
+            overlays->of[overlays->count++] = *desc;
+    }
+    *out = overlays;
+    return GLINT_OK;
+}
+
+glint_overlays *glint_overlays_retain(glint_overlays *overlays)
+{
+    if (overlays)
+        atomic_fetch_add_explicit(&overlays->references, 1, memory_order_relaxed);
+    return overlays;
+}
+
+void glint_overlays_release(glint_overlays *overlays)
+{
+    if (overlays && atomic_fetch_sub_explicit(&overlays->references, 1, memory_order_acq_rel) == 1)
+        free(overlays);
+}
+
+#define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
+
+static glint_key place_key(const glint_overlay_desc *d, glint_key key)
+{
+    const double place[] = { d->kind,     d->at[0],   d->at[1],      d->has_position,   d->position[0], d->position[1],
+                             d->has_size, d->size,    d->has_margin, d->margin,         d->opacity,     d->has_length,
+                             d->length,   d->color[0], d->color[1],  d->color[2],       d->has_background };
+    ADD(key, place);
+    ADD(key, d->background);
+    return glint_key_add_string(key, d->text);
+}
+
+glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
+{
+    for (size_t i = 0; i < overlays->count; i++) {
+        const glint_overlay_desc *d = &overlays->of[i];
+        const double bar[] = { d->map, d->low, d->high, d->orientation, (double)d->tick_count };
+        key = place_key(d, key);
+        if (d->kind == GLINT_OVERLAY_COLORBAR)
+            key = glint_key_add(glint_key_add(key, bar, sizeof bar), d->ticks, d->tick_count * sizeof *d->ticks);
+        if (d->kind != GLINT_OVERLAY_AXES)
+            continue;
+        ADD(key, overlays->view);
+        for (int k = 0; k < 3; k++)
+            key = glint_key_add_string(key, d->names[k]);
+    }
+    return key;
+}

@@ -1,0 +1,367 @@
+/// Labels, colour bars and axes: which codes they leave, where, and what they leave alone.
+#include "tests/engine/cases/image_case.h"
+
+#include "engine/overlay/overlay.h"
+#include "engine/text/font.h"
+
+#define WIDTH 160
+#define HEIGHT 120
+#define MIDDLE_X (WIDTH / 2 - 1) // of what is an odd number of pixels wide, at 0.5
+#define MIDDLE_Y (HEIGHT / 2 - 1)
+
+typedef struct world {
+    glint_scene *scene;
+    glint_overlay *overlay;
+    glint_renderer *renderer;
+    glint_render_desc render;
+    glint_write_desc write;
+} world;
+
+static world make_world(const glint_overlay_desc *desc, double background)
+{
+    world w = { .render = glint_render_desc_default() };
+    glint_renderer_desc renderer = glint_renderer_desc_default();
+    glint_camera_desc view = glint_camera_desc_default();
+    glint_camera *camera = NULL;
+    glint_scene_desc scene = { .background = { background, background, background } };
+    renderer.threads = 2;
+    w.render.width = WIDTH;
+    w.render.height = HEIGHT;
+    w.render.passes = 0;
+    w.render.codes = true;
+    w.write.pass = GLINT_PASS_BEAUTY;
+    assert_int_equal(glint_camera_create(&view, &camera, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_create(&w.scene, NULL), GLINT_OK);
+    scene.camera = camera;
+    assert_int_equal(glint_scene_set(w.scene, &scene, NULL), GLINT_OK);
+    glint_camera_release(camera);
+    assert_int_equal(glint_overlay_create(desc, &w.overlay, NULL), GLINT_OK);
+    assert_int_equal(glint_scene_add_overlay(w.scene, w.overlay, NULL), GLINT_OK);
+    assert_int_equal(glint_renderer_create(&renderer, &w.renderer, NULL), GLINT_OK);
+    return w;
+}
+
+static void drop_world(world *w)
+{
+    glint_overlay_release(w->overlay);
+    glint_scene_release(w->scene);
+    glint_renderer_destroy(w->renderer);
+}
+
+/// Renders, writes and reads again.
+static glint_picture *show(world *w, const char *name, glint_frame_stats *stats)
+{
+    glint_plan *plan = NULL;
+    glint_image *image = NULL;
+    glint_picture *picture = NULL;
+    glint_error error = { 0 };
+    w->write.path = in_folder(name);
+    w->write.tone = w->render.tone;
+    if (glint_plan_create(w->scene, &w->render, &plan, &error) || glint_render(w->renderer, plan, &image, stats, &error) ||
+        glint_image_write(image, &w->write, &error) || glint_picture_read(w->write.path, true, &picture, &error))
+        fail_msg("%s", error.message);
+    glint_plan_destroy(plan);
+    glint_image_release(image);
+    return picture;
+}
+
+/// The code of a pixel of a grey picture on a grey backdrop of 0.
+static int grey(const glint_picture *picture, int x, int y)
+{
+    uint8_t row[3 * WIDTH];
+    glint_picture_row(picture, y, 0, row);
+    return row[3 * x + 1];
+}
+
+static glint_overlay_desc label_at(double x, double y, const char *text)
+{
+    glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_LABEL);
+    desc.has_position = true;
+    desc.position[0] = x;
+    desc.position[1] = y;
+    snprintf(desc.text, sizeof desc.text, "%s", text);
+    return desc;
+}
+
+/// Every pixel is white where the glyph has a bit, else the picture's. 13 pixels are the font's own size; at 144 dpi a point has two.
+static void test_letters(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = label_at(7, 5, "\xc2\xb0" "A\n\xce\xb1");
+    desc.has_size = true;
+    desc.size = 13; // 26 pixels
+    world w = make_world(&desc, 0);
+    w.write.dpi = 144;
+    glint_picture *picture = show(&w, "letters.png", NULL);
+    static const char *const letters[3] = { "\xc2\xb0", "A", "\xce\xb1" };
+    static const int at[3][2] = { { 7, 5 }, { 7 + 16, 5 }, { 7, 5 + 30 } };
+    int lit = 0, all = 0;
+    for (int i = 0; i < 3; i++) {
+        const char *text = letters[i];
+        const uint8_t *glyph = glint_font_next(&text);
+        for (int y = 0; y < 2 * GLINT_FONT_HEIGHT; y++)
+            for (int x = 0; x < 2 * GLINT_FONT_WIDTH; x++) {
+                const int bit = glyph[y / 2] >> (GLINT_FONT_WIDTH - 1 - x / 2) & 1;
+                assert_int_equal(grey(picture, at[i][0] + x, at[i][1] + y), bit ? 255 : 0);
+                lit += bit;
+            }
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        all += grey(picture, i % WIDTH, i / WIDTH) > 0;
+    assert_int_equal(all, lit); // and nothing else
+    glint_picture_destroy(picture);
+    drop_world(&w);
+}
+
+/// A background of opacity o over code c leaves (c (255 - a) + b a) / 255, a = 255 o; with alpha it covers what is not there.
+static void test_background(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = label_at(20, 10, " ");
+    desc.has_background = true;
+    desc.opacity = 0.6;
+    for (int c = 0; c < 3; c++)
+        desc.background[c] = 0.5;
+    world w = make_world(&desc, 0.2);
+    const int a = 153, ink = (int)(glint_srgb_encode(0.5) * 255 + 0.5), below = (int)(glint_srgb_encode(0.2) * 255 + 0.5);
+    glint_picture *picture = show(&w, "eight.png", NULL);
+    assert_int_equal(grey(picture, 20, 10), (below * (255 - a) + ink * a + 127) / 255);
+    assert_int_equal(grey(picture, 19, 10), below);
+    glint_picture_destroy(picture);
+    w.render.tone.bits = 16;
+    w.render.tone.transfer = GLINT_TRANSFER_LINEAR;
+    picture = show(&w, "sixteen.png", NULL);
+    assert_int_equal(glint_picture_bits(picture), 16);
+    const double mixed = (0.2 * (255 - a) + 0.5 * a) / 255;
+    assert_true(abs(grey(picture, 20, 10) - (int)(glint_srgb_encode(mixed) * 255 + 0.5)) <= 1);
+    glint_picture_destroy(picture);
+    w.render.tone = glint_tone_desc_default();
+    w.render.alpha = true;
+    picture = show(&w, "alpha.png", NULL);
+    assert_int_equal(glint_picture_channels(picture), 4);
+    uint8_t row[3 * WIDTH];
+    glint_picture_row(picture, 10, 255, row); // white shows through 0.4
+    assert_true(abs(row[3 * 20] - (255 * (255 - a) + ink * a) / 255) <= 1);
+    assert_int_equal(row[3 * 19], 255);
+    glint_picture_destroy(picture);
+    drop_world(&w);
+}
+
+/// The bar's middle column has the table's colours, bottom to top, code by code, in a length of 512 pixels a map of 256.
+static void test_colors(void **state)
+{
+    (void)state;
+    for (int horizontal = 0; horizontal < 2; horizontal++) {
+        glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
+        desc.map = GLINT_COLORMAP_TURBO;
+        desc.orientation = horizontal ? GLINT_HORIZONTAL : GLINT_VERTICAL;
+        desc.has_length = desc.has_size = true;
+        desc.length = 512;
+        desc.size = 13;
+        world w = make_world(&desc, 0);
+        w.render.width = w.render.height = 600;
+        glint_picture *picture = show(&w, "bar.png", NULL);
+        const uint32_t *table = glint_colormap_table(GLINT_COLORMAP_TURBO);
+        uint8_t *rgb = malloc(600 * 600 * 3);
+        assert_non_null(rgb);
+        for (int y = 0; y < 600; y++)
+            glint_picture_row(picture, y, 0, rgb + (size_t)y * 600 * 3);
+        int found = 0;
+        for (int start = 0; start < 600 * 600 && !found; start++) { // where the first colour is
+            const size_t step = horizontal ? 3 : 600 * 3;
+            int i = 0;
+            while (i < 512 && (horizontal ? start % 600 : start / 600) + i < 600) {
+                const uint8_t *p = rgb + (size_t)start * 3 + (size_t)i * step;
+                const uint32_t code = (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
+                if (code != table[(horizontal ? i : 511 - i) / 2])
+                    break;
+                i++;
+            }
+            found = i == 512;
+        }
+        assert_true(found);
+        free(rgb);
+        glint_picture_destroy(picture);
+        drop_world(&w);
+    }
+}
+
+/// From straight ahead x is to the right, red, and y up, green, both of the length said; turned by a quarter about y, z is to
+/// the left.
+static void test_axes(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
+    desc.at[0] = desc.at[1] = 0.5;
+    desc.has_length = desc.has_size = true;
+    desc.length = 30;
+    desc.size = 13;
+    world w = make_world(&desc, 0);
+    glint_picture *picture = show(&w, "axes.png", NULL);
+    uint8_t row[3 * WIDTH];
+    glint_picture_row(picture, MIDDLE_Y, 0, row);
+    assert_true(row[3 * (MIDDLE_X + 20)] > 200 && row[3 * (MIDDLE_X + 20) + 1] < 100);
+    assert_int_equal(row[3 * (MIDDLE_X - 20)], 0);
+    glint_picture_row(picture, MIDDLE_Y - 20, 0, row);
+    assert_true(row[3 * (MIDDLE_X) + 1] > 150 && row[3 * (MIDDLE_X)] < 100);
+    glint_picture_destroy(picture);
+    glint_camera_desc view = glint_camera_desc_default();
+    view.eye[0] = 10;
+    view.eye[2] = 0;
+    assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
+    picture = show(&w, "axes.png", NULL);
+    glint_picture_row(picture, MIDDLE_Y, 0, row);
+    assert_true(row[3 * (MIDDLE_X - 20) + 2] > 200 && row[3 * (MIDDLE_X - 20)] < 100);
+    glint_picture_destroy(picture);
+    drop_world(&w);
+}
+
+/// A region shows what the whole picture has there.
+static void test_region(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
+    snprintf(desc.text, sizeof desc.text, "K");
+    desc.has_background = true;
+    world w = make_world(&desc, 0.3);
+    glint_picture *whole = show(&w, "whole.png", NULL);
+    const double region[4] = { 77, 31, 83, 60 };
+    memcpy(w.render.region, region, sizeof region);
+    glint_picture *part = show(&w, "part.png", NULL);
+    uint8_t a[3 * WIDTH], b[3 * WIDTH];
+    for (int y = 0; y < 60; y++) {
+        glint_picture_row(whole, 31 + y, 0, a);
+        glint_picture_row(part, y, 0, b);
+        assert_memory_equal(a + 3 * 77, b, 3 * 83);
+    }
+    glint_picture_destroy(whole);
+    glint_picture_destroy(part);
+    drop_world(&w);
+}
+
+/// Another text: another key of beauty, no stage that runs again, other bytes; the planes, other passes and their keys are as
+/// they were. The picture before is left as it was.
+static void test_reuse(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = label_at(3, 3, "one");
+    world w = make_world(&desc, 0.3);
+    glint_frame_stats stats;
+    glint_image *images[4] = { NULL };
+    char keys[4][33], depth_keys[4][33];
+    uint8_t *bytes[4];
+    size_t sizes[4];
+    w.render.passes = 1u << GLINT_PASS_DEPTH;
+    w.write.path = "x.png";
+    w.write.tone = w.render.tone;
+    for (int i = 0; i < 4; i++) {
+        glint_plan *plan = NULL;
+        snprintf(desc.text, sizeof desc.text, "%s", i < 3 ? "one" : "two");
+        assert_int_equal(glint_overlay_set(w.overlay, &desc, NULL), GLINT_OK);
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(w.renderer, plan, &images[i], &stats, NULL), GLINT_OK);
+        glint_write_desc depth = w.write;
+        depth.pass = GLINT_PASS_DEPTH;
+        glint_frame_key(plan, &w.write, keys[i]);
+        glint_frame_key(plan, &depth, depth_keys[i]);
+        glint_plan_destroy(plan);
+    }
+    for (int i = 0; i < stats.stage_count; i++)
+        assert_true(stats.stage_reused[i] == 1);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(glint_image_to_bytes(images[i], &w.write, &bytes[i], &sizes[i], NULL), GLINT_OK);
+    assert_string_equal(keys[0], keys[2]);
+    assert_string_not_equal(keys[2], keys[3]);
+    assert_string_equal(depth_keys[2], depth_keys[3]);
+    assert_true(sizes[0] == sizes[2] && memcmp(bytes[0], bytes[2], sizes[0]) == 0);
+    assert_false(sizes[2] == sizes[3] && memcmp(bytes[2], bytes[3], sizes[2]) == 0);
+    for (int i = 0; i < 4; i++) {
+        free(bytes[i]);
+        glint_image_release(images[i]);
+    }
+    drop_world(&w);
+}
+
+/// Pictures of a job through the writer, which keeps bands of the one before, are those that are written alone.
+static void test_writer(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = label_at(3, 50, "0");
+    world w = make_world(&desc, 0.3);
+    glint_writer *writer = NULL;
+    assert_int_equal(glint_writer_create(2, 2, &writer, NULL), GLINT_OK);
+    for (int i = 0; i < 5; i++) {
+        glint_plan *plan = NULL;
+        glint_image *image = NULL;
+        glint_write_result result;
+        snprintf(desc.text, sizeof desc.text, "%s", i == 3 ? "" : i % 2 ? "odd" : "even");
+        assert_int_equal(glint_overlay_set(w.overlay, &desc, NULL), GLINT_OK);
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        assert_int_equal(glint_render(w.renderer, plan, &image, NULL, NULL), GLINT_OK);
+        w.write.tone = w.render.tone;
+        w.write.path = in_folder("job.png");
+        assert_int_equal(glint_writer_submit(writer, image, &w.write, NULL, NULL), GLINT_OK);
+        assert_true(glint_writer_collect(writer, true, &result));
+        assert_int_equal(result.status, GLINT_OK);
+        glint_bytes job = read_ok(in_folder("job.png"));
+        w.write.path = in_folder("alone.png");
+        assert_int_equal(glint_image_write(image, &w.write, NULL), GLINT_OK);
+        glint_bytes alone = read_ok(in_folder("alone.png"));
+        assert_true(job.size == alone.size && memcmp(job.data, alone.data, job.size) == 0);
+        free(job.data);
+        free(alone.data);
+        glint_plan_destroy(plan);
+        glint_image_release(image);
+    }
+    glint_writer_destroy(writer);
+    drop_world(&w);
+}
+
+/// Each field is in the key.
+static void test_key(void **state)
+{
+    (void)state;
+    glint_overlay_desc bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR), axes = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
+    glint_overlay_desc changed[18];
+    for (size_t i = 0; i < 18; i++)
+        changed[i] = bar;
+    changed[1].text[0] = 'x';
+    changed[2].at[0] = 0.3;
+    changed[3].has_position = true;
+    changed[4].has_size = true, changed[4].size = 9;
+    changed[5].has_margin = true;
+    changed[6].color[2] = 0.5;
+    changed[7].has_background = true;
+    changed[8].has_background = true, changed[8].background[1] = 1;
+    changed[9].opacity = 0.5;
+    changed[10].has_length = true, changed[10].length = 40;
+    changed[11].map = GLINT_COLORMAP_MAGMA;
+    changed[12].low = -1;
+    changed[13].high = 2;
+    changed[14].orientation = GLINT_HORIZONTAL;
+    changed[15].tick_count = 1, changed[15].ticks[0] = 0.5;
+    changed[16] = axes;
+    changed[17] = axes, changed[17].names[1][0] = 'b';
+    char keys[18][33];
+    for (size_t i = 0; i < 18; i++) {
+        world w = make_world(&changed[i], 0);
+        glint_plan *plan = NULL;
+        assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
+        w.write.path = "x.png";
+        glint_frame_key(plan, &w.write, keys[i]);
+        for (size_t k = 0; k < i; k++)
+            assert_string_not_equal(keys[k], keys[i]);
+        glint_plan_destroy(plan);
+        drop_world(&w);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
+        cmocka_unit_test(test_axes),    cmocka_unit_test(test_region),     cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_writer),  cmocka_unit_test(test_key),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,147 @@
+-- Labels, colour bars and axes: fields and errors, frames that set them, extreme places and sizes. What they draw:
+-- tests/engine/test_overlays.c.
+local tally = dofile "tests/lua/tally.lua"
+local check = tally.check
+local glint = require "glint"
+
+local function raises(want, f, ...)
+  local good, message = pcall(f, ...)
+  check(not good and tostring(message):find(want, 1, true), "%s expected, got %s", want, tostring(message))
+end
+
+local function bar(fields)
+  local t = { map = "magma", low = 0, high = 1 }
+  for key, value in pairs(fields) do t[key] = value end
+  return glint.colorbar(t)
+end
+
+local function scene_of(...)
+  return glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.5, background = 0.2,
+    glint.sphere { center = { 0, 0, 0 }, radius = 1 }, ... }
+end
+
+local function bytes_of(image, options)
+  local path = os.tmpname() .. ".png"
+  assert(image:save(path, options))
+  local file = assert(io.open(path, "rb"))
+  local bytes = file:read "a"
+  file:close()
+  os.remove(path)
+  os.remove((path:gsub("%.png$", "")))
+  return bytes
+end
+
+local tests = {}
+
+function tests.fields()
+  local l = glint.label { text = "a", name = "time" }
+  check(l.text == "a" and l.at == "top left" and l.position == nil and l.size == nil and l.background == nil and l.opacity == 1, "defaults")
+  check(tostring(l) == "label 'time'", "its name")
+  l.at = "bottom right"
+  check(l.at == "bottom right", "a corner")
+  l.at = { 0.5, 0.25 }
+  check(l.at[1] == 0.5 and l.at[2] == 0.25 and #l.at == 2, "shares")
+  raises("at: assign a whole table; its fields are only read", function() l.at[1] = 0 end)
+  l.position = { 3, -4 }
+  check(l.position[2] == -4 and l.at == nil, "a position in its place")
+  l.at = "top"
+  check(l.at == "top" and l.position == nil, "the one set last counts")
+  l.size, l.background, l.margin = 12, "red", 3
+  check(l.size == 12 and l.margin == 3, "points")
+  l.size, l.background, l.margin = nil, nil, nil
+  check(l.size == nil and l.background == nil and l.margin == nil, "and back")
+  local b = bar { ticks = { 0, 0.5 }, title = "T" }
+  check(b.map == "magma" and b.ticks[2] == 0.5 and b.title == "T" and b.at == "right" and b.orientation == "vertical", "of a colour bar")
+  b.ticks = nil
+  check(b.ticks == nil, "round numbers again")
+  local a = glint.axes {}
+  check(a.labels[3] == "z" and a.at == "bottom left" and a.length == nil, "of axes")
+  a.labels = { "a", "b", "c" }
+  check(table.concat({ a.labels[1], a.labels[2], a.labels[3] }) == "abc", "names")
+end
+
+function tests.errors()
+  raises("label.text: string expected, got nil", glint.label, {})
+  raises("label.text: string expected, got 5", glint.label, { text = 5 })
+  raises("label.text: at most 383 bytes expected, got 384", glint.label, { text = ("a"):rep(384) })
+  raises("label.text: string without a zero byte expected", glint.label, { text = "a\0b" })
+  raises("label.txet: no such field; did you mean 'text'?", glint.label, { txet = "a" })
+  raises("label.at: \"top left\", ", glint.label, { text = "a", at = "top middle" })
+  raises("label.at: \"top left\", ", glint.label, { text = "a", at = { 1, 2, 3 } })
+  raises("label.at: shares 0 .. 1 expected, got 2", glint.label, { text = "a", at = { 0, 2 } })
+  raises("label.at: number expected, got string \"x\"", glint.label, { text = "a", at = { "x", 2 } })
+  raises("label.position: {x, y} in pixels expected, got 5", glint.label, { text = "a", position = 5 })
+  raises("label: at or position expected, got both", glint.label, { text = "a", position = { 1, 1 }, at = "top" })
+  raises("label.size: points 1 .. 10000 expected, got 0", glint.label, { text = "a", size = 0 })
+  raises("label.margin: points 0 .. 10000 expected, got -1", glint.label, { text = "a", margin = -1 })
+  raises("label.opacity: number 0 .. 1 expected, got 1.5", glint.label, { text = "a", opacity = 1.5 })
+  raises("label.background: colour >= 0 expected", glint.label, { text = "a", background = { 0, 0, -1 } })
+  raises("colorbar.map: \"viridis\", \"magma\", \"cividis\", \"turbo\" or \"coolwarm\" expected, got string \"virids\"; did you mean \"viridis\"?",
+    bar, { map = "virids" })
+  raises("colorbar.low: number expected, got nil", glint.colorbar, { map = "magma", high = 1 })
+  raises("colorbar.high: another number than low (0) expected, got 0", bar, { high = 0 })
+  raises("colorbar.ticks[2]: number 0 .. 1 expected, got 2", bar, { ticks = { 0, 2 } })
+  raises("colorbar.ticks: 1 .. 16 numbers expected, got 0", bar, { ticks = {} })
+  raises("colorbar.ticks: list of numbers expected, got 4", bar, { ticks = 4 })
+  raises("colorbar.orientation: \"vertical\" or \"horizontal\" expected", bar, { orientation = "up" })
+  raises("axes.labels: list of three strings expected", glint.axes, { labels = { "a", "b" } })
+  raises("axes.labels: at most 15 bytes expected, got 16", glint.axes, { labels = { ("a"):rep(16), "b", "c" } })
+  local l = glint.label { text = "a" }
+  raises("label.size: finite number expected, got inf", function() l.size = math.huge end)
+  check(l.size == nil, "it is as it was")
+  local scene = scene_of(l)
+  raises("scene.overlay: already in the scene", scene.add, scene, l)
+  scene:remove(l)
+  raises("scene.overlay: not in the scene", scene.remove, scene, l)
+end
+
+-- What is there of a picture: with a label another file, the same light; without it what it was.
+function tests.pictures()
+  local l = glint.label { text = "t = 0" }
+  local scene = scene_of()
+  local options = { width = 64, height = 40, output = "none" }
+  local bare = scene:render(options)
+  scene:add(l)
+  local first = scene:render(options)
+  l.text = "t = 1"
+  local second = scene:render(options)
+  l.text = ""
+  local none = scene:render(options)
+  scene:remove(l)
+  check(bytes_of(bare) ~= bytes_of(first) and bytes_of(first) ~= bytes_of(second), "each text has its file")
+  check(bytes_of(bare) == bytes_of(none) and bytes_of(bare) == bytes_of(scene:render(options)), "no text: the picture")
+  check(bytes_of(first, { bits = 16 }) ~= bytes_of(bare, { bits = 16 }), "of another tone as well")
+  for y = 0, 39, 7 do
+    for x = 0, 63, 5 do check(first:pixel(x, y) == bare:pixel(x, y), "light at %d, %d", x, y) end
+  end
+end
+
+-- Whatever the size and the place, there is a picture.
+function tests.extremes()
+  local scene = scene_of()
+  local names = { "top left", "top", "top right", "left", "center", "right", "bottom left", "bottom", "bottom right" }
+  local made = {}
+  for _, at in ipairs(names) do
+    for _, size in ipairs { 1, 13, 40, 10000 } do
+      made[#made + 1] = glint.label { text = "Wide\nγ\n\n", at = at, size = size, background = "red", opacity = 0.3 }
+      made[#made + 1] = bar { at = at, size = size, orientation = size > 20 and "horizontal" or nil, title = "long title", high = size * 1e-9 }
+      made[#made + 1] = glint.axes { at = at, size = size, background = 0 }
+    end
+  end
+  for _, position in ipairs { { -1e6, 0 }, { 1e6, 1e6 }, { -3, -3 }, { 63.9, 39.9 } } do
+    made[#made + 1] = glint.label { text = "a", position = position, size = 10000, background = 1 }
+    made[#made + 1] = bar { position = position, length = 10000 }
+  end
+  for _, range in ipairs { { -1e308, 1e307 }, { 0, 5e-324 }, { 1, 1 + 2 ^ -52 }, { 5, -5 }, { 1e300, 2e300 }, { -1e-300, 1e-300 } } do
+    made[#made + 1] = bar { low = range[1], high = range[2] }
+  end
+  for _, object in ipairs(made) do
+    scene:add(object)
+    check(#bytes_of(scene:render { width = 64, height = 40, output = "none" }, { dpi = 1e6 }) > 0, "%s", tostring(object))
+    check(#bytes_of(scene:render { width = 1, height = 1, output = "none" }) > 0, "%s in one pixel", tostring(object))
+    scene:remove(object)
+  end
+end
+
+tally.run(tests)
+tally.finish()
