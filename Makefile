@@ -6,6 +6,7 @@ AR       ?= ar
 CFLAGS   ?= -O2 -g
 KERNEL_CFLAGS ?= -O3
 LUA      ?= lua5.4
+comma    := ,
 
 PREFIX   ?= /usr/local
 bindir   ?= $(PREFIX)/bin
@@ -27,6 +28,13 @@ WARN := -Wall -Wextra -Wpedantic
 WARN += -Wshadow
 WARN += -Wstrict-prototypes
 STRICT := -std=c11 -D_GNU_SOURCE $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
+
+# What linkers call by other names: ELF's here, Apple's there (not tried on a machine: say how it went).
+TARGET := $(shell $(CC) -dumpmachine)
+MACOS  := $(findstring darwin,$(TARGET))
+LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
+LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E)
+LINK_MODULE  := $(if $(MACOS),-bundle -undefined dynamic_lookup,-shared)
 
 have = $(shell pkg-config --exists $(1) 2>/dev/null && echo yes)
 PACKAGES := libpng zlib libxxhash
@@ -54,7 +62,7 @@ endif
 OPTIMIZED := $(filter -O1 -O2 -O3 -Os -Og,$(CFLAGS))
 ifndef SANITIZE
   HARDEN      := -fstack-protector-strong $(if $(OPTIMIZED),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
-  HARDEN_LINK := -Wl,-z,relro -Wl,-z,now
+  HARDEN_LINK := $(if $(MACOS),,-Wl,-z,relro -Wl,-z,now)
 endif
 
 # WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
@@ -77,14 +85,14 @@ LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
 LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(EXR_LIBS) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
-LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) -Wl,--as-needed
+LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
 # ---- Sources ----
 
 ENGINE_SRC   := $(sort $(wildcard engine/*/*.c engine/stages/*/*.c))
 BINDINGS_SRC := $(sort $(wildcard bindings/*/*.c))
 # The instruction sets of this machine; KERNELS=avx2 compiles that alone, in a quarter of the time, for work on a kernel.
-KERNELS := generic $(if $(PORTABLE),,$(if $(findstring x86_64,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512))
+KERNELS := generic $(if $(PORTABLE),,$(if $(findstring x86_64,$(TARGET)),sse2 avx2 avx512))
 ENGINE_SRC   := $(filter-out engine/stages/simd/isa_%,$(ENGINE_SRC)) $(KERNELS:%=engine/stages/simd/isa_%.c)
 ENGINE_OBJ   := $(ENGINE_SRC:%.c=$(BUILD)/%.o)
 BINDINGS_OBJ := $(BINDINGS_SRC:%.c=$(BUILD)/%.o)
@@ -134,11 +142,11 @@ $(BUILD)/%.o: %.c $(BUILD)/flags | need
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
+	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(BUILD)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
 
 $(BUILD)/glint.so: $(MODULE_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) -shared $(MODULE_OBJ) $(BUILD)/libglint.a $(LIBS) -o $@
+	$(Q)$(CC) $(LINK) $(LINK_MODULE) $(MODULE_OBJ) $(BUILD)/libglint.a $(LIBS) -o $@
 
 $(BUILD)/libglint.a: $(ENGINE_OBJ)
 	@rm -f $@
@@ -411,7 +419,7 @@ bench-effects-run: all
 $(BUILD)/without/%/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	@$(MAKE) --no-print-directory -s BUILD=$(@D) WITHOUT=$* $(@D)/libglint.a
 	$(call say,LINK)
-	$(Q)$(CC) $(LINK) -Wl,-E $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
+	$(Q)$(CC) $(LINK) $(LINK_COMMAND) $(BINDINGS_OBJ) $(@D)/libglint.a $(LUA_LIBS) $(LIBS) $(COMMAND_LIBS) -ldl -o $@
 
 # ---- Use ----
 

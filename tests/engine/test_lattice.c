@@ -52,7 +52,8 @@ static void set_lattice_solid(test_scene *scene, uint32_t i)
         solid->forward[(k + turn) % 3][k] = size;
         solid->inverse[k][(k + turn) % 3] = 1 / size;
     }
-    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1, .item = i };
+    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1 };
+    scene->prims[i].item = i;
     lattice3(scene->prims[i].center);
 }
 

@@ -184,8 +184,8 @@ static glint_render_desc desc_of(glint_visibility visibility)
 /// NULL: this machine lacks the instruction set.
 static glint_image *render(const glint_scene *scene, const glint_render_desc *r, const char *isa)
 {
-    glint_plan *plan;
-    glint_image *image;
+    glint_plan *plan = NULL;
+    glint_image *image = NULL;
     glint_renderer *renderer = NULL;
     glint_renderer_desc d = glint_renderer_desc_default();
     glint_error error = { .message = "" };

@@ -64,7 +64,7 @@ void hard_test(const char *id, const char *what)
     test.checks = test.failures = 0;
 }
 
-bool hard_check(bool ok, const char *format, ...)
+int hard_check(bool ok, const char *format, ...)
 {
     test.checks++;
     test.failures += !ok;

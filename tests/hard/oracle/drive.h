@@ -19,8 +19,9 @@ extern uint64_t hard_rays; ///< 1e6 unless told
 
 /// Begins a test: what is checked from here to the next one belongs to it. `id` as in the list of hard cases.
 void hard_test(const char *id, const char *what);
-/// Checks one thing; prints the message when it fails (of a program, the first ten). Returns `ok`.
-__attribute__((format(printf, 2, 3))) bool hard_check(bool ok, const char *format, ...);
+/// Checks one thing; prints the message when it fails (of a program, the first ten). Returns `ok`; several are joined by `&`, so that
+/// each is checked.
+__attribute__((format(printf, 2, 3))) int hard_check(bool ok, const char *format, ...);
 /// Counts checks that were right, where they are too many for a message each.
 void hard_right(uint64_t checks);
 /// A case about something that the engine does not have.

@@ -7,8 +7,7 @@
 #define HARD_ORACLE_UNIT_H
 
 #include "engine/glint.h"
-
-__extension__ typedef _Float128 quad;
+#include "tests/hard/oracle/quad.h"
 
 typedef struct unit_ray {
     quad f[3], e[3]; ///< f + t e

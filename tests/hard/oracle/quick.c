@@ -1,10 +1,7 @@
 /// Truth in 113 bits, with a bound on its own error: an order of magnitude faster than multiple precision, and enough
 /// for all but the few rays that come nearer than 2^-46.
 #include "tests/hard/oracle/oracle.h"
-
-#include <math.h>
-
-__extension__ typedef _Float128 quad;
+#include "tests/hard/oracle/quad.h"
 
 /// A sum of products of the sizes below is off by less than 16 roundings of 2^-113; what is left of a difference has
 /// to be this many times larger, so that it is good to 2^-63.

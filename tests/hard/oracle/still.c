@@ -1,9 +1,7 @@
 #include "tests/hard/oracle/still.h"
+#include "tests/hard/oracle/quad.h"
 
-#include <math.h>
 #include <string.h>
-
-__extension__ typedef _Float128 quad;
 
 #define REAL quad
 #define T(name) name##_113

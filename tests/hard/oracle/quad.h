@@ -1,0 +1,14 @@
+/// Arithmetic of 113 bits. Private to the oracle.
+#ifndef GLINT_TESTS_QUAD_H
+#define GLINT_TESTS_QUAD_H
+
+#include <math.h>
+
+#ifdef __clang__ // whose C has the type by its older name alone, and to which glibc's headers do not show the functions
+__extension__ typedef __float128 quad;
+quad sqrtf128(quad), powf128(quad, quad), tanf128(quad);
+#else
+__extension__ typedef _Float128 quad;
+#endif
+
+#endif
