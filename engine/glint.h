@@ -782,6 +782,14 @@ typedef struct glint_scene_desc {
     /// `ambient` stands for the rest: with 0 it does so at once. What a material's `ambient` has beyond its `diffuse` is
     /// light of its own, and stays everywhere.
     double indirect_bounces;
+    /// Ambient light, as far as `ambient` of a material is no more than its `diffuse`, is multiplied by the share of the sky
+    /// over the point, weighed by the cosine, that is open. It is then in the pass `indirect`; the rest of it, light of the
+    /// material's own, stays in `ambient`. Not together with `has_indirect`, which finds where that light comes from
+    bool has_ambient_occlusion;
+    double ambient_occlusion_samples; ///< rays from each point seen; whole number, 1 .. 65536
+    /// World units, > 0, may be infinite: surfaces farther away close nothing. What transmits closes as much as it takes of
+    /// the light, and leads rays on refracted; from there the distance counts anew
+    double ambient_occlusion_distance;
 } glint_scene_desc;
 
 /// Makes an empty scene without a camera. GLINT_ERR_NOMEM.

@@ -308,7 +308,7 @@ static glint_status apply_max_depth(cost_draft *draft, cost_value value, glint_e
 static void list_indirect_samples(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 1, 4, 16, 64, 256 };
-    if (has_stage(subject->plan, "indirect"))
+    if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_indirect)
         cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_samples, out);
 }
 
@@ -323,7 +323,7 @@ static glint_status apply_indirect_samples(cost_draft *draft, cost_value value, 
 static void list_indirect_bounces(const cost_subject *subject, cost_values *out)
 {
     static const double counts[] = { 0, 1, 2, 4, 8 };
-    if (has_stage(subject->plan, "indirect"))
+    if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_indirect)
         cost_list_numbers(counts, COUNT(counts), subject->scene->desc.indirect_bounces, out);
 }
 
@@ -331,6 +331,22 @@ static glint_status apply_indirect_bounces(cost_draft *draft, cost_value value, 
 {
     glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
     desc.indirect_bounces = value.number;
+    return cost_scene_set(draft->scene, &desc, error);
+}
+
+// ---- ambient_occlusion_samples: rays that look for open sky ----
+
+static void list_occlusion_samples(const cost_subject *subject, cost_values *out)
+{
+    static const double counts[] = { 1, 4, 16, 64, 256 };
+    if (has_stage(subject->plan, "indirect") && subject->scene->desc.has_ambient_occlusion)
+        cost_list_numbers(counts, COUNT(counts), subject->scene->desc.ambient_occlusion_samples, out);
+}
+
+static glint_status apply_occlusion_samples(cost_draft *draft, cost_value value, glint_error *error)
+{
+    glint_scene_desc desc = *glint_scene_get(draft->scene->scene);
+    desc.ambient_occlusion_samples = value.number;
     return cost_scene_set(draft->scene, &desc, error);
 }
 
@@ -403,6 +419,8 @@ const cost_knob cost_knobs[] = {
     { "max_depth", "a mirror or glass", COST_ERROR_FILM, true, false, list_max_depth, apply_max_depth },
     { "indirect_samples", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_samples, apply_indirect_samples },
     { "indirect_bounces", INDIRECT, COST_ERROR_FILM, true, false, list_indirect_bounces, apply_indirect_bounces },
+    { "ambient_occlusion_samples", "ambient occlusion", COST_ERROR_FILM, true, false, list_occlusion_samples,
+      apply_occlusion_samples },
     { "bits", PNG, COST_ERROR_FILE, false, false, list_bits, apply_bits },
     { "encode", PNG, COST_ERROR_FILM, false, false, list_encode, apply_encode },
     { "reuse", "a second frame (of a loop of scene:render, name a later one than the first by --frame)",

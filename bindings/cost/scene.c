@@ -117,7 +117,7 @@ glint_status cost_scene_show_light(cost_scene *scene, size_t light, glint_error 
 {
     glint_material_desc white = glint_material_desc_default();
     glint_scene_desc direct = *glint_scene_get(scene->scene);
-    direct.has_indirect = false;
+    direct.has_indirect = direct.has_ambient_occlusion = false;
     glint_status status = glint_scene_set(scene->scene, &direct, error);
     white.model = GLINT_MODEL_LAMBERT;
     set_three(white.diffuse, 1);

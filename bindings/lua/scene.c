@@ -1,4 +1,5 @@
 // glint.scene
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -36,6 +37,33 @@ static void begin_indirect(void *desc)
     ((desc_type *)desc)->indirect_bounces = 2;
 }
 
+// Any number but NaN: infinity is the default.
+static void read_distance(lua_State *L, int index, const char *path, void *desc)
+{
+    ((desc_type *)desc)->ambient_occlusion_distance = glintL_read_number(L, index, path);
+}
+
+static void push_distance(lua_State *L, const void *desc)
+{
+    lua_pushnumber(L, ((const desc_type *)desc)->ambient_occlusion_distance);
+}
+
+static const glintL_field AMBIENT_OCCLUSION[] = {
+    { .name = "samples", .kind = GLINTL_NUMBER, .offset = AT(ambient_occlusion_samples) },
+    { .name = "distance",
+      .kind = GLINTL_CUSTOM,
+      .offset = AT(ambient_occlusion_distance),
+      .read = read_distance,
+      .push = push_distance },
+    { .name = NULL },
+};
+
+static void begin_ambient_occlusion(void *desc)
+{
+    ((desc_type *)desc)->ambient_occlusion_samples = 16;
+    ((desc_type *)desc)->ambient_occlusion_distance = HUGE_VAL;
+}
+
 static const glintL_field FIELDS[] = {
     { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
     { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
@@ -55,6 +83,12 @@ static const glintL_field FIELDS[] = {
       .set_offset = AT(has_indirect),
       .nested = INDIRECT,
       .begin_nested = begin_indirect },
+    { .name = "ambient_occlusion",
+      .kind = GLINTL_NESTED,
+      .offset = AT(ambient_occlusion_samples),
+      .set_offset = AT(has_ambient_occlusion),
+      .nested = AMBIENT_OCCLUSION,
+      .begin_nested = begin_ambient_occlusion },
     { .name = NULL },
 };
 
@@ -128,10 +162,35 @@ static const void *object_of(const member *m)
     return m->shape ? (const void *)m->shape : m->light ? (const void *)m->light : m->overlay;
 }
 
+// Whether glint.ambient_occlusion made the value.
+static bool is_ambient_occlusion(lua_State *L, int value)
+{
+    luaL_checkstack(L, 2, "scene");
+    if (!lua_istable(L, value) || luaL_getmetafield(L, value, "glint.ambient_occlusion") == LUA_TNIL)
+        return false;
+    lua_pop(L, 1);
+    return true;
+}
+
+// Sets the field of the scene at `index` to the value, or to nil.
+static void set_ambient_occlusion(lua_State *L, int index, int value)
+{
+    index = lua_absindex(L, index);
+    if (value)
+        lua_pushvalue(L, value);
+    else
+        lua_pushnil(L);
+    lua_setfield(L, index, "ambient_occlusion");
+}
+
 static void add_member(lua_State *L, int index, int value, const char *path)
 {
     glint_status status;
     glint_error error;
+    if (is_ambient_occlusion(L, value)) {
+        set_ambient_occlusion(L, index, value);
+        return;
+    }
     member m = check_member(L, value, path);
     const void *object = object_of(&m);
     bool was_kept = keep_object(L, index, object, value);
@@ -165,6 +224,10 @@ static int drop(lua_State *L)
     glint_error error;
     glint_scene *scene = glintL_check_object(L, 1, GLINTL_SCENE);
     glintL_refuse_within_trace(L, "scene.remove");
+    if (is_ambient_occlusion(L, 2)) {
+        set_ambient_occlusion(L, 1, 0);
+        return 0;
+    }
     const member m = check_member(L, 2, "scene.remove");
     if (m.shape)
         status = glint_scene_remove_shape(scene, m.shape, &error);
@@ -295,10 +358,33 @@ static int new_scene(lua_State *L)
     return 1;
 }
 
+// The scene's field of this name as a value, checked: a table that is only read, which a scene takes among its objects too.
+static int new_ambient_occlusion(lua_State *L)
+{
+    desc_type desc = { .has_ambient_occlusion = true };
+    glint_scene *scene = NULL;
+    glint_error error;
+    lua_settop(L, 1);
+    begin_ambient_occlusion(&desc);
+    glintL_read_table(L, 1, "ambient_occlusion", AMBIENT_OCCLUSION, &desc, false);
+    glintL_box *box = glintL_new_box(L, GLINTL_SCENE); // that checks it
+    glintL_check_status(L, "", &error, glint_scene_create(&scene, &error));
+    box->object = scene;
+    glintL_check_status(L, "", &error, glint_scene_set(scene, &desc, &error));
+    glintL_push_field(L, glintL_find_field(FIELDS, "ambient_occlusion"), &desc);
+    lua_getmetatable(L, -1);
+    lua_pushboolean(L, true);
+    lua_setfield(L, -2, "glint.ambient_occlusion");
+    lua_pop(L, 1);
+    return 1;
+}
+
 void glintL_open_scene(lua_State *L)
 {
     glintL_open_class(L, &CLASS);
     glintL_list_object(L, &SCENE, &CLASS);
     lua_pushcfunction(L, new_scene);
     lua_setfield(L, -2, "scene");
+    lua_pushcfunction(L, new_ambient_occlusion);
+    lua_setfield(L, -2, "ambient_occlusion");
 }

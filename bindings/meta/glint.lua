@@ -564,27 +564,39 @@ function glint.axes(fields) end
 ---@field samples? integer  ways of light followed from each point seen, 1 .. 65536. Default 16
 ---@field bounces? integer  matt surfaces on a way that light is followed beyond, 0 .. 2^31; then `ambient` stands for the rest. Default 2
 
+--- Ambient light times the share of the sky that is open, weighed by the cosine. Read from a scene, or made by
+--- glint.ambient_occlusion, its fields are only read: assign a whole table.
+---@class glint.ambient_occlusion
+---@field samples? integer  rays from each point seen, 1 .. 65536. Default 16
+---@field distance? number  world units, > 0: surfaces farther away close nothing. Default math.huge
+
+--- The scene's field of this name as a value, which a scene takes among its objects as well.
+---@param fields glint.ambient_occlusion
+---@return glint.ambient_occlusion
+function glint.ambient_occlusion(fields) end
+
 ---@class glint.scene_fields
 ---@field camera? glint.camera  needed for a frame; nil: none
 ---@field ambient? glint.color  light from everywhere, >= 0. Default 0
 ---@field background? glint.color|glint.pattern|glint.texture  what a ray sees that hits nothing, >= 0; of a pattern p is the unit direction, and a texture is a picture of all directions with -z in its middle, +x three quarters from the left, +y above. Default 0
 ---@field depth_cue? { color: glint.color?, near: number?, far: number }  light fades to color (default: the background, if that is a colour) from distance near (default 0) to far. Default nil: it does not
+---@field ambient_occlusion? glint.ambient_occlusion  not together with indirect. Default nil: off
 ---@field indirect? glint.indirect  light from surface to surface instead of `ambient`; what a material's `ambient` has beyond its `diffuse` is its own light and stays. Default nil: off
 
 ---@class glint.scene_table: glint.scene_fields
----@field [integer] glint.shape|glint.light|glint.overlay  the objects, numbered in this order, without holes
+---@field [integer] glint.shape|glint.light|glint.overlay|glint.ambient_occlusion  the objects, numbered in this order, without holes
 
 ---@class glint.scene: glint.scene_fields
 local scene = {}
 
 --- Adds a shape, light or overlay, numbered after those of its kind that are there. Raises when it is there already.
----@generic T: glint.shape|glint.light|glint.overlay
+---@generic T: glint.shape|glint.light|glint.overlay|glint.ambient_occlusion
 ---@param object T
 ---@return T object  the same
 function scene:add(object) end
 
 --- Takes a shape, light or overlay out. Raises when it is not there.
----@param object glint.shape|glint.light|glint.overlay
+---@param object glint.shape|glint.light|glint.overlay|glint.ambient_occlusion
 function scene:remove(object) end
 
 ---@class glint.hit

@@ -291,7 +291,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
         lights(e, scene, "hard shadow", casts_hard_shadows);
         lights(e, scene, "soft shadow", plan->caps ? casts_sampled : casts_soft_shadows);
         lights(e, scene, plan->caps ? "soft shadow by caps" : "rays in place of caps", casts_caps);
-        one(e, plan->runs[GLINT_STAGE_INDIRECT], "indirect light", "scene.indirect");
+        one(e, plan->runs[GLINT_STAGE_INDIRECT], plan->indirect.is_sky ? "ambient occlusion" : "indirect light",
+            plan->indirect.is_sky ? "scene.ambient_occlusion" : "scene.indirect");
         shapes(e, "triangles", is_mesh);
         one(e, plan->raster, "scan conversion", "%s: %u triangles",
             plan->desc.visibility == GLINT_VISIBILITY_SCAN ? "visibility = scan" : "cheaper here than casting",

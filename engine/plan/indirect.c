@@ -3,6 +3,9 @@
 /// A material's ambient light is ka Ia. As much of it as kd Ia stands for the light that its surroundings send, Ia being
 /// the mean L of all directions; that part is replaced by kd times what paths of light find, and comes back only where a
 /// path is followed no further. What ka has beyond kd is light of the surface's own.
+///
+/// Ambient occlusion is the same with one path of one step: that part of the ambient light, times the share of the sky that
+/// is open.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -47,19 +50,27 @@ static glint_status find_lights(glint_plan *plan, glint_error *error)
     return GLINT_OK;
 }
 
+bool glint_plan_has_indirect(const glint_scene_desc *scene)
+{
+    return scene->has_ambient_occlusion || (scene->has_indirect && scene->indirect_bounces > 0);
+}
+
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error)
 {
     glint_plan_indirect *indirect = &plan->indirect;
     bool matt = false;
     for (uint32_t i = 0; i < plan->material_count; i++)
         matt = matt || is_matt(plan, i);
-    if (!scene->has_indirect || scene->indirect_bounces == 0 || !matt || plan->geometry->table.prim_count == 0)
+    indirect->is_sky = scene->has_ambient_occlusion && vec_max_abs(plan->ambient) > 0;
+    const bool wanted = indirect->is_sky || (scene->has_indirect && scene->indirect_bounces > 0);
+    if (!wanted || !matt || plan->geometry->table.prim_count == 0)
         return GLINT_OK;
     indirect->rest = glint_alloc(plan->material_count, sizeof *indirect->rest);
     if (!indirect->rest)
         return glint_fail_nomem(error);
-    indirect->samples = (uint32_t)scene->indirect_samples;
-    indirect->bounces = (uint32_t)scene->indirect_bounces;
+    indirect->samples = (uint32_t)(indirect->is_sky ? scene->ambient_occlusion_samples : scene->indirect_samples);
+    indirect->bounces = indirect->is_sky ? 1 : (uint32_t)scene->indirect_bounces;
+    indirect->distance = scene->ambient_occlusion_distance;
     for (uint32_t i = 0; i < plan->material_count; i++)
         part_ambient(plan, i, indirect->rest[i]);
     return find_lights(plan, error);

@@ -177,6 +177,8 @@ static glint_key indirect_key(const glint_plan *plan, glint_key key)
 {
     ADD(key, plan->indirect.samples);
     ADD(key, plan->indirect.bounces);
+    if (plan->indirect.is_sky)
+        ADD(key, plan->indirect.distance);
     return glint_key_add(key, plan->indirect.rest, plan->material_count * sizeof *plan->indirect.rest);
 }
 

@@ -160,7 +160,7 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan 
     if (!status)
         status = glint_geometry_check_reach(plan->geometry, "camera.eye", plan->camera.eye, error);
     if (!status)
-        status = glint_plan_find_patterns(plan, scene->desc.has_indirect && scene->desc.indirect_bounces > 0, error);
+        status = glint_plan_find_patterns(plan, glint_plan_has_indirect(&scene->desc), error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
     if (!status && times)

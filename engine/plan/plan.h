@@ -112,6 +112,8 @@ typedef struct glint_plan_indirect {
     uint32_t light_count;
     double (*rest)[3]; ///< beside materials: what `ambient` adds where light is followed no further
     double least; ///< the share of its first weight below which a path of light ends
+    bool is_sky; ///< ambient occlusion: paths look for open sky alone
+    double distance; ///< then, within which surfaces close it; may be infinite
 } glint_plan_indirect;
 
 #define GLINT_BOUNCE_LEVELS 32 ///< times that the weaker of two rays may be followed first; see tile/bounce.c
@@ -245,6 +247,8 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
 /// Fills the environment.
 glint_status glint_plan_find_environment(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
 void glint_plan_environment_free(glint_plan_environment *environment); ///< NULL: nothing
+/// Whether there may be indirect light or ambient occlusion.
+bool glint_plan_has_indirect(const glint_scene_desc *scene);
 /// Fills what indirect light needs, after shading, and takes from the materials' ambient light what it stands for.
 glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *scene, glint_error *error);
 /// Fills what mirrors and transparent materials need, after that.

@@ -41,6 +41,18 @@ static glint_status check_background(const glint_scene_desc *desc, glint_error *
     return glint_check_color("background", desc->background, error);
 }
 
+static glint_status check_ambient_occlusion(const glint_scene_desc *desc, glint_error *error)
+{
+    if (desc->has_indirect)
+        return glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion: either this or indirect expected: indirect light "
+                                                    "is dim where little of the sky is open by itself");
+    glint_status status = glint_check_whole("ambient_occlusion.samples", desc->ambient_occlusion_samples, 1, 65536, error);
+    if (!status && !(desc->ambient_occlusion_distance > 0))
+        status = glint_fail(error, GLINT_ERR_INVALID, "ambient_occlusion.distance: number > 0 expected, got %.15g",
+                            desc->ambient_occlusion_distance);
+    return status;
+}
+
 glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, glint_error *error)
 {
     glint_scene_desc folded = *given;
@@ -57,6 +69,8 @@ glint_status glint_scene_set(glint_scene *scene, const glint_scene_desc *given, 
         status = glint_check_whole("indirect.samples", desc->indirect_samples, 1, 65536, error);
     if (!status && desc->has_indirect)
         status = glint_check_whole("indirect.bounces", desc->indirect_bounces, 0, 0x1p31, error);
+    if (!status && desc->has_ambient_occlusion)
+        status = check_ambient_occlusion(desc, error);
     if (status)
         return status;
     glint_camera_retain(desc->camera);

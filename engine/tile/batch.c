@@ -14,7 +14,7 @@ void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_til
     tile->transparent_shadow = to->transparent_shadow;
     if (!batch->rays)
         batch->rays = &batch->own;
-    batch->ordered = false;
+    batch->ordered = batch->distances = false;
     tile->batch = batch;
     tile->vertex = to->vertex;
     tile->facets = to->facets;
@@ -176,7 +176,7 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
         take_hits(batch, frame);
     for (uint32_t g = 0; g < tile->group_count; g++)
         any |= tile->at.hits[g];
-    if (any)
+    if (any && !batch->distances)
         glint_tile_find_surfaces(tile, frame);
     if (frame->plan->absorbs)
         absorb(batch, frame);

@@ -17,6 +17,7 @@ typedef struct glint_batch {
     glint_rays *rays; ///< that are cast
     glint_rays own; ///< what that is at first
     bool ordered; ///< every ray is to have the sample of its own number
+    bool distances; ///< of what is met the distance is read alone: surfaces are not found
     bool whole; ///< it has: what meets nothing has a sample as well
     uint16_t met[GLINT_TILE_GROUPS]; ///< else: the rays that have one
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one

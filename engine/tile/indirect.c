@@ -13,7 +13,7 @@
 #include "engine/base/alloc.h"
 #include "engine/base/sequence.h"
 #include "engine/base/vec.h"
-#include "engine/tile/batch.h"
+#include "engine/tile/indirect.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,31 +22,6 @@
 #define STRENGTH_MAX 1e150
 
 typedef enum turn { TURN_NONE, TURN_SCATTERED, TURN_MIRRORED, TURN_REFRACTED } turn;
-
-/// Points of the unit square, for the scattered rays: see glint_scatter_args.
-typedef struct draws {
-    _Alignas(64) uint32_t number[GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t order[GLINT_TILE_SAMPLES];
-    _Alignas(64) uint32_t digits[2][GLINT_TILE_SAMPLES];
-} draws;
-
-struct glint_indirect {
-    glint_batch batch;
-    glint_plan plan; ///< the frame's, with one sample of each light, which is not seen
-    glint_tile_frame frame; ///< likewise
-    glint_plan_light *lights; ///< of that plan; NULL: there are none
-    uint32_t paths[GLINT_TILE_SAMPLES], fewest; ///< that each point gets, and the least of these
-    uint16_t matt[GLINT_TILE_GROUPS]; ///< the points that get any
-    uint64_t
-        block[GLINT_TILE_SAMPLES]; ///< a number for the 4 x 4 pixels of each point, and for its place among mirrors
-    uint32_t lane[GLINT_TILE_SAMPLES]; ///< which of these pixels
-    draws first_draws, next_draws; ///< of the points, and of what their paths met
-    glint_rays first; ///< from each point its own number's ray: but for its direction, the same for all paths
-    double weight[3][GLINT_TILE_SAMPLES]; ///< what these weigh before anything is taken from them
-    glint_rays next[2]; ///< rays of odd and even steps
-    uint16_t scattered[GLINT_TILE_GROUPS]; ///< samples that a path leaves so
-    _Alignas(64) double direction[3][GLINT_TILE_SAMPLES]; ///< of these
-};
 
 struct glint_indirect *glint_indirect_create(const glint_plan *plan)
 {
@@ -145,6 +120,17 @@ static void take_lights(struct glint_indirect *indirect, const glint_plan *plan,
 
 // ---- Where paths begin ----
 
+/// What the light that paths find is multiplied by at sample i of a tile: the diffuse reflectance; where they look for open
+/// sky, the ambient light that all of it would bring.
+static const double *first_weight(const glint_tile *seen, const glint_plan *plan, uint32_t i, double room[3])
+{
+    if (!plan->indirect.is_sky)
+        return glint_tile_diffuse(seen, plan, i, room);
+    for (int c = 0; c < 3; c++)
+        room[c] = glint_tile_ambient_rest(seen, plan, i, c);
+    return room;
+}
+
 /// The first ray of point i, for each of `paths`: all that it is but for its direction.
 static glint_ray first_ray(const struct glint_indirect *indirect, const glint_tile_frame *frame, const glint_tile *seen,
                            const glint_batch *from, uint32_t i, uint32_t paths)
@@ -152,7 +138,7 @@ static glint_ray first_ray(const struct glint_indirect *indirect, const glint_ti
     const glint_plan *plan = frame->plan;
     const double part = 1.0 / paths;
     double room[3];
-    const double *diffuse = glint_tile_diffuse(seen, plan, i, room);
+    const double *found = first_weight(seen, plan, i, room);
     glint_ray ray = glint_batch_start_ray(from ? from : &indirect->batch, seen, frame, i);
     if (!from)
         ray.term = GLINT_TERM_INDIRECT;
@@ -162,7 +148,7 @@ static glint_ray first_ray(const struct glint_indirect *indirect, const glint_ti
     ray.scatters++;
     for (int c = 0; c < 3; c++) {
         ray.direction[c] = 0;
-        ray.weight[c] = glint_weight(ray.weight[c] * (diffuse[c] * part));
+        ray.weight[c] = glint_weight(ray.weight[c] * (found[c] * part));
     }
     return ray;
 }
@@ -196,7 +182,7 @@ static uint32_t find_points(struct glint_indirect *indirect, const glint_tile *t
     for (uint32_t g = 0; g < seen->group_count; g++) {
         for (unsigned left = seen->at.hits[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            if (largest(glint_tile_diffuse(seen, frame->plan, i, room)) == 0)
+            if (largest(first_weight(seen, frame->plan, i, room)) == 0)
                 continue;
             const uint32_t paths = begin_point(indirect, to, frame, seen, from, i);
             most = paths > most ? paths : most;
@@ -294,8 +280,7 @@ static bool begin_paths(struct glint_indirect *indirect, const glint_tile_frame 
 
 // ---- Where they go on ----
 
-/// Samples that mirrors and transparent materials may send paths on from; finds where to.
-static void find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
+void glint_indirect_find_ways(struct glint_indirect *indirect, const glint_tile_frame *frame)
 {
     glint_batch *batch = &indirect->batch;
     const glint_plan *plan = frame->plan;
@@ -383,7 +368,7 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
     unsigned any = 0;
     if (!frame->plan->bouncing && step + 1 >= frame->plan->indirect.bounces) // all of them have been scattered so often
         return false;
-    find_ways(indirect, frame);
+    glint_indirect_find_ways(indirect, frame);
     glint_rays_clear(rays, tile->group_count);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         indirect->scattered[g] = 0;
@@ -428,26 +413,24 @@ static void collect_sample(const glint_batch *batch, const glint_plan *plan, uin
     }
 }
 
-/// Adds what rays of a packed batch that meet nothing bring. The first rays of the eye's points are their pixels' own.
-static void collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
+/// The first rays of the eye's points are their pixels' own.
+void glint_indirect_collect_missed(const struct glint_indirect *indirect, const glint_tile_frame *frame,
+                                   const uint16_t *missed, const double background[3], glint_tile *to)
 {
     const glint_rays *rays = indirect->batch.rays;
-    uint16_t missed[GLINT_TILE_GROUPS];
     glint_sky_args args = { .group_count = rays->group_count, .missed = missed };
-    for (uint32_t g = 0; g < rays->group_count; g++)
-        missed[g] = rays->active[g] & (uint16_t)~indirect->batch.met[g];
     for (int c = 0; c < 3; c++) {
         args.weight[c] = rays->weight[c];
-        args.background[c] = frame->plan->background[c];
+        args.background[c] = background[c];
         args.sum[c] = to->film.sum[GLINT_TERM_INDIRECT][c];
     }
-    if (rays == &indirect->first) {
+    if (rays == &indirect->first && !indirect->batch.ordered) {
         frame->stages->sky(&args);
         return;
     }
     for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++)
         for (int c = 0; c < 3 && glint_has_lane(missed, i); c++)
-            args.sum[c][rays->pixel[i]] += rays->weight[c][i] * args.background[c];
+            to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
 }
 
 /// Adds the light that the rays have found to their pixels: of a whole batch in the order of rays, which may share pixels.
@@ -461,8 +444,12 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
             const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             collect_sample(batch, frame->plan, batch->ray_of[at], at, to);
         }
-    if (!batch->whole)
-        collect_missed(indirect, frame, to);
+    if (batch->whole)
+        return;
+    uint16_t missed[GLINT_TILE_GROUPS] = { 0 };
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        missed[g] = batch->rays->active[g] & (uint16_t)~batch->met[g];
+    glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
 }
 
 static void count_rays(const glint_batch *batch, glint_tile *to)
@@ -492,6 +479,10 @@ static void follow(struct glint_indirect *indirect, const glint_tile_frame *fram
         count_rays(batch, to);
         take_lights(indirect, frame->plan, number, step);
         any = glint_batch_cast(batch, &indirect->frame);
+        if (frame->plan->indirect.is_sky) {
+            any = glint_indirect_open_sky(indirect, frame, any, step, to);
+            continue;
+        }
         if (any || batch->whole)
             light(indirect, frame, any);
         collect(indirect, frame, to);
@@ -509,11 +500,14 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
     indirect->plan.light_count = frame->plan->indirect.light_count;
     indirect->plan.runs[GLINT_STAGE_VISIBLE_LIGHT] = false;
     indirect->plan.visible_light_count = 0;
+    if (frame->plan->indirect.is_sky) // whatever the background is
+        indirect->plan.environment = NULL;
     indirect->frame = *frame;
     indirect->frame.plan = &indirect->plan;
     const uint32_t paths = find_points(indirect, tile, frame, seen, from);
     glint_batch_begin(batch, tile, frame, GLINT_WALK_INDIRECT);
     batch->ordered = from != NULL; // whose rays may share pixels
+    batch->distances = frame->plan->indirect.is_sky && !frame->plan->transmits;
     for (uint32_t path = 0; path < paths && !glint_tile_cancelled(frame); path++) {
         const uint64_t number = (uint64_t)tile->sample * frame->plan->indirect.samples + path;
         batch->tile.sample = (uint32_t)number;

@@ -55,6 +55,7 @@ picture molecule --set style=sticks
 picture moving_light --frames 31 --samples 4
 "$glint" scripts/sphereflake.lua --set size=3 --set nff="$out/flake.nff" -o none --quiet
 picture nff --set file="$out/flake.nff"
+picture occlusion --frames 2
 picture particle_box --samples 9
 picture phong_and_blinn --frames 4 --samples 4
 picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb

@@ -50,6 +50,7 @@ picture lamps scripts/lamps.lua
 picture lampshade scripts/lampshade.lua
 picture caps_0006 scripts/caps.lua -f 6
 picture indirect_0003 scripts/indirect.lua --set samples=8 -f 3
+picture occlusion_0003 scripts/occlusion.lua --set samples=4 --set side=12 -f 3
 picture adaptive_0004 scripts/adaptive.lua -f 4
 picture spotlights scripts/spotlights.lua
 picture lobes scripts/lobes.lua

@@ -51,6 +51,8 @@ return {
     end },
   { name = "indirect", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter" },
     call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
+  { name = "ambient_occlusion", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter", "open_sky" },
+    call = function(_, _, scene) scene.ambient_occlusion = { samples = 1, distance = 5 } end },
   { name = "visible_light", stage = "visible_lights", functions = { "visible_light" },
     call = function(glint, parts, scene)
       scene:remove(parts.lamp)

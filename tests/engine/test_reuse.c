@@ -127,6 +127,9 @@ static const field scene_fields[] = {
     FIELD(glint_scene_desc, has_indirect, FLAG, 0, 1),
     FIELD(glint_scene_desc, indirect_samples, WHOLE, 1, 3),
     FIELD(glint_scene_desc, indirect_bounces, WHOLE, 0, 3),
+    FIELD(glint_scene_desc, has_ambient_occlusion, FLAG, 0, 1),
+    FIELD(glint_scene_desc, ambient_occlusion_samples, WHOLE, 1, 3),
+    FIELD(glint_scene_desc, ambient_occlusion_distance, NUMBER, 0.5, 6),
 };
 
 static const field render_fields[] = {
@@ -383,7 +386,8 @@ static void make_world(world *w)
     assert_int_equal(glint_camera_create(&c, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = {
-        .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2
+        .camera = w->camera, .ambient = { 0.1, 0.1, 0.1 }, .indirect_samples = 2, .indirect_bounces = 2,
+        .ambient_occlusion_samples = 2, .ambient_occlusion_distance = 3
     };
     assert_int_equal(glint_scene_set(w->scene, &s, NULL), GLINT_OK);
     for (int i = 0; i < SHAPES; i++) {

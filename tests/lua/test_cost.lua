@@ -386,6 +386,14 @@ check(find(sent, "indirect_bounces", 0).counters.indirect == 0, "0 bounces: no w
 check(find(sent, "indirect_samples", 16).counters.indirect == 8 * find(sent, "indirect_samples", 2).counters.indirect,
   "16 ways are 8 times 2")
 
+local open = study("open", still("open.lua", [[ambient = 0.5, glint.ambient_occlusion { samples = 2 },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } }, glint.sphere { center = { 0, 1, 0 }, radius = 1 }]]) ..
+  " --size 24x18 --knobs indirect_samples,ambient_occlusion_samples")
+check(knobs_of(open) == "ambient_occlusion_samples", "ambient occlusion has its own: %s", knobs_of(open))
+check(find(open, "ambient_occlusion_samples", 2).default, "its own among the values")
+check(find(open, "ambient_occlusion_samples", 64).rmse < find(open, "ambient_occlusion_samples", 1).rmse,
+  "error falls with the rays")
+
 -- ---- For people; the report ----
 
 check(run(film .. " --quick --knobs samples,encode --report " .. work .. "/a/b") == 0, "report: %s", read "err")
