@@ -474,6 +474,16 @@ typedef struct glint_camera_desc {
     /// those who make frames of several times, see glint_plan_create_exposed
     double shutter;
     double shutter_times; ///< at how many times they look while it is open, 1 .. GLINT_SHUTTER_TIMES_MAX; default 8
+    /// Radius of the lens, world units, >= 0; default 0: a pinhole, which shows everything sharp. Each sample goes through a
+    /// point of the lens, in the plane through the eye across the view, to where the pinhole's ray meets the plane of focus:
+    /// what is at depth d is blurred over a disk that is 2 aperture |1 - d / focus| wide there. An orthographic camera has a
+    /// lens for each ray. Many samples make the blur smooth.
+    double aperture;
+    double focus; ///< distance of the plane of focus along the view, > 0; default 0: by `focus_point`, else through `at`
+    bool has_focus_point; ///< the plane of focus goes through `focus_point`; `focus` is 0
+    double focus_point[3]; ///< finite, in front of the eye
+    double blades; ///< 0: a round lens, the default; else 3 .. 64, whole: a regular polygon in its circle, a corner up
+    double blade_rotation_rad; ///< turns the polygon, counter-clockwise as the eye sees it; default 0
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_camera_desc;
 #define GLINT_SHUTTER_TIMES_MAX 1024

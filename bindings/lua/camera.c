@@ -7,6 +7,7 @@
 typedef struct desc_type {
     glint_camera_desc camera;
     bool has_at;
+    glintL_distance focus;
 } desc_type;
 _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 
@@ -25,6 +26,10 @@ static const glintL_field FIELDS[] = {
     { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
     { .name = "shutter", .kind = GLINTL_NUMBER, .offset = AT(shutter) },
     { .name = "shutter_times", .kind = GLINTL_NUMBER, .offset = AT(shutter_times) },
+    { .name = "aperture", .kind = GLINTL_NUMBER, .offset = AT(aperture) },
+    { .name = "focus", .kind = GLINTL_DISTANCE, .offset = offsetof(desc_type, focus) },
+    { .name = "blades", .kind = GLINTL_NUMBER, .offset = AT(blades) },
+    { .name = "blade_rotation", .kind = GLINTL_DEGREES, .offset = AT(blade_rotation_rad) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };
@@ -42,11 +47,24 @@ static void get(const void *object, void *desc)
     desc_type *d = desc;
     d->camera = *glint_camera_get(object);
     d->has_at = !d->camera.has_direction;
+    d->focus = (glintL_distance) { .number = d->camera.focus, .has_point = d->camera.has_focus_point };
+    memcpy(d->focus.point, d->camera.focus_point, sizeof d->focus.point);
+}
+
+// What the engine takes.
+static glint_camera_desc described(const desc_type *d)
+{
+    glint_camera_desc camera = d->camera;
+    camera.focus = d->focus.number;
+    camera.has_focus_point = d->focus.has_point;
+    memcpy(camera.focus_point, d->focus.point, sizeof camera.focus_point);
+    return camera;
 }
 
 static glint_status set(void *object, const void *desc, glint_error *error)
 {
-    return glint_camera_set(object, &((const desc_type *)desc)->camera, error);
+    const glint_camera_desc camera = described(desc);
+    return glint_camera_set(object, &camera, error);
 }
 
 static void *retain(void *object) { return glint_camera_retain(object); }
@@ -86,7 +104,8 @@ static int new_camera(lua_State *L)
     glintL_read_table(L, 1, "camera", FIELDS, &desc, false);
     if (desc.has_at == desc.camera.has_direction)
         glintL_error(L, "camera: at or direction expected, got %s", desc.has_at ? "both" : "neither");
-    glintL_check_status(L, "camera", &error, glint_camera_create(&desc.camera, &camera, &error));
+    const glint_camera_desc read = described(&desc);
+    glintL_check_status(L, "camera", &error, glint_camera_create(&read, &camera, &error));
     box->object = camera;
     glintL_remember(L, camera);
     return 1;

@@ -253,6 +253,10 @@ function glint.sphere_light(fields) end
 ---@field pixel_offset? number  where in its pixel a single sample lies, 0 .. 1. Default 0.5, the centre
 ---@field shutter? number  how long the shutter is open, a share of the time from one frame to the next, 0 .. 1. An animation's frame function is then called for several times around the frame's own, and the picture's light is their mean. Default 0, an instant
 ---@field shutter_times? integer  how many times those are, 1 .. 1024. Default 8
+---@field aperture? number  radius of the lens, world units, >= 0. Default 0, a pinhole: everything is sharp
+---@field focus? number|glint.vec3  what is sharp: its distance along the view, > 0, or a point in front of the eye. nil: `at`
+---@field blades? integer  0: a round lens; 3 .. 64: a regular polygon in its circle, a corner up. Default 0
+---@field blade_rotation? number  turns the polygon, counter-clockwise as the eye sees it, degrees. Default 0
 ---@field name? string  for messages, at most 63 bytes. Default ""
 
 ---@class glint.camera: glint.camera_fields

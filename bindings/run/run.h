@@ -242,6 +242,7 @@ struct glintL_run {
     bool no_sheets; ///< frames alone are wanted
 
     bool has_light; ///< a picture was seen that is not black
+    bool has_aperture, has_focus; ///< a frame's camera has a lens; says what is in focus, or the lens's form
     bool told_of_view; ///< a warning said where something is that does not show
     char black[GLINTL_MESSAGE_SIZE]; ///< what is said of the first black one; "": none
     char **said; ///< warnings given, each once; owned

@@ -37,7 +37,7 @@ typedef struct members {
     const glint_light *lights[LIGHTS_MAX];
     int light_count;
     int shape_count; // in groups
-    bool shows_more; // mirrors and the like: what is outside the view may show all the same
+    bool shows_more; // mirrors, a lens and the like: what is outside the view may show all the same
 } members;
 
 static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -391,6 +391,13 @@ static void look_at(lua_State *L, void *context)
         look_into(L, l, shape, &here, &count);
 }
 
+// Which frames make use of what their camera says of a lens.
+static void note_focus(glintL_run *run, const glint_camera_desc *camera)
+{
+    run->has_aperture = run->has_aperture || camera->aperture > 0;
+    run->has_focus = run->has_focus || camera->focus > 0 || camera->has_focus_point || camera->blades > 0;
+}
+
 void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const glint_render_desc *desc, int64_t number)
 {
     const glint_scene *scene = glintL_test_object(L, scene_index, GLINTL_SCENE);
@@ -408,7 +415,8 @@ void glintL_observe_frame(lua_State *L, glintL_run *run, int scene_index, const 
     look l = { .run = run, .number = number, .all = &all, .noted = lua_gettop(L) - 1, .unseen = lua_gettop(L) };
     l.view = make_view(glint_camera_get(camera), desc, &v) ? &v : NULL;
     l.whole = glintL_selection_is_whole(&run->request.selection);
-    all.shows_more = has(L, GLINTL_SCENE, scene, glint_scene_get(scene), scene_index, "indirect");
+    note_focus(run, glint_camera_get(camera));
+    all.shows_more = glint_camera_get(camera)->aperture > 0 || has(L, GLINTL_SCENE, scene, glint_scene_get(scene), scene_index, "indirect");
     each_member(L, scene_index, gather, &all);
     each_member(L, scene_index, look_at, &l);
     lua_pop(L, 2);
@@ -429,6 +437,9 @@ void glintL_report_unseen(lua_State *L, glintL_run *run)
         lua_pop(L, 1);
     }
     run->told_of_view = run->told_of_view || count > 0;
+    if (run->has_focus && !run->has_aperture)
+        glintL_run_warn(run, "camera.focus and camera.blades change nothing while its aperture is 0: set aperture, the "
+                             "radius of the lens");
     if (count > 1)
         glintL_run_warn(run,
                         "%s and %d more are outside the view in every frame, with their shadows; move them, or the "

@@ -142,6 +142,17 @@ static void warn_of_caps(glintL_run *run, const glint_plan *plan)
                             effects[i].caller);
 }
 
+// A sample goes through one point of the lens. A preview has one sample for its speed.
+static void warn_of_lens(glintL_run *run, const glint_plan *plan)
+{
+    const glint_effect *effects;
+    const size_t count = glint_plan_effects(plan, &effects);
+    for (size_t i = 0; i < count && run->preview_side == 0 && glint_plan_render_desc(plan)->samples == 1; i++)
+        if (strcmp(effects[i].effect, "lens") == 0)
+            glintL_run_warn(run, "one sample a pixel shows the blur of a lens as a pattern of dots; set samples = 16, or "
+                                 "more, beside width, or give --samples 16");
+}
+
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
@@ -150,6 +161,7 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, true);
     warn_of_caps(run, work->plan);
+    warn_of_lens(run, work->plan);
     glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);

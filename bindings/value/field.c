@@ -122,6 +122,22 @@ static void read_transform(lua_State *L, int index, const char *path, glint_tran
     *out = t ? *t : glint_transform_identity();
 }
 
+static void read_distance(lua_State *L, int index, const char *path, glintL_distance *out)
+{
+    *out = (glintL_distance) { .number = 0 };
+    if (lua_isnil(L, index))
+        return;
+    if (lua_type(L, index) == LUA_TNUMBER)
+        out->number = lua_tonumber(L, index);
+    else if (lua_istable(L, index) || glintL_to_vector(L, index))
+        glintL_read_vector(L, index, path, out->point);
+    else
+        glintL_refuse(L, index, path, "number > 0 or {x, y, z}");
+    out->has_point = lua_type(L, index) != LUA_TNUMBER;
+    if (!out->has_point && !(out->number > 0 && isfinite(out->number)))
+        glintL_refuse(L, index, path, "number > 0 or {x, y, z}");
+}
+
 // What push_nested gave is read from the table behind it.
 static void read_nested(lua_State *L, int index, const char *path, const glintL_field *field, void *desc)
 {
@@ -191,6 +207,9 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     case GLINTL_POINTS:
         read_points(L, index, full, out);
         break;
+    case GLINTL_DISTANCE:
+        read_distance(L, index, full, out);
+        break;
     case GLINTL_TRANSFORM:
         read_transform(L, index, full, out);
         break;
@@ -234,6 +253,16 @@ static void push_points(lua_State *L, const void *in)
         glintL_push_vector(L, points[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
+}
+
+static void push_distance(lua_State *L, const glintL_distance *in)
+{
+    if (in->has_point)
+        glintL_push_vector(L, in->point);
+    else if (in->number > 0)
+        lua_pushnumber(L, in->number);
+    else
+        lua_pushnil(L);
 }
 
 static int refuse_part(lua_State *L)
@@ -324,6 +353,9 @@ void glintL_push_field(lua_State *L, const glintL_field *field, const void *desc
         break;
     case GLINTL_POINTS:
         push_points(L, in);
+        break;
+    case GLINTL_DISTANCE:
+        push_distance(L, in);
         break;
     case GLINTL_TRANSFORM:
         glintL_push_transform(L, in);

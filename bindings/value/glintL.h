@@ -24,12 +24,20 @@ typedef enum glintL_kind {
     GLINTL_STRING, ///< char[GLINT_NAME_SIZE]
     GLINTL_OBJECT, ///< a glintL_box of the type `names[0]`
     GLINTL_POINTS, ///< const double (*)[3] and after it a size_t, how many: {{x, y, z}, ...}
+    GLINTL_DISTANCE, ///< glintL_distance: a number > 0 or {x, y, z}; nil: neither
     GLINTL_TRANSFORM, ///< glint_transform; nil: the identity
     GLINTL_PROGRAM, ///< a pattern or nil; see program_offset
     GLINTL_NESTED, ///< a table of `nested` fields of the same description, numbers and colours; `set_offset` is needed
     GLINTL_CUSTOM, ///< `read` and `push` of the field do it
     GLINTL_OTHER ///< known by name only; the caller reads it
 } glintL_kind;
+
+/// How far away something is, or where.
+typedef struct glintL_distance {
+    double number; ///< 0: it is not given so
+    bool has_point;
+    double point[3];
+} glintL_distance;
 
 typedef struct glintL_field {
     const char *name;

@@ -103,19 +103,50 @@ static void choose_row(void *context, size_t index, int worker)
     mark(c, &here, 1, &next, 0, width - 1, own, below);
 }
 
-/// Brings the marks of two rows together, and counts them.
+/// Brings the marks of two rows together.
+static void join_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
+{
+    for (int y = extent->y; y < extent->y + extent->height; y++) {
+        const size_t row = (size_t)y * stride + (size_t)extent->x;
+        for (size_t i = row; i < row + (size_t)extent->width; i++)
+            refine->chosen[i] |= refine->below[i];
+    }
+}
+
+/// Of `count` marks that are `step` apart, those that are near one of `from`.
+static void spread_line(const uint8_t *from, uint8_t *to, int count, size_t step)
+{
+    int last = -GLINT_REFINE_SPREAD - 1; // the last mark up to here, and as far ahead as matters
+    for (int i = 0; i < count + GLINT_REFINE_SPREAD; i++) {
+        if (i < count && from[(size_t)i * step])
+            last = i;
+        const int at = i - GLINT_REFINE_SPREAD;
+        if (at >= 0)
+            to[(size_t)at * step] = at - last <= GLINT_REFINE_SPREAD;
+    }
+}
+
+static void spread_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
+{
+    const size_t first = (size_t)extent->y * stride + (size_t)extent->x;
+    for (size_t y = 0; y < (size_t)extent->height; y++)
+        spread_line(refine->chosen + first + y * stride, refine->below + first + y * stride, extent->width, 1);
+    for (size_t x = 0; x < (size_t)extent->width; x++)
+        spread_line(refine->below + first + x, refine->chosen + first + x, extent->height, stride);
+}
+
 static void count_chosen(glint_refine *refine, const glint_extent *extent, size_t stride)
 {
     refine->count = 0;
     for (int y = extent->y; y < extent->y + extent->height; y++) {
         const size_t row = (size_t)y * stride + (size_t)extent->x;
         for (size_t i = row; i < row + (size_t)extent->width; i++)
-            refine->count += refine->chosen[i] |= refine->below[i];
+            refine->count += refine->chosen[i];
     }
 }
 
 glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
-                                 double threshold, glint_pool *pool, glint_error *error)
+                                 double threshold, bool lens, glint_pool *pool, glint_error *error)
 {
     const size_t pixels = (size_t)base->width * (size_t)base->height;
     const size_t rows = 2 * CHANNELS_MAX * (size_t)base->width * (size_t)glint_pool_threads(pool);
@@ -131,6 +162,9 @@ glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, 
         refine->row_capacity = rows;
     }
     glint_pool_run(pool, (size_t)extent->height, choose_row, &c);
+    join_chosen(refine, extent, (size_t)base->width);
+    if (lens)
+        spread_chosen(refine, extent, (size_t)base->width);
     count_chosen(refine, extent, (size_t)base->width);
     return GLINT_OK;
 }

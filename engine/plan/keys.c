@@ -70,6 +70,10 @@ static glint_key view_key(const glint_plan *plan, glint_key key)
     ADD(key, c->forward);
     ADD(key, c->right);
     ADD(key, c->up);
+    if (plan->lens) {
+        const double lens[] = { c->aperture, c->focus, c->blades, c->blade_rotation };
+        ADD(key, lens);
+    }
     return key;
 }
 

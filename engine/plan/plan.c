@@ -100,7 +100,7 @@ static void choose_visibility(glint_plan *plan)
     bool needs_index = false;
     for (int id = 0; id < GLINT_STAGE_COUNT; id++)
         needs_index = needs_index || (plan->runs[id] && !(1u << id & without_index));
-    plan->raster = plan->geometry->triangle_count > 0 && requested != GLINT_VISIBILITY_CAST &&
+    plan->raster = plan->geometry->triangle_count > 0 && !plan->lens && requested != GLINT_VISIBILITY_CAST &&
                    (requested == GLINT_VISIBILITY_SCAN || glint_raster_pays(plan, needs_index));
     plan->needs_index = !plan->raster || needs_index || glint_plan_cuts(plan);
 }
@@ -160,6 +160,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan 
     if (!status)
         status = glint_geometry_check_reach(plan->geometry, "camera.eye", plan->camera.eye, error);
     if (!status)
+        status = glint_plan_find_lens(plan, glint_camera_get(scene->desc.camera), error);
+    if (!status)
         status = glint_plan_find_patterns(plan, glint_plan_has_indirect(&scene->desc), error);
     if (!status)
         status = glint_plan_shading(plan, scene, error);
@@ -212,6 +214,8 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
         const glint_render_desc base = glint_plan_base(&plan->desc);
         status = glint_plan_create(scene, &base, &plan->base, error);
+        if (!status)
+            plan->base->is_base = true;
     }
     if (status) {
         glint_plan_destroy(plan);
@@ -272,6 +276,7 @@ void glint_plan_destroy(glint_plan *plan)
     glint_plan_destroy(plan->base);
     glint_geometry_release(plan->geometry);
     glint_overlays_release(plan->overlays);
+    free(plan->lens);
     free(plan->lights);
     free(plan->light_samples);
     free(plan->visible_lights);
@@ -303,7 +308,7 @@ size_t glint_plan_stages(const glint_plan *plan, const glint_stage_info **list)
     return plan->stage_count;
 }
 
-#define APRON 2 ///< pixels around a region that its own are compared with, those of these among them
+#define APRON 4 ///< pixels around a region that its own depend on: what they are compared with, and GLINT_REFINE_SPREAD more
 
 /// Along one axis: `of` pixels in tiles of `size`.
 static void find_range(double from, double count, double of, int size, uint32_t *first, uint32_t *tiles, int *pixel,

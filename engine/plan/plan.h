@@ -4,6 +4,7 @@
 ///   plan/keys.c       what each stage reads, hashed
 ///   geometry.c        what rays meet, shared by the plans of one scene
 ///   plan/camera.c     the view
+///   plan/lens.c       where samples go through the camera's lens
 ///   plan/shading.c    materials and lights
 ///   plan/bounce.c     mirrors and transparent materials
 ///   plan/eye.c        what the eye is inside of
@@ -52,7 +53,15 @@ typedef struct glint_plan_camera {
     double eye[3], forward[3]; ///< forward is unit
     double right[3], up[3]; ///< from a pixel's centre to its edge
     double pixel_offset;
+    double aperture, focus; ///< of the lens; 0: there is none, and of the following nothing is read
+    uint32_t blades; ///< 0: it is round
+    double blade_rotation;
 } glint_plan_camera;
+
+/// Where the rays of one sample go through the lens, by the lane of their pixel: to the right and up, world units.
+typedef struct glint_lens_points {
+    double at[2][GLINT_GROUP];
+} glint_lens_points;
 
 /// A light, or one sample of an area light.
 typedef struct glint_plan_light {
@@ -129,8 +138,10 @@ struct glint_plan {
     glint_render_desc desc;
     uint32_t shutter_times; ///< light is the mean of so many times of the scene; 0: of one instant
     struct glint_plan **times; ///< these, each rendered by itself, owned; NULL: lights alone differ, and are in `lights`
+    bool is_base; ///< it is what adaptive sampling looks at, the next field of another
     struct glint_plan *base; ///< of the picture that adaptive sampling looks at, of one sample a pixel; NULL: it is off
     glint_plan_camera camera;
+    glint_lens_points *lens; ///< of each sample; NULL: the camera has no lens
 
     glint_geometry *geometry;
     glint_shade_material *materials; ///< in the geometry's order
@@ -237,6 +248,13 @@ glint_extent glint_plan_extent(const glint_render_desc *desc);
 void glint_plan_sample_offset(const glint_plan *plan, uint32_t k, double out[2]);
 
 void glint_plan_camera_init(glint_plan_camera *out, const glint_camera_desc *desc, const glint_render_desc *render);
+/// Fills the lens, after the camera.
+glint_status glint_plan_find_lens(glint_plan *plan, const glint_camera_desc *desc, glint_error *error);
+/// Of sample k, as kernels read it.
+void glint_plan_lens_at(const glint_plan *plan, uint32_t k, glint_lens *out);
+/// Where a point of the unit square, of `square`, lies on a lens of radius 1; blades: 0, or at least 3.
+void glint_lens_point(const double square[2], uint32_t blades, double rotation, double out[2]);
+
 /// Fills materials and the lights that give light.
 glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glint_error *error);
 /// Says which lights are alike, and how many cast shadows.

@@ -114,6 +114,16 @@ static void find_sides(const carry *c, uint32_t column, uint32_t row, sides *out
     }
 }
 
+/// How far beside the pinhole's the rays of a lens may be where they pass a ball, whose middle is `along` the view.
+static double beside(const glint_plan *plan, double along, double radius)
+{
+    const glint_plan_camera *camera = &plan->camera;
+    if (!plan->lens)
+        return 0;
+    const double near = fabs(1 - (along - radius) / camera->focus), far = fabs(1 - (along + radius) / camera->focus);
+    return camera->aperture * (fmax(near, far) * (1 + 1e-9) + 1e-9);
+}
+
 /// Whether a change may show in a tile: one that is not for certain outside its rays.
 static bool shows(const carry *c, uint32_t column, uint32_t row)
 {
@@ -123,7 +133,8 @@ static bool shows(const carry *c, uint32_t column, uint32_t row)
     for (uint32_t i = 0; i < c->ball_count; i++) {
         double way[3];
         vec_sub(way, c->balls[i].center, camera->eye);
-        const double radius = loosened(c->balls[i].radius, sqrt(vec_dot(way, way)));
+        const double own = loosened(c->balls[i].radius, sqrt(vec_dot(way, way)));
+        const double radius = own + beside(c->plan, vec_dot(way, camera->forward), own);
         bool outside = false;
         for (int side = 0; side < 4; side++)
             outside = outside || vec_dot(s.inwards[side], way) + s.offset[side] < -radius * s.length[side];

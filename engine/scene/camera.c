@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #define PI 0x1.921fb54442d18p+1
+#define GLINT_BLADES_MAX 64
 
 glint_camera_desc glint_camera_desc_default(void)
 {
@@ -36,6 +37,27 @@ static glint_status check_view(const glint_camera_desc *desc, glint_error *error
     return status;
 }
 
+static glint_status check_lens(const glint_camera_desc *desc, glint_error *error)
+{
+    glint_status status = GLINT_OK;
+    if (!(desc->aperture >= 0 && isfinite(desc->aperture)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "aperture: number >= 0 expected, got %.15g", desc->aperture);
+    if (!status && desc->has_focus_point)
+        status = glint_check_vector("focus", desc->focus_point, error);
+    if (!status && !(desc->focus >= 0 && isfinite(desc->focus)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "focus: number > 0 or {x, y, z} expected, got %.15g", desc->focus);
+    if (!status && desc->has_focus_point && desc->focus > 0)
+        status = glint_fail(error, GLINT_ERR_INVALID, "focus: a distance or a point expected, got both");
+    if (!status && desc->blades != 0 &&
+        !(desc->blades >= 3 && desc->blades <= GLINT_BLADES_MAX && desc->blades == floor(desc->blades)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "blades: 0 or a whole number 3 .. %d expected, got %.15g",
+                            GLINT_BLADES_MAX, desc->blades);
+    if (!status && !isfinite(desc->blade_rotation_rad))
+        status = glint_fail(error, GLINT_ERR_INVALID, "blade_rotation: finite number expected, got %.15g",
+                            desc->blade_rotation_rad * 180 / PI);
+    return status;
+}
+
 static glint_status check(const glint_camera_desc *desc, glint_error *error)
 {
     glint_status status = GLINT_OK;
@@ -56,6 +78,8 @@ static glint_status check(const glint_camera_desc *desc, glint_error *error)
         status = glint_check_range("shutter", desc->shutter, 0, 1, "number 0 .. 1", error);
     if (!status)
         status = glint_check_whole("shutter_times", desc->shutter_times, 1, GLINT_SHUTTER_TIMES_MAX, error);
+    if (!status)
+        status = check_lens(desc, error);
     return status;
 }
 

@@ -197,8 +197,8 @@ static void put_first_origin(struct glint_cut_out *cut, const glint_tile *tile, 
     const glint_precision precision = frame->plan->desc.precision;
     for (int c = 0; c < 3; c++)
         glint_real_put(cut->origin[c], precision, i,
-                       tile->camera.orthographic ? glint_real_at(tile->rays.origin[c], precision, i)
-                                                 : frame->plan->camera.eye[c]);
+                       glint_tile_has_arrays(tile) ? glint_real_at(tile->rays.origin[c], precision, i)
+                                                   : frame->plan->camera.eye[c]);
 }
 
 /// The tile's rays that met something with holes. Returns whether there are any.

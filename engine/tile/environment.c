@@ -70,10 +70,10 @@ static void load_group(const void *array, glint_precision precision, size_t at, 
 /// The rays of a group, not unit: as glint_tile_direction has them.
 static void load_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double d[3][GLINT_GROUP])
 {
-    const size_t across = tile->camera.orthographic ? 1 : tile->groups_across, x = g % across, y = g / across;
+    const size_t across = glint_tile_has_arrays(tile) ? 1 : tile->groups_across, x = g % across, y = g / across;
     for (size_t c = 0; c < 3; c++) {
         double down[GLINT_GROUP];
-        if (tile->camera.orthographic) {
+        if (glint_tile_has_arrays(tile)) {
             load_group(tile->rays.direction[c], precision, (size_t)g * GLINT_GROUP, d[c]);
             continue;
         }

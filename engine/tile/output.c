@@ -33,7 +33,7 @@ static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, gl
 
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i)
 {
-    if (tile->camera.orthographic)
+    if (glint_tile_has_arrays(tile))
         return glint_real_at(tile->rays.direction[c], precision, i);
     const uint32_t x = i / GLINT_GROUP % tile->groups_across, y = i / GLINT_GROUP / tile->groups_across;
     const uint32_t lane = i % GLINT_GROUP;

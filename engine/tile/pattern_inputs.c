@@ -159,7 +159,7 @@ static void load_rays(const gathering *g, int c, double out[GLINT_GROUP])
     const glint_precision precision = g->frame->plan->desc.precision;
     const uint32_t group = (uint32_t)(g->at / GLINT_GROUP);
     double down[GLINT_GROUP];
-    if (g->points->direction[c] || tile->camera.orthographic) {
+    if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
         load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
         return;
     }

@@ -68,9 +68,10 @@ static void copy_whole(const glint_tile *tile, const glint_tile_frame *frame)
 {
     static const glint_pass whole[] = { GLINT_PASS_DEPTH, GLINT_PASS_NORMAL, GLINT_PASS_OBJECT_ID, GLINT_PASS_ALBEDO };
     const uint32_t passes = frame->plan->desc.passes;
+    const size_t count = frame->plan->lens ? 0 : sizeof whole / sizeof *whole; // a lens's geometry is not the base's
     for (uint32_t y = 0; y < tile->height; y++) {
         const size_t row = (size_t)(tile->y0 + y) * (size_t)frame->image->width + tile->x0;
-        for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
+        for (size_t k = 0; k < count; k++)
             for (int c = 0; passes >> whole[k] & 1 && c < glint_pass_channels(whole[k]); c++)
                 memcpy(frame->image->plane[whole[k]][c] + row, frame->base->plane[whole[k]][c] + row,
                        tile->width * sizeof(float));

@@ -48,8 +48,11 @@ void glint_tile_aim(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
                                   .y0 = tile->y0,
                                   .width = plan->desc.width,
                                   .height = plan->desc.height,
-                                  .orthographic = camera->orthographic };
+                                  .orthographic = camera->orthographic,
+                                  .lens = plan->lens ? &tile->lens : NULL };
     tile->sample = k;
+    if (plan->lens)
+        glint_plan_lens_at(plan, k, &tile->lens);
     glint_plan_sample_offset(plan, k, args->offset);
     vec_copy(args->eye, camera->eye);
     vec_copy(args->forward, camera->forward);
@@ -92,7 +95,7 @@ bool glint_tile_in_sight(glint_tile *tile, const glint_tile_frame *frame)
     glint_cast_args args;
     if (frame->raster)
         return glint_tile_raster_in_sight(tile, frame);
-    if (frame->plan->camera.orthographic)
+    if (glint_tile_has_arrays(tile))
         return true;
     set_cast_args(tile, frame, &args);
     return frame->stages->geometry[frame->plan->desc.precision].in_sight(&args);
@@ -119,7 +122,7 @@ void glint_tile_cast(glint_tile *tile, const glint_tile_frame *frame)
     set_cast_args(tile, frame, &args);
     if (frame->raster)
         glint_tile_raster(tile, frame, &args);
-    else if (frame->plan->camera.orthographic)
+    else if (glint_tile_has_arrays(tile))
         stages->cast_rays(&args);
     else
         stages->cast_bundle(&args);

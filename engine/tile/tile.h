@@ -129,6 +129,7 @@ typedef struct glint_tile {
     bool transparent; ///< where nothing is hit, nothing is seen: the eye's own rays of a frame with alpha
     uint16_t active[GLINT_TILE_GROUPS]; ///< lanes whose rays are followed
     glint_camera_args camera; ///< of the current sample
+    glint_lens lens; ///< what camera.lens points to
     glint_cast_view view; ///< of the frame's cameras
     uint32_t sample; ///< which it is
     uint32_t boxed; ///< samples so far whose points are in the kept box
@@ -352,10 +353,17 @@ bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint
 /// whole. The points are found.
 void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
 
+/// Whether each ray has its origin and direction in the arrays: those of an orthographic camera, of one with a lens, and
+/// of batches.
+static inline bool glint_tile_has_arrays(const glint_tile *tile)
+{
+    return tile->camera.orthographic || tile->camera.lens;
+}
+
 /// The camera, where the rays are not in arrays.
 static inline const glint_camera_args *glint_tile_rays_of(const glint_tile *tile)
 {
-    return tile->camera.orthographic ? NULL : &tile->camera;
+    return glint_tile_has_arrays(tile) ? NULL : &tile->camera;
 }
 
 /// The pattern of a light's sample for the current sample of each pixel; NULL: it is no area light.

@@ -83,6 +83,15 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
     glint_tile_pattern(tile, frame);
 }
 
+/// Whether the picture's geometry is that of this walk: of sample 0; where the camera has a lens, of the ray through its middle.
+static bool shows_geometry(const glint_tile *tile, const glint_tile_frame *frame, const walk *w)
+{
+    const glint_plan *plan = frame->plan;
+    if (w->sample > 0 || !glint_tile_wants_geometry(plan))
+        return false;
+    return plan->lens && !plan->is_base ? !tile->camera.lens : !frame->base;
+}
+
 /// Returns whether anything is hit.
 static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 {
@@ -116,7 +125,7 @@ static bool find_hits(glint_tile *tile, const glint_tile_frame *frame, walk *w)
     tile->at.only = tile->cached && tile->cached->only != GLINT_MISS ? &tile->cached->only : NULL;
     if (glint_tile_wants_coverage(plan))
         glint_tile_count_hits(tile, plan, w->sample);
-    if (w->sample == 0 && glint_tile_wants_geometry(plan) && !frame->base) {
+    if (shows_geometry(tile, frame, w)) {
         if (any)
             need_points(tile, frame, w);
         if (any && plan->desc.passes >> GLINT_PASS_ALBEDO & 1)
@@ -333,6 +342,21 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
         glint_tile_depth_cue(tile, frame);
 }
 
+/// The geometry that a pinhole in the middle of the lens sees; of it nothing is kept.
+static void find_geometry(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_cached_tile *cached = tile->cached;
+    walk w = { .sample = 0 };
+    tile->cached = NULL;
+    glint_tile_aim(tile, frame, 0);
+    if (frame->base)
+        glint_plan_sample_offset(frame->plan->base, 0, tile->camera.offset);
+    tile->camera.lens = NULL;
+    glint_pattern_point(tile->pattern, tile, GLINT_WALK_EYE);
+    find_hits(tile, frame, &w);
+    tile->cached = cached;
+}
+
 /// The time now, of tiles that are timed, else 0. Without times of stages a few tiles tell what share the tone has.
 static uint64_t clock_of(const glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -355,6 +379,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     for (int k = 0; k < GLINT_TERM_COUNT && plan->accumulate && !plan->together; k++)
         if (glint_plan_has_term(plan, (glint_term)k))
             memset(tile->film.sum[k], 0, sizeof tile->film.sum[k]);
+    if (plan->lens && !plan->is_base && glint_tile_wants_geometry(plan))
+        find_geometry(tile, frame);
     const bool refined = !frame->base || glint_tile_choose_refined(tile, frame);
     for (uint32_t k = 0; refined && k < (uint32_t)plan->desc.samples; k++) {
         sample(tile, frame, k);

@@ -79,6 +79,23 @@ sed -i 's/frames = 4/frames = 120/' scene.lua
 run scene.lua && [ "$(wc -l <err)" -eq 101 ] && tail -n 1 err | grep -q 'no more are shown'
 result $? "a hundred warnings, and no more"
 
+# ---- A lens ----
+
+scene "objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1 } }" 'function frame() view.aperture = 0.2 end'
+sed -i 's/^local view/view/' scene.lua
+warns "a lens and one sample" 'one sample a pixel shows the blur of a lens as a pattern of dots; set samples = 16'
+silent "a lens and several" --samples 2
+scene "objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1 } }" 'function frame() view.focus = 8 end'
+sed -i 's/^local view/view/' scene.lua
+warns "a focus without an aperture" 'camera.focus and camera.blades change nothing while its aperture is 0'
+scene "objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1 } }" \
+    'function frame(t) view.aperture, view.focus, view.blades = t, 8, 5 end'
+sed -i 's/^local view/view/' scene.lua
+silent "an aperture that opens" --samples 4
+scene 'objects = { glint.sphere { center = { 4.5, 0, 0 }, radius = 0.1 } }' 'function frame() view.aperture = 1 view.focus = 3 end'
+sed -i 's/^local view/view/' scene.lua
+silent "what is outside the view may be blurred into it" --samples 4
+
 # ---- Outside the view ----
 
 scene 'objects = { glint.sphere { center = { 0, 0, 20 }, radius = 1, name = "ball" } }'

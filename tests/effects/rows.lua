@@ -78,5 +78,7 @@ return {
       parts.ball.bump = glint.pattern(function(p) return 0.1 * glint.sin(9 * p.x) end)
     end },
   { name = "opacity", functions = { "glint_tile_see_through" }, call = function(_, parts) parts.ball.opacity = 0 end },
+  { name = "lens", part = "LENS", functions = { "camera_lens", "through_lens" },
+    call = function(_, _, scene) scene.camera.aperture = 0.5 end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
 }

@@ -110,6 +110,8 @@ static void make_world(world *w)
         view.projection = GLINT_ORTHOGRAPHIC;
         view.height = between(4, 14);
     }
+    if (one_in(3))
+        view.aperture = between(0.05, 0.8);
     assert_int_equal(glint_camera_create(&view, &w->camera, NULL), GLINT_OK);
     assert_int_equal(glint_scene_create(&w->scene, NULL), GLINT_OK);
     glint_scene_desc s = *glint_scene_get(w->scene);

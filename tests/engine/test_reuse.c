@@ -101,7 +101,9 @@ static const field camera_fields[] = {
 #define C(...) FIELD(glint_camera_desc, __VA_ARGS__)
     C(projection, CHOICE, 0, 2),   C(eye, VECTOR, -2, 8), C(has_direction, FLAG, 0, 1), C(at, VECTOR, -1, 1),
     C(direction, VECTOR, -1, 1),   C(up, VECTOR, -1, 1),  C(fov_y_rad, NUMBER, 0.3, 2), C(height, NUMBER, 1, 10),
-    C(pixel_offset, NUMBER, 0, 1), C(shutter, FIXED, 0, 0), C(shutter_times, FIXED, 0, 0), C(name, FIXED, 0, 0),
+    C(pixel_offset, NUMBER, 0, 1), C(shutter, FIXED, 0, 0), C(shutter_times, FIXED, 0, 0),
+    C(aperture, NUMBER, 0, 0.4), C(focus, NUMBER, 0, 12), C(has_focus_point, FLAG, 0, 1),
+    C(focus_point, VECTOR, -1, 1), C(blades, WHOLE, 0, 7), C(blade_rotation_rad, NUMBER, 0, 6), C(name, FIXED, 0, 0),
 #undef C
 };
 
@@ -324,6 +326,17 @@ static void edit_shape(world *w)
     glint_shape_set(shape, &d, NULL);
 }
 
+/// What is in focus may not be behind the eye: such a camera becomes a pinhole.
+static void keep_focus(glint_camera_desc *c)
+{
+    const double *point = c->has_focus_point ? c->focus_point : c->at;
+    double depth = 0;
+    for (int k = 0; k < 3; k++)
+        depth += (point[k] - c->eye[k]) * (c->has_direction ? c->direction[k] : c->at[k] - c->eye[k]);
+    if (!(c->focus > 0) && (!(depth > 0) || (c->has_direction && !c->has_focus_point)))
+        c->aperture = 0;
+}
+
 static void edit_frame(world *w)
 {
     glint_camera_desc c = *glint_camera_get(w->camera);
@@ -331,6 +344,7 @@ static void edit_frame(world *w)
     switch (draw(3)) {
     case 0:
         set_field(pick(camera_fields, COUNT(camera_fields)), &c);
+        keep_focus(&c);
         break;
     case 1:
         set_field(pick(scene_fields, COUNT(scene_fields)), &s);

@@ -23,6 +23,12 @@ static void camera_case(int precision, bool odd)
         args.right[c] = maybe_odd(odd, between(-1e-2, 1e-2));
         args.up[c] = maybe_odd(odd, between(-1e-2, 1e-2));
     }
+    glint_lens lens = { .radius = 1, .per_focus = 1 };
+    for (int i = 0; i < 3 * GLINT_GROUP; i++) {
+        lens.shift[i / GLINT_GROUP][i % GLINT_GROUP] = maybe_odd(odd, either_sign(power_of_ten(-3, 6)));
+        lens.bend[i / GLINT_GROUP][i % GLINT_GROUP] = maybe_odd(odd, either_sign(power_of_ten(-6, 3)));
+    }
+    args.lens = one_in(2) ? &lens : NULL;
     FOR_EACH_TESTED
     {
         output3(args.origin, "origin", real_kind(precision), n);
@@ -69,8 +75,8 @@ static void check_sight(const ray_case *c, glint_cast_view *view)
 /// views: one for each instruction set, or NULL.
 static void cast_with(const ray_case *c, glint_cast_view views[])
 {
-    static const char *const names[RAY_KINDS] = { "cast_bundle", "cast_rays, orthographic", "cast_rays, parallel",
-                                                  "cast_rays" };
+    static const char *const names[RAY_KINDS] = { "cast_bundle", "cast_rays, orthographic", "cast_rays, lens",
+                                                  "cast_rays, parallel", "cast_rays" };
     glint_cast_args args = c->cast;
     const uint32_t n = args.group_count * GLINT_GROUP;
     FOR_EACH_TESTED

@@ -57,9 +57,56 @@ static void R(camera_orthographic)(const glint_camera_args *args)
     }
 }
 
+/// A group of a perspective camera, through its lens.
+INNER void R(lens_perspective)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP, x = g % args->groups_across, y = g / args->groups_across;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < GLINT_GROUP; i += VR) {
+            const real *across = (const real *)args->across + (3 * x + c) * GLINT_GROUP + i;
+            const real *down = (const real *)args->down + (3 * y + c) * GLINT_GROUP + i;
+            r_store((real *)args->origin[c] + at + i, r_set(args->eye[c]) + r_load(shift + c * GLINT_GROUP + i));
+            r_store((real *)args->direction[c] + at + i,
+                    (r_load(across) + r_load(down)) - r_load(bend + c * GLINT_GROUP + i));
+        }
+}
+
+/// One of an orthographic camera, whose rays are there but for that.
+INNER void R(lens_orthographic)(const glint_camera_args *args, const real *shift, const real *bend, uint32_t g)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    for (size_t c = 0; c < 3; c++)
+        for (size_t i = 0; i < GLINT_GROUP; i += VR) {
+            real *origin = (real *)args->origin[c] + at + i, *direction = (real *)args->direction[c] + at + i;
+            r_store(origin, r_load(origin) + r_load(shift + c * GLINT_GROUP + i));
+            r_store(direction, r_load(direction) - r_load(bend + c * GLINT_GROUP + i));
+        }
+}
+
+static void R(camera_lens)(const glint_camera_args *args)
+{
+    _Alignas(64) real shift[3 * GLINT_GROUP], bend[3 * GLINT_GROUP];
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i++) {
+            shift[c * GLINT_GROUP + i] = (real)args->lens->shift[c][i];
+            bend[c * GLINT_GROUP + i] = (real)args->lens->bend[c][i];
+        }
+    if (args->orthographic)
+        R(camera_orthographic)(args);
+    else
+        R(camera_perspective)(args);
+    for (uint32_t g = 0; g < args->group_count; g++)
+        if (args->orthographic)
+            R(lens_orthographic)(args, shift, bend, g);
+        else
+            R(lens_perspective)(args, shift, bend, g);
+}
+
 static void R(camera)(const glint_camera_args *args)
 {
-    if (args->orthographic)
+    if (GLINT_WITH_LENS && args->lens)
+        R(camera_lens)(args);
+    else if (args->orthographic)
         R(camera_orthographic)(args);
     else
         R(camera_perspective)(args);

@@ -188,6 +188,24 @@ static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shap
     return lanes;
 }
 
+/// The same of rays that start on a lens: by how far beside the eye's they are where they pass the middle of the shape.
+static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
+                                             float near, int x, int y)
+{
+    const R(tile_lens) *lens = tile->lens;
+    const vf share = f_set(1 - middle * lens->seen.per_focus), k = f_set(shape->k);
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+        if (!open)
+            continue;
+        const vf u = f_load(tile->s[x] + i) * k + f_load(lens->across[0] + i) * share;
+        const vf v = f_load(lens->across[1] + i) * share - f_load(tile->t[y] + i) * k;
+        lanes |= (open & shape_at(shape, u, v)) << i;
+    }
+    return lanes;
+}
+
 /// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
 /// them needs it.
 static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
@@ -207,7 +225,9 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
             if (!shaped)
                 shape = shape_of(node, seen, slot, &geometry->prims[id], &tile->view);
             shaped = true;
-            const unsigned near = R(lanes_near_shape)(tile, &shape, depth, x, y);
+            const unsigned near = GLINT_WITH_LENS && tile->lens
+                                      ? R(lanes_through_lens)(tile, &shape, seen->middle[2][slot], depth, x, y)
+                                      : R(lanes_near_shape)(tile, &shape, depth, x, y);
             if (!near)
                 continue;
             if (!placed && !tile->parallel)
@@ -251,7 +271,9 @@ static void R(walk_tile)(R(tile_cast) * tile, screen_entry *stack, int height)
         unsigned mask = 0, prims = 0;
         rows_behind behind;
         if (find_behind((const float(*)[SCREEN_ACROSS])tile->far, top, &behind)) {
-            mask = boxes_on_screen(node, &tile->view, &seen[turn]);
+            mask = GLINT_WITH_LENS && tile->lens
+                       ? boxes_through_lens(node, &tile->view, &tile->lens->seen, &seen[turn])
+                       : boxes_on_screen(node, &tile->view, &seen[turn]);
             const unsigned all = prims_of_node(node);
             prims = slots_before(&behind, &seen[turn], mask & all);
             prefetch_prims(geometry, node, prims);
@@ -291,6 +313,7 @@ static void R(cast_few)(const glint_cast_args *args, const R(cast_view) * view)
     const int count = R(candidates_in)(view, args->camera, list);
     tile.args = args;
     tile.scaled = tile.deep = tile.parallel = false;
+    tile.lens = NULL;
     tile.rr = view->rr;
     tile.uu = view->uu;
     tile.spread = view->spread;

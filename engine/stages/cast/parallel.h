@@ -1,5 +1,5 @@
-// cast_parallel: the nearest hit of the rays of an orthographic camera's tile, which walk the index together as those of one eye
-// do (cast.h). Contract: stages.h.
+// cast_parallel: the nearest hit of the rays of a tile of an orthographic camera, or of one with a lens, which walk the index
+// together as those of one eye do (cast.h). Contract: stages.h.
 
 /// The tile's rays: the screen lies across them, and its places are theirs wherever they are.
 static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_geometry_table *geometry,
@@ -19,10 +19,37 @@ static void R(aim_parallel_screen)(const glint_camera_args *camera, const glint_
     finish_screen(view);
 }
 
-static void R(aim_parallel)(const glint_cast_args *args, R(tile_cast) * tile)
+/// The lens as the screen shows it. Directions lose up to `bend` across the view: their stretch grows.
+static void R(aim_lens)(const glint_cast_args *args, screen_view *view, R(tile_lens) * out)
+{
+    const glint_camera_args *camera = args->camera;
+    const glint_lens *lens = camera->lens;
+    const double scale = args->geometry->scale, bend = lens->radius * lens->per_focus;
+    for (int j = 0; j < 2; j++) {
+        const double *along = j == 0 ? camera->right : camera->up, sign = j == 0 ? 1 : -1;
+        const double length2 = DOT(along, along), per = camera->orthographic ? 1 / length2 : scale / length2;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out->across[j][i] = (float)(sign * per *
+                                        ((lens->shift[0][i] * along[0] + lens->shift[1][i] * along[1]) +
+                                         lens->shift[2][i] * along[2]));
+        out->seen.reach[j] = (float)(1.00001 * lens->radius * per * sqrt(length2));
+    }
+    out->seen.per_focus = (float)(lens->per_focus / scale);
+    const float slope = sqrtf(larger(view->stretch - 1, 0)) + (float)bend;
+    view->stretch = 1.00001f * (1 + slope * slope);
+    finish_screen(view);
+    view->reach += 2 * GLINT_FILTER_SLACK * view->root_stretch * (float)(lens->radius * scale);
+}
+
+static void R(aim_parallel)(const glint_cast_args *args, R(tile_cast) * tile, R(tile_lens) * lens)
 {
     R(begin_tile)(args, tile);
-    R(aim_parallel_screen)(args->camera, args->geometry, &tile->view);
+    if (args->camera->orthographic)
+        R(aim_parallel_screen)(args->camera, args->geometry, &tile->view);
+    if (args->camera->lens) {
+        R(aim_lens)(args, &tile->view, lens);
+        tile->lens = lens;
+    }
     tile->parallel = tile->deep = true;
 }
 
@@ -43,8 +70,9 @@ static void R(cast_planes)(R(tile_cast) * tile, uint32_t g)
 static void R(cast_parallel)(const glint_cast_args *args)
 {
     R(tile_cast) tile;
+    R(tile_lens) lens;
     screen_entry stack[WALK_STACK];
-    R(aim_parallel)(args, &tile);
+    R(aim_parallel)(args, &tile, &lens);
     for (uint32_t g = 0; g < args->group_count; g++)
         R(cast_planes)(&tile, g);
     stack[0] = entry_of_root(&tile.view);

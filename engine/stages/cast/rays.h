@@ -1,5 +1,5 @@
 // cast_rays: the nearest hit of rays that start anywhere. In small scenes groups meet all primitives, else each ray walks the
-// index; those of an orthographic camera's tile walk it together (parallel.h). Contract: stages.h.
+// index; those of a tile of an orthographic camera, or of one with a lens, walk it together (parallel.h). Contract: stages.h.
 
 /// Where rays that go in through a sphere or solid come out of it: surely somewhere, for it is convex; of a form without an
 /// inside, perhaps by the other side.
@@ -198,6 +198,14 @@ static void R(walk_lone_ray)(const glint_cast_args *args, uint32_t g, const R(ra
 
 static void R(cast_parallel)(const glint_cast_args *args);
 
+#define LENS_BEAM 8 ///< radius over focus, above which the rays of a tile have little in common
+
+/// Whether the rays walk the index together.
+static inline bool R(is_beam)(const glint_camera_args *camera)
+{
+    return camera && !(camera->lens && camera->lens->radius * camera->lens->per_focus > LENS_BEAM);
+}
+
 /// A group's rays as filter and walk see them. local: room for their origins.
 static inline void R(make_ray_group)(const glint_cast_args *args, uint32_t g, float local[3][GLINT_GROUP],
                                      R(ray_group) * rays)
@@ -321,7 +329,7 @@ static void R(cast_rays)(const glint_cast_args *args)
     const glint_geometry_table *geometry = args->geometry;
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
-    if (geometry->nodes && args->camera) {
+    if (geometry->nodes && R(is_beam)(args->camera)) {
         R(cast_parallel)(args);
     } else if (geometry->nodes && geometry->prim_count > GLINT_FEW) {
         R(cast_many_rays)(args);

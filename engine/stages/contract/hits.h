@@ -6,6 +6,14 @@
 
 // ---- camera: rays of one sample of each pixel ----
 
+/// Where on the lens the rays of one sample go through it, by the lane of their pixel; world units.
+typedef struct glint_lens {
+    double shift[3][GLINT_GROUP]; ///< from the middle of the lens, across the view
+    double bend[3][GLINT_GROUP]; ///< shift / focus: what a direction loses
+    double radius; ///< no shift is longer
+    double per_focus; ///< 1 / focus
+} glint_lens;
+
 typedef struct glint_camera_args {
     uint32_t group_count, groups_across; ///< group g is column g % groups_across, row g / groups_across
     double x0, y0; ///< the tile's first pixel
@@ -13,14 +21,16 @@ typedef struct glint_camera_args {
     double width, height; ///< of the image
     bool orthographic;
     double eye[3], forward[3], right[3], up[3]; ///< right and up are scaled to half a pixel
+    const glint_lens *lens; ///< NULL: all rays of a perspective camera start at the eye
     void *across, *down; ///< out, real, perspective: 3 times 16 numbers a column and a row of groups; see below
-    void *origin[3], *direction[3]; ///< out, real, orthographic: one a ray
+    void *origin[3], *direction[3]; ///< out, real, orthographic or with a lens: one a ray
 } glint_camera_args;
 // lane i of group (gx, gy): px = (x0 + 4 gx + i % 4) + offset[0], py likewise with i / 4
 // sx = 2 px - width, sy = height - 2 py                             (all of that in double, then rounded to real)
 // perspective:  direction = (forward + sx right) + sy up, of which across is the first term and down the second:
 //               component c of lane i of group (gx, gy) is across[(3 gx + c) 16 + i] + down[(3 gy + c) 16 + i]
 // orthographic: direction = forward, origin = (eye + sx right) + sy up
+// with a lens, of the lane: direction is that less bend, origin is that (perspective: the eye) plus shift
 
 // ---- cast: the nearest hit of each ray ----
 
@@ -35,7 +45,8 @@ typedef struct glint_cast_args {
     const uint16_t *active; ///< a bit a lane: pixels inside the image; other lanes are misses
     const glint_geometry_table *geometry;
     const atomic_bool *stop; ///< true: the results do not matter any more; NULL: they do
-    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the orthographic camera whose tile they are, or NULL
+    const glint_camera_args *camera; ///< cast_bundle: the rays; cast_rays: the camera whose tile they are, orthographic
+        ///< or with a lens, or NULL
     glint_cast_view *view; ///< in_sight and cast_bundle only: shared by calls of one thread whose geometry, and whose
         ///< camera but for tile and offset, are the same; NULL: nothing is shared
     const void *origin[3], *direction[3]; ///< cast_rays only: real, one a ray

@@ -43,6 +43,9 @@
 #ifndef GLINT_WITH_PROGRAM
 #define GLINT_WITH_PROGRAM 1
 #endif
+#ifndef GLINT_WITH_LENS
+#define GLINT_WITH_LENS 1
+#endif
 #ifndef GLINT_WITH_SAMPLES
 #define GLINT_WITH_SAMPLES 1
 #endif

@@ -3,13 +3,20 @@
 
 #define GLINT_FIRST_CANDIDATES 24 ///< a node's worth and some planes
 
+/// The lens that a tile's rays start on.
+typedef struct R(tile_lens) {
+    lens_on_screen seen;
+    _Alignas(64) float across[2][GLINT_GROUP]; ///< where on it each lane's rays start, in units of place where k is 1
+} R(tile_lens);
+
 /// The tile's pixels as the filter sees them, and what is hit so far.
 typedef struct R(tile_cast) {
     const glint_cast_args *args;
     screen_view view; ///< its cells are the groups
     int across, down;
     bool scaled; ///< the arrays below are filled
-    bool parallel; ///< the rays do not start at one eye but beside each other; they are in arrays
+    bool parallel; ///< the rays do not start at one eye but beside each other, or on a lens; they are in arrays
+    const R(tile_lens) * lens; ///< NULL: they do not start on one
     bool deep; ///< more than the first candidates are in sight: worth knowing what hides what
     float rr, uu; ///< squares of the lengths of right and up
     float longest; ///< no direction is longer
@@ -344,6 +351,7 @@ static void R(aim_tile)(const glint_cast_args *args, R(tile_cast) * tile)
 {
     tile->args = args;
     tile->scaled = tile->deep = tile->parallel = false;
+    tile->lens = NULL;
     R(aim_screen)(args->camera, args->geometry, &tile->view);
     tile->rr = (float)DOT(args->camera->right, args->camera->right);
     tile->uu = (float)DOT(args->camera->up, args->camera->up);

@@ -74,8 +74,23 @@ static inline void places_of_boxes(vf low, vf high, vf nearest, vf farthest, vf 
     *most = f_select(ahead, f_max(high * near, high * far), f_set(HUGE_VALF));
 }
 
-/// Which boxes may be met before `far`. NaN, of boxes as wide as float reaches, gives every cell.
-static unsigned boxes_on_screen(const glint_node *node, const screen_view *view, node_on_screen *out)
+/// Rays that do not start at one eye but on a lens around it: at w they are up to `reach` |1 - per_focus w| beside those of the
+/// eye, along each axis, in units of place where k is 1.
+typedef struct lens_on_screen {
+    float reach[2], per_focus;
+} lens_on_screen;
+
+/// A bound of |1 - per_focus w| over k, rounding included.
+INNER vf lens_share(const lens_on_screen *lens, vf w, vf per_k)
+{
+    const vf way = w * f_set(lens->per_focus);
+    return (f_abs(f_set(1) - way) + f_set(1e-6f) * (f_set(1) + f_abs(way))) * f_abs(per_k);
+}
+
+/// Which boxes may be met before `far`. NaN, of boxes as wide as float reaches, gives every cell. `lens`: NULL, a constant: all
+/// rays start at the eye. What it does is between what it does at both ends of a box.
+INNER unsigned find_boxes(const glint_node *node, const screen_view *view, const lens_on_screen *lens,
+                          node_on_screen *out)
 {
     unsigned inside = 0;
     for (int i = 0; i < GLINT_NODE_WIDTH; i += VF) {
@@ -88,11 +103,17 @@ static unsigned boxes_on_screen(const glint_node *node, const screen_view *view,
         }
         const vf nearest = f_set(view->base) + low[2] * f_set(view->inverse);
         const vf farthest = f_set(view->base) + high[2] * f_set(view->inverse);
+        vf beside = f_set(0);
+        if (lens)
+            beside = f_max(lens_share(lens, low[2], f_set(1) / nearest), lens_share(lens, high[2], f_set(1) / farthest));
         vi cells = i_set(0);
         fm away = fm_or(f_lt(f_set(view->far), low[2]), f_lt(farthest, f_set(0)));
         f_store(out->near + i, f_max(low[2], f_set(-FLT_MAX)));
         for (int j = 1; j >= 0; j--) {
-            const vf start = f_set(view->first[j]), end = f_set(view->last[j]), margin = f_set(view->margin);
+            const vf start = f_set(view->first[j]), end = f_set(view->last[j]);
+            vf margin = f_set(view->margin);
+            if (lens)
+                margin = margin + f_set(lens->reach[j]) * beside;
             places_of_boxes(low[j], high[j], nearest, farthest, &least, &most);
             least = least - margin;
             most = most + margin;
@@ -104,6 +125,17 @@ static unsigned boxes_on_screen(const glint_node *node, const screen_view *view,
         inside |= fm_bits(fm_andnot(box_exists(node, i), away)) << i;
     }
     return inside;
+}
+
+static unsigned boxes_on_screen(const glint_node *node, const screen_view *view, node_on_screen *out)
+{
+    return find_boxes(node, view, NULL, out);
+}
+
+static unsigned boxes_through_lens(const glint_node *node, const screen_view *view, const lens_on_screen *lens,
+                                   node_on_screen *out)
+{
+    return find_boxes(node, view, lens, out);
 }
 
 /// A node to be looked into, and where it is.
@@ -234,11 +266,16 @@ static inline shape_on_screen shape_of(const glint_node *node, const node_on_scr
     return out;
 }
 
-/// Lanes whose rays, at places u, v, may meet the shape.
-static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
+/// Lanes whose rays may meet the shape; u, v: their places where they pass its middle, times k.
+static inline unsigned shape_at(const shape_on_screen *shape, vf u, vf v)
 {
-    const vf across = u * f_set(shape->k) - f_set(shape->middle[0]),
-             down = v * f_set(shape->k) - f_set(shape->middle[1]);
+    const vf across = u - f_set(shape->middle[0]), down = v - f_set(shape->middle[1]);
     const vf distance2 = f_set(shape->weight[0]) * (across * across) + f_set(shape->weight[1]) * (down * down);
     return ~fm_bits(f_lt(f_set(shape->reach2), distance2)) & ((1u << VF) - 1);
+}
+
+/// The same of rays at places u, v.
+static inline unsigned near_shape(const shape_on_screen *shape, vf u, vf v)
+{
+    return shape_at(shape, u * f_set(shape->k), v * f_set(shape->k));
 }

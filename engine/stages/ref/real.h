@@ -84,13 +84,22 @@ static void NAME(camera_sample)(const glint_camera_args *args, uint32_t i)
     REAL sy = (REAL)(args->height - 2 * py);
     NAME(vec3) across = NAME(times)(NAME(rounded)(args->right), sx);
     NAME(vec3) upward = NAME(times)(NAME(rounded)(args->up), sy);
-    NAME(vec3) forward = NAME(rounded)(args->forward);
+    NAME(vec3) origin = NAME(rounded)(args->eye), direction = NAME(rounded)(args->forward);
     if (args->orthographic) {
-        NAME(store)(args->origin, i, NAME(add)(NAME(add)(NAME(rounded)(args->eye), across), upward));
-        NAME(store)(args->direction, i, forward);
+        origin = NAME(add)(NAME(add)(origin, across), upward);
     } else {
-        NAME(store_part)(args->across, column, lane, NAME(add)(forward, across));
+        NAME(store_part)(args->across, column, lane, NAME(add)(direction, across));
         NAME(store_part)(args->down, row, lane, upward);
+        direction = NAME(add)(NAME(add)(direction, across), upward);
+    }
+    if (args->lens) {
+        const double(*shift)[GLINT_GROUP] = args->lens->shift, (*bend)[GLINT_GROUP] = args->lens->bend;
+        origin = NAME(add)(origin, NAME(vec)((REAL)shift[0][lane], (REAL)shift[1][lane], (REAL)shift[2][lane]));
+        direction = NAME(sub)(direction, NAME(vec)((REAL)bend[0][lane], (REAL)bend[1][lane], (REAL)bend[2][lane]));
+    }
+    if (args->lens || args->orthographic) {
+        NAME(store)(args->origin, i, origin);
+        NAME(store)(args->direction, i, direction);
     }
 }
 

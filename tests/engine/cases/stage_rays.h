@@ -8,6 +8,7 @@
 typedef enum ray_kind {
     RAYS_OF_EYE, ///< cast_bundle
     RAYS_OF_ORTHOGRAPHIC_CAMERA, ///< cast_rays, parallel
+    RAYS_OF_LENS, ///< cast_rays, of either projection
     RAYS_PARALLEL, ///< likewise, another direction for each group
     RAYS_FREE, ///< cast_rays
     RAY_KINDS
@@ -20,6 +21,7 @@ typedef struct ray_case {
     scene_plan plan;
     test_scene *scene;
     glint_camera_args camera;
+    glint_lens lens; ///< of RAYS_OF_LENS: what camera.lens points to
     glint_cast_args cast;
     const void *origin[3], *direction[3]; ///< of rays that are in arrays
 } ray_case;
@@ -73,6 +75,25 @@ static inline double random_camera(const scene_plan *plan, bool orthographic, gl
     return distance;
 }
 
+/// A lens of a camera that looks at the middle of the scene: next to nothing or larger than the scene, in focus there or
+/// anywhere. Its points are the middle, at the rim and in between.
+static inline void random_lens(double size, double distance, glint_camera_args *camera, glint_lens *lens)
+{
+    const double focus = one_in(3) ? size * power_of_ten(-6, 7) : fmax(distance, 1e-3 * size) * power_of_ten(-1, 1);
+    lens->radius = one_in(3) ? focus * power_of_ten(-8, 3) : size * power_of_ten(-3, 0.5);
+    lens->per_focus = 1 / focus;
+    for (int i = 0; i < GLINT_GROUP; i++) {
+        const double angle = between(0, 6.3), radius = lens->radius * (one_in(4) ? below(2) : between(0, 1));
+        const double x = 0.999999 * radius * cos(angle) / length3(camera->right);
+        const double y = 0.999999 * radius * sin(angle) / length3(camera->up);
+        for (int c = 0; c < 3; c++) {
+            lens->shift[c][i] = x * camera->right[c] + y * camera->up[c];
+            lens->bend[c][i] = lens->shift[c][i] * lens->per_focus;
+        }
+    }
+    camera->lens = lens;
+}
+
 /// Pixels of the tile that are in the image; now and then any.
 static inline uint16_t *active_pixels(const glint_camera_args *camera)
 {
@@ -101,6 +122,10 @@ static inline void shoot_camera(ray_case *c)
     glint_camera_args args = c->camera;
     memcpy(args.origin, c->origin, sizeof args.origin);
     memcpy(args.direction, c->direction, sizeof args.direction);
+    if (args.lens) {
+        args.across = input(real_kind(c->precision), 3 * GLINT_GROUP * args.groups_across);
+        args.down = input(real_kind(c->precision), 3 * GLINT_GROUP * (args.group_count / args.groups_across));
+    }
     glint_stages_ref.geometry[c->precision].camera(&args);
 }
 
@@ -189,7 +214,10 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     c->kind = kind;
     c->precision = precision;
     random_place(&c->plan, true);
-    double length = random_camera(&c->plan, kind == RAYS_OF_ORTHOGRAPHIC_CAMERA, &c->camera);
+    const bool orthographic = kind == RAYS_OF_ORTHOGRAPHIC_CAMERA || (kind == RAYS_OF_LENS && one_in(3));
+    double length = random_camera(&c->plan, orthographic, &c->camera);
+    if (kind == RAYS_OF_LENS)
+        random_lens(c->plan.size, length, &c->camera, &c->lens);
     const uint32_t n = c->camera.group_count * GLINT_GROUP;
     c->cast = (glint_cast_args) { .group_count = c->camera.group_count };
     c->cast.active = active_pixels(&c->camera);
@@ -208,7 +236,7 @@ static inline void start_rays(ray_case *c, ray_kind kind, int precision)
     choose_lines(c, length);
     c->scene = random_scene(&c->plan);
     c->cast.geometry = &c->scene->table;
-    c->cast.camera = kind == RAYS_OF_EYE || kind == RAYS_OF_ORTHOGRAPHIC_CAMERA ? &c->camera : NULL;
+    c->cast.camera = kind == RAYS_PARALLEL || kind == RAYS_FREE ? NULL : &c->camera;
     memcpy(c->cast.origin, c->origin, sizeof c->cast.origin);
     memcpy(c->cast.direction, c->direction, sizeof c->cast.direction);
 }
