@@ -272,7 +272,7 @@ ARM64_EMULATOR := qemu-aarch64 -L $(CURDIR)/$(ARM64_SYSROOT)
 .PHONY: check-arm64 check-arm64-run
 check-arm64: ## goldens, the kernels' tests and a job's hashes on arm64, under qemu; installs compiler and qemu through apt
 	@tests/deps.sh build test arm64
-	@tests/arm64/sysroot.sh $(ARM64_SYSROOT)
+	@tests/machines/arm64_sysroot.sh $(ARM64_SYSROOT)
 	@$(MAKE) --no-print-directory all
 	@PKG_CONFIG_LIBDIR=$(ARM64_LIBRARY)/pkgconfig PKG_CONFIG_SYSROOT_DIR=$(CURDIR)/$(ARM64_SYSROOT) $(MAKE) --no-print-directory \
 	    BUILD=$(ARM64) CC="$(ARM64_CC) --sysroot=$(CURDIR)/$(ARM64_SYSROOT)" $(ARM64)/glint $(ARM64)/glint.so $(ARM64_TESTS)
@@ -281,7 +281,24 @@ check-arm64: ## goldens, the kernels' tests and a job's hashes on arm64, under q
 ARM64_CC ?= aarch64-linux-gnu-gcc
 
 check-arm64-run:
-	@ARM64=$(ARM64) GLINT_CASE_STEP=23 EMULATOR="$(ARM64_EMULATOR)" $(RUNNER) tests/arm64/arm64.sh $(ARM64_TESTS)
+	@ELSEWHERE=$(ARM64) GLINT_CASE_STEP=23 EMULATOR="$(ARM64_EMULATOR)" ENCODERS=same LACKS=avx2 \
+	    $(RUNNER) tests/machines/elsewhere.sh $(ARM64_TESTS)
+
+MUSL           := build-musl
+MUSL_LIBRARIES := $(CURDIR)/$(MUSL)/libraries
+
+.PHONY: check-musl check-musl-run
+check-musl: ## goldens and a job's pixels by a static command on musl, with no optional library; its libraries are built from Debian's sources
+	@tests/deps.sh build test musl
+	@mkdir -p $(MUSL)
+	@tests/machines/musl_libraries.sh $(MUSL_LIBRARIES)
+	@$(MAKE) --no-print-directory all
+	@PKG_CONFIG_LIBDIR=$(MUSL_LIBRARIES)/lib/pkgconfig $(MAKE) --no-print-directory BUILD=$(MUSL) CC=musl-gcc LDFLAGS=-static \
+	    KERNELS="generic avx2" $(MUSL)/glint
+	@$(MAKE) --no-print-directory check-musl-run
+
+check-musl-run:
+	@ELSEWHERE=$(MUSL) EMULATOR= LACKS=avx512 $(RUNNER) tests/machines/elsewhere.sh
 
 # libFuzzer is clang's. The kernels are compiled without its counters: other tests are for them.
 FUZZ       := build-fuzz
@@ -527,8 +544,8 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
 
-clean: ## removes build/, build-asan/, build-tsan/, build-arm64/, build-fuzz/
-	rm -rf $(BUILD) build-asan build-tsan $(ARM64) $(FUZZ)
+clean: ## removes build/, build-asan/, build-tsan/, build-arm64/, build-musl/, build-fuzz/
+	rm -rf $(BUILD) build-asan build-tsan $(ARM64) $(MUSL) $(FUZZ)
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

@@ -3,7 +3,7 @@
 #   deps.sh need          says what the build lacks, and fails; installs nothing
 #   deps.sh WHAT ...      installs what is missing, through apt: build, test, bench (comparing speeds), films (the test with
 #                         ffmpeg and Chromium), rock (the test of the rockspec), farm (the test of scripts/farm), arm64
-#                         (the tests under qemu), fuzz (the fuzzers), package (the test of Debian's source package)
+#                         (the tests under qemu), musl (those of a static command), fuzz (the fuzzers), package (the test of Debian's source package)
 set -eu
 
 # package  how to tell that it is there
@@ -55,6 +55,9 @@ arm64_required='
 gcc-aarch64-linux-gnu command:aarch64-linux-gnu-gcc
 libc6-dev-arm64-cross file:/usr/aarch64-linux-gnu/include/stdio.h
 qemu-user       command:qemu-aarch64
+'
+musl_required='
+musl-tools      command:musl-gcc
 '
 package_optional='
 dpkg-dev        command:dpkg-buildpackage
@@ -149,11 +152,12 @@ for what in "$@"; do
     films) prefer "$films_optional" "the tests that need it will be skipped" ;;
     rock) require "$rock_required" ;;
     arm64) require "$arm64_required" ;;
+    musl) require "$musl_required" ;;
     package) prefer "$package_optional" "the test that needs it will be skipped" ;;
     fuzz) require "$fuzz_required" ;;
     farm) prefer "$farm_optional" "the test that needs it will be skipped" ;;
     *)
-        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | fuzz | package ..." >&2
+        echo "usage: deps.sh need | build | test | bench | films | rock | farm | arm64 | musl | fuzz | package ..." >&2
         exit 2
         ;;
     esac

@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# arm64.sh: what the command built for arm64 renders under qemu against the goldens and against what this machine renders.
-#   EMULATOR   what runs a program of arm64        ARM64   the build folder of the programs for arm64
+# elsewhere.sh: what a command built for another machine or C library renders, against the goldens and against what this one does.
+#   ELSEWHERE      its build folder
+#   EMULATOR       what runs it; empty: it runs here
+#   ENCODERS=same  it has the encoder libraries that this one has
+#   LACKS          an instruction set that it does not have; empty: none is known
 set -u
-native=$GLINT scratch=$ARM64/tests/arm64
+native=$GLINT scratch=$ELSEWHERE/tests/elsewhere
 rm -rf "$scratch"
 mkdir -p "$scratch"
 scratch=$(cd "$scratch" && pwd)
-printf '#!/bin/sh\nexec %s %s/glint "$@"\n' "$EMULATOR" "$(cd "$ARM64" && pwd)" >"$scratch/glint"
+printf '#!/bin/sh\nexec %s %s/glint "$@"\n' "$EMULATOR" "$(cd "$ELSEWHERE" && pwd)" >"$scratch/glint"
 chmod +x "$scratch/glint"
 bad=0
 
@@ -32,7 +35,7 @@ both() {
     "$scratch/glint" "$@" --quiet -o "$scratch/there/$name" || echo "no picture there"
 }
 
-GLINT=$scratch/glint BUILD=$ARM64 bash tests/command/golden.sh || bad=1
+GLINT=$scratch/glint BUILD=$ELSEWHERE bash tests/command/golden.sh || bad=1
 
 mkdir "$scratch/here" "$scratch/there"
 both 'light_%04d.pfm' scripts/moving_light.lua -f 1-120:20 --size 96x54 --passes depth,normal,object_id
@@ -44,15 +47,21 @@ check "and all of them" test "$(find "$scratch/here" -name '*.pfm' | wc -l)" -ge
 
 rm -rf "$scratch/here" "$scratch/there"
 mkdir "$scratch/here" "$scratch/there"
-both 'small_%04d.png' scripts/moving_light.lua -f 1-3 --size 96x54 --encode small
-check "one encoder library: the same files" test "$(sums "$scratch/here")" = "$(sums "$scratch/there")"
+if [ "${ENCODERS:-}" = same ]; then
+    both 'small_%04d.png' scripts/moving_light.lua -f 1-3 --size 96x54 --encode small
+    check "one encoder library: the same files" test "$(sums "$scratch/here")" = "$(sums "$scratch/there")"
+fi
 both 'fast_%04d.png' scripts/moving_light.lua -f 1-3 --size 96x54 --encode fast
 for n in 1 2 3; do
     check "fast, frame $n: the same pixels" \
         "$native" compare "$scratch/here/fast_000$n.png" "$scratch/there/fast_000$n.png"
 done
-"$scratch/glint" scripts/moving_light.lua -f 1-3 --size 96x54 --json -o "$scratch/here/fast_%04d.png" >"$scratch/kept" 2>&1
-check "a job goes on where another machine has stopped" test "$(grep -c '"status":"kept"' "$scratch/kept")" -eq 3
-check "an instruction set of another machine is refused" \
-    sh -c "GLINT_ISA=avx2 '$scratch/glint' scripts/moving_light.lua -f 1 -o none 2>&1 | grep -q 'lacks .avx2'"
+"$scratch/glint" scripts/moving_light.lua -f 1-3 --size 96x54 --json -o "$scratch/there/fast_%04d.png" >"$scratch/kept" 2>&1
+check "a job goes on where it has stopped" test "$(grep -c '"status":"kept"' "$scratch/kept")" -eq 3
+if [ "${ENCODERS:-}" = same ]; then
+    "$scratch/glint" scripts/moving_light.lua -f 1-3 --size 96x54 --json -o "$scratch/here/fast_%04d.png" >"$scratch/kept" 2>&1
+    check "and where another machine has stopped" test "$(grep -c '"status":"kept"' "$scratch/kept")" -eq 3
+fi
+[ -z "${LACKS:-}" ] || check "an instruction set of another machine is refused" \
+    sh -c "GLINT_ISA=$LACKS '$scratch/glint' scripts/moving_light.lua -f 1 -o none 2>&1 | grep -q 'lacks .$LACKS'"
 exit $bad
