@@ -77,7 +77,7 @@ typedef enum glint_input {
     GLINT_INPUT_V_Y, ///< likewise
     GLINT_INPUT_V_Z, ///< likewise
     /// The shape's own coordinates on its surface: of a plane or disk lengths along two tangents, of a box 0 .. 1 on each
-    /// face, of a sphere, cylinder or cone 0 .. 1 around and along, of a mesh those of its corners, between them by
+    /// face, of a sphere, cylinder or cone 0 .. 1 around and along, of a torus around it and around its tube, of a mesh those of its corners, between them by
     /// barycentric coordinates over triangles
     GLINT_INPUT_UV_U,
     GLINT_INPUT_UV_V, ///< likewise
@@ -516,6 +516,7 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_DISK, ///< `center`, `normal`, `radius`
     GLINT_SHAPE_CYLINDER, ///< `base`, `top`, `radius`
     GLINT_SHAPE_CONE, ///< `base`, `top`, the apex, `radius` at the base
+    GLINT_SHAPE_TORUS, ///< `center`, `axis`, `major`, `minor`
     GLINT_SHAPE_GROUP ///< of shapes; see glint_group_add
 } glint_shape_kind;
 
@@ -554,12 +555,15 @@ typedef struct glint_shape_desc {
     glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none
     glint_transform transform; ///< of the shape as described here; default identity; must be possible to undo
     bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
-    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius): finite, radius > 0; see glint_scene_cast
+    double center[3], radius; ///< sphere, disk (and cylinder, cone: radius; torus: center): finite, radius > 0; see glint_scene_cast
     double point[3], normal[3]; ///< plane (and disk: normal): finite, normal not zero, need not be unit
     double min[3], max[3]; ///< box: finite, min < max; default -1, 1
     double base[3], top[3]; ///< cylinder, cone: the middles of its ends; the cone's top is its apex; not the same place
     bool capped; ///< cylinder: closed at both ends, cone: at its base; default true. False: its side alone, seen from
         ///< within too; it has no inside, so that what it transmits is bent as by a solid that never ends
+    double axis[3]; ///< torus: not zero, need not be unit; default {0, 1, 0}
+    double major, minor; ///< torus: radii of the circle in the middle of its tube and of the tube, 0 < minor < major: the tube
+        ///< does not meet itself; default 1, 0.25
     glint_shading shading; ///< mesh
     char name[GLINT_NAME_SIZE];
 } glint_shape_desc;

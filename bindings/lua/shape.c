@@ -1,4 +1,4 @@
-// glint.sphere, plane, box, disk, cylinder, cone and group; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
+// glint.sphere, plane, box, disk, cylinder, cone, torus and group; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/value/glintL.h"
@@ -53,6 +53,15 @@ static const glintL_field ROUND_FIELDS[] = {
     { .name = "top", .kind = GLINTL_VECTOR, .offset = AT(top), .required = true },
     { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
     { .name = "capped", .kind = GLINTL_BOOLEAN, .offset = AT(capped) },
+    EVERY_SHAPE,
+    { .name = NULL },
+};
+
+static const glintL_field TORUS_FIELDS[] = {
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
+    { .name = "axis", .kind = GLINTL_VECTOR, .offset = AT(axis) },
+    { .name = "major", .kind = GLINTL_NUMBER, .offset = AT(major), .required = true },
+    { .name = "minor", .kind = GLINTL_NUMBER, .offset = AT(minor), .required = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
@@ -137,6 +146,7 @@ static const glintL_variant VARIANTS[] = {
     [GLINT_SHAPE_DISK] = { .name = "disk", .fields = DISK_FIELDS, .place = "center" },
     [GLINT_SHAPE_CYLINDER] = { .name = "cylinder", .fields = ROUND_FIELDS },
     [GLINT_SHAPE_CONE] = { .name = "cone", .fields = ROUND_FIELDS },
+    [GLINT_SHAPE_TORUS] = { .name = "torus", .fields = TORUS_FIELDS, .place = "center" },
     [GLINT_SHAPE_GROUP] = { .name = "group",
                             .fields = GROUP_FIELDS,
                             .getters = GROUP_GETTERS,
@@ -212,6 +222,8 @@ static int new_cylinder(lua_State *L) { return new_shape(L, GLINT_SHAPE_CYLINDER
 
 static int new_cone(lua_State *L) { return new_shape(L, GLINT_SHAPE_CONE); }
 
+static int new_torus(lua_State *L) { return new_shape(L, GLINT_SHAPE_TORUS); }
+
 static int new_group(lua_State *L) { return new_shape(L, GLINT_SHAPE_GROUP); }
 
 static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
@@ -228,6 +240,7 @@ void glintL_open_shape(lua_State *L)
         { "disk", new_disk },
         { "cylinder", new_cylinder },
         { "cone", new_cone },
+        { "torus", new_torus },
         { "group", new_group },
         { "mesh", glintL_new_mesh },
         { "sphere_mesh", glintL_new_sphere_mesh },

@@ -277,7 +277,7 @@ function glint.camera(fields) end
 ---@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
----@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.group
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group
 
 --- An affine map: a value that does not change. `a * b` is first b, then a; equal when all numbers are.
 ---@class glint.transform
@@ -468,6 +468,25 @@ function cone:close() end
 ---@param fields glint.cone_fields
 ---@return glint.cone
 function glint.cone(fields) end
+
+---@class glint.torus_fields: glint.shape_fields
+---@field center glint.vec3
+---@field axis? glint.vec3  that it turns around, not zero. Default { 0, 1, 0 }
+---@field major number  radius of the circle in the middle of its tube, world units, > 0
+---@field minor number  radius of the tube, > 0 and below major: the tube does not meet itself
+
+---@class glint.torus: glint.torus_fields
+---@field x number  of center
+---@field y number  of center
+---@field z number  of center
+local torus = {}
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function torus:close() end
+
+---@param fields glint.torus_fields
+---@return glint.torus
+function glint.torus(fields) end
 
 ---@class glint.group_fields
 ---@field transform? glint.transform  of all that is in it; nil: none
@@ -833,7 +852,7 @@ function triple:unpack() end
 ---@field world glint.triple  the point in world space
 ---@field n glint.triple  the geometric normal, unit, on the viewer's side
 ---@field v glint.triple  towards the eye, unit
----@field uv glint.triple  coordinates on the surface, u and v: world units along a plane, 0 .. 1 around and along spheres, cylinders and cones, on its face of a box, `vt` of a mesh
+---@field uv glint.triple  coordinates on the surface, u and v: world units along a plane, 0 .. 1 around and along spheres, cylinders and cones, around a torus and around its tube, on its face of a box, `vt` of a mesh
 ---@field footprint number  width of the pixel at the point, world units; 0 where it is not known
 ---@field uv_footprint number  the same in units of u and v
 ---@field l glint.triple  of shaders: towards the light, unit; n.l > 0

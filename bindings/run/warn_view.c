@@ -155,7 +155,8 @@ static bool find_ball(const glint_shape *shape, ball *out)
 {
     const glint_shape_desc *desc = glint_shape_get(shape);
     double half[3], square = 0, lower[3], upper[3];
-    bool is_round = desc->kind == GLINT_SHAPE_SPHERE || desc->kind == GLINT_SHAPE_DISK;
+    const bool is_torus = desc->kind == GLINT_SHAPE_TORUS;
+    bool is_round = desc->kind == GLINT_SHAPE_SPHERE || desc->kind == GLINT_SHAPE_DISK || is_torus;
     bool is_long = desc->kind == GLINT_SHAPE_CYLINDER || desc->kind == GLINT_SHAPE_CONE;
     const bool is_many = glint_shape_bounds(shape, lower, upper);
     const double *low = is_many ? lower : is_long ? desc->base : desc->min;
@@ -167,9 +168,9 @@ static bool find_ball(const glint_shape *shape, ball *out)
         out->center[c] = is_round ? desc->center[c] : low[c] + half[c];
         square += half[c] * half[c];
     }
-    if (is_round || is_long)
+    if (!is_torus && (is_round || is_long))
         square += desc->radius * desc->radius;
-    out->radius = sqrt(square);
+    out->radius = is_torus ? desc->major + desc->minor : sqrt(square);
     out->is_sphere = desc->kind == GLINT_SHAPE_SPHERE;
     return true;
 }
@@ -246,7 +247,7 @@ static void describe(const glint_shape_desc *shape, const ball *b, char out[160]
     static const char *const names[] = {
         [GLINT_SHAPE_SPHERE] = "sphere", [GLINT_SHAPE_SPHERES] = "set of spheres", [GLINT_SHAPE_MESH] = "mesh",
         [GLINT_SHAPE_BOX] = "box",       [GLINT_SHAPE_DISK] = "disk",       [GLINT_SHAPE_CYLINDER] = "cylinder",
-        [GLINT_SHAPE_CONE] = "cone"
+        [GLINT_SHAPE_CONE] = "cone",     [GLINT_SHAPE_TORUS] = "torus"
     };
     if (*shape->name)
         snprintf(out, 160, "%s '%s'", names[shape->kind], shape->name);

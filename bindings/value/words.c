@@ -106,6 +106,8 @@ static const char *const MEANINGS[][2] = {
     { "cube", "box" },
     { "ball", "sphere" },
     { "tube", "cylinder" },
+    { "ring", "torus" },
+    { "donut", "torus" },
     { "triangle", "mesh" },
     { "triangles", "mesh" },
     { "polygon", "mesh" },

@@ -63,6 +63,8 @@ void glint_solid_faces(const glint_shape_desc *desc, glint_form form, const glin
         }
         return;
     }
+    if (form == GLINT_FORM_TORUS)
+        return;
     const bool disk = form == GLINT_FORM_DISK, cone = form == GLINT_FORM_CONE || form == GLINT_FORM_FUNNEL;
     const double *low = disk ? desc->center : cone ? desc->top : desc->base;
     const double *high = disk ? desc->center : cone ? desc->base : desc->top;

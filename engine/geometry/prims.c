@@ -56,6 +56,8 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
         out[4] = solid->form;
         memcpy(out + 5, solid->inverse, sizeof solid->inverse);
         int count = 14;
+        if (solid->form == GLINT_FORM_TORUS)
+            out[count++] = solid->tube;
         for (int i = 0; i < 2 * glint_slab_count(solid->form); i++)
             count += copy_face(out + count, &solid->faces[i]);
         return count;
@@ -76,6 +78,8 @@ static void solid_bounds(const glint_solid *solid, const double center[3], doubl
             high = (fabs(m[0]) + fabs(m[1])) + fabs(m[2]);
         else if (solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE)
             high = round + fabs(m[2]);
+        else if (solid->form == GLINT_FORM_TORUS)
+            high = round + solid->tube * sqrt(vec_dot(m, m));
         if (solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL) {
             low = fmin(0, m[2] - round);
             high = fmax(0, m[2] + round);
@@ -138,6 +142,8 @@ static glint_form form_of(const glint_shape_desc *desc)
         return desc->capped ? GLINT_FORM_CYLINDER : GLINT_FORM_TUBE;
     case GLINT_SHAPE_CONE:
         return desc->capped ? GLINT_FORM_CONE : GLINT_FORM_FUNNEL;
+    case GLINT_SHAPE_TORUS:
+        return GLINT_FORM_TORUS;
     default:
         return GLINT_FORM_BALL;
     }
@@ -160,6 +166,10 @@ static glint_transform unit_map(const glint_shape_desc *desc)
     } else if (desc->kind == GLINT_SHAPE_DISK) {
         vec_normalize(along, desc->normal);
         round_map(map.m, desc->center, along, desc->radius);
+    } else if (desc->kind == GLINT_SHAPE_TORUS) {
+        vec_normalize(along, desc->axis);
+        vec_scale(along, along, desc->major);
+        round_map(map.m, desc->center, along, desc->major);
     } else {
         for (int c = 0; c < 3; c++) {
             const bool box = desc->kind == GLINT_SHAPE_BOX;
@@ -350,6 +360,7 @@ static void add_ball(filler *f, glint_prim *prim, const double center[3], double
     vec_copy(desc.center, center);
     const glint_transform unit = unit_map(&desc);
     prim->item = f->solid_count++;
+    f->geometry->solids[prim->item].tube = 0;
     solid_init(prim, &f->geometry->solids[prim->item], GLINT_FORM_BALL, &unit, place, NULL);
 }
 
@@ -361,6 +372,8 @@ static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc,
     glint_solid_faces(desc, form, place, faces);
     f->face_count += 2 * (uint32_t)glint_slab_count(form);
     prim->item = f->solid_count++;
+    f->geometry->solids[prim->item].tube = form == GLINT_FORM_TORUS ? desc->minor / desc->major : 0;
+    f->geometry->table.tori = f->geometry->table.tori || form == GLINT_FORM_TORUS;
     solid_init(prim, &f->geometry->solids[prim->item], form, &unit, place, faces);
 }
 

@@ -33,6 +33,8 @@ static bool extents_of(const glint_geometry *geometry, const glint_prim *prim, e
         out->least = width >= out->least ? out->least : width; // NaN stays
         out->most = flat ? 1 : fmax(out->most, width); // of where a disk is met alone squares are taken
     }
+    if (form == GLINT_FORM_TORUS)
+        out->least *= solid->tube;
     return true;
 }
 

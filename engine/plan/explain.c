@@ -203,7 +203,7 @@ typedef bool shape_test(const glint_shape *shape);
 static bool is_mesh(const glint_shape *shape) { return shape->mesh; }
 static bool is_solid(const glint_shape *shape)
 {
-    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_CONE;
+    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
 }
 static bool is_shaded(const glint_shape *shape, glint_shading shading)
 {

@@ -221,6 +221,13 @@ static void surface_init(glint_pattern_place *place, const glint_shape_desc *des
         vec_normalize(along, along);
         sides_of(along, place->side);
         break;
+    case GLINT_SHAPE_TORUS:
+        vec_copy(place->origin, desc->center);
+        vec_normalize(place->along, desc->axis);
+        sides_of(place->along, place->side);
+        place->radius = desc->minor;
+        place->length = desc->major;
+        break;
     default:
         break;
     }
@@ -253,6 +260,7 @@ static glint_key place_key(const glint_pattern_place *place, uint32_t part, glin
     key = glint_key_add(key, place->along, sizeof place->along);
     key = glint_key_add(key, place->side, sizeof place->side);
     key = glint_key_add(key, &place->radius, sizeof place->radius);
+    key = glint_key_add(key, &place->length, sizeof place->length);
     if (place->mesh)
         key = glint_key_add(key, &place->mesh->uv_key, sizeof place->mesh->uv_key);
     return glint_key_add(key, place->upper, sizeof place->upper);

@@ -59,9 +59,9 @@ typedef struct glint_pattern_place {
     double lower[3], upper[3]; ///< box
     double origin[3], along[3],
         side[2][3]; ///< of s.uv: plane and disk: a point, and two tangents; cylinder and cone: the
-    ///< base, its axis divided by its squared length, and two unit vectors across it
+    ///< base, its axis divided by its squared length, and two unit vectors across it; torus: its centre, its unit axis, alike
     double shrink; ///< own lengths over the world's
-    double radius, length; ///< cylinder and cone
+    double radius, length; ///< cylinder and cone; torus: of its tube, of the circle in the middle of that
     const struct glint_mesh *mesh; ///< whose coordinates are read; its triangles are primitives from `first_prim` on
     uint32_t first_prim; ///< by id
 } glint_pattern_place;

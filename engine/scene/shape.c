@@ -20,7 +20,10 @@ glint_shape_desc glint_shape_desc_default(glint_shape_kind kind)
                                 .normal = { 0, 1, 0 },
                                 .min = { -1, -1, -1 },
                                 .max = { 1, 1, 1 },
-                                .top = { 0, 1, 0 } };
+                                .top = { 0, 1, 0 },
+                                .axis = { 0, 1, 0 },
+                                .major = 1,
+                                .minor = 0.25 };
 }
 
 static glint_status check_radius(const glint_shape_desc *desc, glint_error *error)
@@ -56,6 +59,19 @@ static glint_status check_ends(const glint_shape_desc *desc, glint_error *error)
     return status;
 }
 
+static glint_status check_torus(const glint_shape_desc *desc, glint_error *error)
+{
+    glint_status status = glint_check_vector("center", desc->center, error);
+    if (!status)
+        status = glint_check_direction("axis", desc->axis, error);
+    if (!status && !(desc->major > 0 && isfinite(desc->major)))
+        status = glint_fail(error, GLINT_ERR_INVALID, "major: number > 0 expected, got %.15g", desc->major);
+    if (!status && !(desc->minor > 0 && desc->minor < desc->major))
+        status = glint_fail(error, GLINT_ERR_INVALID, "minor: number > 0 and below major (%.15g) expected, got %.15g",
+                            desc->major, desc->minor);
+    return status;
+}
+
 static glint_status check_fields(const glint_shape_desc *desc, glint_error *error)
 {
     glint_status status = GLINT_OK;
@@ -76,6 +92,8 @@ static glint_status check_fields(const glint_shape_desc *desc, glint_error *erro
     case GLINT_SHAPE_CYLINDER:
     case GLINT_SHAPE_CONE:
         return check_ends(desc, error);
+    case GLINT_SHAPE_TORUS:
+        return check_torus(desc, error);
     case GLINT_SHAPE_MESH:
         return glint_check_shading(desc->shading, error);
     default:
@@ -313,8 +331,8 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
 
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
 {
-    static const char *const kinds[] = { "sphere", "plane",    "spheres", "mesh", "box",
-                                         "disk",   "cylinder", "cone",    "group" };
+    static const char *const kinds[] = { "sphere", "plane",    "spheres", "mesh",  "box",
+                                         "disk",   "cylinder", "cone",    "torus", "group" };
     if (desc->name[0])
         snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
     else

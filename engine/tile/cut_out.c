@@ -271,12 +271,14 @@ static void take_nearer(const struct glint_cut_out *cut, glint_tile *tile, const
 
 /// Finds the distance of primitive `prim`, which the lanes in `active` see through holes, from where their rays began: as the
 /// first side of it that they meet there, or as the other one. A sphere's point follows from any distance, that of other shapes
-/// from one of the two.
+/// from one of the two; that of a torus, which may be met twice more, from what is near any.
 static void see_from_origin(struct glint_cut_out *cut, glint_tile *tile, const glint_tile_frame *frame, uint32_t prim,
                             double off[GLINT_TILE_SAMPLES])
 {
     static const uint32_t only = 0;
-    const bool any = frame->geometry.prims[prim].kind != GLINT_PRIM_SPHERE;
+    const glint_prim *seen = &frame->geometry.prims[prim];
+    const bool torus = seen->kind == GLINT_PRIM_SOLID && frame->geometry.solids[seen->item].form == GLINT_FORM_TORUS;
+    const bool any = seen->kind != GLINT_PRIM_SPHERE && !torus;
     glint_geometry_table one = frame->geometry;
     one.prims += prim;
     one.prim_count = one.unbounded_count = 1;

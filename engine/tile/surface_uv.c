@@ -62,6 +62,23 @@ static void axis_uv(const glint_pattern_place *place, const double p[3], glint_s
     vec_copy(out->slope[1], place->along);
 }
 
+/// Of a torus: around its axis as of a cylinder, and around its tube: from the inside of the ring on by its under side, 0 .. 1.
+static void torus_uv(const glint_pattern_place *place, const double p[3], glint_surface_uv *out)
+{
+    double d[3];
+    vec_sub(d, p, place->origin);
+    const double x = vec_dot(d, place->side[0]), y = vec_dot(d, place->side[1]), z = vec_dot(d, place->along);
+    const double round2 = x * x + y * y, round = sqrt(round2), off = round - place->length, tube2 = off * off + z * z;
+    out->at[0] = around(x, -y);
+    out->at[1] = around(z, off);
+    out->unit = TURN * fmin(round, place->radius);
+    for (int c = 0; c < 3; c++) {
+        const double outward = (x * place->side[0][c] + y * place->side[1][c]) / round;
+        out->slope[0][c] = (x * place->side[1][c] - y * place->side[0][c]) / (round2 * TURN);
+        out->slope[1][c] = (off * place->along[c] - z * outward) / (tube2 * TURN);
+    }
+}
+
 /// Sides of a triangle from its first corner, and the way from there to p, all times a power of two. Returns that.
 static double sides_of(const glint_mesh *mesh, uint32_t triangle, const double p[3], double side[3][3])
 {
@@ -111,6 +128,8 @@ void glint_surface_uv_at(const glint_pattern_place *place, const glint_uv_point 
         box_uv(place, point, out);
     else if (place->kind == GLINT_SHAPE_SPHERE || place->kind == GLINT_SHAPE_SPHERES)
         ball_uv(point->from_center, out);
+    else if (place->kind == GLINT_SHAPE_TORUS)
+        torus_uv(place, point->p, out);
     else
         axis_uv(place, point->p, out);
 }

@@ -10,6 +10,7 @@
 --   gr.mesh(name, "model.obj")
 --   gr.cylinder(name)                                   radius 1 around the z axis, from z = 0 to z = 1, closed
 --   gr.cone(name)                                       base of radius 1 at z = 0, apex at z = 1, closed
+--   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
 --   gr.material({kd}, {ks}, shininess)
 --   gr.material({kd}, {ks}, shininess, r, t, n)         and what else may follow: bindings/README.md has the forms
 --   gr.reflective_material(...)  gr.material_refl(...)  gr.material_refr(...)  gr.reflective()  gr.refractive(n)
@@ -25,7 +26,7 @@
 --
 -- `gr` is the nodes' metatable: gr.scale(n, ...) is n:scale(...), and functions a scene adds to it are methods.
 -- gr.options has what the course left open (scripts/lib/gr/options.lua); cylinder and cone stand as OpenGL's
--- gluCylinder does. A shape of radius or edge 0 and one that a
+-- gluCylinder does, a torus as glutSolidTorus. A shape of radius or edge 0 and one that a
 -- scale of 0 flattens have nothing to hit and do not show.
 local check = require "gr.check"
 check.own_source()
@@ -81,6 +82,16 @@ function gr.cube(name) return new_node("cube", name, { kind = "box", min = { 0, 
 function gr.cylinder(name) return new_node("cylinder", name, { kind = "cylinder" }) end
 
 function gr.cone(name) return new_node("cone", name, { kind = "cone" }) end
+
+function gr.torus(name, tube, ring)
+  local node = { kind = "torus", tube = check.number("torus", "tube", tube), ring = 1 }
+  if ring ~= nil then node.ring = check.number("torus", "ring", ring) end
+  if node.ring <= 0 then check.refuse("torus", "ring", "number above 0", ring) end
+  if node.tube <= 0 or node.tube >= node.ring then
+    check.refuse("torus", "tube", ("number above 0 and below the ring's radius (%g)"):format(node.ring), tube)
+  end
+  return new_node("torus", name, node)
+end
 
 function gr.nh_sphere(name, center, radius)
   local node = { kind = "sphere", center = check.vector("nh_sphere", "centre", center, 3) }

@@ -60,6 +60,7 @@ picture particle_box --samples 9
 picture phong_and_blinn --frames 4 --samples 4
 picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --samples 4 --bits 8 --transfer srgb
 picture protein --size 320x180
+picture rings --frames 9 --samples 4
 picture roughness --size 400x160
 picture shaders --samples 4
 picture shading --size 400x200 --frames 5

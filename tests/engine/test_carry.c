@@ -44,14 +44,17 @@ static void place(world *w, int i, const double at[3])
 static glint_shape *random_shape(world *w)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_SPHERE,   GLINT_SHAPE_SPHERE,
-                                              GLINT_SHAPE_BOX,    GLINT_SHAPE_CYLINDER, GLINT_SHAPE_MESH };
+                                              GLINT_SHAPE_BOX,    GLINT_SHAPE_CYLINDER, GLINT_SHAPE_MESH,
+                                              GLINT_SHAPE_TORUS };
     const double size = between(0.1, 0.8);
     glint_shape *shape;
-    const glint_shape_kind kind = kinds[below(6)];
+    const glint_shape_kind kind = kinds[below(7)];
     glint_shape_desc d = glint_shape_desc_default(kind);
     d.material = w->material[below(MATERIALS)];
     d.radius = size;
     d.top[1] = size;
+    d.major = 0.8 * size;
+    d.minor = 0.3 * size;
     for (int c = 0; c < 3; c++) {
         d.min[c] = -size;
         d.max[c] = between(0, size);

@@ -46,7 +46,7 @@ static void set_lattice_solid(test_scene *scene, uint32_t i)
 {
     glint_solid *solid = &scene->solids[i];
     const uint32_t turn = below(3);
-    *solid = (glint_solid) { .form = below(GLINT_FORM_FUNNEL + 1) };
+    *solid = (glint_solid) { .form = below(GLINT_FORM_TORUS + 1), .tube = one_in(2) ? 0.5 : 0.25 };
     for (uint32_t k = 0; k < 3; k++) {
         const double size = either_sign(unit * (1u << below(2)));
         solid->forward[(k + turn) % 3][k] = size;
@@ -96,7 +96,7 @@ static void place_on(const glint_prim *prim, double point[3])
 static uint64_t met, on_solids; ///< rays that hit something; of them, a solid
 
 /// How far a place is from the surface of a unit shape, nearly.
-static double off_unit(uint32_t form, const double k[3])
+static double off_unit(uint32_t form, double tube, const double k[3])
 {
     const double round = hypot(k[0], k[1]), z = k[2];
     const bool cone = form == GLINT_FORM_CONE || form == GLINT_FORM_FUNNEL;
@@ -112,6 +112,8 @@ static double off_unit(uint32_t form, const double k[3])
     case GLINT_FORM_TUBE:
     case GLINT_FORM_FUNNEL:
         return fmax(side, beyond);
+    case GLINT_FORM_TORUS:
+        return fabs(hypot(round - 1, z) - tube);
     default:
         return fmin(fmax(side, beyond), end);
     }
@@ -137,7 +139,7 @@ static void check_hits(const ray_case *c)
         along3(origin, -1, met_prim->center, origin);
         for (int j = 0; j < 3; j++)
             k[j] = dot3(solid->inverse[j], origin);
-        if (off_unit(solid->form, k) > (c->precision == GLINT_DOUBLE ? 1e-12 : 1e-4))
+        if (off_unit(solid->form, solid->tube, k) > (c->precision == GLINT_DOUBLE ? 1e-12 : 1e-4))
             fail_msg("seed %llu, ray %u: form %u is hit at {%g, %g, %g}", (unsigned long long)case_seed, i, solid->form,
                      k[0], k[1], k[2]);
     }

@@ -282,8 +282,9 @@ static glint_material *random_material(bool bouncing)
 static void random_shape(world *w, glint_material *material)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX,  GLINT_SHAPE_CYLINDER,
-                                              GLINT_SHAPE_CONE,   GLINT_SHAPE_DISK, GLINT_SHAPE_SPHERE };
-    glint_shape_desc desc = glint_shape_desc_default(kinds[draw(6)]);
+                                              GLINT_SHAPE_CONE,   GLINT_SHAPE_DISK, GLINT_SHAPE_SPHERE,
+                                              GLINT_SHAPE_TORUS };
+    glint_shape_desc desc = glint_shape_desc_default(kinds[draw(7)]);
     const double axis[3] = { uniform(-1, 1), 1, uniform(-1, 1) }, by[3] = { uniform(0.5, 1.5), uniform(0.5, 1.5), -1 };
     const double to[3] = { uniform(-3, 3), uniform(0, 2), uniform(-3, 3) };
     desc.transform = glint_transform_translate(to);

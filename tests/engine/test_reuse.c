@@ -112,7 +112,8 @@ static const field shape_fields[] = {
     S(kind, FIXED, 0, 0),          S(material, FIXED, 0, 0), S(two_sided, FLAG, 0, 1), S(center, VECTOR, -3, 3),
     S(radius, NUMBER, 0.2, 2),     S(point, VECTOR, -3, 3),  S(normal, VECTOR, -1, 1), S(shading, CHOICE, 0, 4),
     S(transform, TRANSFORM, 0, 0), S(min, VECTOR, -3, -1),   S(max, VECTOR, -0.5, 2),  S(base, VECTOR, -2, 2),
-    S(top, VECTOR, -2, 2),         S(capped, FLAG, 0, 1),    S(name, FIXED, 0, 0),
+    S(top, VECTOR, -2, 2),         S(capped, FLAG, 0, 1),    S(name, FIXED, 0, 0),     S(axis, VECTOR, -1, 1),
+    S(major, NUMBER, 0.6, 2),      S(minor, NUMBER, 0.05, 0.5),
 #undef S
 };
 
@@ -367,7 +368,7 @@ static glint_shape *new_mesh(const glint_shape_desc *like)
     return shape;
 }
 
-/// A cone and a cylinder, and, smaller, both again.
+/// Every solid, and, smaller, all again.
 static glint_shape *new_group(const glint_shape_desc *like)
 {
     glint_shape *outer, *inner, *part;
@@ -376,7 +377,7 @@ static glint_shape *new_group(const glint_shape_desc *like)
     assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
     d.transform = glint_transform_scale(by);
     assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
-    for (int k = GLINT_SHAPE_BOX; k <= GLINT_SHAPE_CONE; k++) {
+    for (int k = GLINT_SHAPE_BOX; k <= GLINT_SHAPE_TORUS; k++) {
         d = glint_shape_desc_default((glint_shape_kind)k);
         d.material = like->material;
         d.radius = 0.5;

@@ -242,7 +242,10 @@ static glint_shape *random_solid(int kind, bool capped)
         d.min[c] = between(-1.5, 0);
         d.max[c] = between(0.2, 1.5);
     }
+    random_vector(d.axis, 1);
     d.radius = between(0.2, 1.5);
+    d.major = between(0.4, 1.5);
+    d.minor = between(0.1, 0.9) * d.major;
     d.two_sided = below(2);
     d.capped = capped || below(2);
     if (below(4))
@@ -255,14 +258,14 @@ static glint_shape *random_solid(int kind, bool capped)
 static glint_shape *random_group(uint32_t count)
 {
     static const int kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
-                                 GLINT_SHAPE_CONE };
+                                 GLINT_SHAPE_CONE, GLINT_SHAPE_TORUS };
     glint_shape *outer, *inner;
     glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_GROUP);
     assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
     d.transform = random_map(3);
     assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
     for (uint32_t i = 0; i < count; i++) {
-        glint_shape *shape = random_solid(kinds[below(5)], false);
+        glint_shape *shape = random_solid(kinds[below(6)], false);
         assert_int_equal(glint_group_add(outer, shape, NULL), GLINT_OK);
         if (below(2))
             assert_int_equal(glint_group_add(inner, shape, NULL), GLINT_OK);
@@ -520,8 +523,9 @@ static void triangles_against_oracle(void **unused)
 }
 
 /// How far outside of its shape a place is, in the shape's own lengths, and which bound says so. m: the unit shape's map.
-static double outside(glint_shape_kind kind, quad m[3][4], const quad p[3], int *bound)
+static double outside(const glint_shape_desc *d, quad m[3][4], const quad p[3], int *bound)
 {
+    const glint_shape_kind kind = d->kind;
     quad q[3], k[3], cofactor[3][3], det;
     for (int i = 0; i < 3; i++) {
         q[i] = p[i] - m[i][3];
@@ -538,6 +542,8 @@ static double outside(glint_shape_kind kind, quad m[3][4], const quad p[3], int 
         by[0] = by[1] = by[2] = sqrt(x * x + y * y + z * z) - 1;
     if (kind == GLINT_SHAPE_CONE)
         by[0] = round - z, by[2] = -z;
+    if (kind == GLINT_SHAPE_TORUS)
+        by[0] = by[1] = by[2] = hypot(round - 1, z) - d->minor / d->major;
     if (kind == GLINT_SHAPE_BOX)
         by[0] = fabs(x) - 1, by[1] = fabs(y) - 1, by[2] = fabs(z) - 1;
     *bound = by[0] >= by[1] && by[0] >= by[2] ? 0 : by[1] >= by[2] ? 1 : 2;
@@ -548,16 +554,20 @@ static double outside(glint_shape_kind kind, quad m[3][4], const quad p[3], int 
 static void unit_map(const glint_shape_desc *d, quad m[3][4])
 {
     quad unit[3][4] = { { 0 } };
+    const bool torus = d->kind == GLINT_SHAPE_TORUS;
+    const double radius = torus ? d->major : d->radius;
     double z[3], x[3], y[3], length;
     for (int c = 0; c < 3; c++) {
-        z[c] = d->kind == GLINT_SHAPE_CONE ? d->base[c] - d->top[c] : 0.5 * (d->top[c] - d->base[c]);
+        z[c] = d->kind == GLINT_SHAPE_CONE ? d->base[c] - d->top[c]
+               : torus                     ? d->axis[c] / sqrt(dot(d->axis, d->axis)) * d->major
+                                           : 0.5 * (d->top[c] - d->base[c]);
         unit[c][3] = d->kind == GLINT_SHAPE_CONE       ? (quad)d->top[c]
                      : d->kind == GLINT_SHAPE_CYLINDER ? ((quad)d->top[c] + d->base[c]) / 2
                      : d->kind == GLINT_SHAPE_BOX      ? ((quad)d->max[c] + d->min[c]) / 2
                                                        : (quad)d->center[c];
         unit[c][c] = d->kind == GLINT_SHAPE_BOX ? ((quad)d->max[c] - d->min[c]) / 2 : (quad)d->radius;
     }
-    if (d->kind == GLINT_SHAPE_CONE || d->kind == GLINT_SHAPE_CYLINDER) {
+    if (d->kind == GLINT_SHAPE_CONE || d->kind == GLINT_SHAPE_CYLINDER || torus) {
         const double other[3] = { fabs(z[0]) < fabs(z[1]), fabs(z[0]) >= fabs(z[1]), 0 };
         for (int c = 0; c < 3; c++)
             x[c] = z[(c + 1) % 3] * other[(c + 2) % 3] - z[(c + 2) % 3] * other[(c + 1) % 3];
@@ -567,8 +577,8 @@ static void unit_map(const glint_shape_desc *d, quad m[3][4])
         for (int c = 0; c < 3; c++)
             y[c] = (z[(c + 1) % 3] * x[(c + 2) % 3] - z[(c + 2) % 3] * x[(c + 1) % 3]) / sqrt(dot(z, z));
         for (int c = 0; c < 3; c++) {
-            unit[c][0] = d->radius * x[c];
-            unit[c][1] = d->radius * y[c];
+            unit[c][0] = radius * x[c];
+            unit[c][1] = radius * y[c];
             unit[c][2] = z[c];
         }
     }
@@ -584,12 +594,12 @@ static void unit_map(const glint_shape_desc *d, quad m[3][4])
 static void solids_against_oracle(void **unused)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER,
-                                              GLINT_SHAPE_CONE };
+                                              GLINT_SHAPE_CONE, GLINT_SHAPE_TORUS };
     int hits = 0;
     (void)unused;
     for (int n = 0; n < 4000; n++) {
         random_state = (uint64_t)n;
-        glint_shape *shape = random_solid(kinds[n % 4], true);
+        glint_shape *shape = random_solid(kinds[n % 5], true);
         const glint_shape_desc d = *glint_shape_get(shape);
         double o[3], dir[3], aim[3];
         quad m[3][4], p[3];
@@ -607,11 +617,11 @@ static void solids_against_oracle(void **unused)
         const double end = hit ? got.t : 3;
         for (int c = 0; c < 3; c++)
             p[c] = o[c];
-        const bool inside = outside(d.kind, m, p, &bound) < 0;
+        const bool inside = outside(&d, m, p, &bound) < 0;
         for (int i = 1; i < 100; i++) {
             for (int c = 0; c < 3; c++)
                 p[c] = o[c] + (quad)end * i / 100 * dir[c];
-            const double far = outside(d.kind, m, p, &other);
+            const double far = outside(&d, m, p, &other);
             if (fabs(far) > 1e-9 && (far < 0) != inside)
                 fail_msg("case %d: something at %d %% of the way to the hit", n, i);
         }
@@ -619,15 +629,15 @@ static void solids_against_oracle(void **unused)
             hits++;
             for (int c = 0; c < 3; c++)
                 p[c] = o[c] + (quad)got.t * dir[c];
-            if (fabs(outside(d.kind, m, p, &bound)) > 1e-12)
-                fail_msg("case %d: %g off the surface", n, outside(d.kind, m, p, &bound));
+            if (fabs(outside(&d, m, p, &bound)) > 1e-12)
+                fail_msg("case %d: %g off the surface", n, outside(&d, m, p, &bound));
             // a step along the normal leads out, and the steps across it lead nowhere
             for (int axis = 0; axis < 3; axis++) {
                 double slope[3];
                 for (int c = 0; c < 3; c++) {
                     quad there[3] = { p[0], p[1], p[2] };
                     there[c] += 1e-6;
-                    slope[c] = outside(d.kind, m, there, &other);
+                    slope[c] = outside(&d, m, there, &other);
                     bound = other == bound ? bound : -1;
                 }
                 const double length = sqrt(dot(slope, slope));

@@ -21,7 +21,7 @@ local steps = {
 
 local function random_shape(first)
   local shapes = {
-    "gr.sphere('s')", "gr.cube('c')", "gr.cylinder('y')", "gr.cone('k')",
+    "gr.sphere('s')", "gr.cube('c')", "gr.cylinder('y')", "gr.cone('k')", "gr.torus('t', 0.35)",
     ("gr.nh_sphere('ns', %s, %.17g)"):format(vector(-1, 1), between(0.3, 1.2)),
     ("gr.nh_box('nb', %s, %.17g)"):format(vector(-1, 0.5), between(0.3, 1.2)),
     first and "gr.mesh('m', " .. TETRA .. ")" or "gr.mesh('m', models .. '/tetra.obj')",

@@ -120,6 +120,32 @@ local function round(r0, slope)
   end
 end
 
+-- Where a place is to a tube around the circle of radius `ring`: by steps along the ray, and halving where the sign changes.
+local function torus(tube, ring)
+  local function off(q)
+    local away = math.sqrt(q[1] * q[1] + q[2] * q[2]) - ring
+    return away * away + q[3] * q[3] - tube * tube
+  end
+  return function(p, d, found)
+    local length2 = d[1] * d[1] + d[2] * d[2] + d[3] * d[3]
+    local middle = -(p[1] * d[1] + p[2] * d[2] + p[3] * d[3]) / length2
+    local step = (ring + tube) / math.sqrt(length2) / 400
+    for i = -400, 399 do
+      local low, high = middle + i * step, middle + (i + 1) * step
+      local outside = off(along(p, d, low)) > 0
+      if outside ~= (off(along(p, d, high)) > 0) then
+        for _ = 1, 60 do
+          local half = (low + high) / 2
+          if (off(along(p, d, half)) > 0) == outside then low = half else high = half end
+        end
+        local q = along(p, d, low)
+        local inwards = ring / math.sqrt(q[1] * q[1] + q[2] * q[2])
+        found(low, { q[1] - q[1] * inwards, q[2] - q[2] * inwards, q[3] })
+      end
+    end
+  end
+end
+
 -- By crossing number in the plane across the normal's largest component.
 local function inside(corners, q, j, k)
   local within, last = false, corners[#corners]
@@ -289,6 +315,7 @@ local function new_gr(folder, order, options, pictures)
   function gr.cube() return node(box({ 0, 0, 0 }, { 1, 1, 1 })) end
   function gr.cylinder() return node(round(1, 0)) end
   function gr.cone() return node(round(1, -1)) end
+  function gr.torus(_, tube, ring) return node(torus(tonumber(tube), tonumber(ring or 1))) end
   function gr.nh_sphere(_, center, radius) return node(sphere(numbers(center), tonumber(radius))) end
   function gr.nh_box(_, corner, edge)
     local low = numbers(corner)

@@ -92,7 +92,7 @@ static void shadows(int kind, uint64_t rays)
         const hard_solid s = solid_random(kind, &size);
         const hard_ray ray = solid_aim(&s, size);
         glint_scene *scene = solid_alone(&s, matt);
-        if (cast(scene, &ray, &hit) && (from_outside(&ray, &hit) || kind == 2 || kind == SOLID_KINDS - 1)) {
+        if (cast(scene, &ray, &hit) && (from_outside(&ray, &hit) || kind == SOLID_DISK || kind == SOLID_KINDS - 1)) {
             look_along(scene, &ray);
             scene_light_up(scene, 0, black);
             const glint_light_desc light = random_light(&ray, &hit);
@@ -161,10 +161,13 @@ int main(int argc, char **argv)
     if (hard_table)
         printf("Rays that leave a convex surface.\n\n| rays | how many | wrong |\n| --- | --- | --- |\n");
     for (int kind = 0; kind < SOLID_KINDS; kind++)
-        shadows(kind, hard_rays / 20);
+        if (kind != SOLID_TORUS)
+            shadows(kind, hard_rays / 20);
     for (int kind = 0; kind < SOLID_KINDS; kind++) {
+        if (kind == SOLID_TORUS)
+            continue;
         sent_on(kind, false, hard_rays / 20);
-        if (kind != 2 && kind != SOLID_KINDS - 1) // a disk and a triangle have no inside
+        if (kind != SOLID_DISK && kind != SOLID_KINDS - 1) // a disk and a triangle have no inside
             sent_on(kind, true, hard_rays / 20);
     }
     return hard_end();

@@ -244,10 +244,14 @@ static glint_shape *small_shape(glint_shape_kind kind, bool mapped, double size)
     glint_shape_desc desc = glint_shape_desc_default(kind);
     const double own = mapped ? 1 : size, by[3] = { size, size, size };
     desc.radius = own;
+    desc.major = 2 * own;
+    desc.minor = own;
     for (int c = 0; c < 3; c++) {
         const double *along = kind == GLINT_SHAPE_CYLINDER ? x : z; // of a cylinder, its side is met
-        desc.center[c] = kind == GLINT_SHAPE_DISK ? own * z[c] : 0;
-        desc.normal[c] = z[c];
+        desc.center[c] = kind == GLINT_SHAPE_DISK    ? own * z[c]
+                         : kind == GLINT_SHAPE_TORUS ? -2 * own * x[c] // its tube is about the origin
+                                                     : 0;
+        desc.normal[c] = desc.axis[c] = z[c];
         desc.base[c] = -own * along[c];
         desc.top[c] = own * along[c];
     }
@@ -266,7 +270,8 @@ static bool says(const glint_error *error, const char *shape, const char *what)
 static const char *const size_names[] = { [GLINT_SHAPE_SPHERE] = "sphere 'mite'",
                                           [GLINT_SHAPE_DISK] = "disk 'mite'",
                                           [GLINT_SHAPE_CYLINDER] = "cylinder 'mite'",
-                                          [GLINT_SHAPE_CONE] = "cone 'mite'" };
+                                          [GLINT_SHAPE_CONE] = "cone 'mite'",
+                                          [GLINT_SHAPE_TORUS] = "torus 'mite'" };
 
 /// Whether a frame of one pixel shows the scene's first object. thin: it need not.
 static void check_frame_of(glint_scene *scene, const hard_ray *ray, bool thin, const char *name, const char *refused)
@@ -324,8 +329,8 @@ static void check_small(void)
 {
     hard_test("S25", "the smallest spheres and solids, the farthest");
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
-                                              GLINT_SHAPE_CONE };
-    for (int k = 0; k < 8; k++) {
+                                              GLINT_SHAPE_CONE, GLINT_SHAPE_TORUS };
+    for (int k = 0; k < 10; k++) {
         const glint_shape_kind kind = kinds[k / 2];
         const bool mapped = k % 2, ball = kind == GLINT_SHAPE_SPHERE;
         const char *const width = ball ? "radius >= 1e-150" : "half widths 1e-150 .. 1e+150";

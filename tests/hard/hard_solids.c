@@ -1,4 +1,4 @@
-/// Adversarial rays at ellipsoids, boxes, disks, cylinders, cones and triangles, under maps that turn, stretch, shear and
+/// Adversarial rays at ellipsoids, boxes, disks, cylinders, cones, tori and triangles, under maps that turn, stretch, shear and
 /// mirror, against 113 bits.
 #include "tests/hard/oracle/aim_solid.h"
 #include "tests/hard/oracle/solid_cases.h"
@@ -54,15 +54,14 @@ static void complain(const hard_solid *s, const hard_ray *ray, const solid_truth
                      const char *what)
 {
     const glint_shape_desc *d = &s->desc;
-    const double *const lists[] = { ray->o, ray->d, d->center,  d->normal,         d->base,     d->top,
-                                    d->min, d->max, &d->radius, d->transform.m[0], s->corner[0] };
-    const char *const names[] = {
-        "o", "d", "center", "normal", "base", "top", "min", "max", "radius", "map", "corners"
-    };
-    static const int counts[] = { 3, 3, 3, 3, 3, 3, 3, 3, 1, 12, 9 };
-    char all[2000], one[400];
+    const double *const lists[] = { ray->o, ray->d, d->center,  d->normal,         d->base,     d->top,  d->min,
+                                    d->max, &d->radius, d->transform.m[0], s->corner[0], d->axis, &d->major, &d->minor };
+    const char *const names[] = { "o",   "d",      "center", "normal",  "base", "top",   "min",
+                                  "max", "radius", "map",    "corners", "axis", "major", "minor" };
+    static const int counts[] = { 3, 3, 3, 3, 3, 3, 3, 3, 1, 12, 9, 3, 1, 1 };
+    char all[2600], one[400];
     int at = 0;
-    for (int i = 0; i < 11; i++)
+    for (int i = 0; i < 14; i++)
         at += snprintf(all + at, sizeof all - (size_t)at, "\n    %s { %s }", names[i],
                        list(one, sizeof one, lists[i], counts[i]));
     hard_check(false, "%s: truth %s t %.17g (%.17g .. %.17g), engine %s t %.17g; normal %g %g %g, truth %g %g %g%s",

@@ -217,6 +217,7 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
     { "box", glint.box { min = { -1, -1, -1 }, max = { 1, 1, 1 }, material = wall() }, { 0.5, 0, 0 }, { 1, 0, 0 }, 0.5 },
     { "cylinder", glint.cylinder { base = { 0, -1, 0 }, top = { 0, 1, 0 }, radius = 1, material = wall() }, { 0, 0.25, 0 }, { 0, 1, 0 }, 0.75 },
     { "cone", glint.cone { base = { 0, 0, 0 }, top = { 0, 2, 0 }, radius = 1, material = wall() }, { 0, 1, 0 }, { 1, 0, 0 }, 0.5 },
+    { "torus", glint.torus { center = { 0, 0, 0 }, major = 2, minor = 0.5, material = wall() }, { 2, 0, 0 }, { 0, 1, 0 }, 0.5 },
     { "ellipsoid", glint.sphere { center = { 0, 0, 0 }, radius = 1, transform = turned, material = wall() }, { 0, 1, 0 }, { 0, 1, 0 }, 1 },
     { "mesh", cube(wall()), { 0.25, 0, 0 }, { 1, 0, 0 }, 0.75 },
     { "mesh, by an edge and a corner", cube(wall()), { 0, 0, 0 }, { 1, 1, 1 }, math.sqrt(3) },
@@ -237,6 +238,7 @@ do -- whatever shape the glass has: the way out is what Beer's law takes, and a 
     { "in the hole of a mesh turned inside out", cube(wall(), true), { 0.25, 0, 0 }, { 1, 0, 0 } },
     { "in a tube", glint.cylinder { base = { 0, -1, 0 }, top = { 0, 1, 0 }, radius = 1, capped = false, material = wall() }, { 0, 0, 0 }, { 1, 0, 0 } },
     { "in a cone's air", glint.cone { base = { 0, 0, 0 }, top = { 0, 2, 0 }, radius = 1, material = wall() }, { 0.9, 1, 0 }, { -1, 0, 0 } },
+    { "in a torus's hole", glint.torus { center = { 0, 0, 0 }, major = 2, minor = 0.5, material = wall() }, { 0, 0, 0 }, { 1, 0.1, 0 } },
     { "an opaque mesh", cube(material { ambient = 0.5, absorption = a }), { 0.25, 0, 0 }, { 1, 0, 0 } },
   }
   for _, shape in ipairs(outside) do

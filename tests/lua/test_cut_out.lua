@@ -65,6 +65,7 @@ local function shapes(material)
     box = glint.box { min = { -1, 0.3, 0 }, max = { 1, 1.5, 1 }, transform = glint.rotate("y", 20), material = material },
     cylinder = glint.cylinder { base = { 0, 0.2, 1 }, top = { 0.3, 2, 1 }, radius = 0.8, material = material },
     cone = glint.cone { base = { 0, 0.2, 1 }, top = { 0.3, 2.5, 1 }, radius = 1, capped = false, material = material },
+    torus = glint.torus { center = { 0, 1, 1 }, axis = { 0.5, 1, 1 }, major = 0.9, minor = 0.35, material = material },
     egg = glint.sphere { center = { 0, 1, 1 }, radius = 0.5, transform = glint.scale(1.5, 1, 1), material = material },
     wall = glint.plane { point = { 0, 0, 3 }, normal = { 0, 0.1, 1 }, material = material },
   }

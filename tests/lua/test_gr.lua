@@ -303,7 +303,11 @@ local function refuses(text, message, options)
   local got, exit = scene("local gr, kd, ks = gr, {1, 1, 1}, {0, 0, 0}\n" .. text, options)
   check(exit == 2 and got:find("scene.lua:2: " .. message, 1, true), "%s: %s", text, got)
 end
-refuses("gr.torus('t', 1)", "gr.torus: this function is not part of the dialect")
+refuses("gr.hyperboloid('t', 1)", "gr.hyperboloid: this function is not part of the dialect")
+refuses("gr.torus('t')", "gr.torus: tube: number expected, got nil")
+refuses("gr.torus('t', 1)", "gr.torus: tube: number above 0 and below the ring's radius (1) expected, got 1")
+refuses("gr.torus('t', 1.2, 0.5)", "gr.torus: tube: number above 0 and below the ring's radius (0.5) expected, got 1.2")
+refuses("gr.torus('t', 1, -2)", "gr.torus: ring: number above 0 expected, got -2")
 refuses("gr.sphere('s'):set_normal('x.png')", "gr.set_normal: this function is not part of the dialect")
 refuses("gr.material({1,1,1}, {0,0,0}, 1):set_opacity(0, 1.5)",
   "material:set_opacity: this method is not part of the dialect")

@@ -10,7 +10,7 @@ local function any(list) return list[math.random(#list)] end
 local KINDS = {
   "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light",
   "polygon_light", "scene", "shader",
-  "sphere", "sphere_light", "spheres", "spot_light", "triple", "vector",
+  "sphere", "sphere_light", "spheres", "spot_light", "torus", "triple", "vector",
 }
 
 local function objects()
@@ -32,6 +32,7 @@ local function objects()
     disk = glint.disk { center = { 0, 0, 0 }, normal = { 0, 1, 0 }, radius = 1 },
     cylinder = glint.cylinder { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
     cone = glint.cone { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
+    torus = glint.torus { center = { 0, 0, 0 }, major = 1, minor = 0.3 },
     group = glint.group { ball, transform = glint.translate(1, 0, 0) },
     scene = glint.scene { ball, lamp },
     vector = ball.center,

@@ -20,7 +20,7 @@
 --                as all light on that way; so what absorbs has no highlight in the test
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
 --   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
---                an ellipsoid is sphere { 0, 1 scale s translate c }
+--                an ellipsoid is sphere { 0, 1 scale s translate c }; torus { major, minor sturm } is around the y axis
 --   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
 --                float there; a normal that looks away from the eye is turned, here one that looks through its face
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
@@ -100,6 +100,13 @@ local function shape(s, center, radius)
   if s.kind == "mesh" then return mesh(s) end
   if s.kind == "box" then return ("box { %s, %s"):format(vector(s.min), vector(s.max)) end
   if s.kind == "sphere" then return ("sphere { 0, 1 scale %s translate %s"):format(vector(s.scale), vector(center)) end
+  if s.kind == "torus" then
+    local axis = unit(s.axis)
+    local side = unit(cross(axis, { 0, 0, 1 }))
+    local function numbers(a) return ("%.17g, %.17g, %.17g"):format(a[1], a[2], a[3]) end
+    return ("torus { %.17g, %.17g sturm matrix <%s, %s, %s, %s>"):format(s.major, s.minor, numbers(side), numbers(axis),
+      numbers(cross(side, axis)), numbers(s.center))
+  end
   local open = s.open and "open" or ""
   if s.kind == "cone" then return ("cone { %s, %.17g, %s, 0 %s"):format(vector(s.base), s.radius, vector(s.top), open) end
   return ("cylinder { %s, %s, %.17g %s"):format(vector(s.base), vector(s.top), s.radius, open)

@@ -4,7 +4,7 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
+     "rings", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
   sky = { "", doc = "the PNG file of the sky" },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
@@ -65,6 +65,9 @@ local function shape(s, sphere, surface, coat)
   if s.kind == "sphere" then
     return glint.sphere { center = { 0, 0, 0 }, radius = 1, material = coat,
       transform = glint.translate(center) * glint.scale(s.scale) }
+  end
+  if s.kind == "torus" then
+    return glint.torus { center = s.center, axis = s.axis, major = s.major, minor = s.minor, material = coat }
   end
   return glint[s.kind] { base = s.base, top = s.top, radius = s.radius, capped = not s.open, material = coat }
 end

@@ -25,6 +25,17 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
     return all;
 }
 
+/// Where rays that leave a torus meet it again; inward: those that go in, which surely do.
+static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, const vr o[3], const vr d[3],
+                             unsigned inward, vr *t)
+{
+    vr f[3], e[3];
+    R(unit_offset)(solid, prim, o, f);
+    R(to_unit)(solid, d, e);
+    const R(torus_start) start = { rm_from_bits((1u << VR) - 1), rm_from_bits(inward) };
+    return R(meet_torus)(solid, f, e, start, t);
+}
+
 /// Whether a ray that goes through the surface may meet it again.
 static inline bool R(has_inside)(const glint_geometry_table *table, const glint_prim *prim)
 {
@@ -32,18 +43,21 @@ static inline bool R(has_inside)(const glint_geometry_table *table, const glint_
            (prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form != GLINT_FORM_DISK);
 }
 
-/// The rays of a group that begin inside of what they start on.
-static inline void R(cast_inward)(const glint_cast_args *args, uint32_t g)
+/// The rays of a group that may meet what they start on: those that begin inside of it, and all that leave a torus.
+static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
 {
     const glint_geometry_table *table = args->geometry;
     const size_t at = (size_t)g * GLINT_GROUP;
-    unsigned lanes = args->active[g] & args->inward[g];
+    unsigned lanes = args->active[g] & (table->tori ? 0xffffu : args->inward[g]);
     while (lanes) {
         const uint32_t id = args->leaving[at + (size_t)__builtin_ctz(lanes)];
-        const unsigned same = lanes & lanes_equal(args->leaving + at, id);
+        unsigned same = lanes & lanes_equal(args->leaving + at, id);
         lanes &= ~same;
         if (id == GLINT_MISS || !R(has_inside)(table, &table->prims[id]))
             continue;
+        const bool torus = is_torus(table, &table->prims[id]);
+        if (!torus)
+            same &= args->inward[g];
         for (int i = 0; i < GLINT_GROUP; i += VR) {
             vr o[3], d[3], t;
             const unsigned own = same >> i & ((1u << VR) - 1);
@@ -51,7 +65,9 @@ static inline void R(cast_inward)(const glint_cast_args *args, uint32_t g)
                 continue;
             R(load3)(args->origin, at + (size_t)i, o);
             R(load3)(args->direction, at + (size_t)i, d);
-            const rm hit = R(way_out)(table, &table->prims[id], o, d, &t);
+            const glint_prim *prim = &table->prims[id];
+            const rm hit = torus ? R(way_back)(&table->solids[prim->item], prim, o, d, args->inward[g] >> i, &t)
+                                 : R(way_out)(table, prim, o, d, &t);
             R(keep_nearest)(args, at + (size_t)i, id, rm_and(rm_from_bits(own), hit), t);
         }
     }
@@ -98,7 +114,7 @@ static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint3
                 c = r_select(rm_from_bits(on_surfaces >> i & ((1u << VR) - 1)), R(point_constant)(f, prim), c);
             hit = R(meet)(f, c, d, prim, &t);
         }
-        hit = rm_andnot(hit, rm_from_bits(own)); // see cast_inward
+        hit = rm_andnot(hit, rm_from_bits(own)); // see cast_on_own
         if (!rm_bits(hit))
             continue;
         R(keep_nearest)(args, at + i, id, hit, t);
@@ -227,7 +243,7 @@ static inline bool R(begin_rays)(const glint_cast_args *args, uint32_t g, float 
         return false;
     R(make_ray_group)(args, g, local, rays);
     if (args->leaving)
-        R(cast_inward)(args, g);
+        R(cast_on_own)(args, g);
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
         R(cast_on_group)(args, g, rays, geometry->unbounded[i]);
     return true;

@@ -1,6 +1,6 @@
 // solid: what cast, surface and occlude need of affine images of the unit ball, cube, cylinder, cone and disk, and of a
-// cylinder's and a cone's side alone. The ray is
-// taken to where the shape is the unit one; its t stays. Contract: stages.h.
+// cylinder's and a cone's side alone; those of the torus, which is not convex, are in torus.h. The ray is taken to where the
+// shape is the unit one; its t stays. Contract: stages.h.
 
 /// Where a ray goes into a solid and where it leaves.
 typedef struct R(span) {
@@ -248,6 +248,11 @@ INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * sta
 
 static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
+    if (solid->form == GLINT_FORM_TORUS) {
+        vr e[3];
+        R(to_unit)(solid, d, e);
+        return R(meet_torus)(solid, start->f, e, R(torus_afresh)(), t);
+    }
     const R(span) span = R(span_along)(solid, start, d, false);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
     return rm_and(span.hit, r_lt(r_set(0), *t));
@@ -318,13 +323,18 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
                              const vr d[3], vr t, vr n[3], vr p[3])
 {
     vr e[3], k[3], g[3], face[3];
+    rm flat = rm_from_bits(0);
     R(to_unit)(solid, d, e);
-    const R(span) span = R(span_of)(solid, start, d, e, true, true);
-    const rm entering = r_eq(t, span.t[0]);
-    const rm flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
     for (int c = 0; c < 3; c++)
         k[c] = start->f[c] + t * e[c];
-    R(onto_unit)(solid->form, r_select(entering, span.face[0], span.face[1]), flat, k, g, face);
+    if (solid->form == GLINT_FORM_TORUS) {
+        R(onto_torus)(solid->tube, k, g);
+    } else {
+        const R(span) span = R(span_of)(solid, start, d, e, true, true);
+        const rm entering = r_eq(t, span.t[0]);
+        flat = rm_or(rm_and(entering, span.flat[0]), rm_andnot(span.flat[1], entering));
+        R(onto_unit)(solid->form, r_select(entering, span.face[0], span.face[1]), flat, k, g, face);
+    }
     for (int c = 0; c < 3; c++) {
         n[c] = (r_set(solid->inverse[0][c]) * g[0] + r_set(solid->inverse[1][c]) * g[1]) +
                r_set(solid->inverse[2][c]) * g[2];
@@ -349,4 +359,16 @@ static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, cons
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
     return rm_and(span.hit, rm_or(first, rm_andnot(second, rm_andnot(own, span.second))));
+}
+
+/// The same of a torus. inside: lanes whose light is; own: whose segment begins on it, of these `back`: and goes in.
+static rm R(torus_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
+                          double scale, bool directional, unsigned inside, unsigned own, unsigned back)
+{
+    vr f[3], e[3];
+    R(unit_offset)(solid, prim, point, f);
+    R(to_unit)(solid, d, e);
+    const vr end = r_set(directional ? HUGE_VAL : 1 / scale);
+    const R(torus_start) start = { rm_from_bits(own), rm_from_bits(own & back) };
+    return R(torus_parts)(solid, f, e, end, rm_from_bits(inside), start);
 }

@@ -61,6 +61,9 @@ typedef struct glint_cast_args {
         ///< are is up to index and filter. may be NULL
 } glint_cast_args;
 #define GLINT_LEAST_WAY 0x1p-126 ///< t of what is met where the ray begins
+#define GLINT_TURN_NEAR 0x1p-20 ///< of a torus's quartic: a step to a turn this small leaves less than rounding, being cubic
+#define GLINT_TURN_STEPS 24 ///< to a turn, at most; more than 10 are taken only where three come together
+#define GLINT_ROOT_STEPS 64 ///< to a root, at most; halving alone takes 52
 #define GLINT_NEAR_SHARED_EDGE \
     0x1p-10 ///< of the scene: rays that are in a triangle's plane further than this stay there
 // in_sight reads active, geometry, camera and view alone: false: no ray of the camera's tile can hit anything; then
@@ -75,13 +78,15 @@ typedef struct glint_cast_args {
 //         corner (Woop, Benthin, Wald, JCGT 2(1) 2013; here without the division, in the scaled plane). Where one is 0 its sign
 //         may be lost, and of a triangle seen edge-on all are 0: the bounds decide
 // solid:  the unit shape in its own frame; of a cone the ray is begun nearest to the apex, where that keeps more digits
+// torus:  a quartic, told by the signs at its turns, which are places: how many roots there are, and which is the first ahead
 // faces:  what was described in one plane has one face's numbers, but for the sign of the normal: along two axes of one map (a
 //         transform and the groups around it) all of it, else what has bit-equal places and normals. It is met at bit-equal t,
 //         so that of boxes, caps, disks, planes and meshes the first defined wins in every ray. What starts on a face is at
 //         height 0 and meets it at t = 0, which is no hit: exactly where the face is along two axes of the world, else as far
 //         as rounding lets us know. So it is with a curved side but a sphere's, and with the plane of a triangle.
 // A ray meets the primitive that it leaves by a rule of its own: not, but for spheres and solids other than disks where the
-// lane is inward (and starts on them or within): these surely, at GLINT_LEAST_WAY or beyond.
+// lane is inward (and starts on them or within): these surely, at GLINT_LEAST_WAY or beyond. A torus is also met again by what
+// leaves it outward.
 // A ray that leaves triangle A meets another, B, as any other ray does unless it is in the planes of both at once as far as
 // rounding lets us know, or does not pass B and may have been brought by an edge by what it begins off by. Then it meets B
 // where a corner of B is over A on the ray's side, a corner of A over B on the other, and the ray is at B within rounding. So of

@@ -176,7 +176,9 @@ typedef struct glint_occlude_args {
 //           included, and no light enters a closed mesh by an edge: a point that is, as far as rounding lets us know, in
 //           another triangle's plane too is blocked by that where the triangle reaches to the point and parts it from the
 //           light as seen along the viewer's ray
-//   solid   a disk never; tube and funnel by their other side; others, being convex, where `back` and the light is outside
+//   solid   a disk never; tube and funnel by their other side; a torus where the rest
+//           of the segment crosses it, of which it is known to which side it begins; others, being convex, where `back` and the
+//           light is outside
 
 // ---- soft_light: light, occlude and the sums of shade for the samples of an area light in one ----
 

@@ -4,6 +4,7 @@
 
 #include "engine/stages/contract/with.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -76,7 +77,7 @@ typedef struct glint_shading_points {
 } glint_shading_points;
 
 /// The unit shapes: x^2 + y^2 + z^2 <= 1; all of x, y, z in -1 .. 1; x^2 + y^2 <= 1 with z in -1 .. 1; x^2 + y^2 <= z^2 with
-/// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0.
+/// z in 0 .. 1; x^2 + y^2 <= 1 with z = 0; (sqrt(x^2 + y^2) - 1)^2 + z^2 <= tube^2.
 typedef enum glint_form {
     GLINT_FORM_BALL,
     GLINT_FORM_BOX,
@@ -84,7 +85,8 @@ typedef enum glint_form {
     GLINT_FORM_CONE,
     GLINT_FORM_DISK,
     GLINT_FORM_TUBE, ///< a cylinder's and a cone's side alone, which has no inside
-    GLINT_FORM_FUNNEL
+    GLINT_FORM_FUNNEL,
+    GLINT_FORM_TORUS
 } glint_form;
 
 /// The plane of a flat face. Whatever was described in one plane, along two axes of one map or by one place and normal, has
@@ -100,13 +102,18 @@ typedef struct glint_face {
 typedef struct glint_solid {
     double inverse[3][3], forward[3][3]; ///< rows
     const glint_face *faces; ///< box: of low x, high x, low y, high y, low z, high z; cylinder, cone, disk and the open forms:
-        ///< of low z, high z (of a disk they are one); ball: none. Normals point from low to high
-    double places; ///< ball, cylinder, cone: bound of what x^2 + y^2 - 1 and the like are made of where a place is on the side
+        ///< of low z, high z (of a disk they are one); ball, torus: none. Normals point from low to high
+    double places; ///< ball, cylinder, cone: bound of what x^2 + y^2 - 1 and the like are made of where a place is on the side;
+        ///< torus: of what the distance from the circle in the middle of its tube is made of
+    double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
     uint32_t form;
 } glint_solid;
 
 /// How many pairs of faces there are.
-static inline int glint_slab_count(uint32_t form) { return form == GLINT_FORM_BALL ? 0 : form == GLINT_FORM_BOX ? 3 : 1; }
+static inline int glint_slab_count(uint32_t form)
+{
+    return form == GLINT_FORM_BALL || form == GLINT_FORM_TORUS ? 0 : form == GLINT_FORM_BOX ? 3 : 1;
+}
 
 /// The axis that a vector lies along; 3: none.
 static inline int glint_axis_along(const double v[3])
@@ -153,6 +160,8 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
         return round < 1;
     case GLINT_FORM_CONE:
         return round < z * z;
+    case GLINT_FORM_TORUS:
+        return (sqrt(round) - 1) * (sqrt(round) - 1) + z * z < solid->tube * solid->tube;
     default:
         return false;
     }
@@ -167,7 +176,7 @@ typedef struct glint_geometry_table {
     uint32_t unbounded_count;
     double reference[3], scale; ///< scale is a power of two
     double extent; ///< bound of every coordinate and radius, world units
-    bool triangles; ///< there are some
+    bool triangles, tori; ///< there are some
     const glint_corner_normals *corner_normals;
     const glint_solid *solids;
     const glint_face *faces; ///< of triangles

@@ -203,6 +203,12 @@ static inline bool is_open(const glint_solid *solid)
     return solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;
 }
 
+/// Whether it may be met again by what leaves it outward, and throw a shadow on itself: of all solids only the torus.
+static inline bool is_torus(const glint_geometry_table *table, const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form == GLINT_FORM_TORUS;
+}
+
 // ---- The order of a walk ----
 
 typedef struct walk_entry {

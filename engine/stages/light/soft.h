@@ -160,10 +160,10 @@ static R(soft_group)
         const uint32_t id = tile->occluders[k].id;
         const glint_prim *prim = &args->geometry->prims[id];
         const unsigned own = lanes_equal(args->prim + group->at, id) & lanes;
-        unsigned near = own; // what they leave blocks nothing, but from behind and of triangles
+        unsigned near = own; // what they leave blocks nothing, but from behind and of triangles and tori
         if (prim->kind == GLINT_PRIM_PLANE)
             near = 0;
-        else if (prim->kind != GLINT_PRIM_TRIANGLE)
+        else if (prim->kind != GLINT_PRIM_TRIANGLE && !is_torus(args->geometry, prim))
             near &= back;
         const unsigned others = lanes & ~(own | out.hidden);
         if (others) {

@@ -216,8 +216,9 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
                                     unsigned outside)
 {
     const glint_solid *solid = &args->geometry->solids[prim->item];
-    const unsigned back = own & args->back[at / GLINT_GROUP], within = is_open(solid) ? back : 0;
-    unsigned blocked = solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
+    const bool torus = solid->form == GLINT_FORM_TORUS;
+    const unsigned back = own & args->back[at / GLINT_GROUP], within = torus ? own : is_open(solid) ? back : 0;
+    unsigned blocked = torus || solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
     wanted &= ~(own & ~within);
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -228,7 +229,10 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
-        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine)) & lanes) << i;
+        const rm hit = torus ? R(torus_blocks)(solid, prim, p, d, args->scale, args->directional, ~outside >> i,
+                                               own >> i, back >> i)
+                             : R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine);
+        blocked |= (rm_bits(hit) & lanes) << i;
     }
     return blocked;
 }

@@ -277,5 +277,6 @@ static inline void R(begin_shadows)(const glint_occlude_args *args, const uint16
     }
     loosen(tile->lower, tile->upper, R(walk_slack)(geometry));
     R(place_light)(tile);
-    R(find_occluders)(tile, box.only);
+    const bool on_torus = geometry->tori && box.only != GLINT_MISS && is_torus(geometry, &geometry->prims[box.only]);
+    R(find_occluders)(tile, on_torus ? GLINT_MISS : box.only);
 }

@@ -56,6 +56,7 @@ typedef struct R(beam_blocker) {
     const glint_prim *prim;
     uint32_t id;
     float near; ///< least w of its box
+    bool torus;
     shape_on_screen shape;
 } R(beam_blocker);
 
@@ -69,7 +70,7 @@ INNER void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, u
         if (!behind)
             continue;
         const vi owner = f_bits(f_load_any((const float *)(beam->own + i)));
-        const unsigned front = fm_bits(i_eq(owner, i_set(b->id)));
+        const unsigned front = b->torus ? 0 : fm_bits(i_eq(owner, i_set(b->id)));
         for (unsigned near = behind & ~front & near_shape(&b->shape, u, v); near; near &= near - 1) {
             const unsigned lane = (unsigned)__builtin_ctz(near);
             const uint32_t on = beam->own[i + lane];
@@ -84,6 +85,7 @@ static void R(block_cells)(R(beam) * beam, const glint_node *node, const node_on
     const uint32_t id = node->child[slot] & ~GLINT_NODE_PRIM;
     const screen_cells cells = seen->cells[slot];
     R(beam_blocker) b = { .prim = &geometry->prims[id], .id = id, .near = seen->near[slot] };
+    b.torus = is_torus(geometry, b.prim);
     b.shape = shape_of(node, seen, slot, b.prim, &beam->view);
     const uint16_t *top = beam->begin + first_row(cells) * SCREEN_ACROSS;
     const uint16_t *bottom = beam->begin + last_row(cells) * SCREEN_ACROSS;

@@ -65,7 +65,10 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
                                     t);
     *t = 0;
     bool inward = args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-    if (prim->kind == GLINT_PRIM_SOLID && inward) {
+    if (prim->kind == GLINT_PRIM_SOLID && args->geometry->solids[prim->item].form == GLINT_FORM_TORUS) {
+        const glint_solid *solid = &args->geometry->solids[prim->item];
+        *t = NAME(torus_t)(solid, NAME(unit_place)(solid, prim, origin), NAME(into_unit)(solid, direction), true, inward);
+    } else if (prim->kind == GLINT_PRIM_SOLID && inward) {
         const glint_solid *solid = &args->geometry->solids[prim->item];
         NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
         const bool open = solid->form == GLINT_FORM_TUBE || solid->form == GLINT_FORM_FUNNEL;

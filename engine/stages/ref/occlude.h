@@ -39,6 +39,8 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
     bool solid = prim->kind == GLINT_PRIM_SOLID;
     uint32_t form = solid ? args->geometry->solids[prim->item].form : GLINT_FORM_BALL;
     bool open = form == GLINT_FORM_TUBE || form == GLINT_FORM_FUNNEL;
+    if (form == GLINT_FORM_TORUS)
+        return NAME(torus_blocks)(args, prim, NAME(rounded)(position), NAME(load)(args->point, i), side < 0, own, back);
     if (own && !open)
         return prim->kind != GLINT_PRIM_PLANE && form != GLINT_FORM_DISK && back && side > 0;
     if (solid)

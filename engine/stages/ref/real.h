@@ -119,6 +119,7 @@ static NAME(vec3) NAME(direction_of)(const glint_camera_args *camera, const void
                      NAME(load_part)(camera->down, group / camera->groups_across, lane));
 }
 
+#include "engine/stages/ref/torus.h"
 #include "engine/stages/ref/solid.h"
 #include "engine/stages/ref/triangle.h"
 #include "engine/stages/ref/cast.h"

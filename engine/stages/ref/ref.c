@@ -161,6 +161,10 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
            z = dot_of(solid->inverse[2], away);
     if (solid->form == GLINT_FORM_BALL)
         return (x * x + y * y) + z * z < 1;
+    if (solid->form == GLINT_FORM_TORUS) {
+        double off = sqrt(x * x + y * y) - 1;
+        return off * off + z * z < solid->tube * solid->tube;
+    }
     bool between = true;
     for (int i = 0; i < (solid->form == GLINT_FORM_BOX ? 3 : 1); i++)
         between = between && height_over(&solid->faces[2 * i], position) > 0 &&

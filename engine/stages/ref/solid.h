@@ -141,9 +141,17 @@ static NAME(passage)
     return p;
 }
 
+/// From the solid's centre to a place, where the shape is the unit one.
+static NAME(vec3) NAME(unit_place)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) place)
+{
+    return NAME(into_unit)(solid, NAME(sub)(place, NAME(rounded)(prim->center)));
+}
+
 /// The distance at which a ray meets a solid; 0 stands for a miss.
 static REAL NAME(solid_t)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin, NAME(vec3) direction)
 {
+    if (solid->form == GLINT_FORM_TORUS)
+        return NAME(torus_t)(solid, NAME(unit_place)(solid, prim, origin), NAME(into_unit)(solid, direction), false, false);
     NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
     REAL t = p.in.t > 0 ? p.in.t : p.out.t;
     return p.hit && t > 0 ? t : 0;
@@ -187,12 +195,17 @@ static NAME(vec3) NAME(onto_face)(uint32_t form, NAME(vec3) k, const REAL face[3
 static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *prim, NAME(vec3) origin,
                                     NAME(vec3) direction, REAL t, NAME(vec3) * normal)
 {
-    NAME(vec3) f = NAME(into_unit)(solid, NAME(sub)(origin, NAME(rounded)(prim->center)));
-    NAME(vec3) e = NAME(into_unit)(solid, direction);
-    NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
-    NAME(crossing) at = p.in.t == t ? p.in : p.out;
+    const bool torus = solid->form == GLINT_FORM_TORUS;
+    NAME(vec3) f = NAME(unit_place)(solid, prim, origin), e = NAME(into_unit)(solid, direction);
+    NAME(crossing) at = { .t = t };
+    if (!torus) {
+        NAME(passage) p = NAME(pass_prim)(solid, prim, origin, direction);
+        at = p.in.t == t ? p.in : p.out;
+    }
     NAME(vec3) k = NAME(add)(f, NAME(times)(e, at.t)), g = NAME(vec)(at.face[0], at.face[1], at.face[2]);
-    if (at.flat)
+    if (torus)
+        g = NAME(onto_torus)((REAL)solid->tube, &k);
+    else if (at.flat)
         k = NAME(onto_face)(solid->form, k, at.face);
     else
         g = NAME(onto_side)(solid->form, &k);
@@ -210,6 +223,17 @@ static NAME(vec3) NAME(solid_point)(const glint_solid *solid, const glint_prim *
     int axis = at.face[0] != 0 ? 0 : at.face[1] != 0 ? 1 : 2;
     bool high = at.face[axis] > 0;
     return NAME(onto_plane)(&solid->faces[(solid->form == GLINT_FORM_BOX ? 2 * axis : 0) + high], point);
+}
+
+/// own: the segment begins on it; back: and goes in. inside: the light is.
+static bool NAME(torus_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
+                               NAME(vec3) point, bool inside, bool own, bool back)
+{
+    const glint_solid *solid = &args->geometry->solids[prim->item];
+    NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
+    REAL end = args->directional ? (REAL)INFINITY : 1 / (REAL)args->scale;
+    return NAME(torus_parts)(solid, NAME(unit_place)(solid, prim, point), NAME(into_unit)(solid, d), end, inside, own,
+                             back);
 }
 
 /// `own`: the segment begins on it, within.

@@ -5,6 +5,7 @@
 #include "engine/stages/cast/face.h"
 #include "engine/stages/cast/triangle.h"
 #include "engine/stages/cast/shared_edge.h"
+#include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/meet.h"
 #include "engine/stages/index/candidate.h"

@@ -102,6 +102,10 @@ local makers = {
     fields.base, fields.top, fields.radius = { 0, 0, 0 }, { 0, 0, 1 }, 1
     return glint.cone(fields)
   end,
+  torus = function(fields, node)
+    fields.center, fields.axis, fields.major, fields.minor = { 0, 0, 0 }, { 0, 0, 1 }, node.ring, node.tube
+    return glint.torus(fields)
+  end,
 }
 
 -- Errors of the engine as the scene's own.

@@ -135,7 +135,8 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
 {
     glint_solid *solid = &scene->solids[i];
     double column[3][3], det = 0;
-    solid->form = below(GLINT_FORM_FUNNEL + 1);
+    solid->form = below(GLINT_FORM_TORUS + 1);
+    solid->tube = one_in(4) ? power_of_ten(-6, -1) : one_in(4) ? 1 - power_of_ten(-6, -1) : between(0.05, 0.95);
     do {
         for (int k = 0; k < 3; k++) {
             const double length = size * power_of_ten(-1, 0);
@@ -159,6 +160,16 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
     memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
 }
 
+/// A place on the unit torus.
+static inline void place_on_torus(double tube, double k[3])
+{
+    const double around = between(-4, 4), across = one_in(4) ? 1.5707963267948966 : between(-4, 4);
+    const double from_axis = 1 + tube * cos(across);
+    k[0] = from_axis * cos(around);
+    k[1] = from_axis * sin(around);
+    k[2] = tube * sin(across);
+}
+
 /// A place on a solid, in the world.
 static inline void place_on_solid(const test_scene *scene, const glint_prim *prim, double point[3])
 {
@@ -171,6 +182,8 @@ static inline void place_on_solid(const test_scene *scene, const glint_prim *pri
         k[c] = between(-1, 1);
     if (solid->form == GLINT_FORM_BOX)
         k[below(3)] = either_sign(1);
+    else if (solid->form == GLINT_FORM_TORUS)
+        place_on_torus(solid->tube, k);
     else if (solid->form == GLINT_FORM_DISK)
         k[2] = 0;
     else if (solid->form != GLINT_FORM_BALL)
@@ -231,13 +244,19 @@ static inline float rounded_up(long double x)
 
 static inline float rounded_down(long double x) { return -rounded_up(-x); }
 
+static inline bool is_torus(const test_scene *scene, const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_SOLID && scene->solids[prim->item].form == GLINT_FORM_TORUS;
+}
+
 /// The ends of a primitive, which has some, in the world.
 static inline void ends_of(const test_scene *scene, const glint_prim *prim, long double lower[3], long double upper[3])
 {
     for (int c = 0; c < 3; c++) {
         const double *m = scene->solids[prim->kind == GLINT_PRIM_SOLID ? prim->item : 0].forward[c];
+        const bool torus = is_torus(scene, prim); // 1 + tube across
         const long double reach =
-            prim->kind == GLINT_PRIM_SOLID ? (fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2]) : prim->radius;
+            prim->kind == GLINT_PRIM_SOLID ? (torus ? 2 : 1) * ((fabsl(m[0]) + fabsl(m[1])) + fabsl(m[2])) : prim->radius;
         lower[c] = (long double)prim->center[c] - reach;
         upper[c] = (long double)prim->center[c] + reach;
         if (prim->kind == GLINT_PRIM_TRIANGLE) {
@@ -375,7 +394,7 @@ static inline void set_solid_faces(test_scene *scene, const glint_prim *prim)
     solid->faces = scene->faces + scene->face_count;
     solid->places = 1;
     for (int i = 0; i < 9; i++)
-        reach += fabs(solid->forward[i / 3][i % 3]);
+        reach += (solid->form == GLINT_FORM_TORUS ? 2 : 1) * fabs(solid->forward[i / 3][i % 3]);
     for (int i = 0; i < 9; i++)
         solid->places += 2 * fabs(solid->inverse[i / 3][i % 3]) * (reach + 2 * fabs(prim->center[i % 3]));
     for (int i = 0; i < 2 * slabs; i++) {
@@ -437,6 +456,9 @@ static inline void finish_scene(const scene_plan *plan, test_scene *scene)
 {
     number_prims(scene);
     set_faces(scene);
+    scene->table.tori = false;
+    for (uint32_t i = 0; i < scene->table.prim_count; i++)
+        scene->table.tori = scene->table.tori || is_torus(scene, &scene->prims[i]);
     for (uint32_t i = 0; i < scene->table.prim_count; i++) {
         scene->prims[i].material = below(4);
         scene->prims[i].two_sided = one_in(2);

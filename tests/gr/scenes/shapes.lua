@@ -18,6 +18,8 @@ put(root, gr.cube('box'), green, {'translate', -0.5, -0.5, -0.5}, {'scale', 1, 2
   {'translate', 0, 2, 0})
 put(root, gr.cylinder('cylinder'), blue, {'rotate', 'x', -90}, {'scale', 0.8, 1.5, 0.5}, {'translate', 2.5, 1, 0})
 put(root, gr.cone('cone'), red, {'scale', 1, 1, 2}, {'rotate', 'X', -80}, {'translate', -3, -2, 0})
+put(root, gr.torus('torus', 0.3), blue, {'rotate', 'x', 50}, {'translate', 0.4, 0.6, 1})
+put(root, gr.torus('ring', '0.2', 2), red, {'scale', 0.4, 0.6, 0.5}, {'rotate', 'y', 60}, {'translate', 4, 0.5, 0})
 put(root, gr.nh_box('nh_box', {0, 0, 0}, 1), green, {'scale', -1, 1, -1.5}, {'translate', 0.5, -2, 0})
 
 -- A scale above a rotation shears what is below.

@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-const char *const solid_names[SOLID_KINDS] = { "sphere, transformed", "box", "disk", "cylinder", "cone", "triangle" };
+const char *const solid_names[SOLID_KINDS] = { "sphere, transformed", "box", "disk", "cylinder", "cone", "torus", "triangle" };
 static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_DISK, GLINT_SHAPE_CYLINDER,
-                                          GLINT_SHAPE_CONE };
+                                          GLINT_SHAPE_CONE,   GLINT_SHAPE_TORUS };
 
 // ---- Shapes ----
 
@@ -77,6 +77,11 @@ hard_solid solid_random(int kind, double *size)
     place(s.desc.base, at, *size);
     place(s.desc.top, at, *size);
     random_direction(s.desc.normal);
+    random_direction(s.desc.axis);
+    s.desc.major = *size * uniform(0.3, 1);
+    s.desc.minor = s.desc.major * (chance(0.3)   ? log_uniform(1e-6, 1)
+                                   : chance(0.2) ? 1 - log_uniform(1e-3, 1)
+                                                 : uniform(0.1, 0.9));
     s.desc.radius = *size * (chance(0.3) ? log_uniform(1e-3, 1) : uniform(0.3, 1));
     for (int c = 0; c < 3; c++) {
         s.desc.min[c] = s.desc.center[c] - *size * log_uniform(0.05, 1);
@@ -147,7 +152,9 @@ static void some_point(const hard_solid *s, double p[3])
         return;
     }
     for (int c = 0; c < 3; c++)
-        along[c] = d->kind == GLINT_SHAPE_DISK ? d->normal[c] : d->top[c] - d->base[c];
+        along[c] = d->kind == GLINT_SHAPE_DISK    ? d->normal[c]
+                   : d->kind == GLINT_SHAPE_TORUS ? d->axis[c]
+                                                  : d->top[c] - d->base[c];
     const double length = hypot(hypot(along[0], along[1]), along[2]);
     const int least = fabs(along[0]) < fabs(along[1]) ? 0 : 1;
     for (int c = 0; c < 3; c++)
@@ -166,13 +173,17 @@ static void some_point(const hard_solid *s, double p[3])
                                                                       : 1;
     const double within =
         (d->kind == GLINT_SHAPE_CONE || d->kind == GLINT_SHAPE_CYLINDER) && w == 0 ? uniform(0, 1) : 1;
+    const double across = chance(0.5) ? (double)(random_bits() % 4) * 1.5707963267948966 : uniform(0, 6.3); // of a tube: its
+    // outermost, highest, innermost or lowest circle
     for (int c = 0; c < 3; c++) {
+        const double from_axis = (d->major + d->minor * cos(across)) * (cos(turn) * a[c] + sin(turn) * b[c]);
         const double round = d->radius * taper * within * (cos(turn) * a[c] + sin(turn) * b[c]);
         const double box = chance(0.6) ? (chance(0.5) ? d->min[c] : d->max[c]) : uniform(d->min[c], d->max[c]);
         p[c] = d->kind == GLINT_SHAPE_SPHERE ? d->center[c] + d->radius * k[c]
                : d->kind == GLINT_SHAPE_BOX  ? box
                : d->kind == GLINT_SHAPE_DISK ? d->center[c] + round
-                                             : d->base[c] + w * (d->top[c] - d->base[c]) + round;
+               : d->kind == GLINT_SHAPE_TORUS ? d->center[c] + from_axis + d->minor * sin(across) * along[c]
+                                              : d->base[c] + w * (d->top[c] - d->base[c]) + round;
     }
 }
 
@@ -194,6 +205,26 @@ static void along_side(const hard_solid *s, const double p[3], double size, doub
         out[c] = s->desc.top[c] + way * (s->desc.top[c] - p[c]) + nudge * uniform(-1, 1);
 }
 
+/// From next to a point of a torus on along its surface, so that a ray from there touches it, nearly: a way of length `reach`.
+static void beside(const hard_solid *s, const double p[3], double reach, double out[3])
+{
+    const glint_shape_desc *d = &s->desc;
+    double n[3], away[3], along = 0, off = 0, length = 0, round = 0, level = 0, from_axis[3];
+    random_direction(away);
+    for (int c = 0; c < 3; c++)
+        level += d->axis[c] * (p[c] - d->center[c]); // of random_solid the axis is unit
+    for (int c = 0; c < 3; c++)
+        round = hypot(round, from_axis[c] = p[c] - d->center[c] - level * d->axis[c]);
+    for (int c = 0; c < 3; c++)
+        off = hypot(off, n[c] = p[c] - d->center[c] - d->major / round * from_axis[c]);
+    for (int c = 0; c < 3; c++)
+        along += away[c] * n[c] / off;
+    for (int c = 0; c < 3; c++)
+        length = hypot(length, away[c] -= along * n[c] / off);
+    for (int c = 0; c < 3; c++)
+        out[c] = p[c] + away[c] / length * reach;
+}
+
 hard_ray solid_aim(const hard_solid *s, double size)
 {
     hard_ray ray;
@@ -204,12 +235,15 @@ hard_ray solid_aim(const hard_solid *s, double size)
     const bool along = !s->is_triangle && s->desc.kind == GLINT_SHAPE_CONE && chance(0.2);
     if (along)
         along_side(s, p, size, q);
+    const bool touching = !s->is_triangle && s->desc.kind == GLINT_SHAPE_TORUS && chance(0.4);
+    if (touching)
+        beside(s, p, reach, q);
     to_world(s, p);
     to_world(s, q);
     random_direction(away);
     // points of what is flat are in one plane with each other
     const bool flat = s->is_triangle || s->desc.kind == GLINT_SHAPE_DISK;
-    const int way = along ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
+    const int way = along || touching ? 0 : flat && chance(0.8) ? 2 : (int)(random_bits() % 4);
     for (int c = 0; c < 3; c++) {
         p[c] += by * uniform(-1, 1);
         const double far = q[c] + (q[c] - p[c]) * log_uniform(1e-3, 1e3);

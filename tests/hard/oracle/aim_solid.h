@@ -5,7 +5,9 @@
 #include "tests/hard/oracle/drive.h"
 #include "tests/hard/oracle/oracle_solid.h"
 
-#define SOLID_KINDS 6
+#define SOLID_KINDS 7
+#define SOLID_DISK 2
+#define SOLID_TORUS 5 ///< the one that is not convex
 extern const char *const solid_names[SOLID_KINDS]; ///< the last is the triangle
 
 /// Any size and place, often under a map that turns, stretches, shears and mirrors. *size: about its own, before the map.

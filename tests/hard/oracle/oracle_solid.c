@@ -22,6 +22,8 @@ static quad norm_of(quad m[3][3])
     return sqrtf128(sum);
 }
 
+static bool is_torus(const glint_shape_desc *desc) { return desc->kind == GLINT_SHAPE_TORUS; }
+
 // ---- The map from the unit shape ----
 
 /// Two unit vectors square to a third.
@@ -61,9 +63,9 @@ static void described(const glint_shape_desc *desc, frame_of *frame)
     *frame = (frame_of) { .m = { { 0 } } };
     for (int c = 0; c < 3; c++) {
         const quad base = desc->base[c], top = desc->top[c];
-        const bool cone = desc->kind == GLINT_SHAPE_CONE, disk = desc->kind == GLINT_SHAPE_DISK;
-        center[c] = cone ? top : disk ? desc->center[c] : (base + top) / 2;
-        along[c] = cone ? base - top : disk ? desc->normal[c] : (top - base) / 2;
+        const bool cone = desc->kind == GLINT_SHAPE_CONE, disk = desc->kind == GLINT_SHAPE_DISK, torus = is_torus(desc);
+        center[c] = cone ? top : disk || torus ? desc->center[c] : (base + top) / 2;
+        along[c] = cone ? base - top : disk ? desc->normal[c] : torus ? desc->axis[c] : (top - base) / 2;
     }
     if (desc->kind == GLINT_SHAPE_BOX || desc->kind == GLINT_SHAPE_SPHERE) {
         for (int c = 0; c < 3; c++) {
@@ -74,12 +76,13 @@ static void described(const glint_shape_desc *desc, frame_of *frame)
         }
         return;
     }
-    if (desc->kind == GLINT_SHAPE_DISK) { // it has no height; any unit of it will do
+    const double radius = is_torus(desc) ? desc->major : desc->radius;
+    if (desc->kind == GLINT_SHAPE_DISK || is_torus(desc)) { // a disk has no height; any unit of it will do
         const quad length = sqrtf128(dot(along, along));
         for (int c = 0; c < 3; c++)
-            along[c] *= desc->radius / length;
+            along[c] *= radius / length;
     }
-    set_round(frame, center, along, desc->radius);
+    set_round(frame, center, along, radius);
 }
 
 static void transformed(const glint_transform *map, frame_of *frame)
@@ -208,7 +211,7 @@ static solid_truth of_solid(const hard_ray *ray, const glint_shape_desc *desc, d
         out.least -= (double)(margin / size_of(r.e[2]));
         out.most += (double)(margin / size_of(r.e[2]));
     }
-    if (margin > 1e-3 || (desc->kind == GLINT_SHAPE_DISK && size_of(r.f[2]) < 4 * margin))
+    if (margin > 1e-3 * (is_torus(desc) ? desc->minor / desc->major : 1) || (desc->kind == GLINT_SHAPE_DISK && size_of(r.f[2]) < 4 * margin))
         out.close = true; // nothing to hold on to; or in the disk's plane
     const int end = unit_first_ahead(&s);
     if (out.hit && !out.close)

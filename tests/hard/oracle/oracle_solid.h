@@ -1,4 +1,4 @@
-/// What is true of a ray and an ellipsoid, box, cylinder, cone, disk or triangle, under any map: in 113 bits, from the
+/// What is true of a ray and an ellipsoid, box, cylinder, cone, disk, torus or triangle, under any map: in 113 bits, from the
 /// binary64 numbers of its description.
 ///
 /// How near a decision is to the other one is asked of the shape itself: it is met grown and shrunk by a share `margin` of
@@ -12,7 +12,7 @@
 #include "tests/hard/oracle/oracle.h"
 
 typedef struct hard_solid {
-    glint_shape_desc desc; ///< of a sphere, box, disk, cylinder or cone; its transform counts
+    glint_shape_desc desc; ///< of a sphere, box, disk, cylinder, cone or torus; its transform counts
     bool is_triangle;
     double corner[3][3];
 } hard_solid;

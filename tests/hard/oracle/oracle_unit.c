@@ -80,6 +80,79 @@ static void cut_disk(unit_span *s, const unit_ray *r, quad g)
     *s = (unit_span) { radius >= 0 && x * x + y * y <= radius * radius, { t, t } };
 }
 
+// ---- The torus: a quartic along the ray, begun anew where that is nearest to the middle ----
+
+#define DEGREE 4
+
+static quad value_of(const quad *coefficient, int degree, quad x)
+{
+    quad sum = 0;
+    for (int i = degree; i >= 0; i--)
+        sum = sum * x + coefficient[i];
+    return sum;
+}
+
+/// A root between two places of different signs.
+static quad root_between(const quad *coefficient, int degree, quad low, quad high)
+{
+    quad slope[DEGREE], x = (low + high) / 2;
+    const bool rising = value_of(coefficient, degree, high) > 0;
+    for (int i = 0; i < degree; i++)
+        slope[i] = (i + 1) * coefficient[i + 1];
+    for (int n = 0; n < 400; n++) {
+        const quad y = value_of(coefficient, degree, x);
+        *(((y > 0) == rising) ? &high : &low) = x;
+        quad next = x - y / value_of(slope, degree - 1, x);
+        if (!(next > low && next < high))
+            next = (low + high) / 2;
+        if (size_of(next - x) <= (quad)0x1p-108 * (1 + size_of(x)))
+            break;
+        x = next;
+    }
+    return x;
+}
+
+/// The roots within -reach .. reach, in order: one between neighbours of the derivative's where the sign changes. Returns how many.
+static int roots_of(const quad *coefficient, int degree, quad reach, quad *root)
+{
+    quad slope[DEGREE], turn[DEGREE + 2];
+    int count = 0;
+    if (degree == 0)
+        return 0;
+    for (int i = 0; i < degree; i++)
+        slope[i] = (i + 1) * coefficient[i + 1];
+    const int turns = roots_of(slope, degree - 1, reach, turn + 1);
+    turn[0] = -reach;
+    turn[turns + 1] = reach;
+    for (int i = 0; i <= turns; i++)
+        if ((value_of(coefficient, degree, turn[i]) > 0) != (value_of(coefficient, degree, turn[i + 1]) > 0))
+            root[count++] = root_between(coefficient, degree, turn[i], turn[i + 1]);
+    return count;
+}
+
+static void cut_torus(unit_span *s, const unit_ray *r, quad tube)
+{
+    quad p[3], root[DEGREE], along = 0, length2 = 0, away2 = 0;
+    for (int c = 0; c < 3; c++) {
+        along += r->f[c] * r->e[c];
+        length2 += r->e[c] * r->e[c];
+    }
+    const quad length = sqrtf128(length2), start = -along / length2;
+    for (int c = 0; c < 3; c++) {
+        p[c] = r->f[c] + start * r->e[c];
+        away2 += p[c] * p[c];
+    }
+    // (s^2 + a)^2 - 4 (x^2 + y^2)
+    const quad a = away2 + 1 - tube * tube, ux = r->e[0] / length, uy = r->e[1] / length;
+    const quad quartic[DEGREE + 1] = { a * a - 4 * (p[0] * p[0] + p[1] * p[1]), -8 * (p[0] * ux + p[1] * uy),
+                                       2 * a - 4 * (ux * ux + uy * uy), 0, 1 };
+    const int count = tube > 0 ? roots_of(quartic, DEGREE, 4, root) : 0;
+    s->hit = false;
+    for (int i = 0; i + 1 < count; i += 2)
+        if (!s->hit || s->t[1] <= 0)
+            *s = (unit_span) { true, { start + root[i] / length, start + root[i + 1] / length } };
+}
+
 int unit_parts(const glint_shape_desc *desc)
 {
     return desc->kind == GLINT_SHAPE_BOX                                          ? 3
@@ -103,6 +176,8 @@ static void cut_part(unit_span *s, const glint_shape_desc *desc, int part, const
         cut_quadric(s, aa, bb, cc - one * one);
     else if (desc->kind == GLINT_SHAPE_CONE)
         cut_cone(s, r, g);
+    else if (desc->kind == GLINT_SHAPE_TORUS)
+        cut_torus(s, r, (quad)desc->minor / desc->major + g);
     else
         cut_disk(s, r, g);
 }
@@ -136,6 +211,11 @@ void unit_normal(const glint_shape_desc *desc, int part, const unit_ray *r, int 
     if (desc->kind == GLINT_SHAPE_SPHERE) {
         for (int c = 0; c < 3; c++)
             n[c] = k[c];
+    } else if (desc->kind == GLINT_SHAPE_TORUS) {
+        const quad round = sqrtf128(k[0] * k[0] + k[1] * k[1]);
+        n[0] = k[0] - k[0] / round;
+        n[1] = k[1] - k[1] / round;
+        n[2] = k[2];
     } else if (desc->kind == GLINT_SHAPE_DISK) {
         n[2] = 1;
     } else if (desc->kind == GLINT_SHAPE_BOX || part == 1) {
@@ -153,5 +233,7 @@ quad unit_bend(const glint_shape_desc *desc, int part, const unit_ray *r, quad t
 {
     if (part != 0 || desc->kind == GLINT_SHAPE_BOX || desc->kind == GLINT_SHAPE_DISK)
         return 0;
+    if (desc->kind == GLINT_SHAPE_TORUS)
+        return desc->major / desc->minor + desc->major / (desc->major - desc->minor);
     return desc->kind == GLINT_SHAPE_CONE ? 1 / (r->f[2] + t * r->e[2]) : 1;
 }

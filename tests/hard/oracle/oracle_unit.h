@@ -1,5 +1,6 @@
 /// The unit shapes that solids are images of, and rays at them, in 113 bits: the ball, the cube and the cylinder from -1 to 1,
-/// the cone from its apex at 0 to z = 1, the disk at z = 0.
+/// the cone from its apex at 0 to z = 1, the disk at z = 0, the torus around a circle of radius 1. A ray may be within a torus
+/// twice: the first time that does not end behind it is what counts.
 ///
 /// Each is what its parts have in common: a box of three slabs; a cylinder or cone of its curved side, part 0, and of the slab
 /// between its ends, part 1; the others are one part. Grown by g, each part is moved outwards by g (inwards where g < 0).

@@ -1,0 +1,279 @@
+// torus: what cast, surface and occlude need of an image of the unit torus, which is no convex solid: a ray meets it up to four
+// times, and may meet again what it leaves. What is found along a line, and why so: ref/torus.h. Contract: stages.h.
+
+/// Where places are to the torus: below 0 inside. *beyond: what the quartic has besides as a factor, above 0.
+INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
+{
+    const vr one = r_set(1), round = r_sqrt(k[0] * k[0] + k[1] * k[1]), near = round - one, far = round + one;
+    const vr level = k[2] * k[2];
+    *beyond = (far * far + level) - tube2;
+    return (near * near + level) - tube2;
+}
+
+/// Lines through a torus, from the place nearest to its middle on. The stretches between turns fall and rise, 0 .. 3.
+typedef struct R(torus_line) {
+    vr tube, tube2;
+    vr p[3], u[3];
+    vr from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
+    vr reach; ///< beyond -reach .. reach there is nothing
+    vr bend, lean;
+    rm near; ///< lines that come near the torus; of others nothing but this and what is above means anything
+    vr turn[3], gap[3], beyond[3]; ///< in order; where there is but one the others are at infinity, outside
+    vr begin_gap;
+    rm on, inward; ///< rays that begin on the surface; of these, that go in
+    rm past[3]; ///< turns that are behind where rays begin
+} R(torus_line);
+
+/// How rays begin that leave the torus: which do, and which of them go in.
+typedef struct R(torus_start) {
+    rm leaves, inward;
+} R(torus_start);
+
+static inline R(torus_start) R(torus_afresh)(void)
+{
+    const rm none = rm_from_bits(0);
+    return (R(torus_start)) { none, none };
+}
+
+/// The largest x with x^3 + bend x = lean; lean >= 0. Lanes that are not wanted hold anything.
+INNER vr R(last_turn)(vr bend, vr lean, unsigned wanted)
+{
+    const vr three = r_set(3), zero = r_set(0), r = r_sqrt(r_max(-bend, zero));
+    const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
+    vr x = r + r_min(lean / by, (r_set(2) + lean) / three);
+    for (int n = 0; n < GLINT_TURN_STEPS && wanted; n++) {
+        const vr value = (x * x + bend) * x - lean, slope = three * (x * x) + bend;
+        const vr step = value * slope / (slope * slope - value * (three * x));
+        x = r_select(rm_from_bits(wanted), x - step, x);
+        wanted &= ~rm_bits(r_le(R(abs)(step), r_set(GLINT_TURN_NEAR)));
+    }
+    return x;
+}
+
+static inline void R(find_turns)(R(torus_line) * l)
+{
+    const vr zero = r_set(0), never = r_set(HUGE_VAL);
+    const vr last = R(last_turn)(l->bend, R(abs)(l->lean), rm_bits(l->near));
+    const vr rest = -l->bend - r_set(0.75) * (last * last), root = r_sqrt(r_max(rest, zero));
+    const vr low = r_set(-0.5) * last - root, high = r_set(-0.5) * last + root;
+    const rm three = r_le(zero, rest), turned = r_lt(l->lean, zero);
+    l->turn[0] = r_select(turned, -last, r_select(three, low, last));
+    l->turn[1] = r_select(three, r_select(turned, -high, high), never);
+    l->turn[2] = r_select(three, r_select(turned, -low, last), never);
+    for (int i = 0; i < 3; i++) {
+        const vr s = i == 0 ? l->turn[i] : r_select(three, l->turn[i], zero);
+        const vr k[3] = { l->p[0] + l->u[0] * s, l->p[1] + l->u[1] * s, l->p[2] + l->u[2] * s };
+        l->gap[i] = R(torus_gap)(k, l->tube2, &l->beyond[i]);
+        if (i > 0)
+            l->gap[i] = r_select(three, l->gap[i], r_set(1));
+    }
+}
+
+/// Where rays begin: on which stretch, and on the surface or not.
+static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid, const vr f[3], const vr e[3],
+                                     R(torus_start) start)
+{
+    const vr zero = r_set(0), one = r_set(1), within = r_set(GLINT_ON_FACE) * r_set(solid->places);
+    const vr round = r_sqrt(f[0] * f[0] + f[1] * f[1]);
+    vr beyond;
+    l->begin_gap = R(torus_gap)(f, l->tube2, &beyond);
+    l->on = rm_or(start.leaves, r_le(R(abs)(l->begin_gap), within * (r_set(2) * l->tube + within)));
+    for (int i = 0; i < 3; i++)
+        l->past[i] = r_le(l->turn[i], l->begin);
+    l->inward = rm_from_bits(0);
+    if (!rm_bits(l->on))
+        return;
+    const vr rise = ((round - one) / round) * (f[0] * e[0] + f[1] * e[1]) + f[2] * e[2];
+    const vr half = r_set(0.5);
+    l->inward = rm_and(l->on, rm_or(rm_and(start.leaves, start.inward), rm_andnot(r_lt(rise, zero), start.leaves)));
+    const rm outward = rm_andnot(l->on, l->inward);
+    const rm first_in = r_lt(l->begin, half * l->turn[0] + half * l->turn[1]);
+    const rm first_out = r_lt(l->begin, half * l->turn[1] + half * l->turn[2]);
+    const rm later_in = rm_andnot(l->inward, first_in), later_out = rm_andnot(outward, first_out);
+    l->past[0] = rm_or(rm_andnot(l->past[0], l->on), rm_or(outward, later_in));
+    l->past[1] = rm_or(rm_andnot(l->past[1], l->on), rm_or(later_out, later_in));
+    l->past[2] = rm_or(rm_andnot(l->past[2], l->on), later_out);
+    // on this side of the surface, whatever rounding made of the next turn
+    const rm next[3] = { rm_andnot(l->inward, later_in), rm_andnot(outward, later_out), later_in };
+    l->gap[0] = r_select(rm_and(next[0], r_lt(zero, l->gap[0])), zero, l->gap[0]);
+    l->gap[1] = r_select(rm_and(next[1], r_le(l->gap[1], zero)), one, l->gap[1]);
+    l->gap[2] = r_select(rm_and(next[2], r_lt(zero, l->gap[2])), zero, l->gap[2]);
+}
+
+/// Of rays from f on along e, where the torus is the unit one.
+static R(torus_line) R(along_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start)
+{
+    const vr zero = r_set(0), one = r_set(1), two = r_set(2), tube = r_set(solid->tube), ee = DOT(e, e);
+    R(torus_line) l;
+    l.tube = tube;
+    l.tube2 = tube * tube;
+    const vr first = -DOT(f, e) / ee;
+    const vr q[3] = { f[0] + e[0] * first, f[1] + e[1] * first, f[2] + e[2] * first };
+    const vr again = -DOT(q, e) / ee, around = r_set(1.0001) * (one + tube);
+    for (int c = 0; c < 3; c++)
+        l.p[c] = q[c] + e[c] * again;
+    const vr away2 = DOT(l.p, l.p), left = around * around - away2;
+    l.near = r_lt(zero, left);
+    if (!rm_bits(l.near))
+        return l;
+    l.from = first + again;
+    l.length = r_sqrt(ee);
+    l.per = one / l.length;
+    l.begin = -l.from * l.length;
+    for (int c = 0; c < 3; c++)
+        l.u[c] = e[c] * l.per;
+    l.reach = r_sqrt(r_max(left, zero));
+    l.bend = ((away2 + one) - l.tube2) - two * (l.u[0] * l.u[0] + l.u[1] * l.u[1]);
+    l.lean = -two * (l.p[2] * l.u[2]);
+    R(find_turns)(&l);
+    R(begin_on_torus)(&l, solid, f, e, start);
+    return l;
+}
+
+/// Lines that have a root in a stretch.
+static inline rm R(torus_crosses)(const R(torus_line) * l, int stretch)
+{
+    const vr zero = r_set(0);
+    const rm first = r_le(l->gap[0], zero), parted = r_lt(zero, l->gap[1]), second = r_le(l->gap[2], zero);
+    return rm_and(l->near, stretch == 0   ? first
+                           : stretch == 1 ? rm_and(first, parted)
+                           : stretch == 2 ? rm_and(parted, second)
+                                          : second);
+}
+
+/// Rays that begin on a stretch, not on the surface.
+static inline rm R(begins_in)(const R(torus_line) * l, int stretch)
+{
+    const rm all = rm_from_bits((1u << VR) - 1);
+    const rm from = stretch == 0 ? all : l->past[stretch - 1];
+    return rm_andnot(stretch == 3 ? from : rm_andnot(from, l->past[stretch]), l->on);
+}
+
+/// Rays that have a root of a stretch ahead, where there is one.
+static inline rm R(torus_ahead)(const R(torus_line) * l, int stretch)
+{
+    const vr zero = r_set(0);
+    const rm all = rm_from_bits((1u << VR) - 1);
+    const rm side = stretch % 2 ? r_lt(l->begin_gap, zero) : r_lt(zero, l->begin_gap);
+    return rm_or(stretch == 0 ? rm_from_bits(0) : rm_andnot(all, l->past[stretch - 1]),
+                 rm_and(R(begins_in)(l, stretch), side));
+}
+
+/// A stretch of each line.
+typedef struct R(torus_stretch) {
+    vr low, high, middle; ///< its ends; the least turn, which is one of them
+    vr gap; ///< Q there
+    rm rising;
+} R(torus_stretch);
+
+static inline R(torus_stretch) R(stretch_at)(const R(torus_line) * l, int stretch)
+{
+    const int least = stretch < 2 ? 0 : 2;
+    R(torus_stretch)
+    out = { .low = stretch == 0 ? -l->reach : r_max(l->turn[stretch - 1], -l->reach),
+            .high = stretch == 3 ? l->reach : r_min(l->turn[stretch], l->reach),
+            .middle = l->turn[least],
+            .gap = l->gap[least] * l->beyond[least],
+            .rising = rm_from_bits(stretch % 2 ? (1u << VR) - 1 : 0) };
+    out.low = r_select(R(begins_in)(l, stretch), r_max(out.low, l->begin), out.low);
+    return out;
+}
+
+/// t of the root of each line's stretch, in the lanes that have one.
+static vr R(torus_root)(const R(torus_line) * l, const R(torus_stretch) * at, unsigned wanted)
+{
+    const vr zero = r_set(0), half = r_set(0.5), four = r_set(4);
+    vr low = at->low, high = at->high;
+    const vr curve = r_set(12) * (at->middle * at->middle) + four * l->bend;
+    const vr off = r_sqrt(r_max(r_set(-2) * at->gap / curve, zero));
+    vr s = r_select(at->rising, at->middle + off, at->middle - off);
+    s = r_select(rm_and(r_le(low, s), r_le(s, high)), s, half * low + half * high);
+    for (int n = 0; n < GLINT_ROOT_STEPS && wanted; n++) {
+        const vr k[3] = { l->p[0] + l->u[0] * s, l->p[1] + l->u[1] * s, l->p[2] + l->u[2] * s };
+        vr beyond;
+        const vr gap = R(torus_gap)(k, l->tube2, &beyond);
+        const rm inside = r_le(gap, zero);
+        const rm ahead =
+            rm_or(rm_and(inside, at->rising), rm_andnot(rm_from_bits((1u << VR) - 1), rm_or(inside, at->rising)));
+        low = r_select(ahead, s, low);
+        high = r_select(ahead, high, s);
+        const vr slope = four * ((s * s + l->bend) * s - l->lean);
+        vr next = s - gap * beyond / slope;
+        next = r_select(rm_and(r_le(low, next), r_le(next, high)), next, half * low + half * high);
+        const rm near = r_le(R(abs)(next - s), r_set(GLINT_ON_FACE));
+        s = r_select(rm_from_bits(wanted), next, s);
+        wanted &= ~rm_bits(near);
+    }
+    const vr t = l->from + s * l->per;
+    return r_select(r_lt(zero, t), t, r_set(GLINT_LEAST_WAY));
+}
+
+/// Where rays meet the torus first. Those that leave it and go in meet it surely.
+static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
+{
+    const R(torus_line) l = R(along_torus)(solid, f, e, start);
+    const rm surely = rm_and(start.leaves, start.inward);
+    rm hit = rm_from_bits(0);
+    *t = r_set(GLINT_LEAST_WAY);
+    if (!rm_bits(l.near))
+        return surely;
+    R(torus_stretch) at = { 0 };
+    for (int stretch = 0; stretch < 4; stretch++) {
+        const rm here = rm_andnot(rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch)), hit);
+        if (!rm_bits(here))
+            continue;
+        const R(torus_stretch) found = R(stretch_at)(&l, stretch);
+        at.low = r_select(here, found.low, at.low);
+        at.high = r_select(here, found.high, at.high);
+        at.middle = r_select(here, found.middle, at.middle);
+        at.gap = r_select(here, found.gap, at.gap);
+        at.rising = rm_or(at.rising, rm_and(here, found.rising));
+        hit = rm_or(hit, here);
+    }
+    if (rm_bits(hit))
+        *t = r_select(hit, R(torus_root)(&l, &at, rm_bits(hit)), *t);
+    return rm_or(hit, surely);
+}
+
+/// Brings points next to the surface onto it; g: the outward normal there.
+static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
+{
+    const vr zero = r_set(0), one = r_set(1), tube = r_set(radius), round = r_sqrt(k[0] * k[0] + k[1] * k[1]);
+    const rm off_axis = r_lt(zero, round);
+    const vr x = r_select(off_axis, k[0] / round, zero), y = r_select(off_axis, k[1] / round, zero), w = round - one;
+    const vr away = r_sqrt(w * w + k[2] * k[2]);
+    const rm off_circle = r_lt(zero, away);
+    const vr out = r_select(off_circle, w / away, one), up = r_select(off_circle, k[2] / away, zero);
+    const vr from_axis = one + tube * out;
+    k[0] = from_axis * x;
+    k[1] = from_axis * y;
+    k[2] = tube * up;
+    g[0] = out * x;
+    g[1] = out * y;
+    g[2] = up;
+}
+
+/// Which segments from f on cross the surface before they end at t = end, inside or not.
+static rm R(torus_parts)(const glint_solid *solid, const vr f[3], const vr e[3], vr end, rm end_inside,
+                         R(torus_start) start)
+{
+    const vr zero = r_set(0);
+    const R(torus_line) l = R(along_torus)(solid, f, e, start);
+    vr beyond;
+    const rm within = r_lt(R(torus_gap)(f, l.tube2, &beyond), zero);
+    const rm left_inside = rm_and(start.leaves, start.inward);
+    const rm afar = rm_or(left_inside, rm_andnot(within, start.leaves));
+    if (!rm_bits(l.near))
+        return rm_or(rm_andnot(afar, end_inside), rm_andnot(end_inside, afar));
+    const rm inside =
+        rm_or(rm_and(l.near, rm_or(rm_and(l.on, l.inward), rm_andnot(within, l.on))), rm_andnot(afar, l.near));
+    const vr last = (end - l.from) * l.length;
+    rm parted = rm_or(rm_andnot(inside, end_inside), rm_andnot(end_inside, inside)), passes = l.near;
+    for (int i = 0; i < 3; i++) {
+        const rm inner = r_le(l.gap[i], zero);
+        passes = rm_and(passes, rm_or(l.past[i], r_le(l.turn[i], last)));
+        const rm differs = rm_or(rm_andnot(inside, inner), rm_andnot(inner, inside));
+        parted = rm_or(parted, rm_andnot(rm_and(passes, differs), l.past[i]));
+    }
+    return parted;
+}

@@ -1,0 +1,194 @@
+// The reference of the torus, for one type of real; included by ref/real.h. One line of stages.h after the other.
+//
+// Along a line p + s u from the place nearest to the middle on, u unit, the surface is where Q(s) = 0, a quartic that has no
+// cubic term. Q' / 4 = s^3 + bend s - lean: up to three turns, between which Q only rises or falls. So there are four stretches,
+// falling and rising by turns, and a root in each at most: it is there where its ends are on different sides of the surface.
+// Sides are decided at places, not by coefficients: by how far they are from the circle in the middle of the tube.
+
+/// Where a place is to the torus: below 0 inside. *beyond: what Q has besides as a factor, above 0.
+static REAL NAME(torus_gap)(NAME(vec3) k, REAL tube, REAL *beyond)
+{
+    REAL round = NAME(square_root)(k.x * k.x + k.y * k.y), near = round - 1, far = round + 1, level = k.z * k.z;
+    *beyond = (far * far + level) - tube * tube;
+    return (near * near + level) - tube * tube;
+}
+
+typedef struct NAME(torus_line) {
+    REAL tube;
+    NAME(vec3) p, u;
+    REAL from, per, length, begin; ///< t = from + s per, per = 1 / length; s of t = 0
+    REAL reach; ///< beyond -reach .. reach there is nothing
+    REAL bend, lean;
+    bool near; ///< it comes near the torus
+    REAL turn[3], gap[3], beyond[3]; ///< in order; where there is but one the others are at infinity, outside
+    REAL begin_gap;
+    bool on, inward; ///< it begins on the surface; then, that it goes in
+    int stretch; ///< 0 .. 3: where it begins
+} NAME(torus_line);
+
+/// The largest x with x^3 + bend x = lean; lean >= 0.
+static REAL NAME(last_turn)(REAL bend, REAL lean)
+{
+    REAL r = NAME(square_root)(NAME(max)(-bend, 0));
+    REAL x = r + NAME(min)(lean / (bend < 0 ? -2 * bend : bend), (2 + lean) / 3);
+    for (int n = 0; n < GLINT_TURN_STEPS; n++) {
+        REAL value = (x * x + bend) * x - lean, slope = 3 * (x * x) + bend;
+        REAL step = value * slope / (slope * slope - value * (3 * x));
+        x = x - step;
+        if (NAME(abs)(step) <= (REAL)GLINT_TURN_NEAR)
+            break;
+    }
+    return x;
+}
+
+static void NAME(find_turns)(NAME(torus_line) * l)
+{
+    REAL last = NAME(last_turn)(l->bend, NAME(abs)(l->lean));
+    REAL rest = -l->bend - (REAL)0.75 * (last * last), half = NAME(square_root)(NAME(max)(rest, 0));
+    REAL low = (REAL)-0.5 * last - half, high = (REAL)-0.5 * last + half;
+    bool three = rest >= 0, turned = l->lean < 0;
+    l->turn[0] = turned ? -last : three ? low : last;
+    l->turn[1] = !three ? INFINITY : turned ? -high : high;
+    l->turn[2] = !three ? INFINITY : turned ? -low : last;
+    for (int i = 0; i < 3; i++) {
+        NAME(vec3) k = NAME(add)(l->p, NAME(times)(l->u, i == 0 || three ? l->turn[i] : 0));
+        l->gap[i] = NAME(torus_gap)(k, l->tube, &l->beyond[i]);
+        if (i > 0 && !three)
+            l->gap[i] = 1;
+    }
+}
+
+/// Where it begins. leaves: on the surface, for certain.
+static void NAME(begin_on_torus)(NAME(torus_line) * l, const glint_solid *solid, NAME(vec3) f, NAME(vec3) e,
+                                 bool leaves, bool inward)
+{
+    REAL beyond, within = NAME(ON_FACE) * (REAL)solid->places;
+    REAL round = NAME(square_root)(f.x * f.x + f.y * f.y);
+    l->begin_gap = NAME(torus_gap)(f, l->tube, &beyond);
+    l->on = leaves || NAME(abs)(l->begin_gap) <= within * (2 * l->tube + within);
+    l->inward = leaves ? inward : ((round - 1) / round) * (f.x * e.x + f.y * e.y) + f.z * e.z < 0;
+    if (!l->on) {
+        l->stretch = (l->begin >= l->turn[0]) + (l->begin >= l->turn[1]) + (l->begin >= l->turn[2]);
+        return;
+    }
+    const REAL *turn = l->inward ? l->turn : l->turn + 1;
+    l->stretch = (l->inward ? 0 : 1) + (l->begin < (REAL)0.5 * turn[0] + (REAL)0.5 * turn[1] ? 0 : 2);
+    REAL *next =
+        l->stretch < 3 ? &l->gap[l->stretch] : NULL; // on this side of it, whatever rounding made of the next turn
+    if (next && l->inward && *next > 0)
+        *next = 0;
+    if (next && !l->inward && *next <= 0)
+        *next = 1;
+}
+
+static NAME(torus_line)
+    NAME(along_torus)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
+{
+    NAME(torus_line) l = { .tube = (REAL)solid->tube };
+    REAL ee = NAME(length2)(e), first = -NAME(dot)(f, e) / ee;
+    NAME(vec3) q = NAME(add)(f, NAME(times)(e, first));
+    REAL again = -NAME(dot)(q, e) / ee, around = (REAL)1.0001 * (1 + l.tube);
+    l.p = NAME(add)(q, NAME(times)(e, again));
+    l.from = first + again;
+    l.length = NAME(square_root)(ee);
+    l.per = 1 / l.length;
+    l.begin = -l.from * l.length;
+    l.u = NAME(times)(e, l.per);
+    REAL away2 = NAME(length2)(l.p), left = around * around - away2;
+    l.near = left > 0;
+    l.reach = NAME(square_root)(NAME(max)(left, 0));
+    l.bend = ((away2 + 1) - l.tube * l.tube) - 2 * (l.u.x * l.u.x + l.u.y * l.u.y);
+    l.lean = -2 * (l.p.z * l.u.z);
+    if (!l.near)
+        return l;
+    NAME(find_turns)(&l);
+    NAME(begin_on_torus)(&l, solid, f, e, leaves, inward);
+    return l;
+}
+
+/// Whether there is a root in a stretch.
+static bool NAME(torus_crosses)(const NAME(torus_line) * l, int stretch)
+{
+    const REAL *gap = l->gap;
+    return l->near && (stretch == 0   ? gap[0] <= 0
+                       : stretch == 1 ? gap[0] <= 0 && gap[1] > 0
+                       : stretch == 2 ? gap[1] > 0 && gap[2] <= 0
+                                      : gap[2] <= 0);
+}
+
+/// Whether the root of a stretch is ahead of where the ray begins.
+static bool NAME(torus_ahead)(const NAME(torus_line) * l, int stretch)
+{
+    if (stretch != l->stretch || l->on)
+        return stretch > l->stretch;
+    return stretch % 2 ? l->begin_gap < 0 : l->begin_gap > 0;
+}
+
+/// t of the root of a stretch that has one.
+static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
+{
+    int least = stretch < 2 ? 0 : 2;
+    bool rising = stretch % 2;
+    REAL low = stretch == 0 ? -l->reach : l->turn[stretch - 1], high = stretch == 3 ? l->reach : l->turn[stretch];
+    low = NAME(max)(low, -l->reach);
+    high = NAME(min)(high, l->reach);
+    if (stretch == l->stretch && !l->on)
+        low = NAME(max)(low, l->begin);
+    REAL middle = l->turn[least], curve = 12 * (middle * middle) + 4 * l->bend;
+    REAL off = NAME(square_root)(NAME(max)(-2 * (l->gap[least] * l->beyond[least]) / curve, 0));
+    REAL s = rising ? middle + off : middle - off;
+    if (!(low <= s && s <= high))
+        s = (REAL)0.5 * low + (REAL)0.5 * high;
+    for (int n = 0; n < GLINT_ROOT_STEPS; n++) {
+        REAL beyond, gap = NAME(torus_gap)(NAME(add)(l->p, NAME(times)(l->u, s)), l->tube, &beyond);
+        if ((gap <= 0) == rising)
+            low = s;
+        else
+            high = s;
+        REAL slope = 4 * ((s * s + l->bend) * s - l->lean), next = s - gap * beyond / slope;
+        if (!(low <= next && next <= high))
+            next = (REAL)0.5 * low + (REAL)0.5 * high;
+        REAL moved = NAME(abs)(next - s);
+        s = next;
+        if (moved <= NAME(ON_FACE))
+            break;
+    }
+    REAL t = l->from + s * l->per;
+    return t > 0 ? t : (REAL)GLINT_LEAST_WAY;
+}
+
+/// The distance at which a ray meets a torus; 0 stands for a miss. leaves: the ray begins on it, and goes in or not.
+static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
+{
+    NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
+    for (int stretch = 0; stretch < 4; stretch++)
+        if (NAME(torus_crosses)(&l, stretch) && NAME(torus_ahead)(&l, stretch))
+            return NAME(torus_root)(&l, stretch);
+    return leaves && inward ? (REAL)GLINT_LEAST_WAY : 0;
+}
+
+/// Brings a point next to the surface onto it. Returns the outward normal there.
+static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
+{
+    REAL round = NAME(square_root)(k->x * k->x + k->y * k->y), x = round > 0 ? k->x / round : 0;
+    REAL y = round > 0 ? k->y / round : 0, w = round - 1, away = NAME(square_root)(w * w + k->z * k->z);
+    REAL out = away > 0 ? w / away : 1, up = away > 0 ? k->z / away : 0, radius = 1 + tube * out;
+    *k = NAME(vec)(radius * x, radius * y, tube * up);
+    return NAME(vec)(out * x, out * y, up);
+}
+
+/// Whether a segment from f on crosses the surface before it ends at t = end, inside or not. leaves: it begins on it, and
+/// goes in or not.
+static bool NAME(torus_parts)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, REAL end, bool end_inside,
+                              bool leaves, bool inward)
+{
+    NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
+    REAL beyond;
+    if (!l.near)
+        return (leaves ? inward : NAME(torus_gap)(f, l.tube, &beyond) < 0) != end_inside;
+    bool inside = l.on ? l.inward : l.begin_gap < 0, parted = inside != end_inside;
+    REAL last = (end - l.from) * l.length;
+    for (int i = l.stretch; i < 3 && last >= l.turn[i]; i++)
+        parted = parted || (l.gap[i] <= 0) != inside;
+    return parted;
+}
