@@ -47,6 +47,10 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
+ifeq ($(call have,freetype2),yes)
+  PACKAGES += freetype2
+  DEFINES += -DGLINT_HAVE_FREETYPE
+endif
 # Of OpenEXR its core in C alone.
 ifeq ($(call have,'OpenEXR >= 3.1'),yes)
   EXR_LIBS := $(filter -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR))

@@ -692,6 +692,11 @@ bool glint_sphere_mesh_get(const glint_shape *shape, double center[3], double *r
 /// Overlays are in .png files of beauty alone: other passes, planes and linear files are without. They lie over each other in
 /// the order in which they were added. No stage reads them: another text makes no ray run again. Lengths in points are
 /// dpi / 72 pixels where the file says its dpi, else a pixel.
+///
+/// Letters are those of a font, by FreeType: the file that the environment's GLINT_FONT names, or DejaVu Sans where systems have it.
+/// Their pixels depend on that font and on FreeType's version, and so does the frame's key; those of pictures without text never
+/// do. Without FreeType or a font, or where GLINT_FONT is "bitmap", they are of a bitmap font of 8 by 13 pixels and its multiples,
+/// the same everywhere.
 typedef struct glint_overlay glint_overlay;
 
 /// What an overlay is; it says which fields of its description mean anything.
@@ -1319,6 +1324,9 @@ typedef struct glint_sheet_desc {
     const char *title, *across, *down; ///< of the sheet, of its columns, of its rows; NULL: none
     size_t difference; ///< the cell, from 1, that each row is compared with in a row below it; 0: no such rows
     double gain; ///< what differences are multiplied by; > 0
+    double size; ///< of labels, points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, below pictures of 900 across and more 26
+    double dpi; ///< pixels an inch where it is printed, 0 .. 1e6; 0: not said, and a point is a pixel
+    bool transparent; ///< the paper is; pictures are as on white
 } glint_sheet_desc;
 
 /// Draws finished pictures in rows, with labels, as one PNG: dark text on white, pixels of 8 bits. A picture that is

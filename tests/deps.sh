@@ -18,6 +18,8 @@ build_optional='
 libisal-dev     module:libisal
 libdeflate-dev  module:libdeflate
 libopenexr-dev  module:OpenEXR
+libfreetype-dev module:freetype2
+fonts-dejavu-core file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
 libseccomp-dev  module:libseccomp
 '
 test_required='
@@ -139,7 +141,7 @@ for what in "$@"; do
         ;;
     build)
         require "$build_required"
-        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libseccomp there is no --untrusted"
+        prefer "$build_optional" "without libisal and libdeflate PNG files are written with zlib, without libopenexr there is no .exr, without libfreetype and a font text is of a bitmap font, without libseccomp there is no --untrusted"
         ;;
     test)
         require "$test_required"

@@ -37,9 +37,9 @@ layer engine/plan engine/program engine/geometry engine/scene engine/overlay eng
 layer engine/reuse engine/plan engine/film $stages $base
 layer engine/tile engine/program engine/reuse engine/plan engine/film $stages engine/stages/light $base
 layer engine/frame engine/program engine/tile engine/reuse engine/plan engine/film $base
-layer engine/file engine/overlay engine/film engine/stages $base
+layer engine/file engine/text engine/overlay engine/film engine/stages $base
 layer engine/compare engine/file engine/film $base
-layer engine/sheet engine/text engine/file $base
+layer engine/sheet engine/text engine/overlay engine/file $base
 
 layer bindings/value
 layer bindings/run bindings/value

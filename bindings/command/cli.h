@@ -60,7 +60,8 @@ typedef struct cli_options {
     const char *output; ///< -o as it was given; NULL: not given
     const char *label, *title; ///< of sheet; NULL: not given
     int64_t columns, difference; ///< of sheet; 0: not given
-    double gain; ///< of sheet
+    double gain, label_size; ///< of sheet; 0: not given
+    bool transparent; ///< of sheet
     int64_t frame; ///< of explain
     double fail, warn; ///< of compare
     cli_sweep *sweeps;
@@ -102,7 +103,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 59
+#define CLI_OPTION_COUNT 61
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.

@@ -1,4 +1,5 @@
 // glint sheet FILES -o SHEET and glint assemble FILES -o FILM: figures of finished frames.
+#include <stdlib.h>
 #include <string.h>
 
 #include "bindings/command/cli.h"
@@ -11,6 +12,12 @@ static int refuse(cli_output *output, int code, const char *command, const char 
     snprintf(full, sizeof full, "%s: %s", command, message);
     cli_report_error(output, 0, code, full);
     return code;
+}
+
+static double dpi_of(const cli_options *options)
+{
+    const char *text = options->request.render_text[glintL_render_find("dpi")];
+    return text ? strtod(text, NULL) : 0; // which was checked when it was read
 }
 
 int cli_sheet(const cli_options *options, cli_output *output)
@@ -27,6 +34,9 @@ int cli_sheet(const cli_options *options, cli_output *output)
         sheet.columns = options->columns;
         sheet.difference = options->difference;
         sheet.gain = options->gain;
+        sheet.size = options->label_size;
+        sheet.transparent = options->transparent;
+        sheet.dpi = dpi_of(options);
         sheet.mixes = options->request.force;
         code = glintL_sheet_make(&sheet, message);
     }

@@ -768,6 +768,9 @@ function glint.animation(fields) end
 ---@field difference? integer  a frame of the sweep, from 1: a second row shows how far each picture is from it. Default none
 ---@field gain? number  what differences are multiplied by, 0.001 .. 1e6; with `difference`. Default 8
 ---@field title? string  above the sheet. Default none
+---@field size? number  of its text, points, 1 .. 10000. Default: 13 pixels, and 26 of pictures of 900 across and more
+---@field dpi? number  pixels an inch, of the .png; a point is dpi / 72 pixels, or 1. Default: that of its pictures
+---@field transparent? boolean  no paper: what is neither picture nor text shows through. Default false
 ---@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png, with the number of the first frame when that is not 1
 
 ---@class glint.sweep_fields: glint.render

@@ -18,7 +18,7 @@
     OPTION(rounding, ENUM, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
     OPTION(tone, ENUM, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
     OPTION(encode, ENUM, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
-    OPTION(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL, "N", "pixels an inch, for print")                                      \
+    FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \
     FIELD(output, STRING, OUTPUT, output, 0, 0, NULL)                                                                   \
     FIELD(passes, STRING, PASSES, file_passes, 0, 0, NULL)                                                              \
     OPTION(exposure, NUMBER, REAL, desc.tone.exposure, -GLINT_EXPOSURE_MAX, GLINT_EXPOSURE_MAX, NULL, "STOPS",          \

@@ -34,6 +34,8 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
     else if (sheet->columns && ends_in(sheet->path, ".html"))
         snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has sliders instead");
+    else if ((sheet->size > 0 || sheet->transparent) && ends_in(sheet->path, ".html"))
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it means nothing to a page", sheet->transparent ? "transparent" : "size");
     else
         return true;
     return false;
@@ -196,6 +198,9 @@ static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char
     desc.columns = columns_of(sheet, axes);
     desc.difference = (size_t)sheet->difference;
     desc.gain = sheet->gain > 0 ? sheet->gain : DEFAULT_GAIN;
+    desc.size = sheet->size;
+    desc.dpi = sheet->dpi;
+    desc.transparent = sheet->transparent;
     set_titles(axes, &desc, down);
     glint_status status = glint_sheet_write(&desc, sheet->path, &error);
     free(cells);

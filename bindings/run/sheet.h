@@ -20,6 +20,8 @@ typedef struct glintL_sheet {
     int64_t columns; ///< 0: by the axes
     int64_t difference; ///< the cell, from 1, that the others are compared with; 0: none
     double gain; ///< 0: the default
+    double size, dpi; ///< of its text, points; pixels an inch: 0: not said
+    bool transparent; ///< without paper
     bool mixes; ///< files of different makings are welcome
 } glintL_sheet;
 

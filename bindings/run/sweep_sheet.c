@@ -39,6 +39,13 @@ static void check_field(lua_State *L, int index, const char *name)
         check_number(L, index, path, 1, GLINTL_SHEET_MAX, true, "number of a frame, from 1,");
     } else if (strcmp(name, "gain") == 0) {
         check_number(L, index, path, 1e-3, 1e6, false, "number 0.001 .. 1000000");
+    } else if (strcmp(name, "size") == 0) {
+        check_number(L, index, path, 1, 10000, false, "points 1 .. 10000");
+    } else if (strcmp(name, "dpi") == 0) {
+        check_number(L, index, path, 0, 1e6, false, "number 0 .. 1000000");
+    } else if (strcmp(name, "transparent") == 0) {
+        if (!lua_isboolean(L, index))
+            glintL_refuse(L, index, path, "boolean");
     } else {
         check_text(L, index, path, name[0] == 't' ? "text" : "file name");
         glintL_sheet as_output = { .path = lua_tostring(L, index), .count = 1 };
@@ -49,7 +56,8 @@ static void check_field(lua_State *L, int index, const char *name)
 
 static const glintL_field FIELDS[] = {
     { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
-    { .name = "title" }, { .name = "output" },  { .name = NULL },
+    { .name = "title" }, { .name = "output" },  { .name = "size" },       { .name = "dpi" },
+    { .name = "transparent" }, { .name = NULL },
 };
 
 void glintL_list_sheet(lua_State *L)
@@ -105,9 +113,15 @@ static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t 
     out.difference = read_whole(L, sheet, "difference");
     lua_getfield(L, sheet, "gain");
     out.gain = lua_tonumber(L, -1);
+    lua_getfield(L, sheet, "size");
+    out.size = lua_tonumber(L, -1);
+    lua_getfield(L, sheet, "dpi");
+    out.dpi = lua_tonumber(L, -1);
+    lua_getfield(L, sheet, "transparent");
+    out.transparent = lua_toboolean(L, -1);
     if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
         out.label = "none";
-    lua_pop(L, 2);
+    lua_pop(L, 5);
     return out;
 }
 
@@ -266,6 +280,13 @@ static void draw(glintL_run *run, const sheet_call *what, const glintL_sheet *sh
         run->reporter.figure(run->reporter.context, "sheet", sheet->path, (int64_t)sheet->count);
 }
 
+static double dpi_of(glintL_run *run, const glintL_job *job)
+{
+    glintL_render render = job->render;
+    glintL_run_apply(run, &render);
+    return render.dpi;
+}
+
 static int draw_protected(lua_State *L)
 {
     const glintL_job *job = lua_touserdata(L, 1);
@@ -286,6 +307,8 @@ static int draw_protected(lua_State *L)
     if (what->first > 1 && (!given || run->point_count > 1))
         number_output(output, what->first);
     glintL_sheet sheet = read_sheet(L, 3, &l, job->frames, output);
+    if (sheet.dpi == 0) // that of its pictures
+        sheet.dpi = dpi_of(run, job);
     draw(run, what, &sheet, &l);
     return 0;
 }

@@ -1,5 +1,5 @@
 /// The libraries in use, by name and version.
-#include "engine/glint.h"
+#include "engine/text/letters.h"
 
 #include <png.h>
 #include <pthread.h>
@@ -39,6 +39,8 @@ static void make_list(void)
     add(name);
     if (glint_exr_library())
         add(glint_exr_library());
+    if (glint_letters_library())
+        add(glint_letters_library());
 }
 
 const char *const *glint_libraries(void)

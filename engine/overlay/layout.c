@@ -80,13 +80,14 @@ static void draw_label(const glint_layout *layout, int x, int y)
 /// Pixels of a length in points, no more than a side of a picture.
 static double pixels_of(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
 
-static glint_layout begin(const glint_overlays *overlays, size_t i, double dpi, glint_stamps *stamps)
+static glint_layout begin(const glint_overlays *overlays, size_t i, double dpi, glint_letters *letters,
+                          glint_stamps *stamps)
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5 };
     const glint_overlay_desc *desc = &overlays->of[i];
     glint_layout layout = { .overlays = overlays, .desc = desc, .stamps = stamps };
     layout.em = desc->has_size ? pixels_of(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
-    layout.typeface = glint_typeface_open(layout.em);
+    layout.typeface = glint_typeface_open(letters, layout.em);
     if (desc->kind != GLINT_OVERLAY_LABEL)
         layout.length = desc->has_length ? pixels_of(desc->length, dpi) : lengths[desc->kind] * layout.em;
     return layout;
@@ -114,11 +115,16 @@ static void draw(glint_layout *layout, double dpi)
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
                                  glint_stamps *out, glint_error *error)
 {
+    glint_letters *letters;
     *out = (glint_stamps) { .transfer = transfer, .bits = bits };
+    glint_status status = glint_letters_open(&letters, error);
+    if (status)
+        return status;
     for (size_t i = 0; i < overlays->count; i++) {
-        glint_layout layout = begin(overlays, i, dpi, out);
+        glint_layout layout = begin(overlays, i, dpi, letters, out);
         draw(&layout, dpi);
     }
+    glint_letters_close(letters);
     if (!out->lost)
         return GLINT_OK;
     glint_stamps_free(out);

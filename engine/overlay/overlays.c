@@ -1,6 +1,7 @@
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
 #include "engine/overlay/overlay.h"
+#include "engine/text/letters.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +64,7 @@ static glint_key place_key(const glint_overlay_desc *d, glint_key key)
 
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
 {
+    key = glint_letters_key(key);
     for (size_t i = 0; i < overlays->count; i++) {
         const glint_overlay_desc *d = &overlays->of[i];
         const double bar[] = { d->map, d->low, d->high, d->orientation, (double)d->tick_count };

@@ -9,7 +9,6 @@
 #include "engine/base/status.h"
 #include "engine/sheet/canvas.h"
 #include "engine/file/file.h"
-#include "engine/text/font.h"
 #include "engine/file/png.h"
 #include "engine/file/write.h"
 
@@ -22,13 +21,18 @@
 #define MARK 0xd9594c // around the chosen cell
 #define LARGE_PICTURE 900 // pixels across from which labels are twice as large
 #define AREA_MAX ((int64_t)400000000) // pixels of a sheet: 1.2 GB while it is drawn
-#define PART_GAP 2 // characters between parts of a label on one line
+#define PART_GAP 2 // letters between parts of a label on one line
+#define LETTER 8 // its width in 13ths of its size
+#define SIZE 13 // of labels, pixels, unless the sheet has its own
 
 /// The sheet's measures, in pixels.
 typedef struct layout {
     const glint_sheet_desc *desc;
     int width, height; ///< of a picture
-    int scale; ///< of the text
+    glint_letters *letters; ///< owned; NULL: the bitmap font
+    glint_typeface typeface, title; ///< of labels, of the title, which is twice as large
+    double unit; ///< pixels of the picture in a 13th of the labels' size
+    bool lost; ///< no memory: some text is missing
     int rows;
     int column, label; ///< width of a column; height of the label below a picture
     int left, top; ///< of the first picture
@@ -41,12 +45,13 @@ typedef struct layout {
 
 // ---- Labels -------------------------------------------------------------------------------------------------------
 
-static int line_height(const layout *l) { return (GLINT_FONT_HEIGHT + 2) * l->scale; }
+static int pixels(const layout *l, double units) { return (int)(units * l->unit + 0.5); }
+
+static int line_height(const layout *l) { return l->typeface.line; }
 
 static int text_width(const layout *l, const char *text, size_t size)
 {
-    size_t count = glint_font_count(text, size);
-    return (count < GLINT_SIDE_MAX ? (int)count : GLINT_SIDE_MAX) * GLINT_FONT_WIDTH * l->scale;
+    return glint_typeface_width(&l->typeface, text, size);
 }
 
 /// The longest part of a label.
@@ -62,14 +67,20 @@ static int widest_part(const layout *l, const char *label)
     return widest;
 }
 
+static void write_text(layout *l, glint_canvas *canvas, const glint_typeface *typeface, int x, int y, const char *text,
+                       size_t size, uint32_t color)
+{
+    l->lost = !glint_canvas_text(canvas, typeface, x, y, text, size, color) || l->lost;
+}
+
 /// Sets `label` on lines at most `room` wide, parts sharing a line where they fit; draws them from `y` down, centred on
 /// the room, which begins at `x`, unless `canvas` is NULL. Returns how many lines there are.
-static int set_label(const layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
+static int set_label(layout *l, const char *label, int room, glint_canvas *canvas, int x, int y)
 {
     int lines = 0;
     while (label && *label) {
         const char *part = label;
-        int width = 0, gap = PART_GAP * GLINT_FONT_WIDTH * l->scale;
+        int width = 0, gap = pixels(l, PART_GAP * LETTER);
         while (*part) { // how many parts this line takes
             size_t size = strcspn(part, "\n");
             int wider = (part > label ? width + gap : 0) + text_width(l, part, size);
@@ -81,7 +92,7 @@ static int set_label(const layout *l, const char *label, int room, glint_canvas 
         for (int at = x + (room - width) / 2; label < part;) {
             size_t size = strcspn(label, "\n");
             if (canvas)
-                glint_canvas_text(canvas, at, y + lines * line_height(l), l->scale, label, size, INK);
+                write_text(l, canvas, &l->typeface, at, y + lines * line_height(l), label, size, INK);
             at += text_width(l, label, size) + gap;
             label += size + (label[size] == '\n');
         }
@@ -100,7 +111,7 @@ static void measure_sheet(layout *l)
     l->sheet_width = (int64_t)l->left + (int64_t)desc->columns * (l->column + l->gap);
     l->sheet_height = (int64_t)l->top + (int64_t)l->rows * l->band;
     if (desc->title)
-        least[0] = l->left + 2 * (int64_t)text_width(l, desc->title, SIZE_MAX) + l->gap;
+        least[0] = l->left + (int64_t)glint_typeface_width(&l->title, desc->title, SIZE_MAX) + l->gap;
     if (desc->difference) {
         snprintf(l->note, sizeof l->note,
                  "below each: |picture - cell %zu| x %g\nmax: the largest, in codes of 255\n%%: pixels that differ",
@@ -114,13 +125,17 @@ static void measure_sheet(layout *l)
     l->sheet_height += (int64_t)l->note_lines * line_height(l) + (l->note_lines ? l->gap / 2 : 0);
 }
 
-static layout measure(const glint_sheet_desc *desc, int width, int height)
+static layout measure(const glint_sheet_desc *desc, int width, int height, glint_letters *letters)
 {
-    layout l = { .desc = desc, .width = width, .height = height };
+    layout l = { .desc = desc, .width = width, .height = height, .letters = letters };
     int lines = 0;
     bool differs = desc->difference > 0;
-    l.scale = width >= LARGE_PICTURE ? 2 : 1;
-    l.gap = 12 * l.scale;
+    const double size = desc->size > 0 ? desc->size * (desc->dpi > 0 ? desc->dpi / 72 : 1)
+                                       : SIZE * (width >= LARGE_PICTURE ? 2 : 1);
+    l.unit = (size < GLINT_SIDE_MAX / 2 ? size : GLINT_SIDE_MAX / 2) / SIZE;
+    l.typeface = glint_typeface_open(letters, SIZE * l.unit);
+    l.title = glint_typeface_open(letters, 2 * SIZE * l.unit);
+    l.gap = pixels(&l, 12);
     l.rows = (int)((desc->cell_count + (size_t)desc->columns - 1) / (size_t)desc->columns);
     l.column = width;
     for (size_t i = 0; i < desc->cell_count; i++) {
@@ -132,9 +147,9 @@ static layout measure(const glint_sheet_desc *desc, int width, int height)
         lines = count > lines ? count : lines;
     }
     lines = differs && lines < 1 ? 1 : lines;
-    l.label = lines * line_height(&l) + (lines ? 4 * l.scale : 0);
+    l.label = lines * line_height(&l) + (lines ? pixels(&l, 4) : 0);
     l.left = l.gap + (desc->down ? line_height(&l) + l.gap / 2 : 0);
-    l.top = l.gap + (desc->title ? 2 * line_height(&l) + l.gap : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
+    l.top = l.gap + (desc->title ? l.title.line + l.gap : 0) + (desc->across ? line_height(&l) + l.gap / 2 : 0);
     l.band = (differs ? 2 : 1) * (height + l.label + l.gap);
     measure_sheet(&l);
     return l;
@@ -144,7 +159,7 @@ static layout measure(const glint_sheet_desc *desc, int width, int height)
 
 static uint8_t *row_at(glint_canvas *canvas, int x, int y)
 {
-    return canvas->rgb + ((size_t)y * (size_t)canvas->width + (size_t)x) * 3;
+    return canvas->pixels + ((size_t)y * (size_t)canvas->width + (size_t)x) * (size_t)canvas->channels;
 }
 
 /// Where the picture of cell `i`, from 0, has its top left.
@@ -156,7 +171,7 @@ static void place_cell(const layout *l, size_t i, int *x, int *y)
 }
 
 /// |a - b| times the gain, of two pictures on the canvas, at the place below `a`; and what is to be said of it.
-static void draw_difference(const layout *l, glint_canvas *canvas, size_t a, size_t b)
+static void draw_difference(layout *l, glint_canvas *canvas, size_t a, size_t b)
 {
     int ax, ay, bx, by, most = 0;
     int64_t count = 0;
@@ -168,13 +183,16 @@ static void draw_difference(const layout *l, glint_canvas *canvas, size_t a, siz
         const uint8_t *from = row_at(canvas, ax, ay + row), *to = row_at(canvas, bx, by + row);
         uint8_t *out = row_at(canvas, ax, y + row);
         for (int x = 0; x < l->width; x++) {
+            const int at = x * canvas->channels;
             int largest = 0;
             for (int c = 0; c < 3; c++) {
-                int difference = abs(from[3 * x + c] - to[3 * x + c]);
+                int difference = abs(from[at + c] - to[at + c]);
                 double shown = difference * l->desc->gain + 0.5;
-                out[3 * x + c] = (uint8_t)(shown < 255 ? shown : 255);
+                out[at + c] = (uint8_t)(shown < 255 ? shown : 255);
                 largest = difference > largest ? difference : largest;
             }
+            if (canvas->channels == 4)
+                out[at + 3] = 255;
             most = largest > most ? largest : most;
             count += largest > 0;
         }
@@ -183,39 +201,40 @@ static void draw_difference(const layout *l, glint_canvas *canvas, size_t a, siz
         snprintf(label, sizeof label, "cell %zu", b + 1);
     else
         snprintf(label, sizeof label, "max %d\n%.3g %%", most, 100.0 * (double)count / ((double)l->width * l->height));
-    set_label(l, label, l->column, canvas, ax - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+    set_label(l, label, l->column, canvas, ax - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
 }
 
-static void draw_differences(const layout *l, glint_canvas *canvas)
+static void draw_differences(layout *l, glint_canvas *canvas)
 {
     size_t chosen = l->desc->difference - 1;
     int x, y;
     for (size_t i = 0; i < l->desc->cell_count; i++)
         draw_difference(l, canvas, i, chosen);
     place_cell(l, chosen, &x, &y);
-    glint_canvas_frame(canvas, x, y, l->width, l->height, 3 * l->scale, MARK);
+    glint_canvas_frame(canvas, x, y, l->width, l->height, pixels(l, 3), MARK);
     y = (int)l->sheet_height - l->note_lines * line_height(l) - l->gap / 2;
     set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
 }
 
 /// "name ->" above the columns or beside the rows, in their middle.
-static void draw_titles(const layout *l, glint_canvas *canvas)
+static void draw_titles(layout *l, glint_canvas *canvas)
 {
     const glint_sheet_desc *desc = l->desc;
     char text[256];
     if (desc->title)
-        glint_canvas_text(canvas, l->left, l->gap, 2 * l->scale, desc->title, SIZE_MAX, INK);
+        write_text(l, canvas, &l->title, l->left, l->gap, desc->title, SIZE_MAX, INK);
     if (desc->across) {
         int grid = desc->columns * (l->column + l->gap) - l->gap;
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->across);
-        glint_canvas_text(canvas, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
-                          l->top - line_height(l) - l->gap / 2, l->scale, text, SIZE_MAX, FAINT_INK);
+        write_text(l, canvas, &l->typeface, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
+                   l->top - line_height(l) - l->gap / 2, text, SIZE_MAX, FAINT_INK);
     }
     if (desc->down) {
         int grid = l->rows * l->band - l->gap;
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->down);
         int y = l->top + (grid - text_width(l, text, SIZE_MAX)) / 2;
-        glint_canvas_text_down(canvas, l->gap + GLINT_FONT_HEIGHT * l->scale, y > 0 ? y : 0, l->scale, text, FAINT_INK);
+        l->lost = !glint_canvas_text_down(canvas, &l->typeface, l->gap + l->typeface.height, y > 0 ? y : 0, text,
+                                          FAINT_INK) || l->lost;
     }
 }
 
@@ -228,7 +247,16 @@ static glint_status check_size(const layout *l, const glint_picture *picture, co
                       l->width, l->height, l->desc->cells[0].path, width, height);
 }
 
-static glint_status draw_cell(const layout *l, glint_canvas *canvas, size_t i, glint_error *error)
+static void put_row(const glint_picture *picture, int row, const glint_canvas *canvas, uint8_t *out)
+{
+    glint_picture_row(picture, row, 255, out);
+    for (int x = glint_picture_width(picture) - 1; x >= 0 && canvas->channels == 4; x--) { // RGB to RGBA, from the end
+        memmove(out + 4 * x, out + 3 * x, 3);
+        out[4 * x + 3] = 255;
+    }
+}
+
+static glint_status draw_cell(layout *l, glint_canvas *canvas, size_t i, glint_error *error)
 {
     const glint_sheet_cell *cell = &l->desc->cells[i];
     glint_picture *picture = NULL;
@@ -238,9 +266,9 @@ static glint_status draw_cell(const layout *l, glint_canvas *canvas, size_t i, g
     if (!status)
         status = check_size(l, picture, cell->path, error);
     for (int row = 0; row < l->height && !status; row++)
-        glint_picture_row(picture, row, 255, row_at(canvas, x, y + row));
+        put_row(picture, row, canvas, row_at(canvas, x, y + row));
     glint_picture_destroy(picture);
-    set_label(l, cell->label, l->column, canvas, x - (l->column - l->width) / 2, y + l->height + 4 * l->scale);
+    set_label(l, cell->label, l->column, canvas, x - (l->column - l->width) / 2, y + l->height + pixels(l, 4));
     return status;
 }
 
@@ -248,18 +276,19 @@ static const void *row_of_canvas(const void *user, int y, void *scratch)
 {
     const glint_canvas *canvas = user;
     (void)scratch;
-    return canvas->rgb + (size_t)y * (size_t)canvas->width * 3;
+    return canvas->pixels + (size_t)y * (size_t)canvas->width * (size_t)canvas->channels;
 }
 
-static glint_status write_canvas(const glint_canvas *canvas, const char *path, glint_error *error)
+static glint_status write_canvas(const glint_canvas *canvas, double dpi, const char *path, glint_error *error)
 {
     glint_text text = { "Software", "glint " GLINT_VERSION };
     glint_png_source source = {
         .width = canvas->width, .height = canvas->height, .row = row_of_canvas, .user = canvas
     };
-    glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1 };
+    glint_png_desc png = { .encode = GLINT_ENCODE_SMALL, .text = &text, .text_count = 1, .dpi = dpi };
     glint_bytes bytes = { 0 };
     source.tone = glint_tone_desc_default();
+    source.alpha = canvas->channels == 4;
     glint_status status = glint_png_encode(NULL, &source, &png, &bytes, NULL, error);
     if (!status)
         status = glint_file_write(path, bytes.data, bytes.size, error);
@@ -267,10 +296,10 @@ static glint_status write_canvas(const glint_canvas *canvas, const char *path, g
     return status;
 }
 
-static glint_status draw_sheet(const layout *l, const char *path, glint_error *error)
+static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
 {
     glint_canvas canvas;
-    if (!glint_canvas_init(&canvas, (int)l->sheet_width, (int)l->sheet_height))
+    if (!glint_canvas_init(&canvas, (int)l->sheet_width, (int)l->sheet_height, l->desc->transparent))
         return glint_fail_nomem(error);
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < l->desc->cell_count && !status; i++)
@@ -278,9 +307,11 @@ static glint_status draw_sheet(const layout *l, const char *path, glint_error *e
     if (!status && l->desc->difference)
         draw_differences(l, &canvas);
     draw_titles(l, &canvas);
+    if (!status && l->lost)
+        status = glint_fail_nomem(error);
     if (!status)
-        status = write_canvas(&canvas, path, error);
-    free(canvas.rgb);
+        status = write_canvas(&canvas, l->desc->dpi, path, error);
+    free(canvas.pixels);
     return status;
 }
 
@@ -298,28 +329,44 @@ static glint_status check_desc(const glint_sheet_desc *desc, const char *path, g
         status = glint_check_whole("difference", (double)desc->difference, 0, (double)desc->cell_count, error);
     if (!status && desc->difference)
         status = glint_check_range("gain", desc->gain, 1e-3, 1e6, "number 0.001 .. 1000000", error);
+    if (!status)
+        status = glint_check_range("dpi", desc->dpi, 0, 1e6, "number 0 .. 1000000", error);
+    if (!status)
+        status = glint_check_range("size", desc->size, 0, 10000, "points 0 .. 10000", error);
     return status;
+}
+
+static glint_status check_sides(const layout *l, glint_error *error)
+{
+    const long long width = l->sheet_width, height = l->sheet_height;
+    if (width > GLINT_SIDE_MAX || height > GLINT_SIDE_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "sheet: sides of at most %d pixels expected, got %lldx%lld; other columns or smaller pictures "
+                          "make it fit",
+                          GLINT_SIDE_MAX, width, height);
+    if (width * height > AREA_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "sheet: at most %lld pixels expected, got %lldx%lld; smaller or fewer pictures make it fit",
+                          (long long)AREA_MAX, width, height);
+    return GLINT_OK;
 }
 
 glint_status glint_sheet_write(const glint_sheet_desc *desc, const char *path, glint_error *error)
 {
     glint_picture *first = NULL;
+    glint_letters *letters = NULL;
     glint_status status = check_desc(desc, path, error);
     if (!status)
         status = glint_picture_read(desc->cells[0].path, false, &first, error);
-    if (status)
-        return status;
-    layout l = measure(desc, glint_picture_width(first), glint_picture_height(first));
+    if (!status)
+        status = glint_letters_open(&letters, error);
+    if (!status) {
+        layout l = measure(desc, glint_picture_width(first), glint_picture_height(first), letters);
+        status = check_sides(&l, error);
+        if (!status)
+            status = draw_sheet(&l, path, error);
+    }
+    glint_letters_close(letters);
     glint_picture_destroy(first);
-    if (l.sheet_width > GLINT_SIDE_MAX || l.sheet_height > GLINT_SIDE_MAX)
-        return glint_fail(
-            error, GLINT_ERR_INVALID,
-            "sheet: sides of at most %d pixels expected, got %lldx%lld; other columns or smaller pictures "
-            "make it fit",
-            GLINT_SIDE_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
-    if (l.sheet_width * l.sheet_height > AREA_MAX)
-        return glint_fail(error, GLINT_ERR_INVALID,
-                          "sheet: at most %lld pixels expected, got %lldx%lld; smaller or fewer pictures make it fit",
-                          (long long)AREA_MAX, (long long)l.sheet_width, (long long)l.sheet_height);
-    return draw_sheet(&l, path, error);
+    return status;
 }

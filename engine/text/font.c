@@ -29,13 +29,15 @@ static const uint8_t *glyph_of(uint32_t code)
     return glyph_of(UNKNOWN);
 }
 
-const uint8_t *glint_font_next(const char **text)
+uint32_t glint_font_code(const char **text)
 {
     const uint8_t *at = (const uint8_t *)*text;
-    uint32_t code = next_code(&at);
+    const uint32_t code = next_code(&at);
     *text = (const char *)at;
-    return glyph_of(code);
+    return code;
 }
+
+const uint8_t *glint_font_next(const char **text) { return glyph_of(glint_font_code(text)); }
 
 size_t glint_font_count(const char *text, size_t size)
 {

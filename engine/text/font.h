@@ -12,6 +12,9 @@
 /// Latin-1, Greek and a few signs are there; another character, or a byte that is none, looks like U+FFFD.
 const uint8_t *glint_font_next(const char **text);
 
+/// The code of the UTF-8 character at *text, which moves past it; U+FFFD for a byte that is none.
+uint32_t glint_font_code(const char **text);
+
 /// How many characters the first `size` bytes of `text` (to its end at most) are.
 size_t glint_font_count(const char *text, size_t size);
 

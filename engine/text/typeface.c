@@ -5,10 +5,17 @@
 #include <stdbool.h>
 #include <string.h>
 
-glint_typeface glint_typeface_open(double pixels)
+glint_typeface glint_typeface_open(glint_letters *letters, double em)
 {
-    const int scale = (int)(pixels / GLINT_FONT_HEIGHT + 0.5);
-    glint_typeface typeface = { .scale = scale < 1 ? 1 : scale };
+    glint_typeface typeface = { .letters = letters, .em = em };
+    if (letters) {
+        int below;
+        glint_letters_measure(letters, em, &typeface.above, &below, &typeface.line);
+        typeface.height = typeface.above + below;
+        return typeface;
+    }
+    const int scale = (int)(em / GLINT_FONT_HEIGHT + 0.5);
+    typeface.scale = scale < 1 ? 1 : scale;
     typeface.height = GLINT_FONT_HEIGHT * typeface.scale;
     typeface.line = (GLINT_FONT_HEIGHT + 2) * typeface.scale;
     return typeface;
@@ -16,7 +23,10 @@ glint_typeface glint_typeface_open(double pixels)
 
 int glint_typeface_width(const glint_typeface *typeface, const char *text, size_t size)
 {
-    return (int)glint_font_count(text, size) * GLINT_FONT_WIDTH * typeface->scale;
+    if (typeface->letters)
+        return glint_letters_width(typeface->letters, typeface->em, text, size);
+    const size_t count = glint_font_count(text, size);
+    return (count < GLINT_SIDE_MAX ? (int)count : GLINT_SIDE_MAX) * GLINT_FONT_WIDTH * typeface->scale;
 }
 
 static void cover(glint_mask *mask, int x, int y, int size)
@@ -28,6 +38,10 @@ static void cover(glint_mask *mask, int x, int y, int size)
 
 void glint_typeface_draw(const glint_typeface *typeface, const char *text, size_t size, int x, int y, glint_mask *mask)
 {
+    if (typeface->letters) {
+        glint_letters_draw(typeface->letters, typeface->em, text, size, x, y + typeface->above, mask);
+        return;
+    }
     const char *end = text + strnlen(text, size);
     const int scale = typeface->scale;
     for (; text < end; x += GLINT_FONT_WIDTH * scale) {

@@ -106,6 +106,17 @@ exits 2 "an unknown name in it" sheet grid/000*.png -o wrong.png --label '{shine
 says "and which are known" '\{shininess\} \{specular\}'
 absent "nothing is written then" wrong.png
 exits 0 "a difference row" sheet grid/000*.png -o difference.png --difference 2 --gain 4
+exits 0 "a sheet in points" sheet grid/000*.png -o points.png --dpi 144 --label-size 13
+exits 0 "a sheet in pixels" sheet grid/000*.png -o pixels.png --label-size 26
+check "as large at two pixels a point" "$GLINT" compare points.png pixels.png
+check "its dpi" eval '[ "$(grep -c pHYs points.png)" -gt 0 ] && [ "$(grep -c pHYs pixels.png)" -eq 0 ]'
+exits 3 "larger text, larger sheet" compare pixels.png again.png
+exits 0 "no paper" sheet grid/000*.png -o clear.png --transparent
+check "RGBA" eval '[ "$(od -An -tu1 -j25 -N1 clear.png)" -eq 6 ] && [ "$(od -An -tu1 -j25 -N1 again.png)" -eq 2 ]'
+exits 2 "text of no size" sheet grid/000*.png -o wrong.png --label-size 0
+says "is refused" 'label-size: points 1 .. 10000 expected'
+exits 2 "a page without paper" sheet grid/000*.png -o wrong.html --transparent
+says "has none to leave out" 'transparent: it means nothing to a page'
 exits 2 "of a cell that is not there" sheet grid/000*.png -o wrong.png --difference 7
 says "is refused by number" 'difference: .*1 \.\. 6'
 exits 2 "no output" sheet grid/0001.png
@@ -134,7 +145,8 @@ says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
     '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: it means nothing without' \
-    '{ output = "x.html", columns = 2 }:columns: a page has sliders' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '5:sheet: table'; do
+    '{ output = "x.html", columns = 2 }:columns: a page has sliders' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
+    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it means' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done

@@ -2,6 +2,7 @@
 # gallery.sh [check|update]: the pictures of scripts/README.md, a page with one for every script. They are what the scripts
 # render now, pixel for pixel, each script has one, and the page names each. `update` (make gallery) writes those that differ.
 set -u
+export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}
 out=$build/tests/gallery page=scripts/README.md

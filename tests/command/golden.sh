@@ -3,6 +3,7 @@
 # 0: the engine promises the same pixels on every machine. A failure leaves got and golden side by side in the build
 # folder. `update` writes them anew and prints what moved; the commit says why.
 set -u
+export GLINT_FONT=bitmap # text of the same pixels everywhere
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}
 out=$build/tests/golden

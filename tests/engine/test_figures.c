@@ -177,27 +177,29 @@ static void test_canvas(void **state)
 {
     (void)state;
     glint_canvas canvas;
-    assert_true(glint_canvas_init(&canvas, 30, 20));
+    assert_true(glint_canvas_init(&canvas, 30, 20, false));
     glint_canvas_fill(&canvas, -5, -5, 6, 6, 0x010203); // cut off at the edges
     glint_canvas_fill(&canvas, 29, 19, 50, 50, 0x040506);
     glint_canvas_fill(&canvas, 40, 0, 5, 5, 0);
-    assert_memory_equal(canvas.rgb, ((uint8_t[]) { 1, 2, 3, 255 }), 4);
-    assert_memory_equal(canvas.rgb + 3 * (19 * 30 + 29), ((uint8_t[]) { 4, 5, 6 }), 3);
+    assert_memory_equal(canvas.pixels, ((uint8_t[]) { 1, 2, 3, 255 }), 4);
+    assert_memory_equal(canvas.pixels + 3 * (19 * 30 + 29), ((uint8_t[]) { 4, 5, 6 }), 3);
     // Text turned a quarter has its pixels where text along the row has them.
     glint_canvas along, down;
-    assert_true(glint_canvas_init(&along, 20, 13) && glint_canvas_init(&down, 13, 20));
-    glint_canvas_text(&along, 0, 0, 1, "Rg", SIZE_MAX, 0);
-    glint_canvas_text_down(&down, 13, 0, 1, "Rg", 0);
+    assert_true(glint_canvas_init(&along, 20, 13, false) && glint_canvas_init(&down, 13, 20, true));
+    const glint_typeface typeface = glint_typeface_open(NULL, 13);
+    assert_true(glint_canvas_text(&along, &typeface, 0, 0, "Rg", SIZE_MAX, 0));
+    assert_true(glint_canvas_text_down(&down, &typeface, 13, 0, "Rg", 0));
     int ink = 0;
     for (int y = 0; y < 13; y++)
         for (int x = 0; x < 20; x++) {
-            assert_int_equal(along.rgb[3 * (y * 20 + x)], down.rgb[3 * (x * 13 + 12 - y)]);
-            ink += along.rgb[3 * (y * 20 + x)] == 0;
+            const bool inked = along.pixels[3 * (y * 20 + x)] == 0;
+            assert_int_equal(down.pixels[4 * (x * 13 + 12 - y) + 3], inked ? 255 : 0); // on paper that is not there
+            ink += inked;
         }
     assert_in_range(ink, 20, 80);
-    free(canvas.rgb);
-    free(along.rgb);
-    free(down.rgb);
+    free(canvas.pixels);
+    free(along.pixels);
+    free(down.pixels);
 }
 
 // ---- Sheets -------------------------------------------------------------------------------------------------------
@@ -527,6 +529,7 @@ static void test_apng_refuses(void **state)
 
 int main(void)
 {
+    setenv("GLINT_FONT", "bitmap", 1); // the same pixels everywhere
     const struct CMUnitTest tests[] = {
         WITH_FOLDER(test_draft),          WITH_FOLDER(test_picture_alpha), WITH_FOLDER(test_picture_linear),
         WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),

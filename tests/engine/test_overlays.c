@@ -358,6 +358,7 @@ static void test_key(void **state)
 
 int main(void)
 {
+    setenv("GLINT_FONT", "bitmap", 1); // the same pixels everywhere
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
         cmocka_unit_test(test_axes),    cmocka_unit_test(test_region),     cmocka_unit_test(test_reuse),

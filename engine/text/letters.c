@@ -1,0 +1,256 @@
+#include "engine/text/letters.h"
+
+#include "engine/base/status.h"
+#include "engine/text/font.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef GLINT_HAVE_FREETYPE
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+#include FT_TRUETYPE_TABLES_H
+
+#include <pthread.h>
+#include <stdio.h>
+
+/// Outlines as the font has them: no hints, which depend on settings of the library.
+#define LOAD (FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP)
+
+struct glint_letters {
+    FT_Library library;
+    FT_Face face;
+    double em; ///< that the face is set to; 0: none yet
+};
+
+/// Where systems have the font.
+static const char *const places[] = {
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", // Debian
+    "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf", // Fedora
+    "/usr/share/fonts/TTF/DejaVuSans.ttf", // Arch
+    "/usr/share/fonts/dejavu/DejaVuSans.ttf", // Alpine
+    "/usr/local/share/fonts/dejavu/DejaVuSans.ttf", // FreeBSD
+    "/Library/Fonts/DejaVuSans.ttf",
+};
+
+/// False: there is no such font.
+static bool open_path(glint_letters *letters, const char *path)
+{
+    if (FT_New_Face(letters->library, path, 0, &letters->face))
+        return false;
+    if (FT_IS_SCALABLE(letters->face))
+        return true;
+    FT_Done_Face(letters->face);
+    letters->face = NULL;
+    return false;
+}
+
+void glint_letters_close(glint_letters *letters)
+{
+    if (!letters)
+        return;
+    if (letters->face)
+        FT_Done_Face(letters->face);
+    FT_Done_FreeType(letters->library);
+    free(letters);
+}
+
+glint_status glint_letters_open(glint_letters **out, glint_error *error)
+{
+    const char *wanted = getenv("GLINT_FONT");
+    *out = NULL;
+    if (wanted && strcmp(wanted, "bitmap") == 0)
+        return GLINT_OK;
+    glint_letters *letters = calloc(1, sizeof *letters);
+    if (!letters)
+        return glint_fail_nomem(error);
+    if (FT_Init_FreeType(&letters->library)) {
+        free(letters);
+        return glint_fail_nomem(error);
+    }
+    bool found = wanted && *wanted && open_path(letters, wanted);
+    for (size_t i = 0; i < sizeof places / sizeof *places && !found && !(wanted && *wanted); i++)
+        found = open_path(letters, places[i]);
+    if (found) {
+        *out = letters;
+        return GLINT_OK;
+    }
+    glint_letters_close(letters);
+    if (wanted && *wanted)
+        return glint_fail(error, GLINT_ERR_INVALID, "GLINT_FONT: the file of a scalable font, or bitmap, expected, got '%.300s'",
+                          wanted);
+    return GLINT_OK;
+}
+
+/// A font's file has a sum of all of it.
+glint_key glint_letters_key(glint_key key)
+{
+    glint_letters *letters;
+    glint_error error;
+    if (glint_letters_open(&letters, &error) || !letters)
+        return glint_key_add_string(key, "bitmap");
+    FT_Int version[3];
+    FT_Library_Version(letters->library, &version[0], &version[1], &version[2]);
+    const TT_Header *head = FT_Get_Sfnt_Table(letters->face, FT_SFNT_HEAD);
+    const double numbers[] = { version[0], version[1], version[2], head ? (double)head->CheckSum_Adjust : 0,
+                               (double)letters->face->num_glyphs };
+    key = glint_key_add(key, numbers, sizeof numbers);
+    if (letters->face->family_name)
+        key = glint_key_add_string(key, letters->face->family_name);
+    if (letters->face->style_name)
+        key = glint_key_add_string(key, letters->face->style_name);
+    glint_letters_close(letters);
+    return key;
+}
+
+static void set_size(glint_letters *letters, double em)
+{
+    if (letters->em != em && !FT_Set_Char_Size(letters->face, 0, (FT_F26Dot6)(em * 64 + 0.5), 72, 72))
+        letters->em = em;
+}
+
+void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line)
+{
+    const double unit = em / letters->face->units_per_EM;
+    *above = (int)(letters->face->ascender * unit + 0.999);
+    *below = (int)(-letters->face->descender * unit + 0.999);
+    *line = (int)(letters->face->height * unit + 0.999);
+}
+
+/// Where a text is so far.
+typedef struct pen {
+    double x; ///< pixels
+    FT_UInt before; ///< the letter before; 0: none
+} pen;
+
+/// Loads the next letter, and moves the pen to where it begins. False: there is none.
+static bool next_letter(glint_letters *letters, const char **text, pen *at)
+{
+    FT_Face face = letters->face;
+    const FT_UInt glyph = FT_Get_Char_Index(face, glint_font_code(text));
+    FT_Vector kerning;
+    if (at->before && FT_HAS_KERNING(face) && !FT_Get_Kerning(face, at->before, glyph, FT_KERNING_UNFITTED, &kerning))
+        at->x += (double)kerning.x / 64;
+    at->before = glyph;
+    return !FT_Load_Glyph(face, glyph, LOAD);
+}
+
+static double advance_of(const glint_letters *letters) { return (double)letters->face->glyph->linearHoriAdvance / 65536; }
+
+int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size)
+{
+    const char *end = text + strnlen(text, size);
+    pen at = { 0 };
+    set_size(letters, em);
+    while (text < end && at.x < 0x1p30)
+        if (next_letter(letters, &text, &at))
+            at.x += advance_of(letters);
+    return (int)(at.x + 0.999);
+}
+
+/// Adds a rectangle of coverage: what two letters cover of a pixel is taken as not related.
+static void add_coverage(const FT_Bitmap *from, int x, int y, glint_mask *mask)
+{
+    for (unsigned row = 0; row < from->rows; row++)
+        for (unsigned column = 0; column < from->width; column++) {
+            uint8_t *to = mask->coverage + (size_t)(y + (int)row) * (size_t)mask->width + (size_t)(x + (int)column);
+            const unsigned both = from->buffer[(size_t)row * from->width + column];
+            *to = (uint8_t)(both + *to - (both * *to + 127) / 255);
+        }
+}
+
+/// The loaded letter, which begins at x on the line above row y: the part of it that the mask has.
+static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mask)
+{
+    FT_Outline *outline = &letters->face->glyph->outline;
+    FT_BBox box;
+    if (letters->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE || outline->n_points == 0)
+        return;
+    FT_Outline_Translate(outline, (FT_Pos)(x * 64 + (x < 0 ? -0.5 : 0.5)), -(FT_Pos)y * 64); // the mask's corner is 0, 0
+    FT_Outline_Get_CBox(outline, &box);
+    const FT_Pos left = box.xMin >> 6 > 0 ? box.xMin >> 6 : 0;
+    const FT_Pos right = (box.xMax + 63) >> 6 < mask->width ? (box.xMax + 63) >> 6 : mask->width;
+    const FT_Pos top = -((box.yMax + 63) >> 6) > 0 ? -((box.yMax + 63) >> 6) : 0;
+    const FT_Pos bottom = -(box.yMin >> 6) < mask->height ? -(box.yMin >> 6) : mask->height;
+    if (left >= right || top >= bottom)
+        return;
+    FT_Bitmap part = { .rows = (unsigned)(bottom - top), .width = (unsigned)(right - left), .pixel_mode = FT_PIXEL_MODE_GRAY };
+    part.num_grays = 256;
+    part.pitch = (int)part.width;
+    part.buffer = calloc(part.rows, part.width);
+    FT_Outline_Translate(outline, -left * 64, bottom * 64);
+    if (part.buffer && !FT_Outline_Get_Bitmap(letters->library, outline, &part))
+        add_coverage(&part, (int)left, (int)top, mask);
+    free(part.buffer);
+}
+
+void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask)
+{
+    const char *end = text + strnlen(text, size);
+    pen at = { .x = x };
+    set_size(letters, em);
+    while (text < end && at.x < mask->width)
+        if (next_letter(letters, &text, &at)) {
+            const double advance = advance_of(letters);
+            draw_letter(letters, at.x, y, mask);
+            at.x += advance;
+        }
+}
+
+static char library_name[48];
+
+static void name_library(void)
+{
+    FT_Library library;
+    FT_Int version[3];
+    if (FT_Init_FreeType(&library))
+        return;
+    FT_Library_Version(library, &version[0], &version[1], &version[2]);
+    FT_Done_FreeType(library);
+    snprintf(library_name, sizeof library_name, "FreeType %d.%d.%d", version[0], version[1], version[2]);
+}
+
+const char *glint_letters_library(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, name_library);
+    return *library_name ? library_name : NULL;
+}
+
+#else
+
+glint_status glint_letters_open(glint_letters **out, glint_error *error)
+{
+    const char *wanted = getenv("GLINT_FONT");
+    *out = NULL;
+    if (!wanted || !*wanted || strcmp(wanted, "bitmap") == 0)
+        return GLINT_OK;
+    return glint_fail(error, GLINT_ERR_UNSUPPORTED, "GLINT_FONT: bitmap expected, as this build has no FreeType, got '%.300s'", wanted);
+}
+
+void glint_letters_close(glint_letters *letters) { (void)letters; }
+
+glint_key glint_letters_key(glint_key key) { return glint_key_add_string(key, "bitmap"); }
+
+void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line)
+{
+    (void)letters, (void)em;
+    *above = *below = *line = 0;
+}
+
+int glint_letters_width(glint_letters *letters, double em, const char *text, size_t size)
+{
+    (void)letters, (void)em, (void)text, (void)size;
+    return 0;
+}
+
+void glint_letters_draw(glint_letters *letters, double em, const char *text, size_t size, int x, int y, glint_mask *mask)
+{
+    (void)letters, (void)em, (void)text, (void)size, (void)x, (void)y, (void)mask;
+}
+
+const char *glint_letters_library(void) { return NULL; }
+
+#endif

@@ -1,0 +1,12 @@
+/// How much of each pixel is covered. Internal.
+#ifndef GLINT_TEXT_MASK_H
+#define GLINT_TEXT_MASK_H
+
+#include <stdint.h>
+
+typedef struct glint_mask {
+    int width, height;
+    uint8_t *coverage; ///< 0 .. 255, top row first
+} glint_mask;
+
+#endif

@@ -1,0 +1,130 @@
+/// Text by FreeType: what is there of a letter, that it is the same each time and wherever it is cut off, and which font it is. Skipped
+/// where there is no FreeType or no font.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/text/typeface.h"
+
+static glint_letters *open_font(void)
+{
+    glint_letters *letters = NULL;
+    unsetenv("GLINT_FONT");
+    assert_int_equal(glint_letters_open(&letters, NULL), GLINT_OK);
+    if (!letters)
+        skip();
+    return letters;
+}
+
+static glint_mask draw(const glint_typeface *typeface, const char *text, int x, int y, int width, int height)
+{
+    glint_mask mask = { width, height, calloc((size_t)width, (size_t)height) };
+    assert_non_null(mask.coverage);
+    glint_typeface_draw(typeface, text, SIZE_MAX, x, y, &mask);
+    return mask;
+}
+
+static long ink_of(const glint_mask *mask)
+{
+    long sum = 0;
+    for (int i = 0; i < mask->width * mask->height; i++)
+        sum += mask->coverage[i];
+    return sum;
+}
+
+static void test_widths(void **state)
+{
+    (void)state;
+    glint_letters *letters = open_font();
+    const glint_typeface small = glint_typeface_open(letters, 20), large = glint_typeface_open(letters, 200);
+    assert_true(glint_typeface_width(&small, "W", SIZE_MAX) > 2 * glint_typeface_width(&small, "i", SIZE_MAX));
+    assert_true(abs(10 * glint_typeface_width(&small, "Hello", SIZE_MAX) - glint_typeface_width(&large, "Hello", SIZE_MAX)) <= 10);
+    assert_int_equal(glint_typeface_width(&small, "", SIZE_MAX), 0);
+    assert_int_equal(glint_typeface_width(&small, "Hello", 1), glint_typeface_width(&small, "H", SIZE_MAX));
+    assert_true(small.above > 14 && small.above < small.height && small.line >= small.height - 1);
+    glint_letters_close(letters);
+}
+
+/// A letter stands on its line, below what the typeface says is its highest point; Greek and signs are there, and are not alike.
+static void test_shapes(void **state)
+{
+    (void)state;
+    glint_letters *letters = open_font();
+    const glint_typeface face = glint_typeface_open(letters, 40);
+    static const char *const texts[] = { "H", "\xce\xb1", "\xc2\xb0", "\xe2\x88\x92", "\xe2\x82\x80" }; // alpha, degree, minus, subscript 0
+    glint_mask masks[5];
+    for (int i = 0; i < 5; i++) {
+        masks[i] = draw(&face, texts[i], 0, 0, 60, face.height);
+        assert_true(ink_of(&masks[i]) > 20 * 255);
+        for (int k = 0; k < i; k++)
+            assert_memory_not_equal(masks[i].coverage, masks[k].coverage, (size_t)60 * (size_t)face.height);
+    }
+    for (int x = 0; x < 60; x++) { // nothing of an H lies below its line
+        for (int y = face.above; y < face.height; y++)
+            assert_int_equal(masks[0].coverage[y * 60 + x], 0);
+    }
+    long foot = 0;
+    for (int x = 0; x < 60; x++)
+        foot += masks[0].coverage[(face.above - 1) * 60 + x];
+    assert_true(foot > 4 * 255);
+    for (int i = 0; i < 5; i++)
+        free(masks[i].coverage);
+    glint_letters_close(letters);
+}
+
+/// A window shows what all of it has there.
+static void test_cut(void **state)
+{
+    (void)state;
+    glint_letters *letters = open_font();
+    const glint_typeface face = glint_typeface_open(letters, 31.5);
+    const glint_mask all = draw(&face, "fjord \xc3\x85gW", 5, 3, 200, 50);
+    const glint_mask again = draw(&face, "fjord \xc3\x85gW", 5, 3, 200, 50);
+    const glint_mask part = draw(&face, "fjord \xc3\x85gW", 5 - 37, 3 - 14, 90, 21);
+    assert_memory_equal(all.coverage, again.coverage, 200 * 50);
+    assert_true(ink_of(&all) > 0);
+    for (int y = 0; y < 21; y++)
+        assert_memory_equal(part.coverage + y * 90, all.coverage + (y + 14) * 200 + 37, 90);
+    free(all.coverage);
+    free(again.coverage);
+    free(part.coverage);
+    glint_letters_close(letters);
+}
+
+static void test_choice(void **state)
+{
+    (void)state;
+    glint_error error;
+    glint_letters *letters = open_font();
+    glint_letters_close(letters);
+    const glint_key none = { 0 }, font = glint_letters_key(none);
+    setenv("GLINT_FONT", "bitmap", 1);
+    assert_int_equal(glint_letters_open(&letters, &error), GLINT_OK);
+    assert_null(letters);
+    assert_false(glint_key_equal(font, glint_letters_key(none)));
+    setenv("GLINT_FONT", "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf", 1);
+    if (!glint_letters_open(&letters, &error)) {
+        assert_non_null(letters);
+        glint_letters_close(letters);
+        assert_false(glint_key_equal(font, glint_letters_key(none)));
+    }
+    setenv("GLINT_FONT", "/dev/null", 1);
+    assert_int_equal(glint_letters_open(&letters, &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "GLINT_FONT: the file of a scalable font, or bitmap, expected, got '/dev/null'"));
+    unsetenv("GLINT_FONT");
+    assert_true(glint_key_equal(font, glint_letters_key(none)));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_widths), cmocka_unit_test(test_shapes), cmocka_unit_test(test_cut), cmocka_unit_test(test_choice)
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
