@@ -464,7 +464,7 @@ LUA_LIBRARY := $(patsubst scripts/lib/%,%,$(sort $(wildcard scripts/lib/*.lua sc
 docdir   := $(datadir)/doc/glint
 examples := $(datadir)/glint/examples
 PAGES    := README.md:README.md lua-and-command.md:bindings/README.md engine.md:engine/README.md examples.md:scripts/README.md \
-            farms.md:scripts/farm/README.md python.md:scripts/python.md CHANGELOG.md:.github/CHANGELOG.md
+            farms.md:scripts/farm/README.md python.md:scripts/python.md particles.md:scripts/particles.md CHANGELOG.md:.github/CHANGELOG.md
 EXAMPLES := $(sort $(patsubst scripts/%,%,$(wildcard scripts/*.lua scripts/*.c scripts/data/* scripts/farm/*.sh)))
 page_to   = $(firstword $(subst :, ,$(1)))
 

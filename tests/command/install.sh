@@ -40,7 +40,7 @@ for module in scripts/lib/glint/*.lua; do
     done
 done
 check "links of the pages lead somewhere" eval '(cd "$prefix/share/doc/glint" &&
-    for link in $(grep -ohE "\]\([a-zA-Z_/.-]+\.(md|lua|c)" lua-and-command.md examples.md farms.md python.md | cut -c 3-); do
+    for link in $(grep -ohE "\]\([a-zA-Z_/.-]+\.(md|lua|c)" lua-and-command.md examples.md farms.md python.md particles.md | cut -c 3-); do
         [ -e "$link" ] || { echo "$link"; exit 1; }; done)'
 echo 'gr.render(gr.node "root", "empty", 8, 6, { 0, 0, 9 }, { 0, 0, -1 }, { 0, 1, 0 }, 50, { 0, 0, 0 }, {})' >"$work/gr.lua"
 check "the dialect" env -C "$work" "$prefix/bin/glint" --dialect gr gr.lua

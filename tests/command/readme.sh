@@ -11,6 +11,7 @@ rm -rf "$work"
 mkdir -p "$work/bin"
 ln -s "$glint" "$work/bin/glint"
 export PATH="$work/bin:$PATH"
+export LUA_PATH="$root/scripts/lib/?.lua;;" # where an installed command has its own
 bad=0
 
 # run NAME COMMAND...
@@ -59,7 +60,7 @@ check_paths() {
 }
 
 for page in README.md bindings/README.md engine/README.md engine/stages/README.md tests/README.md scripts/README.md \
-    scripts/python.md .github/CONTRIBUTING.md; do
+    scripts/python.md scripts/particles.md .github/CONTRIBUTING.md; do
     run_page "$page"
     check_paths "$page"
 done
