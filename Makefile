@@ -47,9 +47,10 @@ ifeq ($(call have,libdeflate),yes)
   PACKAGES += libdeflate
   DEFINES += -DGLINT_HAVE_LIBDEFLATE
 endif
+# One file has it: the kernels are not compiled again for it.
 ifeq ($(call have,freetype2),yes)
-  PACKAGES += freetype2
-  DEFINES += -DGLINT_HAVE_FREETYPE
+  FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
+  FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
 # Of OpenEXR its core in C alone.
 ifeq ($(call have,'OpenEXR >= 3.1'),yes)
@@ -87,7 +88,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
 LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(EXR_LIBS) -lm -pthread
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(EXR_LIBS) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
@@ -131,6 +132,7 @@ $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mav
 $(BUILD)/engine/stages/simd/select.o: ISA := $(KERNELS:%=-DGLINT_KERNEL_%)
 $(addprefix $(BUILD)/engine/,compare/flip.o tile/pattern_inputs.o tile/shader.o): ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
+$(BUILD)/engine/text/letters.o $(BUILD)/shared/engine/text/letters.o: OWN := $(FONT_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
 CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/%,$(wildcard bindings/*/*.lua)) scripts/lib/gr.lua scripts/lib/gr/*.lua))
@@ -142,7 +144,7 @@ $(BINDINGS_OBJ): | $(CARRIED)
 $(BUILD)/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),,$(HARDEN)) $(ISA) -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(if $(filter $(KERNEL_OBJ),$@),,$(HARDEN)) $(ISA) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/glint: $(BINDINGS_OBJ) $(BUILD)/libglint.a
 	$(call say,LINK)
@@ -166,7 +168,7 @@ SHARED_OBJ := $(KERNEL_OBJ) $(patsubst $(BUILD)/%,$(BUILD)/shared/%,$(filter-out
 $(BUILD)/shared/%.o: %.c $(BUILD)/flags | need
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) $(HARDEN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
+	$(Q)$(CC) $(COMPILE) $(HARDEN) $(OWN) -fvisibility=default -fno-semantic-interposition -MMD -MP -c $< -o $@
 
 $(BUILD)/libglint.map: engine/glint.h
 	@mkdir -p $(@D)
@@ -184,7 +186,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library build/libglint.so.$(VERSION)
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(KERNELS)' > $@
+	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(KERNELS)' > $@
 
 need:
 	@tests/deps.sh need
@@ -504,7 +506,7 @@ export INSTALLED
 
 $(BUILD)/glint.pc: engine/glint.pc.in FORCE
 	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(libdir)|' -e 's|@includedir@|$(incdir)|' \
-	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
+	    -e 's|@version@|$(VERSION)|' -e 's|@requires@|$(PACKAGES) $(if $(FONT_LIBS),freetype2)|' -e 's|@private@|$(EXR_LIBS)|' $< > $@
 
 $(BUILD)/completion/%: $(BUILD)/glint
 	@mkdir -p $(@D)
