@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bindings/lua/many.h"
 #include "bindings/run/run.h"
 
 typedef struct arguments {
@@ -32,6 +33,8 @@ static const glintL_field FIELDS[] = {
     { .name = "normals", .kind = GLINTL_OTHER },
     { .name = "uv", .kind = GLINTL_OTHER },
     { .name = "format", .kind = GLINTL_OTHER },
+    { .name = "materials", .kind = GLINTL_OTHER },
+    { .name = "index", .kind = GLINTL_OTHER },
     EVERY_MESH,
     { .name = NULL },
 };
@@ -54,6 +57,11 @@ enum {
     UV,
     OTHER,
     MATERIAL,
+    MATERIALS,
+    INDEX,
+    INDEX_BUFFER,
+    POINTERS,
+    KEPT,
     VERTEX_BUFFER,
     CORNER_BUFFER,
     SIZE_BUFFER,
@@ -62,6 +70,15 @@ enum {
     NUMBER_BUFFER,
     UV_NUMBER_BUFFER
 };
+
+static const glintL_many MANY = { .object = "mesh",
+                                  .each = "face",
+                                  .material = MATERIAL,
+                                  .materials = MATERIALS,
+                                  .index = INDEX,
+                                  .index_buffer = INDEX_BUFFER,
+                                  .pointers = POINTERS,
+                                  .kept = KEPT };
 
 static void fetch(lua_State *L, const char *name, int place)
 {
@@ -382,10 +399,9 @@ static void keep_materials(lua_State *L, const glint_shape *shape)
 static int finish(lua_State *L, glintL_box *box, glint_shape *shape)
 {
     box->object = shape;
-    lua_settop(L, MATERIAL);
-    if (!lua_isnil(L, MATERIAL))
-        glintL_keep(L, BOX, "material", MATERIAL);
-    else if (!lua_isnil(L, OTHER))
+    lua_settop(L, KEPT);
+    glintL_many_keep(L, &MANY, BOX);
+    if (lua_isnil(L, MATERIAL) && !lua_isnil(L, OTHER))
         keep_materials(L, shape);
     lua_settop(L, BOX);
     glintL_remember(L, shape);
@@ -404,7 +420,7 @@ static void note_warning(void *context, const char *message) { glintL_run_warn(c
 
 static glint_status load(lua_State *L, arguments *a, glint_shape **shape, glint_error *error)
 {
-    static const char *const arrays[] = { "vertices", "faces", "normals", "uv", "format" };
+    static const char *const arrays[] = { "vertices", "faces", "normals", "uv", "format", "materials", "index" };
     if (lua_type(L, OTHER) != LUA_TSTRING)
         glintL_refuse(L, OTHER, "mesh.file", "name of a file");
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
@@ -438,8 +454,11 @@ int glintL_new_mesh(lua_State *L)
     if (!lua_isnil(L, OTHER)) {
         status = load(L, &a, &shape, &error);
     } else {
+        glint_material **pointers = glintL_many_prepare(L, &MANY, &a.desc.material_count);
         read_arrays(L, &a);
-        read_material(L, "mesh.material", &a);
+        a.desc.material_index = glintL_many_index(L, &MANY, a.desc.face_count, a.desc.material_count);
+        glintL_many_read(L, &MANY, a.desc.material_count, pointers);
+        a.desc.materials = pointers;
         status = glint_mesh_create(&a.desc, &shape, &error);
     }
     glintL_check_status(L, "mesh", &error, status);

@@ -377,6 +377,8 @@ function glint.spheres(fields) end
 ---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit
 ---@field uv? number[][]|number[]|string  u, v for s.uv and textures, one pair a vertex, or one a corner in the order of the faces; a file has them as `vt`
 ---@field format? "f32"|"f64"  of packed vertices, normals and uv; required there and refused otherwise
+---@field materials? glint.material[]  in place of `material`, with `index`
+---@field index? integer[]|string  which of `materials` each face has, from 1: a table, or packed u32 numbers
 ---@field shading? glint.shading  Default "phong" with normals, else "faceted"
 
 ---@class glint.mesh: glint.shape_fields

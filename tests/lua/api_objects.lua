@@ -54,6 +54,25 @@ function tests.meshes()
     return glint.mesh(t)
   end
   local red = glint.material { name = "red" }
+  local blue = glint.material { name = "blue" }
+  local pair = glint.mesh { vertices = corners, faces = { { 1, 2, 3 }, { 1, 3, 4 } }, materials = { red, blue }, index = { 1, 2 } }
+  check(#pair.materials == 2 and pair.materials[1] == red and pair.materials[2] == blue, "a material a face")
+  local view = glint.scene { camera = glint.camera { eye = { 1, 1, 3 }, at = { 1, 1, 0 }, fov = 30 }, ambient = 1, pair }
+  red.diffuse, blue.diffuse = { 1, 0, 0 }, { 0, 0, 1 }
+  local seen = view:render { width = 8, height = 8, output = "none" }
+  check(seen:pixel(6, 6) == 1 and select(3, seen:pixel(6, 6)) == 0 and select(3, seen:pixel(1, 1)) == 1, "each has its own")
+  local packed = glint.mesh { vertices = corners, faces = { 1, 2, 3, 1, 3, 4 }, materials = { red, blue }, index = ("I4I4"):pack(2, 1) }
+  check(packed.materials[2] == blue, "packed numbers")
+  raises("mesh.material: this mesh has a list of materials; change the fields of those", function() pair.material = red end)
+  raises("mesh.index: 2 numbers (one a face) expected, got 1", function()
+    glint.mesh { vertices = corners, faces = { { 1, 2, 3 }, { 1, 3, 4 } }, materials = { red }, index = { 1 } }
+  end)
+  raises("mesh.index[1]: number 1 .. 2 expected, got 3", function() square { materials = { red, blue }, index = { 3 } } end)
+  raises("mesh.index: table or packed string of numbers expected, got nil", function() square { materials = { red, blue } } end)
+  raises("mesh.index: materials expected with an index", function() square { index = { 1 } } end)
+  raises("mesh.materials[2]: material expected, got 5", function() square { materials = { red, 5 }, index = { 1 } } end)
+  raises("mesh: material or materials expected, got both", function() square { material = red, materials = { red } } end)
+  raises("mesh: file or materials expected, got both", function() glint.mesh { file = "x.obj", materials = { red } } end)
   local m = square { material = red, name = "tile", two_sided = false }
   check(m.count == 2 and m.material == red and m.shading == "faceted" and not m.two_sided and tostring(m) == "mesh 'tile'", "fields")
   for _, t in ipairs {

@@ -1,0 +1,141 @@
+#include "bindings/lua/many.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define PATH_SIZE 32
+
+static void fetch(lua_State *L, const char *name, int place)
+{
+    lua_pushstring(L, name);
+    lua_rawget(L, 1);
+    lua_replace(L, place);
+}
+
+// One number of the index, counted from 1, at any Lua integer.
+static uint32_t checked(lua_State *L, const glintL_many *many, size_t i, lua_Integer number, size_t material_count)
+{
+    if (number < 1 || (size_t)number > material_count)
+        glintL_error(L, "%s.index[%I]: number 1 .. %I expected, got %I", many->object, (LUAI_UACINT)i + 1,
+                     (LUAI_UACINT)material_count, (LUAI_UACINT)number);
+    return (uint32_t)number - 1;
+}
+
+static void read_list(lua_State *L, const glintL_many *many, size_t count, size_t material_count, uint32_t *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        int is_whole = 0;
+        bool is_number = lua_rawgeti(L, many->index, (lua_Integer)i + 1) == LUA_TNUMBER;
+        lua_Integer number = lua_tointegerx(L, -1, &is_whole);
+        if (!is_number || !is_whole) {
+            const char *got = glintL_push_spelling(L, -1);
+            glintL_error(L, "%s.index[%I]: whole number expected, got %s", many->object, (LUAI_UACINT)i + 1, got);
+        }
+        out[i] = checked(L, many, i, number, material_count);
+        lua_pop(L, 1);
+    }
+}
+
+static void read_packed(lua_State *L, const glintL_many *many, size_t count, size_t material_count, uint32_t *out)
+{
+    const char *packed = lua_tostring(L, many->index);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t number;
+        memcpy(&number, packed + i * sizeof number, sizeof number);
+        out[i] = checked(L, many, i, number, material_count);
+    }
+}
+
+static void check_size(lua_State *L, const glintL_many *many, size_t expected)
+{
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s.index", many->object);
+    if (lua_istable(L, many->index)) {
+        const size_t count = glintL_check_list(L, many->index, path, false);
+        if (count != expected)
+            glintL_error(L, "%s: %I numbers (one a %s) expected, got %I", path, (LUAI_UACINT)expected, many->each,
+                         (LUAI_UACINT)count);
+    } else if (lua_type(L, many->index) == LUA_TSTRING) {
+        const size_t bytes = lua_rawlen(L, many->index);
+        if (bytes % sizeof(uint32_t) != 0 || bytes / sizeof(uint32_t) != expected)
+            glintL_error(L, "%s: %I bytes (a u32 a %s) expected, got %I bytes", path,
+                         (LUAI_UACINT)(expected * sizeof(uint32_t)), many->each, (LUAI_UACINT)bytes);
+    } else {
+        glintL_refuse(L, many->index, path, "table or packed string of numbers");
+    }
+}
+
+const uint32_t *glintL_many_index(lua_State *L, const glintL_many *many, size_t count, size_t material_count)
+{
+    fetch(L, "index", many->index);
+    if (lua_isnil(L, many->index) && material_count < 2)
+        return NULL;
+    if (material_count == 0)
+        glintL_error(L, "%s.index: materials expected with an index", many->object);
+    check_size(L, many, count);
+    uint32_t *out = lua_newuserdatauv(L, (count + 1) * sizeof *out, 0);
+    lua_replace(L, many->index_buffer);
+    if (lua_istable(L, many->index))
+        read_list(L, many, count, material_count, out);
+    else
+        read_packed(L, many, count, material_count, out);
+    return out;
+}
+
+glint_material **glintL_many_prepare(lua_State *L, const glintL_many *many, size_t *material_count)
+{
+    char path[PATH_SIZE];
+    size_t count = 1;
+    snprintf(path, sizeof path, "%s.materials", many->object);
+    fetch(L, "material", many->material);
+    fetch(L, "materials", many->materials);
+    const bool one = !lua_isnil(L, many->material);
+    *material_count = 0;
+    if (one && !lua_isnil(L, many->materials))
+        glintL_error(L, "%s: material or materials expected, got both", many->object);
+    if (!one && lua_isnil(L, many->materials))
+        return NULL;
+    if (!one && !lua_istable(L, many->materials))
+        glintL_refuse(L, many->materials, path, "list of materials");
+    if (!one && (count = glintL_check_list(L, many->materials, path, false)) == 0)
+        glintL_error(L, "%s: list of materials expected, got an empty table", path);
+    lua_newtable(L);
+    lua_replace(L, many->kept);
+    for (size_t i = 1; i <= count; i++) {
+        if (one)
+            lua_pushvalue(L, many->material);
+        else
+            lua_rawgeti(L, many->materials, (lua_Integer)i);
+        lua_rawseti(L, many->kept, (lua_Integer)i);
+    }
+    glint_material **pointers = lua_newuserdatauv(L, count * sizeof *pointers, 0);
+    lua_replace(L, many->pointers);
+    *material_count = count;
+    return pointers;
+}
+
+void glintL_many_read(lua_State *L, const glintL_many *many, size_t material_count, glint_material **pointers)
+{
+    char path[PATH_SIZE];
+    for (size_t i = 0; i < material_count; i++) {
+        lua_rawgeti(L, many->kept, (lua_Integer)i + 1);
+        pointers[i] = glintL_test_object(L, -1, GLINTL_MATERIAL);
+        if (!pointers[i] && !lua_isnil(L, many->material)) {
+            snprintf(path, sizeof path, "%s.material", many->object);
+            glintL_refuse(L, -1, path, "material");
+        }
+        if (!pointers[i]) {
+            const char *got = glintL_push_spelling(L, -1);
+            glintL_error(L, "%s.materials[%I]: material expected, got %s", many->object, (LUAI_UACINT)i + 1, got);
+        }
+        lua_pop(L, 1);
+    }
+}
+
+void glintL_many_keep(lua_State *L, const glintL_many *many, int box)
+{
+    if (!lua_isnil(L, many->material))
+        glintL_keep(L, box, "material", many->material);
+    else if (!lua_isnil(L, many->materials))
+        glintL_keep(L, box, "materials", many->kept);
+}
