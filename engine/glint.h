@@ -885,7 +885,9 @@ typedef enum glint_pass {
     GLINT_PASS_OUTLINE, ///< one channel: 1 where objects end, hide each other or have an edge, else 0; of the first sample
     GLINT_PASS_REFINED, ///< one channel: 1 where `adaptive` took all samples, else 0; 1 everywhere without it
     GLINT_PASS_ALBEDO, ///< diffuse reflectance, 0 where nothing is hit; of the first sample
-    GLINT_PASS_COUNT ///< how many there are
+    GLINT_PASS_COUNT, ///< how many there are
+    /// The first of the frame's derivatives, see glint_render_desc; the others follow it. Three channels
+    GLINT_PASS_DERIVATIVE = GLINT_PASS_COUNT
 } glint_pass;
 
 /// "beauty", "background", ...; NULL when out of range.
@@ -928,6 +930,33 @@ glint_tone_desc glint_tone_desc_default(void);
 /// Lines drawn into a PNG of beauty where the pass `outline` is 1.
 typedef enum glint_outline_color { GLINT_OUTLINE_NONE, GLINT_OUTLINE_BLACK, GLINT_OUTLINE_WHITE } glint_outline_color;
 
+#define GLINT_DERIVATIVES_MAX 8 ///< of one frame
+#define GLINT_DERIVATIVE_NAME_SIZE 32 ///< bytes of a derivative's name, with the ending NUL
+
+/// How fast one field of the scene changes with a parameter. At most one of the four objects is not NULL; without any it is a
+/// field of the scene's own description.
+typedef struct glint_slope {
+    const glint_material *material; ///< whose field it is; or NULL
+    const glint_light *light; ///< likewise
+    const glint_shape *shape; ///< likewise
+    const glint_camera *camera; ///< likewise
+    const char *field; ///< its name in the description, one of those under glint_derivative
+    double slope[3]; ///< of each component; of a single number the first
+} glint_slope;
+
+/// How fast the picture's light, linear beauty, changes with a parameter: exact where hits, shadows and the samples of area
+/// lights stay as they are. Slopes of what the scene does not have count as nothing.
+///
+///   material  diffuse, ambient, specular, shininess, roughness, f0
+///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
+///             exponent, radiance
+///   scene     ambient, background
+typedef struct glint_derivative {
+    const char *name; ///< 1 .. 31 bytes; "lamp_x"
+    const glint_slope *slopes; ///< those of one field add up
+    size_t slope_count; ///< 0: nothing depends on it, which a plan refuses
+} glint_derivative;
+
 /// One frame: its size, samples and what is kept of it.
 typedef struct glint_render_desc {
     /// Whole numbers, 1 .. GLINT_SIDE_MAX; default 1280 x 720. Doubles: any script number is checked
@@ -956,6 +985,10 @@ typedef struct glint_render_desc {
     /// x, y, width and height, in pixels, of the part of the frame that is rendered, with the bits that the whole has there;
     /// the image has the part's size. Whole numbers within the frame; all 0 (default): the whole
     double region[4];
+    /// Number i is kept in the image as pass GLINT_PASS_DERIVATIVE + i. Borrowed by glint_plan_create; a plan's own
+    /// description has the count alone
+    const glint_derivative *derivatives;
+    size_t derivative_count; ///< 0 (default) .. GLINT_DERIVATIVES_MAX
 } glint_render_desc;
 
 /// 1280 x 720, 1 sample, double, passes = beauty, codes = false.
@@ -985,7 +1018,8 @@ typedef struct glint_ray_counts {
 } glint_ray_counts;
 
 /// Takes a snapshot of the scene for one frame and lists what the frame needs. The scene may be edited at once.
-/// Fails when the scene has no camera, or a field of `desc` is out of range.
+/// Fails when the scene has no camera, a field of `desc` is out of range, or a derivative goes through what has none: the
+/// message then begins with "derivative 'NAME': ".
 glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc *desc, glint_plan **out,
                                glint_error *error);
 /// What each time of a frame with an open shutter is planned by: the passes that have a mean, and no codes.
@@ -1084,6 +1118,8 @@ typedef struct glint_frame_stats {
     uint64_t pixels; ///< rendered: of a region those of the tiles that it touches; `clipped` and `nonfinite` are of these
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
+    uint64_t shifted; ///< pixels beside an edge that a derivative's parameter moves, such as a shadow's, or within a soft
+        ///< one: what the edge's way adds to a difference is not in the derivative. 0 without derivatives
     uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
     const char *odd_field; ///< static string: "diffuse"; "background" of the scene; NULL: there is none
     char odd_material[GLINT_NAME_SIZE]; ///< name of the material; may be empty
@@ -1105,6 +1141,8 @@ int glint_image_width(const glint_image *image);
 int glint_image_height(const glint_image *image);
 /// Whether the pass was kept; beauty alone may exist as codes only.
 bool glint_image_has_pass(const glint_image *image, glint_pass pass);
+/// The name of its derivative number `index`, from 0; the image's. NULL: it has not so many.
+const char *glint_image_derivative(const glint_image *image, size_t index);
 /// Whether codes are there and all are 0, but for alpha; without codes, whether no value of beauty is above 0. Looks no
 /// further than the first that is. False where there is neither.
 bool glint_image_is_black(const glint_image *image);
@@ -1133,7 +1171,7 @@ typedef struct glint_write_desc {
     /// normal.X ... diffuse.B
     const char *path;
     glint_pass pass; ///< one the image has; an .exr has all
-    /// .png; depth, normal and object_id are scaled for viewing, see README. Of an .exr 16 `bits` make light and normals half,
+    /// .png; depth, normal, object_id and derivatives are scaled for viewing, see README. Of an .exr 16 `bits` make light and normals half,
     /// 8 leave them float; the rest is float either way
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST

@@ -65,10 +65,16 @@ static void print_file(FILE *out, const char *path)
 static void print_pass_files(FILE *out, const glintL_record *record)
 {
     int count = 0;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+    char name[GLINTL_PASS_NAME_SIZE];
+    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
+        const bool own = pass < GLINT_PASS_DERIVATIVE;
         if (pass == GLINT_PASS_BEAUTY || !record->files[pass])
             continue;
-        fprintf(out, "%s\"%s\":", count++ ? "," : ",\"passes\":{", glint_pass_name((glint_pass)pass));
+        fputs(count++ ? "," : ",\"passes\":{", out);
+        snprintf(name, sizeof name, "%s%s", own ? "" : "d:",
+                 own ? glint_pass_name((glint_pass)pass) : record->derivative[pass - GLINT_PASS_DERIVATIVE]);
+        glintL_json_string(out, name);
+        fputc(':', out);
         glintL_json_string(out, record->files[pass]);
     }
     if (count)
@@ -88,6 +94,10 @@ static void print_frame_json(cli_output *output, const glintL_record *record)
     fputc(',', out);
     cli_print_rays(out, &record->stats.rays);
     fprintf(out, ",\"refined\":%" PRIu64, record->stats.refined);
+    if (*record->derivative[0] && !record->kept) {
+        fputs(",\"shifted\":", out);
+        glintL_json_number(out, (double)record->stats.shifted / record->pixel_count);
+    }
     if (record->kept) { // its pixels were not looked at
         fputs(",\"clipped\":null,\"nonfinite\":null}", out);
     } else {

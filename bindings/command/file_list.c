@@ -26,7 +26,7 @@ static bool find_numbers(const char *pattern, int64_t **numbers, size_t *count, 
         if (strlen(entry->d_name) <= before || entry->d_name[before] < '0' || entry->d_name[before] > '9')
             continue;
         int64_t number = strtoll(entry->d_name + before, NULL, 10);
-        if (number < 0 || number > GLINTL_FRAMES_MAX || !glintL_name_file(&naming, number, GLINT_PASS_BEAUTY, made) ||
+        if (number < 0 || number > GLINTL_FRAMES_MAX || !glintL_name_file(&naming, number, "beauty", made) ||
             strcmp(made + (name - pattern), entry->d_name) != 0)
             continue;
         if (*count == room) {
@@ -158,7 +158,7 @@ static bool add_numbers(const char *pattern, const int64_t *numbers, size_t coun
     bool good = true;
     for (size_t i = 0; i < count && good; i++)
         if (glintL_selection_has(selection, numbers[i])) {
-            good = glintL_name_file(&naming, numbers[i], GLINT_PASS_BEAUTY, path);
+            good = glintL_name_file(&naming, numbers[i], "beauty", path);
             good = good && add_file(out, path, message);
         }
     if (good && out->count == 0)

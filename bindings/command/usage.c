@@ -28,9 +28,11 @@ static void print_line(FILE *out, const char *head, const char *help, bool lists
     print_words(out, &at, help);
     for (int pass = 0; pass < GLINT_PASS_COUNT && lists_passes; pass++) {
         char name[32];
-        snprintf(name, sizeof name, "%s%s", glint_pass_name(pass), pass + 1 < GLINT_PASS_COUNT ? "," : "");
+        snprintf(name, sizeof name, "%s,", glint_pass_name(pass));
         print_words(out, &at, name);
     }
+    if (lists_passes)
+        print_words(out, &at, "d:NAME");
     fputc('\n', out);
 }
 

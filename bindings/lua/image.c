@@ -27,6 +27,11 @@ static int get_passes(lua_State *L)
             lua_rawseti(L, -2, ++count);
         }
     }
+    const char *name;
+    for (size_t i = 0; (name = glint_image_derivative(glintL_check_object(L, 1, GLINTL_IMAGE), i)); i++) {
+        lua_pushfstring(L, "d:%s", name);
+        lua_rawseti(L, -2, ++count);
+    }
     return 1;
 }
 
@@ -60,7 +65,17 @@ static int check_coordinate(lua_State *L, int index, const char *path, int count
     return (int)x;
 }
 
-// The pass named at `index`; nil: beauty.
+// GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX: the image has no derivative by that name.
+static glint_pass find_derivative(const glint_image *image, const char *name)
+{
+    size_t i = 0;
+    while (i < GLINT_DERIVATIVES_MAX &&
+           !(glint_image_derivative(image, i) && strcmp(glint_image_derivative(image, i), name) == 0))
+        i++;
+    return (glint_pass)(GLINT_PASS_DERIVATIVE + i);
+}
+
+// The pass named at `index`, of the image at 1; nil: beauty.
 static glint_pass check_pass(lua_State *L, int index, const char *path)
 {
     if (lua_isnoneornil(L, index))
@@ -68,6 +83,13 @@ static glint_pass check_pass(lua_State *L, int index, const char *path)
     glint_pass pass = GLINT_PASS_COUNT;
     if (lua_type(L, index) == LUA_TSTRING)
         pass = glint_pass_from_name(lua_tostring(L, index));
+    if (pass == GLINT_PASS_COUNT && lua_type(L, index) == LUA_TSTRING && strncmp(lua_tostring(L, index), "d:", 2) == 0) {
+        const char *name = lua_tostring(L, index) + 2;
+        pass = find_derivative(glintL_check_object(L, 1, GLINTL_IMAGE), name);
+        if (pass == GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX)
+            glintL_error(L, "%s: 'd:%s' was not kept in this image", path, name);
+        return pass;
+    }
     if (pass == GLINT_PASS_COUNT)
         glintL_refuse(L, index, path, "name of a pass");
     return pass;

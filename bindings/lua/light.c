@@ -12,12 +12,12 @@ static const char *const SHADOWS[] = { "rays", "hard", "caps", NULL };
 
 // clang-format off
 #define EVERY_LIGHT \
-    {.name = "color", .kind = GLINTL_COLOR, .offset = AT(color)}, \
-    {.name = "intensity", .kind = GLINTL_NUMBER, .offset = AT(intensity)}, \
-    {.name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient)}, \
-    {.name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .set_offset = AT(has_diffuse)}, \
-    {.name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular), .set_offset = AT(has_specular)}, \
-    {.name = "attenuation", .kind = GLINTL_VECTOR, .offset = AT(attenuation)}, \
+    {.name = "color", .kind = GLINTL_COLOR, .offset = AT(color), .slopes = true}, \
+    {.name = "intensity", .kind = GLINTL_NUMBER, .offset = AT(intensity), .slopes = true}, \
+    {.name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .slopes = true}, \
+    {.name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .set_offset = AT(has_diffuse), .slopes = true}, \
+    {.name = "specular", .kind = GLINTL_COLOR, .offset = AT(specular), .set_offset = AT(has_specular), .slopes = true}, \
+    {.name = "attenuation", .kind = GLINTL_VECTOR, .offset = AT(attenuation), .slopes = true}, \
     {.name = "shadows", .kind = GLINTL_BOOLEAN, .offset = AT(shadows)}, \
     {.name = "visible", .kind = GLINTL_BOOLEAN, .offset = AT(visible)}, \
     {.name = "name", .kind = GLINTL_STRING, .offset = AT(name)}
@@ -26,9 +26,9 @@ static const char *const SHADOWS[] = { "rays", "hard", "caps", NULL };
     EVERY_LIGHT, \
     {.name = "samples", .kind = GLINTL_NUMBER, .offset = AT(samples)}, \
     {.name = "shadow", .kind = GLINTL_ENUM, .offset = AT(shadow), .names = SHADOWS}, \
-    {.name = "radiance", .kind = GLINTL_NUMBER, .offset = AT(radiance), .set_offset = AT(has_radiance)}
+    {.name = "radiance", .kind = GLINTL_NUMBER, .offset = AT(radiance), .set_offset = AT(has_radiance), .slopes = true}
 
-#define PLACE {.name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true}
+#define PLACE {.name = "position", .kind = GLINTL_VECTOR, .offset = AT(position), .required = true, .slopes = true}
 #define RADIUS {.name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true}
 // clang-format on
 
@@ -40,17 +40,17 @@ static const glintL_field POINT_FIELDS[] = {
 
 static const glintL_field DIRECTIONAL_FIELDS[] = {
     EVERY_LIGHT,
-    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true },
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true, .slopes = true },
     { .name = NULL },
 };
 
 static const glintL_field SPOT_FIELDS[] = {
     EVERY_LIGHT,
     PLACE,
-    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true },
-    { .name = "inner", .kind = GLINTL_DEGREES, .offset = AT(inner_rad), .required = true },
-    { .name = "outer", .kind = GLINTL_DEGREES, .offset = AT(outer_rad), .required = true },
-    { .name = "exponent", .kind = GLINTL_NUMBER, .offset = AT(exponent) },
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .required = true, .slopes = true },
+    { .name = "inner", .kind = GLINTL_DEGREES, .offset = AT(inner_rad), .required = true, .slopes = true },
+    { .name = "outer", .kind = GLINTL_DEGREES, .offset = AT(outer_rad), .required = true, .slopes = true },
+    { .name = "exponent", .kind = GLINTL_NUMBER, .offset = AT(exponent), .slopes = true },
     { .name = NULL },
 };
 
@@ -129,6 +129,7 @@ static int new_light(lua_State *L, glint_light_kind kind)
     glintL_check_status(L, VARIANTS[kind].name, &error, glint_light_create(&desc, &light, &error));
     box->object = light;
     glintL_remember(L, light);
+    glintL_keep_table_slopes(L, 2, 1, VARIANTS[kind].fields);
     return 1;
 }
 

@@ -22,14 +22,14 @@ static const glintL_field FIELDS[] = {
       .offset = AT(ambient),
       .set_offset = AT(has_ambient),
       .program_offset = AT(program.ambient),
-      .follows = "diffuse" },
-    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .program_offset = AT(program.diffuse) },
+      .follows = "diffuse", .slopes = true },
+    { .name = "diffuse", .kind = GLINTL_COLOR, .offset = AT(diffuse), .program_offset = AT(program.diffuse), .slopes = true },
     { .name = "specular",
       .kind = GLINTL_COLOR,
       .offset = AT(specular),
       .set_offset = AT(has_specular),
-      .program_offset = AT(program.specular) },
-    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess), .program_offset = AT(program.shininess) },
+      .program_offset = AT(program.specular), .slopes = true },
+    { .name = "shininess", .kind = GLINTL_NUMBER, .offset = AT(shininess), .program_offset = AT(program.shininess), .slopes = true },
     { .name = "mirror",
       .kind = GLINTL_COLOR,
       .offset = AT(mirror),
@@ -44,9 +44,9 @@ static const glintL_field FIELDS[] = {
     { .name = "absorption", .kind = GLINTL_COLOR, .offset = AT(absorption) },
     { .name = "normalized", .kind = GLINTL_BOOLEAN, .offset = AT(normalized) },
     { .name = "matched", .kind = GLINTL_BOOLEAN, .offset = AT(matched) },
-    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness) },
+    { .name = "roughness", .kind = GLINTL_NUMBER, .offset = AT(roughness), .program_offset = AT(program.roughness), .slopes = true },
     { .name = "distribution", .kind = GLINTL_ENUM, .offset = AT(distribution), .names = DISTRIBUTIONS },
-    { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0) },
+    { .name = "f0", .kind = GLINTL_COLOR, .offset = AT(f0), .set_offset = AT(has_f0), .slopes = true },
     { .name = "opacity", .kind = GLINTL_NUMBER, .offset = AT(opacity), .program_offset = AT(program.opacity) },
     { .name = "bump", .kind = GLINTL_PROGRAM, .program_offset = AT(program.bump) },
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
@@ -161,6 +161,7 @@ static int new_material(lua_State *L)
     box->object = material;
     glintL_remember(L, material);
     glintL_keep_sources(L, 2, 1, FIELDS);
+    glintL_keep_table_slopes(L, 2, 1, FIELDS);
     accepted(L, glintL_find_field(FIELDS, "diffuse"), &desc);
     glintL_note_material(L, 2,
                          (desc.model == GLINT_MODEL_PHONG || desc.model == GLINT_MODEL_BLINN_PHONG) &&

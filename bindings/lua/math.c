@@ -3,7 +3,8 @@
 
 static int apply(lua_State *L, const char *path, double (*function)(double))
 {
-    lua_pushnumber(L, function(glintL_read_number(L, 1, path)));
+    if (!glintL_dual_function(L, path))
+        lua_pushnumber(L, function(glintL_read_number(L, 1, path)));
     return 1;
 }
 
@@ -24,6 +25,8 @@ static int math_log(lua_State *L)
 
 static int math_pow(lua_State *L)
 {
+    if (glintL_dual_function(L, "pow"))
+        return 1;
     double x = glintL_read_number(L, 1, "pow");
     lua_pushnumber(L, glint_pow(x, glintL_read_number(L, 2, "pow")));
     return 1;

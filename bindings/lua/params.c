@@ -187,6 +187,18 @@ static void mark_read(lua_State *L, int params, int name)
     lua_pop(L, 2);
 }
 
+// The parameter on top becomes a variable where the command line wants a derivative by it.
+static void vary(lua_State *L, const char *name)
+{
+    if (!glintL_wants_variable(glintL_get_run(L), name))
+        return;
+    if (lua_type(L, -1) != LUA_TNUMBER)
+        glintL_error(L, "passes: d:%s: the parameter is a %s; derivatives are by numbers", name, luaL_typename(L, -1));
+    if (strlen(name) >= GLINT_DERIVATIVE_NAME_SIZE)
+        glintL_error(L, "passes: d:%s: a name of at most %d bytes expected", name, GLINT_DERIVATIVE_NAME_SIZE - 1);
+    glintL_make_variable(L, name, lua_tonumber(L, -1));
+}
+
 static int read_param(lua_State *L)
 {
     const char *near = NULL;
@@ -198,6 +210,7 @@ static int read_param(lua_State *L)
     lua_pushvalue(L, 2);
     if (lua_rawget(L, 3) != LUA_TNIL) {
         mark_read(L, 1, 2);
+        vary(L, lua_tostring(L, 2));
         return 1;
     }
     lua_pushnil(L);
@@ -233,6 +246,7 @@ static int pairs_of_params(lua_State *L)
     lua_pushnil(L);
     while (lua_next(L, -2)) {
         mark_read(L, 1, lua_gettop(L) - 1);
+        vary(L, lua_tostring(L, -2));
         lua_pushvalue(L, -2);
         lua_insert(L, -2);
         lua_rawset(L, -5);

@@ -66,11 +66,12 @@ static void begin_ambient_occlusion(void *desc)
 
 static const glintL_field FIELDS[] = {
     { .name = "camera", .kind = GLINTL_OBJECT, .offset = AT(camera), .names = CAMERA },
-    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient) },
+    { .name = "ambient", .kind = GLINTL_COLOR, .offset = AT(ambient), .slopes = true },
     { .name = "background",
       .kind = GLINTL_COLOR,
       .offset = AT(background),
-      .program_offset = AT(background_program) },
+      .program_offset = AT(background_program),
+      .slopes = true },
     { .name = "depth_cue",
       .kind = GLINTL_NESTED,
       .offset = AT(depth_cue_near),
@@ -353,6 +354,7 @@ static int new_scene(lua_State *L)
         lua_settop(L, 2);
     }
     glintL_keep_sources(L, 2, 1, FIELDS);
+    glintL_keep_table_slopes(L, 2, 1, FIELDS);
     add_list(L);
     glintL_remember(L, scene);
     return 1;

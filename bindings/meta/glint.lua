@@ -668,6 +668,7 @@ function glint.scene(fields) end
 ---| "alpha"  # the share of the samples that hit something, one number, 0 .. 1
 ---| "refined"  # 1 where `adaptive` took all samples, else 0; one number
 ---| "albedo"  # diffuse reflectance, as patterns give it; 0 where nothing is hit
+---| string  # "d:NAME": how fast beauty changes with the variable or parameter NAME; three numbers
 ---| "outline"  # 1 where objects end, hide each other or have an edge, else 0; one number, of the first sample
 
 --- What a frame and its file are to be. What the command line says beats it.
@@ -743,6 +744,28 @@ function image:close() end
 ---@param list table<string, glint.param|number|boolean|string>
 ---@return table<string, any>
 function glint.params(list) end
+
+--- A number that knows how fast it changes with variables: what arithmetic and functions of `math` make of it does, too, and
+--- fields of materials, lights and scenes take it.
+---@class glint.dual
+---@operator add(any): any
+---@operator sub(any): any
+---@operator mul(any): any
+---@operator div(any): any
+---@operator mod(any): any
+---@operator pow(any): any
+---@operator unm: any
+
+--- A variable at a value: passes "d:<name>" are how fast the picture changes with it. At most 32 names in a script.
+---@param name string  1 to 31 bytes without blanks and commas
+---@param value number
+---@return glint.dual
+function glint.variable(name, value) end
+
+--- The number alone.
+---@param x glint.dual|number
+---@return number
+function glint.value(x) end
 
 ---@class glint.animation_fields: glint.render
 ---@field scene glint.scene

@@ -186,6 +186,9 @@ static int observe(lua_State *L)
 {
     job_walk *walk = lua_touserdata(L, 3);
     lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
+    const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
+    if (scene)
+        glintL_find_derivatives(L, scene, &walk->render);
     glintL_observe_frame(L, walk->run, -1, &walk->render.desc, lua_tointeger(L, 2));
     return 0;
 }

@@ -4,6 +4,7 @@
 //   "50%%.png", "shot%#3.png"          a per cent sign, a number sign
 //   "shot.png"                         "shot_0012.png" when the pattern serves several frames
 //   passes                             "shot_0012.ambient.png"
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -167,16 +168,19 @@ static bool fill(const glintL_naming *naming, int64_t number, char path[GLINTL_P
     return used < GLINTL_PATH_SIZE - 64;
 }
 
-bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE])
+bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *pass, char path[GLINTL_PATH_SIZE])
 {
-    char insert[64] = "", tail[8] = "";
+    char insert[96] = "", tail[8] = "";
     if (!fill(naming, number, path))
         return false;
     if (naming->is_numbered && (naming->is_plain || !glintL_name_has_number(naming->pattern)))
         snprintf(insert, sizeof insert, "_%04" PRId64, number);
-    if (pass != GLINT_PASS_BEAUTY) {
+    if (strcmp(pass, "beauty") != 0) {
         size_t used = strlen(insert);
-        snprintf(insert + used, sizeof insert - used, ".%s", glint_pass_name(pass));
+        snprintf(insert + used, sizeof insert - used, ".%s", pass);
+        for (char *at = insert + used + 1; *at; at++) // of d:NAME whatever the script calls it
+            if (!isalnum((unsigned char)*at))
+                *at = '_';
     }
     const char *dot = ending(path);
     size_t stem = dot ? (size_t)(dot - path) : strlen(path);

@@ -22,7 +22,7 @@ glintL_run *glintL_run_create(void)
 
 static void destroy_record(glintL_record *record)
 {
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++)
         free(record->files[pass]);
     free(record);
 }
@@ -83,6 +83,9 @@ void glintL_run_keep_scene(glintL_run *run, glint_scene *scene, const glintL_ren
         return;
     run->kept_scene = glint_scene_retain(scene);
     run->kept_render = *render;
+    run->kept_render.desc.derivatives = NULL; // which the scene's next frame has others of
+    run->kept_render.desc.derivative_count = 0;
+    run->kept_render.derivative_count = 0;
 }
 
 // ---- The run of plain Lua, which the state owns ----
@@ -178,6 +181,7 @@ glintL_record *glintL_run_add(glintL_run *run, const glintL_work *work)
     record->build_ms = work->build_ms;
     record->stats = work->stats;
     record->film = work->film;
+    memcpy(record->derivative, work->render.derivative, sizeof record->derivative);
     record->pixel_count = (double)work->stats.pixels; // of a frame that is kept none, and nothing is counted
     for (int i = 0; i < work->file_count; i++) {
         char *copy = strdup(work->files[i].path);

@@ -108,6 +108,7 @@ static void describe(const detail *what, char out[256])
     case PASSES:
         for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
             used += (size_t)snprintf(out + used, 256 - used, "%s%s", pass ? ", " : "list of ", glint_pass_name(pass));
+        snprintf(out + used, 256 - used, ", d:NAME");
         break;
     }
 }
@@ -155,19 +156,40 @@ static bool set_flag(glintL_render *render, const detail *what, const char *text
     return value || strcmp(text, "false") == 0;
 }
 
-static bool add_pass(uint32_t *passes, const char *name, size_t length)
+static bool add_derivative(glintL_render *to, const char *name)
 {
-    char copy[32];
+    for (int i = 0; i < to->derivative_count; i++)
+        if (strcmp(to->derivative[i], name) == 0)
+            return true;
+    if (!*name || to->derivative_count == GLINT_DERIVATIVES_MAX)
+        return false;
+    snprintf(to->derivative[to->derivative_count++], sizeof *to->derivative, "%s", name);
+    return true;
+}
+
+// Adds a pass to those of `to`; of a frame they are set together.
+static bool add_pass(glintL_render *to, const char *name, size_t length)
+{
+    char copy[GLINTL_PASS_NAME_SIZE];
     if (length >= sizeof copy)
         return false;
     memcpy(copy, name, length);
     copy[length] = '\0';
+    if (strncmp(copy, "d:", 2) == 0)
+        return add_derivative(to, copy + 2);
     glint_pass pass = glint_pass_from_name(copy);
     if (pass == GLINT_PASS_COUNT)
         return false;
     if (pass != GLINT_PASS_BEAUTY) // which is always written
-        *passes |= 1u << pass;
+        to->file_passes |= 1u << pass;
     return true;
+}
+
+static void clear_passes(glintL_render *render)
+{
+    render->file_passes = 0;
+    render->derivative_count = 0;
+    memset(render->derivative, 0, sizeof render->derivative);
 }
 
 // "normals" is no pass; did you mean ...
@@ -176,6 +198,11 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
     char copy[64], allowed[256];
     const char *near = NULL;
     snprintf(copy, sizeof copy, "%.*s", length < sizeof copy ? (int)length : (int)sizeof copy - 1, name);
+    if (strncmp(copy, "d:", 2) == 0) {
+        snprintf(message, GLINTL_MESSAGE_SIZE, "'%s': a name of 1 .. %d bytes after d: expected, of at most %d derivatives",
+                 copy, GLINT_DERIVATIVE_NAME_SIZE - 1, GLINT_DERIVATIVES_MAX);
+        return;
+    }
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
         near = glintL_nearer(copy, near, glint_pass_name((glint_pass)pass));
     describe(&(detail) { .sort = PASSES }, allowed);
@@ -186,15 +213,16 @@ static void complain_pass(const char *name, size_t length, char message[GLINTL_M
 }
 
 // "ambient,depth"; "" and "none": no files beside the beauty.
-static bool read_passes(const char *text, uint32_t *out, char message[GLINTL_MESSAGE_SIZE])
+static bool read_passes(const char *text, glintL_render *render, char message[GLINTL_MESSAGE_SIZE])
 {
-    uint32_t passes = 0;
+    glintL_render read = *render;
+    clear_passes(&read);
     if (*text && strcmp(text, "none") != 0) {
         for (const char *at = text;;) {
             at += strspn(at, " ");
             size_t length = strcspn(at, ", ");
             const char *after = at + length + strspn(at + length, " ");
-            if ((*after && *after != ',') || !add_pass(&passes, at, length)) {
+            if ((*after && *after != ',') || !add_pass(&read, at, length)) {
                 complain_pass(at, *after && *after != ',' ? strcspn(at, ",") : length, message);
                 return false;
             }
@@ -203,7 +231,7 @@ static bool read_passes(const char *text, uint32_t *out, char message[GLINTL_MES
             at = after + 1;
         }
     }
-    *out = passes;
+    *render = read;
     return true;
 }
 
@@ -244,7 +272,7 @@ static bool set_word(glintL_render *render, const detail *what, const char *text
     else if (what->sort == REGION)
         good = set_region(render->desc.region, text);
     else if (what->sort == PASSES)
-        return read_passes(text, &render->file_passes, message);
+        return read_passes(text, render, message);
     if (!good) {
         describe(what, allowed);
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s expected, got '%.200s'", allowed, text);
@@ -280,8 +308,9 @@ static void read_pass_list(lua_State *L, int index, const char *path, int field,
 {
     char full[128];
     char message[GLINTL_MESSAGE_SIZE];
-    uint32_t passes = 0;
+    glintL_render read = *render;
     size_t length = 0;
+    clear_passes(&read);
     snprintf(full, sizeof full, "%s%s", path, glintL_render_fields[field].name);
     size_t count = glintL_check_list(L, index, full, false);
     for (size_t i = 1; i <= count; i++) {
@@ -289,13 +318,13 @@ static void read_pass_list(lua_State *L, int index, const char *path, int field,
         const char *name = lua_type(L, -1) == LUA_TSTRING ? lua_tolstring(L, -1, &length) : NULL;
         if (!name)
             refuse(L, -1, path, field);
-        if (!add_pass(&passes, name, length)) {
+        if (!add_pass(&read, name, length)) {
             complain_pass(name, length, message);
             glintL_error(L, "%s: %s", full, message);
         }
         lua_pop(L, 1);
     }
-    render->file_passes = passes;
+    *render = read;
 }
 
 // {x, y, width, height}
@@ -357,15 +386,19 @@ void glintL_render_read(lua_State *L, int index, const char *path, int field, gl
         glintL_error(L, "%s%s: %s", path, glintL_render_fields[field].name, message);
 }
 
-static void push_passes(lua_State *L, uint32_t passes)
+static void push_passes(lua_State *L, const glintL_render *render)
 {
     int count = 0;
     lua_newtable(L);
     for (int pass = 0; pass < GLINT_PASS_COUNT; pass++) {
-        if (passes >> pass & 1) {
+        if (render->file_passes >> pass & 1) {
             lua_pushstring(L, glint_pass_name(pass));
             lua_rawseti(L, -2, ++count);
         }
+    }
+    for (int i = 0; i < render->derivative_count; i++) {
+        lua_pushfstring(L, "d:%s", render->derivative[i]);
+        lua_rawseti(L, -2, ++count);
     }
 }
 
@@ -439,7 +472,7 @@ void glintL_render_push(lua_State *L, int field, const glintL_render *render)
         lua_pushstring(L, what->names[value]);
         break;
     case PASSES:
-        push_passes(L, render->file_passes);
+        push_passes(L, render);
         break;
     case OUTPUT:
         if (*at)

@@ -5,6 +5,7 @@
 ///   names.c           frame number and pass -> file name
 ///   params.c          glint.params; param_spec.c one parameter and its --set
 ///   animation.c       the job object and its fields; sweep.c its other kind
+///   derivatives.c     passes d:NAME: the slopes of a frame's scene
 ///   work.c            one frame: plan, names, keys, render, hand to the writer
 ///   provenance.c      what a file says of itself, and whether files belong together; source.c the script's text
 ///   film.c            films: their frames, kept in a folder until they are made; film_pipe.c through ffmpeg
@@ -25,6 +26,8 @@
 
 #define GLINTL_PATH_SIZE 4096
 #define GLINTL_MESSAGE_SIZE 1024
+#define GLINTL_PASSES_MAX (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< of a frame
+#define GLINTL_PASS_NAME_SIZE (GLINT_DERIVATIVE_NAME_SIZE + 2) ///< bytes of "d:lamp_x"
 #define GLINTL_FRAMES_MAX 100000000 ///< of one job
 
 typedef enum glintL_exit {
@@ -99,7 +102,8 @@ typedef struct glintL_naming {
 bool glintL_name_check(const char *pattern, char message[GLINTL_MESSAGE_SIZE]);
 bool glintL_name_has_number(const char *pattern);
 /// The file of a frame's pass. False: too long.
-bool glintL_name_file(const glintL_naming *naming, int64_t number, glint_pass pass, char path[GLINTL_PATH_SIZE]);
+/// pass: its name, "beauty" ... or "d:lamp_x", of which the file has "d_lamp_x".
+bool glintL_name_file(const glintL_naming *naming, int64_t number, const char *pass, char path[GLINTL_PATH_SIZE]);
 bool glintL_name_is_linear(const char *path); ///< .pfm, .npy, .exr: light as it is, without codes and key
 bool glintL_name_is_exr(const char *path); ///< one file has all passes
 /// By the ending; `apng`: a .png is a film, too.
@@ -108,6 +112,16 @@ bool glintL_name_is_special(const char *path); ///< an existing pipe or device
 /// Whether an untrusted script may write a file of this name: a plain one, with no folder and nothing hidden.
 bool glintL_name_is_plain(const char *name, size_t length);
 #define GLINTL_PLAIN_NAME "plain file name (no folder, no leading '.', at most 200 bytes)"
+
+// ---- derivatives.c ----
+
+/// Whether the command line wants the pass d:NAME.
+bool glintL_wants_variable(const glintL_run *run, const char *name);
+/// "ambient", "d:lamp_x".
+const char *glintL_pass_name(const glintL_render *render, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE]);
+/// Fills the derivatives of a frame's description with the slopes of the scene as it is; they last until the next call. May
+/// raise.
+void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_render *render);
 
 // ---- The request ----
 
@@ -155,7 +169,8 @@ typedef struct glintL_record {
     glint_frame_stats stats;
     int files_left; ///< at the writer
     bool failed;
-    char *files[GLINT_PASS_COUNT]; ///< by pass; owned; NULL: none
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names
+    char *files[GLINTL_PASSES_MAX]; ///< by pass; owned; NULL: none
     struct glintL_film *film; ///< its beauty goes into; NULL: none
     struct glintL_record *next;
 } glintL_record;
@@ -177,7 +192,7 @@ typedef struct glintL_work {
     char *sweep; ///< owned; "name=value" lines of the frame's place in a glint.sweep; NULL: none
     struct glintL_film *film;
     int file_count;
-    glintL_file files[GLINT_PASS_COUNT];
+    glintL_file files[GLINTL_PASSES_MAX];
 } glintL_work;
 
 // ---- state.c, records.c ----
@@ -343,6 +358,7 @@ void glintL_find_source(lua_State *L, glintL_run *run);
 
 /// The texts of a file: what it was made by, and what is needed to make it again.
 typedef struct glintL_provenance {
+    char pass[GLINTL_PASS_NAME_SIZE]; ///< name of the file's pass
     glint_text text[GLINTL_TEXT_COUNT];
     size_t count;
     char frame[24]; ///< number within the script

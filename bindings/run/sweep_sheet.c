@@ -234,7 +234,7 @@ static void fill_lists(lua_State *L, int job, const glintL_naming *naming, int64
     out->places = new_list(L, count, kept);
     out->labels = lua_isfunction(L, label) ? new_list(L, count, kept) : NULL;
     for (int64_t n = 1; n <= count; n++) {
-        if (!glintL_name_file(naming, first + n - 1, GLINT_PASS_BEAUTY, path))
+        if (!glintL_name_file(naming, first + n - 1, "beauty", path))
             glintL_error(L, "output: the file name '%s...' is too long", path);
         lua_pushstring(L, path);
         out->files[n - 1] = keep(L, kept);

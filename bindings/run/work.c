@@ -87,12 +87,15 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
         return GLINT_OK;
     if (glintL_name_is_exr(naming->pattern))
         passes = 1u << GLINT_PASS_BEAUTY; // that file has them all
-    for (unsigned pass = 0; pass < GLINT_PASS_COUNT; pass++) {
+    else
+        passes |= ((1u << work->render.derivative_count) - 1) << GLINT_PASS_DERIVATIVE;
+    for (unsigned pass = 0; pass < GLINTL_PASSES_MAX; pass++) {
+        char name[GLINTL_PASS_NAME_SIZE];
         glintL_file *file = &work->files[work->file_count];
         if (!(passes >> pass & 1))
             continue;
         file->pass = (glint_pass)pass;
-        if (!glintL_name_file(naming, work->index, file->pass, file->path))
+        if (!glintL_name_file(naming, work->index, glintL_pass_name(&work->render, file->pass, name), file->path))
             return fail(error, GLINT_ERR_INVALID, "output: the file name '", naming->pattern, "...' is too long");
         file->key[0] = file->whole[0] = '\0';
         if (!glintL_name_is_linear(file->path) && !glintL_name_is_special(file->path)) {
@@ -110,7 +113,7 @@ glint_status glintL_work_name(glintL_work *work, const glintL_naming *naming, gl
 static bool is_awaited(const glintL_run *run, const glintL_work *work)
 {
     for (const glintL_record *record = run->head; record; record = record->next)
-        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        for (int pass = 0; pass < GLINTL_PASSES_MAX; pass++)
             for (int i = 0; i < work->file_count && record->files[pass]; i++)
                 if (strcmp(record->files[pass], work->files[i].path) == 0)
                     return true;

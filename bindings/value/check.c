@@ -136,8 +136,16 @@ int glintL_bad_key(lua_State *L, const char *path, int index)
     return glintL_error(L, "%s%sname of a field expected, got %s", path, *path ? ": " : "", got);
 }
 
+// What is read here keeps no slope.
+static void refuse_dual(lua_State *L, int index, const char *path)
+{
+    if (glintL_to_dual(L, index))
+        glintL_error(L, "%s%sno derivative goes through here; glint.value(x) is the number alone", path, *path ? ": " : "");
+}
+
 double glintL_read_number(lua_State *L, int index, const char *path)
 {
+    refuse_dual(L, index, path);
     if (lua_type(L, index) != LUA_TNUMBER) // a string is no number here
         glintL_refuse(L, index, path, "number");
     return lua_tonumber(L, index);
@@ -173,6 +181,7 @@ void glintL_read_three(lua_State *L, int index, const char *path, const char *ex
     }
     if (glintL_get_tracing(L)->to_numbers(L, index, out))
         return;
+    refuse_dual(L, index, path);
     if (!lua_istable(L, index))
         glintL_refuse(L, index, path, expected);
     index = lua_absindex(L, index);
@@ -180,6 +189,7 @@ void glintL_read_three(lua_State *L, int index, const char *path, const char *ex
     check_three_keys(L, index, path, expected);
     for (int i = 0; i < 3; i++) {
         bool is_number = lua_rawgeti(L, index, i + 1) == LUA_TNUMBER;
+        refuse_dual(L, -1, path);
         read[i] = lua_tonumber(L, -1);
         if (!is_number || !isfinite(read[i])) {
             const char *got = glintL_push_spelling(L, -1);

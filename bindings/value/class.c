@@ -118,10 +118,12 @@ static int read_member(lua_State *L)
         return 1;
     }
     int part = component(variant, name);
-    if (field && push_source(L, class, field, object)) {
+    if (field && (push_source(L, class, field, object) || glintL_push_sloped(L, 1, field))) {
         return 1;
     } else if (field) {
         push_value(L, class, field, object);
+    } else if (part >= 0 && glintL_push_sloped(L, 1, glintL_find_field(variant->fields, variant->place))) {
+        lua_rawgeti(L, -1, part + 1);
     } else if (part >= 0) {
         push_value(L, class, glintL_find_field(variant->fields, variant->place), object);
         lua_pushnumber(L, glintL_to_vector(L, -1)[part]);
@@ -137,15 +139,12 @@ static int read_member(lua_State *L)
 // Reads argument 3 into one component of the place.
 static void read_component(lua_State *L, const glintL_variant *variant, int part, description *desc)
 {
-    static const glintL_field parts[] = {
-        { .name = "x", .kind = GLINTL_NUMBER },
-        { .name = "y", .kind = GLINTL_NUMBER },
-        { .name = "z", .kind = GLINTL_NUMBER },
-    };
+    static const char *const names[] = { "x", "y", "z" };
+    const glintL_field *place = glintL_find_field(variant->fields, variant->place);
+    const glintL_field field = { .name = names[part], .kind = GLINTL_NUMBER, .slopes = place->slopes };
     double value;
-    glintL_read_field(L, 3, variant->name, &parts[part], &value);
-    memcpy(desc->bytes + glintL_find_field(variant->fields, variant->place)->offset + (size_t)part * sizeof value,
-           &value, sizeof value);
+    glintL_read_field(L, 3, variant->name, &field, &value);
+    memcpy(desc->bytes + place->offset + (size_t)part * sizeof value, &value, sizeof value);
 }
 
 static const glintL_field *writable_field(lua_State *L, const glintL_class *class, const glintL_variant *variant,
@@ -204,6 +203,10 @@ static int write_member(lua_State *L)
     glintL_check_status(L, variant->name, &error, class->set(object, &desc, &error));
     if (field && field->kind == GLINTL_OBJECT)
         glintL_keep(L, 1, field->name, 3);
+    if (field)
+        glintL_keep_slopes(L, 1, field, 3);
+    else
+        glintL_keep_part_slopes(L, 1, glintL_find_field(variant->fields, variant->place), part, 3);
     if (field && field->program_offset)
         glintL_get_tracing(L)->keep(L, 1, field, 3);
     if (field && class->accepted)

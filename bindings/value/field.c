@@ -180,7 +180,8 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
     switch (field->kind) {
     case GLINTL_NUMBER:
     case GLINTL_DEGREES:
-        x = read_finite(L, index, full);
+        if (!field->slopes || !glintL_read_duals(L, index, full, false, 1, &x))
+            x = read_finite(L, index, full);
         x = field->kind == GLINTL_DEGREES ? x * PI / 180 : x;
         memcpy(out, &x, sizeof x);
         break;
@@ -190,10 +191,12 @@ void glintL_read_field(lua_State *L, int index, const char *path, const glintL_f
         *(bool *)out = lua_toboolean(L, index);
         break;
     case GLINTL_VECTOR:
-        glintL_read_vector(L, index, full, out);
+        if (!field->slopes || !glintL_read_duals(L, index, full, false, 3, out))
+            glintL_read_vector(L, index, full, out);
         break;
     case GLINTL_COLOR:
-        glintL_read_color(L, index, full, out);
+        if (!field->slopes || !glintL_read_duals(L, index, full, true, 3, out))
+            glintL_read_color(L, index, full, out);
         break;
     case GLINTL_ENUM:
         read_enum(L, index, full, field->names, out);

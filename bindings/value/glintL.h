@@ -53,6 +53,7 @@ typedef struct glintL_field {
     size_t program_offset;
     void (*read)(lua_State *L, int index, const char *path, void *desc); ///< GLINTL_CUSTOM: raises for a wrong value
     void (*push)(lua_State *L, const void *desc); ///< likewise
+    bool slopes; ///< takes dual numbers, whose slopes the object's userdata keeps: see dual.c
     const char *follows; ///< the field whose pattern it has while it is not set, or NULL
 } glintL_field;
 
@@ -105,6 +106,50 @@ void glintL_push_vector(lua_State *L, const double v[3]);
 /// NULL when the value at index is not one.
 const double *glintL_to_vector(lua_State *L, int index);
 int glintL_unpack(lua_State *L); ///< the method
+
+// ---- dual.c: numbers that know how fast they change with variables ----
+
+#define GLINTL_VARIABLES_MAX 32 ///< of one script
+#define GLINTL_DUAL "glint.dual"
+
+typedef struct glintL_dual {
+    double value;
+    double slope[GLINTL_VARIABLES_MAX]; ///< by each variable
+} glintL_dual;
+
+/// Pushes the variable of this name at a value; the first call of a name makes it. Raises when there are too many.
+void glintL_push_variable(lua_State *L, const char *name, double value);
+/// The variable's number, from 0; -1: there is none. The nearest one's name, or NULL.
+int glintL_find_variable(lua_State *L, const char *name);
+const char *glintL_near_variable(lua_State *L, const char *name);
+/// lua/variable.c: the same, and from the first one on `math` takes dual numbers.
+void glintL_make_variable(lua_State *L, const char *name, double value);
+/// What glint's elementary function of that name gives for the dual number at 1; false, and nothing pushed: it is none.
+bool glintL_dual_function(lua_State *L, const char *name);
+/// Pushes a dual number, or a number where it has no slope.
+void glintL_push_dual(lua_State *L, const glintL_dual *d);
+const glintL_dual *glintL_to_dual(lua_State *L, int index); ///< NULL: it is none
+/// A dual number or a number; false: it is neither.
+bool glintL_read_dual(lua_State *L, int index, glintL_dual *out);
+/// The value of a function of a (and b, or NULL), whose derivatives by them are by_a and by_b.
+glintL_dual glintL_dual_apply(const glintL_dual *a, double by_a, const glintL_dual *b, double by_b, double value);
+glintL_dual glintL_dual_pow(const glintL_dual *a, const glintL_dual *b);
+/// The numbers of a field's value where there is a dual number among them, of three in a table, of a colour one for all;
+/// false: there is none. Allocates nothing.
+bool glintL_read_duals(lua_State *L, int index, const char *path, bool is_color, int count, double *out);
+/// Keeps the slopes of a value that was assigned to a field with the userdata at `index`, or forgets those that were there.
+void glintL_keep_slopes(lua_State *L, int index, const glintL_field *field, int value);
+/// The same of one component.
+void glintL_keep_part_slopes(lua_State *L, int index, const glintL_field *field, int part, int value);
+/// The same of all fields of the constructor's table at `table`.
+void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_field *fields);
+/// Pushes a field's value where it has slopes; false: it has none.
+bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field);
+/// The slopes of a field by a variable; false: all are 0.
+bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int variable, double out[3]);
+/// Pushes a table that has as keys all userdata with slopes, and maybe others.
+void glintL_push_all_sloped(lua_State *L);
+void glintL_open_dual(lua_State *L);
 
 // ---- transform.c: the immutable value of an affine map ----
 
@@ -268,6 +313,7 @@ bool glintL_push_object_name(lua_State *L, int index);
 /// Each file's part of the module: adds its constructors to the table on top of the stack and makes its metatables.
 void glintL_open_vector(lua_State *L);
 void glintL_open_material(lua_State *L);
+void glintL_open_variable(lua_State *L);
 void glintL_open_light(lua_State *L);
 void glintL_open_camera(lua_State *L);
 void glintL_open_transform(lua_State *L);
@@ -303,6 +349,8 @@ typedef struct glintL_render {
     glint_encode encode;
     double dpi; ///< pixels an inch; 0: not said
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< likewise: names of the passes d:NAME
+    int derivative_count;
 } glintL_render;
 
 // ---- state.c: what is being run. One per lua_State, in the registry; plain Lua has one with no options ----

@@ -10,7 +10,7 @@
 #ifdef GLINT_HAVE_OPENEXR
 #include <openexr.h>
 
-#define CHANNELS_MAX (3 * GLINT_PASS_COUNT)
+#define CHANNELS_MAX (3 * GLINT_PLANE_COUNT)
 #define FIRST_ROOM ((size_t)1 << 20)
 
 static char library_name[48];
@@ -31,7 +31,7 @@ const char *glint_exr_library(void)
 }
 
 typedef struct channel {
-    char name[32];
+    char name[48];
     const float *plane;
     int of; ///< channels of its pass
     bool half;
@@ -47,18 +47,20 @@ typedef struct exr_file {
 
 // ---- Channels -----------------------------------------------------------------------------------------------------
 
-static void name_channel(glint_pass pass, int c, char out[32])
+static void name_channel(const glint_image *image, glint_pass pass, int c, char out[48])
 {
+    char room[GLINT_DERIVATIVE_NAME_SIZE + 2];
+    const char *name = glint_plane_name(image, pass, room);
     const bool is_place = pass == GLINT_PASS_NORMAL;
     const char letter = is_place ? "XYZ"[c] : "RGB"[c];
     if (pass == GLINT_PASS_BEAUTY)
-        snprintf(out, 32, "%c", letter);
+        snprintf(out, 48, "%c", letter);
     else if (pass == GLINT_PASS_ALPHA)
-        snprintf(out, 32, "A");
+        snprintf(out, 48, "A");
     else if (glint_pass_channels(pass) == 3)
-        snprintf(out, 32, "%s.%c", glint_pass_name(pass), letter);
+        snprintf(out, 48, "%s.%c", name, letter);
     else
-        snprintf(out, 32, "%s.%s", glint_pass_name(pass),
+        snprintf(out, 48, "%s.%s", name,
                  pass == GLINT_PASS_DEPTH       ? "Z"
                  : pass == GLINT_PASS_OBJECT_ID ? "ID"
                                                 : "Y");
@@ -66,15 +68,15 @@ static void name_channel(glint_pass pass, int c, char out[32])
 
 static void list_channels(exr_file *file, const glint_image *image, bool half)
 {
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++) {
             if (!image->plane[pass][c])
                 continue;
             channel *added = &file->list[file->count++];
-            name_channel((glint_pass)pass, c, added->name);
+            name_channel(image, (glint_pass)pass, c, added->name);
             added->plane = image->plane[pass][c];
             added->of = glint_pass_channels((glint_pass)pass);
-            added->half = half && (added->of == 3 || pass == GLINT_PASS_ALPHA);
+            added->half = half && ((added->of == 3 && pass < GLINT_PASS_DERIVATIVE) || pass == GLINT_PASS_ALPHA);
         }
 }
 

@@ -9,6 +9,7 @@
 #include "engine/file/png.h"
 #include "engine/film/tone.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ typedef struct picture {
     const glint_tone_table *table; ///< colour passes
     float gain; ///< likewise
     double nearest; ///< of all depths
+    double steepest; ///< of all slopes, either way
     const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
     const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
     glint_stamps stamps; ///< the overlays
@@ -205,6 +207,17 @@ static const void *row_of_ids(const void *user, int y, void *scratch)
     return scratch;
 }
 
+/// Signed: grey at 0, black and white at the largest slope either way.
+static const void *row_of_slopes(const void *user, int y, void *scratch)
+{
+    const picture *p = user;
+    const size_t width = (size_t)p->image->width, at = (size_t)y * width;
+    for (size_t x = 0; x < width; x++)
+        for (size_t c = 0; c < 3; c++)
+            put_linear(p, scratch, 3 * x + c, 0.5 + 0.5 * p->plane[c][at + x] / p->steepest);
+    return scratch;
+}
+
 // ---- Which rows ---------------------------------------------------------------------------------------------------
 
 static void find_nearest(picture *p)
@@ -217,9 +230,18 @@ static void find_nearest(picture *p)
         p->nearest = 0; // nothing but background
 }
 
+static void find_steepest(picture *p)
+{
+    const size_t count = (size_t)p->image->width * (size_t)p->image->height;
+    p->steepest = DBL_MIN; // where nothing changes all is grey
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; i < count; i++)
+            p->steepest = fabs(p->plane[c][i]) > p->steepest ? fabs(p->plane[c][i]) : p->steepest;
+}
+
 static bool is_color(glint_pass pass)
 {
-    return pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
+    return pass < GLINT_PASS_DERIVATIVE && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
            pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE && pass != GLINT_PASS_REFINED;
 }
 
@@ -227,6 +249,9 @@ static glint_status fail_not_kept(const glint_image *image, glint_pass pass, gli
 {
     if (pass == GLINT_PASS_BEAUTY && image->codes)
         return glint_fail(error, GLINT_ERR_INVALID, "tone: the image holds codes of another tone and no 'beauty' pass");
+    if (pass >= GLINT_PASS_DERIVATIVE)
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no derivative number %d",
+                          (int)pass - GLINT_PASS_DERIVATIVE);
     return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", glint_pass_name(pass));
 }
 
@@ -279,6 +304,9 @@ static glint_status encode_rows(const glint_image *image, const glint_write_desc
     } else if (desc->pass == GLINT_PASS_DEPTH) {
         find_nearest(&p);
         source.row = row_of_depth;
+    } else if (desc->pass >= GLINT_PASS_DERIVATIVE) {
+        find_steepest(&p);
+        source.row = row_of_slopes;
     } else if (desc->pass == GLINT_PASS_ALPHA || desc->pass == GLINT_PASS_OUTLINE || desc->pass == GLINT_PASS_REFINED) {
         source.row = row_of_shares;
     } else {
@@ -329,8 +357,7 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return glint_exr_encode(image, desc->tone.bits == 16, desc->text, desc->text_count, out, error);
     float *const *plane = image->plane[desc->pass];
     if (!plane[0])
-        return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image",
-                          glint_pass_name(desc->pass));
+        return fail_not_kept(image, desc->pass, error);
     const bool done = kind == GLINT_FILE_NPY ? glint_npy_encode(image->width, image->height, channels, plane, out)
                                              : glint_pfm_encode(image->width, image->height, channels, plane, out);
     return done ? GLINT_OK : glint_fail_nomem(error);

@@ -4,6 +4,7 @@
 #include "engine/base/status.h"
 #include "engine/film/tone.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,8 @@ static const struct {
 
 static bool is_pass(glint_pass pass) { return (unsigned)pass < GLINT_PASS_COUNT; }
 
+static bool is_plane(glint_pass pass) { return (unsigned)pass < GLINT_PLANE_COUNT; }
+
 const char *glint_pass_name(glint_pass pass) { return is_pass(pass) ? pass_table[pass].name : NULL; }
 
 glint_pass glint_pass_from_name(const char *name)
@@ -33,7 +36,18 @@ glint_pass glint_pass_from_name(const char *name)
     return (glint_pass)pass;
 }
 
-int glint_pass_channels(glint_pass pass) { return is_pass(pass) ? pass_table[pass].channels : 0; }
+int glint_pass_channels(glint_pass pass)
+{
+    return is_pass(pass) ? pass_table[pass].channels : is_plane(pass) ? 3 : 0;
+}
+
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_DERIVATIVE_NAME_SIZE + 2])
+{
+    if (!is_plane(pass) || is_pass(pass))
+        return glint_pass_name(pass);
+    snprintf(room, GLINT_DERIVATIVE_NAME_SIZE + 2, "d:%s", image->derivative[pass - GLINT_PASS_DERIVATIVE]);
+    return room;
+}
 
 static bool allocate_plane(size_t pixels, float **plane)
 {
@@ -44,8 +58,8 @@ static bool allocate_plane(size_t pixels, float **plane)
 static bool allocate_all(glint_image *image, uint32_t passes, const glint_tone_desc *codes_tone)
 {
     size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
-        for (int c = 0; c < pass_table[pass].channels; c++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
+        for (int c = 0; c < glint_pass_channels((glint_pass)pass); c++)
             if (passes & 1u << pass && !allocate_plane(pixels, &image->plane[pass][c]))
                 return false;
     if (!codes_tone)
@@ -95,9 +109,15 @@ glint_status glint_image_create_for(const glint_render_desc *desc, glint_image *
 {
     glint_status status = create((int)desc->width, (int)desc->height, desc->passes, desc->alpha,
                                  desc->codes ? &desc->tone : NULL, out, error);
-    if (!status)
-        (*out)->outline = desc->outline;
-    return status;
+    if (status)
+        return status;
+    (*out)->outline = desc->outline;
+    if (desc->derivative_count)
+        (*out)->shadows = glint_alloc_large((size_t)desc->width * (size_t)desc->height, sizeof *(*out)->shadows);
+    if (!desc->derivative_count || (*out)->shadows)
+        return GLINT_OK;
+    glint_image_release(*out);
+    return glint_fail_nomem(error);
 }
 
 static void copy_rows(const void *from, size_t stride, void *to, size_t row, size_t count)
@@ -110,7 +130,7 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
                               glint_error *error)
 {
     uint32_t passes = 0;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
     glint_status status =
         create(width, height, passes, image->alpha, image->codes ? &image->code_tone : NULL, out, error);
@@ -119,7 +139,8 @@ glint_status glint_image_crop(const glint_image *image, int x, int y, int width,
     const size_t first = (size_t)y * (size_t)image->width + (size_t)x, bytes = glint_image_pixel_bytes(image);
     const size_t stride = (size_t)image->width, row = (size_t)width, rows = (size_t)height;
     (*out)->outline = image->outline;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    memcpy((*out)->derivative, image->derivative, sizeof image->derivative);
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             if (image->plane[pass][c])
                 copy_rows(image->plane[pass][c] + first, stride * sizeof(float), (*out)->plane[pass][c],
@@ -180,10 +201,10 @@ size_t glint_image_bytes(const glint_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     size_t bytes = image->codes ? pixels * glint_image_pixel_bytes(image) : 0;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             bytes += image->plane[pass][c] ? pixels * sizeof(float) : 0;
-    return bytes;
+    return bytes + (image->shadows ? pixels * sizeof *image->shadows : 0);
 }
 
 glint_image *glint_image_retain(glint_image *image)
@@ -203,13 +224,19 @@ void glint_image_release(glint_image *image)
         free(image);
         return;
     }
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         for (int c = 0; c < 3; c++)
             free(image->plane[pass][c]);
     free(image->codes);
     free(image->row_stamp);
+    free(image->shadows);
     free(image->film);
     free(image);
+}
+
+const char *glint_image_derivative(const glint_image *image, size_t index)
+{
+    return index < GLINT_DERIVATIVES_MAX && *image->derivative[index] ? image->derivative[index] : NULL;
 }
 
 int glint_image_width(const glint_image *image) { return image->width; }
@@ -218,15 +245,18 @@ int glint_image_height(const glint_image *image) { return image->height; }
 
 bool glint_image_has_pass(const glint_image *image, glint_pass pass)
 {
-    return is_pass(pass) && image->plane[pass][0] != NULL;
+    return is_plane(pass) && image->plane[pass][0] != NULL;
 }
 
 glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x, int y, float out[3],
                                glint_error *error)
 {
-    if (!is_pass(pass))
+    if (!is_plane(pass))
         return glint_fail(error, GLINT_ERR_INVALID, "pass: one of the %d passes expected, got %d", GLINT_PASS_COUNT,
                           (int)pass);
+    if (!image->plane[pass][0] && !is_pass(pass))
+        return glint_fail(error, GLINT_ERR_INVALID, "pass: this image has no derivative number %d",
+                          (int)pass - GLINT_PASS_DERIVATIVE);
     if (!image->plane[pass][0])
         return glint_fail(error, GLINT_ERR_INVALID, "pass: '%s' was not kept in this image", pass_table[pass].name);
     glint_status status = glint_check_whole("x", x, 0, image->width - 1, error);
@@ -236,6 +266,6 @@ glint_status glint_image_pixel(const glint_image *image, glint_pass pass, int x,
         return status;
     size_t at = (size_t)y * (size_t)image->width + (size_t)x;
     for (int c = 0; c < 3; c++)
-        out[c] = image->plane[pass][pass_table[pass].channels == 1 ? 0 : c][at];
+        out[c] = image->plane[pass][glint_pass_channels(pass) == 1 ? 0 : c][at];
     return GLINT_OK;
 }

@@ -9,6 +9,8 @@
 
 #include <stdatomic.h>
 
+#define GLINT_PLANE_COUNT (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX) ///< passes and derivatives
+
 /// What is known of one tile's pixels.
 typedef struct glint_film_stamp {
     glint_key key; ///< of what they were made from. Equal keys: equal pixels; all zero: unknown
@@ -18,11 +20,14 @@ typedef struct glint_film_stamp {
 struct glint_image {
     atomic_int references;
     int width, height;
-    float *plane[GLINT_PASS_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
+    float *plane[GLINT_PLANE_COUNT][3]; ///< width * height values, top row first, 64-byte aligned; NULL: not kept.
         ///< One-channel passes have [0] only
     void *codes; ///< channels * width * height uint8_t or uint16_t (native order), interleaved; NULL: none
     bool alpha; ///< beauty is light times coverage, and the pass `alpha` is there wherever beauty is
     glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
+    char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names; "": there is none
+    uint32_t *shadows; ///< of frames whose derivatives move shadows, a number a pixel: in equal ones the same lights are
+        ///< kept from all samples or from none; 0: that differs among the samples. NULL: none. Owned
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
     glint_film_stamp *film; ///< one a tile, left to right, top to bottom. may be NULL. Owned
@@ -38,6 +43,9 @@ static inline size_t glint_image_stamps(const glint_image *image)
 {
     return ((size_t)image->height + GLINT_TILE_HEIGHT - 1) / GLINT_TILE_HEIGHT;
 }
+
+/// "ambient", or "d:lamp_x" of the image's derivatives; NULL: there is no such pass.
+const char *glint_plane_name(const glint_image *image, glint_pass pass, char room[GLINT_DERIVATIVE_NAME_SIZE + 2]);
 
 /// Bytes of its planes and codes.
 size_t glint_image_bytes(const glint_image *image);

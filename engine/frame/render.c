@@ -277,11 +277,29 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
 static bool has_format(const glint_image *image, const glint_render_desc *desc)
 {
     uint32_t passes = 0;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+    for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
         passes |= (uint32_t)glint_image_has_pass(image, (glint_pass)pass) << pass;
     return image->width == (int)desc->width && image->height == (int)desc->height && passes == desc->passes &&
            image->alpha == desc->alpha && image->outline == desc->outline && (image->codes != NULL) == desc->codes &&
            (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
+}
+
+/// Whether what is kept from a pixel's samples is not what is kept from those of the one beside it.
+static bool is_shifted(const uint32_t *shadows, int x, int y, int width, const glint_extent *e)
+{
+    const uint32_t *at = shadows + (size_t)y * (size_t)width + (size_t)x;
+    return !*at || (x > e->x && at[-1] != *at) || (x + 1 < e->x + e->width && at[1] != *at) ||
+           (y > e->y && at[-width] != *at) || (y + 1 < e->y + e->height && at[width] != *at);
+}
+
+/// Pixels at the edges of shadows that a derivative's parameter moves.
+static uint64_t count_shifted(const glint_image *image, const glint_extent *extent)
+{
+    uint64_t count = 0;
+    for (int y = extent->y; y < extent->y + extent->height; y++)
+        for (int x = extent->x; x < extent->x + extent->width; x++)
+            count += is_shifted(image->shadows, x, y, image->width, extent);
+    return count;
 }
 
 /// `base`: of adaptive sampling, after the choice; else NULL.
@@ -335,6 +353,7 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     finish(renderer, plan, &f.extent, image);
     collect_stats(renderer, plan, &f.extent, now_ms() - start + renderer->raster.ms, stats);
     stats->build_ms = start - begin - renderer->raster.ms;
+    stats->shifted = plan->derivatives && plan->derivatives->moves ? count_shifted(image, &f.extent) : 0;
     if (atomic_load(renderer->stop))
         return glint_fail(error, GLINT_ERR_CANCELLED, "cancelled");
     if (image->film)
@@ -347,7 +366,8 @@ glint_pool *glint_renderer_pool(const glint_renderer *renderer) { return rendere
 /// The key of the whole picture.
 static glint_key picture_key(const glint_plan *plan)
 {
-    return plan->keys[plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE];
+    const glint_stage_id last = plan->desc.codes ? GLINT_STAGE_TONE : GLINT_STAGE_RESOLVE;
+    return plan->keys[plan->derivatives ? GLINT_STAGE_DERIVATIVE : last];
 }
 
 /// Gives the last picture again when this frame's would be the same.
@@ -364,6 +384,7 @@ static bool unchanged(glint_renderer *renderer, const glint_plan *plan, glint_im
         stats->pixels = renderer->last_stats.pixels;
         stats->nonfinite = renderer->last_stats.nonfinite;
         stats->refined = renderer->last_stats.refined;
+        stats->shifted = renderer->last_stats.shifted;
         for (int i = 0; i < stats->stage_count; i++) {
             stats->stage_name[i] = renderer->last_stats.stage_name[i];
             stats->stage_reused[i] = 1;
@@ -522,6 +543,8 @@ glint_status glint_render_instant(glint_renderer *renderer, const glint_plan *pl
         glint_renderer_destroy(renderer->base);
         renderer->base = NULL;
     }
+    for (size_t i = 0; !status && plan->derivatives && i < plan->derivatives->count; i++)
+        memcpy(image->derivative[i], plan->derivatives->of[i].name, sizeof image->derivative[i]);
     if (!status && plan->base)
         status = run_adaptive(renderer, plan, image, table, &counted, error);
     else if (!status)

@@ -344,6 +344,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
     one(e, tone->exposure != 0, "exposure", "exposure = %g", tone->exposure);
     for (int pass = GLINT_PASS_BACKGROUND; pass < GLINT_PASS_COUNT; pass++)
         one(e, plan->desc.passes >> pass & 1, "pass", "passes: %s", glint_pass_name((glint_pass)pass));
+    for (size_t i = 0; plan->derivatives && i < plan->derivatives->count; i++)
+        one(e, true, "derivative", "passes: d:%s", plan->derivatives->of[i].name);
 }
 
 static void list_stages(glint_plan *plan)
@@ -369,6 +371,7 @@ static void list_stages(glint_plan *plan)
         "mean of samples and lights",
         "light to 8 or 16-bit codes",
         "lines where depth, normal or object changes",
+        "derivatives of the picture by parameters",
     };
     for (int id = 0; id < GLINT_STAGE_COUNT; id++) {
         if (!plan->runs[id])

@@ -17,6 +17,8 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame)
 {
     glint_render_desc desc = *frame;
     desc.codes = false;
+    desc.derivatives = NULL;
+    desc.derivative_count = 0;
     desc.outline = GLINT_OUTLINE_NONE;
     desc.passes = (desc.passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY;
     return desc;

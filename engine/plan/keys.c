@@ -29,6 +29,7 @@ typedef enum input {
     INPUT_BOUNCES, ///< what materials send on, how far, and through what
     INPUT_ADAPTIVE, ///< how much neighbours must differ, and how they are shown
     INPUT_DEPTH_CUE, ///< how light fades with the distance from the eye
+    INPUT_DERIVATIVES, ///< slopes of what shading reads
     INPUT_PASSES,
     INPUT_TONE
 } input;
@@ -56,6 +57,7 @@ static const uint32_t stages[GLINT_STAGE_COUNT] = {
     [GLINT_STAGE_RESOLVE] = READS(PASSES),
     [GLINT_STAGE_TONE] = READS(TONE),
     [GLINT_STAGE_OUTLINE] = 0,
+    [GLINT_STAGE_DERIVATIVE] = READS(DERIVATIVES),
 };
 
 #define ADD(key, value) ((key) = glint_key_add((key), &(value), sizeof(value)))
@@ -258,6 +260,8 @@ static glint_key add_inputs(const glint_plan *plan, uint32_t which, glint_key ke
     }
     if (which & READS(DEPTH_CUE) && plan->veil.on)
         ADD(key, plan->veil.absorption);
+    for (size_t i = 0; which & READS(DERIVATIVES) && plan->derivatives && i < plan->derivatives->count; i++)
+        key = glint_derivative_key(plan, i, key);
     if (which & READS(BACKGROUND))
         key = background_key(plan, key);
     if (which & (READS(BACKGROUND) | READS(TONE)) && plan->desc.alpha)
@@ -309,7 +313,7 @@ static glint_status part_keys(glint_plan *plan, glint_error *error)
         add_inputs(plan, READS(MATERIALS) | READS(TINTS) | READS(INDIRECT) | READS(BOUNCES), none);
     plan->all_lights_key = add_inputs(plan, READS(LIGHT_PLACES) | READS(SHADOWS) | READS(LIGHT_COLORS), light_base);
     plan->background_key = add_inputs(plan, READS(BACKGROUND), none);
-    plan->output_key = add_inputs(plan, READS(DEPTH_CUE) | READS(PASSES) | READS(TONE), none);
+    plan->output_key = add_inputs(plan, READS(DEPTH_CUE) | READS(DERIVATIVES) | READS(PASSES) | READS(TONE), none);
     return GLINT_OK;
 }
 

@@ -9,7 +9,8 @@
 
 const char *const glint_stage_names[GLINT_STAGE_COUNT] = {
     "camera", "cast",   "visible_lights", "surface", "pattern",   "view",   "light",   "facet", "occlude", "vertex",
-    "shade",  "shader", "environment",    "indirect", "bounce", "depth_cue", "refine", "resolve", "tone",  "outline"
+    "shade",  "shader", "environment",    "indirect", "bounce", "depth_cue", "refine", "resolve", "tone",  "outline",
+    "derivative"
 };
 
 glint_status glint_choose_isa(const char *isa, const glint_stages **out, glint_error *error)
@@ -90,7 +91,7 @@ static const uint32_t without_index =
     1u << GLINT_STAGE_CAMERA | 1u << GLINT_STAGE_CAST | 1u << GLINT_STAGE_VISIBLE_LIGHT | 1u << GLINT_STAGE_SURFACE |
     1u << GLINT_STAGE_PATTERN | 1u << GLINT_STAGE_VIEW | 1u << GLINT_STAGE_LIGHT | 1u << GLINT_STAGE_FACET |
     1u << GLINT_STAGE_VERTEX | 1u << GLINT_STAGE_SHADE | 1u << GLINT_STAGE_SHADER | 1u << GLINT_STAGE_ENVIRONMENT |
-    1u << GLINT_STAGE_RESOLVE |
+    1u << GLINT_STAGE_RESOLVE | 1u << GLINT_STAGE_DERIVATIVE |
     1u << GLINT_STAGE_TONE | 1u << GLINT_STAGE_OUTLINE;
 
 /// Whether triangles are to be scanned.
@@ -115,7 +116,7 @@ static bool shades_together(const glint_plan *plan)
     for (size_t i = 0; i < sizeof other / sizeof *other; i++)
         if (plan->runs[other[i]])
             return false;
-    return plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
+    return !plan->derivatives && plan->desc.samples > 1 && plan->desc.samples <= GLINT_LIGHT_CHUNK &&
            plan->desc.samples * plan->light_count <= GLINT_LIGHT_CHUNK && !plan->tints;
 }
 
@@ -145,6 +146,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_OCCLUDE] = lit && plan->shadow_count > 0;
     plan->runs[GLINT_STAGE_VERTEX] = lit && plan->geometry->table.shading_point_count > 0;
     plan->runs[GLINT_STAGE_SHADE] = true;
+    plan->runs[GLINT_STAGE_DERIVATIVE] = plan->derivatives;
     plan->together = shades_together(plan);
     plan->runs[GLINT_STAGE_REFINE] = plan->desc.adaptive > 0 && plan->desc.samples > 1;
     plan->runs[GLINT_STAGE_RESOLVE] = plan->accumulate;
@@ -152,8 +154,9 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_OUTLINE] = plan->desc.passes >> GLINT_PASS_OUTLINE & 1;
 }
 
-/// times: of `shutter_times`, whose lights the frame has; NULL: it has its own.
-static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan *const *times, glint_error *error)
+/// times: of `shutter_times`, whose lights the frame has; NULL: it has its own. `desc`: with its derivatives.
+static glint_status fill(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
+                         glint_plan *const *times, glint_error *error)
 {
     glint_plan_camera_init(&plan->camera, glint_camera_get(scene->desc.camera), &plan->desc);
     glint_status status = glint_geometry_of(scene, &plan->geometry, error);
@@ -168,6 +171,8 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan 
     if (!status && times)
         status = glint_plan_take_lights(plan, times, plan->shutter_times, error);
     if (!status)
+        status = glint_plan_find_derivatives(plan, scene, desc, error);
+    if (!status)
         status = glint_plan_visible_lights(plan, scene, error);
     if (!status)
         status = glint_plan_find_environment(plan, &scene->desc, error);
@@ -178,6 +183,9 @@ static glint_status fill(glint_plan *plan, const glint_scene *scene, glint_plan 
     if (status)
         return status;
     choose_stages(plan);
+    status = glint_plan_check_derivatives(plan, scene, error);
+    if (status)
+        return status;
     choose_visibility(plan);
     plan->where = plan->geometry->where;
     status = glint_plan_keys(plan, error);
@@ -198,13 +206,15 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
         return glint_fail_nomem(error);
     plan->desc = *desc;
     plan->shutter_times = shutter_times;
+    plan->desc.derivatives = NULL;
+    plan->desc.passes |= ((1u << desc->derivative_count) - 1) << GLINT_PASS_DERIVATIVE;
     if (desc->alpha && desc->passes >> GLINT_PASS_BEAUTY & 1)
         plan->desc.passes |= 1u << GLINT_PASS_ALPHA;
     if (desc->outline)
         plan->desc.passes |= 1u << GLINT_PASS_OUTLINE;
     if (plan->desc.passes >> GLINT_PASS_OUTLINE & 1)
         plan->desc.passes |= GLINT_OUTLINE_READS;
-    status = fill(plan, scene, times, error);
+    status = fill(plan, scene, desc, times, error);
     if (!status) {
         const glint_plan_camera *c = &plan->camera;
         const double view[3][3] = { { c->right[0], c->right[1], c->right[2] }, { c->up[0], c->up[1], c->up[2] },
@@ -285,6 +295,7 @@ void glint_plan_destroy(glint_plan *plan)
     glint_plan_patterns_free(plan->patterns);
     glint_plan_environment_free(plan->environment);
     free(plan->bouncing);
+    glint_plan_derivatives_free(plan->derivatives);
     free(plan->indirect.rest);
     free(plan->indirect.light_rows);
     free(plan->material_keys);
@@ -373,7 +384,8 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 
 static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
 {
-    const int options[] = { desc->pass,          desc->tone.curve, desc->tone.transfer,
+    const int pass = desc->pass < GLINT_PASS_DERIVATIVE ? desc->pass : GLINT_PASS_DERIVATIVE; // whatever its number
+    const int options[] = { pass,                desc->tone.curve, desc->tone.transfer,
                             desc->tone.rounding, desc->tone.bits,  desc->encode };
     glint_key key = glint_key_add(glint_plan_picture_key(plan, GLINT_STAGE_REFINE), options, sizeof options);
     key = glint_key_add(key, &desc->tone.exposure, sizeof desc->tone.exposure);
@@ -381,6 +393,9 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
         key = glint_key_add(key, &plan->desc.outline, sizeof plan->desc.outline);
     if (desc->pass == GLINT_PASS_BEAUTY && plan->overlays)
         key = glint_overlays_key(plan->overlays, key);
+    const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
+    if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
+        key = glint_derivative_key(plan, derivative, key);
     if (desc->dpi > 0)
         key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);
     key = glint_key_add_string(key, GLINT_VERSION);

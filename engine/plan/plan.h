@@ -12,6 +12,7 @@
 ///   plan/environment.c a background that a program gives
 ///   plan/indirect.c   light that surfaces get from other surfaces and the background
 ///   plan/exposure.c   several times of a frame, while a shutter is open
+///   plan/derivative.c slopes of what shading reads
 ///   plan/explain.c    which effects the scene calls for, and who called
 #ifndef GLINT_PLAN_H
 #define GLINT_PLAN_H
@@ -19,6 +20,7 @@
 #include "engine/geometry/geometry.h"
 #include "engine/geometry/media.h"
 #include "engine/overlay/overlay.h"
+#include "engine/plan/derivative.h"
 #include "engine/plan/patterns.h"
 
 /// In the order a frame runs them.
@@ -43,6 +45,7 @@ typedef enum glint_stage_id {
     GLINT_STAGE_RESOLVE,
     GLINT_STAGE_TONE,
     GLINT_STAGE_OUTLINE, ///< of the whole picture, when its tiles are done
+    GLINT_STAGE_DERIVATIVE, ///< beside `shade`, of which no stage reads it
     GLINT_STAGE_COUNT
 } glint_stage_id;
 
@@ -70,6 +73,7 @@ typedef struct glint_plan_light {
     bool alike; ///< without samples or a cone, as the light before it, and to the stage `light` different by its place alone
     bool is_spot;
     glint_spot spot;
+    uint32_t source; ///< which light of the scene
     const glint_light_sample *light_samples; ///< of an area light: the pattern of each turn, turn after turn; else NULL
     const glint_light_sample *cap; ///< shadows by caps: the whole light; else NULL
     bool hard; ///< area: one ray to `position`, its middle, decides for all samples
@@ -168,6 +172,8 @@ struct glint_plan {
     glint_plan_edge *visible_light_edges; ///< of all of them
     uint32_t visible_light_count;
     size_t visible_light_edge_count;
+
+    glint_plan_derivatives *derivatives; ///< NULL: none is wanted
 
     glint_bounce_material *bouncing; ///< beside materials; NULL: none of them sends rays on
     bool mirrors, transmits, absorbs; ///< some material; the last: one that transmits
@@ -273,6 +279,14 @@ glint_status glint_plan_find_indirect(glint_plan *plan, const glint_scene_desc *
 glint_status glint_plan_bounce(glint_plan *plan, glint_error *error);
 /// Fills what the eye of a perspective camera is inside of, which glint_plan_bounce does where something transmits.
 glint_status glint_plan_eye(glint_plan *plan, glint_error *error);
+
+/// Fills the derivatives that `desc` wants, after shading.
+glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
+                                         glint_error *error);
+/// Whether all of the frame that depends on them has derivatives; its stages are chosen.
+glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error);
+/// Continues a key with all that one of them reads beside the frame.
+glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key key);
 
 /// Fills the lights that are seen.
 glint_status glint_plan_visible_lights(glint_plan *plan, const glint_scene *scene, glint_error *error);

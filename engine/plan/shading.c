@@ -336,8 +336,9 @@ glint_status glint_plan_shading(glint_plan *plan, const glint_scene *scene, glin
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         glint_plan_light light;
         light_init(plan, &light, desc);
-        if (is_black(light.diffuse) && is_black(light.specular))
-            continue;
+        if (is_black(light.diffuse) && is_black(light.specular) && !plan->desc.derivative_count)
+            continue; // derivatives are of lights that have no strength, too
+        light.source = (uint32_t)i;
         glossy_light = glossy_light || !is_black(light.specular);
         light_samples += add_light(plan, &light, desc, plan->light_samples + light_samples);
     }

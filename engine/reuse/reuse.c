@@ -94,7 +94,7 @@ void glint_reuse_begin(glint_reuse *reuse, const glint_plan *plan, size_t tile_c
 
 bool glint_reuse_shows_more(const glint_cached_tile *tile, const glint_plan *plan)
 {
-    if (plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->shading_points))
+    if (plan->derivatives || plan->runs[GLINT_STAGE_INDIRECT] || (plan->runs[GLINT_STAGE_VERTEX] && tile->shading_points))
         return true;
     if (!plan->runs[GLINT_STAGE_BOUNCE] || plan->tints || tile->shown_count > GLINT_SHOWN_MAX)
         return plan->runs[GLINT_STAGE_BOUNCE] || plan->tints;

@@ -26,6 +26,8 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->samples = glint_samples_create()) && good;
     if (plan->facets && !tile->facets)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
+    if (plan->derivatives && !tile->derivative)
+        good = (tile->derivative = glint_derivative_create()) && good;
     glint_pattern_destroy(tile->pattern); // its size is the plan's
     tile->pattern = NULL;
     if (plan->patterns)
@@ -53,6 +55,7 @@ void glint_tile_destroy(glint_tile *tile)
     glint_samples_destroy(tile->samples);
     glint_pattern_destroy(tile->pattern);
     glint_environment_destroy(tile->environment);
+    glint_derivative_destroy(tile->derivative);
     free(tile->facets);
     free(tile);
 }

@@ -22,8 +22,8 @@ static void store_plane(const glint_tile *tile, const float *groups, float *plan
     }
 }
 
-/// `groups`: the channels one after the other.
-static void store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass, const float *groups)
+void glint_tile_store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass,
+                           const float *groups)
 {
     if (!(frame->plan->desc.passes >> pass & 1))
         return;
@@ -66,7 +66,7 @@ static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
             d[c] = glint_tile_direction(tile, precision, c, i);
         depth[i] = (float)(glint_real_at(tile->at.t, precision, i) * sqrt(vec_dot(d, d)));
     }
-    store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
 }
 
 static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
@@ -80,7 +80,7 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
         for (int c = 0; c < 3; c++)
             normal[c][i] = (float)(hit ? glint_real_at(tile->surface.normal[c], frame->plan->desc.precision, i) : n[c]);
     }
-    store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
 }
 
 static void store_object_id(const glint_tile *tile, const glint_tile_frame *frame)
@@ -95,7 +95,7 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
         }
         id[i] = hit ? object : 0;
     }
-    store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
 
 static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
@@ -108,7 +108,7 @@ static void store_albedo(const glint_tile *tile, const glint_tile_frame *frame)
         for (int c = 0; c < 3; c++)
             albedo[c][i] = hit ? (float)kd[c] : 0;
     }
-    store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_ALBEDO, albedo[0]);
 }
 
 void glint_tile_store_geometry(const glint_tile *tile, const glint_tile_frame *frame)
@@ -152,7 +152,7 @@ static void store_coverage(const glint_tile *tile, const glint_tile_frame *frame
         return;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         alpha[i] = coverage_at(tile, frame->plan, i);
-    store_pass(tile, frame, GLINT_PASS_ALPHA, alpha);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_ALPHA, alpha);
 }
 
 // ---- Light --------------------------------------------------------------------------------------------------------
@@ -165,7 +165,7 @@ static void store_refined(const glint_tile *tile, const glint_tile_frame *frame)
         return;
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         all[i] = 1;
-    store_pass(tile, frame, GLINT_PASS_REFINED, all);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_REFINED, all);
 }
 
 void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
@@ -176,9 +176,9 @@ void glint_tile_store_light(glint_tile *tile, const glint_tile_frame *frame)
         if (!glint_plan_has_term(frame->plan, (glint_term)k) &&
             frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
             memset(tile->film.terms[k], 0, sizeof tile->film.terms[k]);
-    store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);
+    glint_tile_store_pass(tile, frame, GLINT_PASS_BEAUTY, tile->film.beauty[0]);
     for (int k = 0; k < GLINT_TERM_COUNT; k++)
-        store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
+        glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_BACKGROUND + k), tile->film.terms[k][0]);
 }
 
 /// Where in the tile's arrays pixel (x, y) of it is.
@@ -275,7 +275,9 @@ void glint_tile_copy(const glint_tile *tile, const glint_tile_frame *frame)
         if (pixel)
             memcpy((char *)frame->image->codes + row * pixel, (const char *)from->codes + row * pixel,
                    tile->width * pixel);
-        for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+        if (from->shadows)
+            memcpy(frame->image->shadows + row, from->shadows + row, tile->width * sizeof *from->shadows);
+        for (int pass = 0; pass < GLINT_PLANE_COUNT; pass++)
             for (int c = 0; c < 3; c++)
                 if (from->plane[pass][c])
                     memcpy(frame->image->plane[pass][c] + row, from->plane[pass][c] + row, tile->width * sizeof(float));

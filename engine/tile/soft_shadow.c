@@ -11,7 +11,8 @@ static bool is_summed(const glint_tile *tile, const glint_tile_frame *frame, uin
     const glint_plan *plan = frame->plan;
     const glint_plan_light *light = &plan->lights[first + slot];
     const uint32_t each_sample = 1u << GLINT_FIELD_SHININESS | 1u << GLINT_FIELD_BUMP | 1u << GLINT_FIELD_SHADER;
-    if (!light->light_samples || light->hard || plan->facets || plan->tints || plan->dims || glint_plan_cuts(plan) ||
+    if (!light->light_samples || light->hard || plan->facets || plan->tints || plan->dims || plan->derivatives ||
+        glint_plan_cuts(plan) ||
         frame->count_work || frame->time_stages || glint_tile_fields_shown(tile, plan) & each_sample)
         return false;
     for (uint32_t i = slot; i < slot + count; i++)

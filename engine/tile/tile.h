@@ -159,6 +159,7 @@ typedef struct glint_tile {
     glint_tile_counts counts;
     glint_tile_facets *facets; ///< owned; NULL until a frame has microfacets
     struct glint_pattern *pattern; ///< memory of tile/pattern.c; NULL in frames without programs
+    struct glint_derivative_work *derivative; ///< of tile/derivative.c; NULL until a frame has derivatives
     double *unbumped[3]; ///< real: the normals that bumps have turned, as they were; NULL: there are no bumps
     uint32_t own_planes; ///< of the planes that samples have which are shaded together, the current sample's
 } glint_tile;
@@ -433,7 +434,18 @@ bool glint_tile_raster_in_sight(const glint_tile *tile, const glint_tile_frame *
 /// `args`: as for a cast of everything.
 void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const glint_cast_args *args);
 
+/// tile/derivative.c: how fast the light of the current sample changes with parameters.
+struct glint_derivative_work *glint_derivative_create(void);
+void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: nothing
+/// What is there without lights, at the first call of a sample, and what `count` lights of the plan from `from` on add, of which
+/// it is known where they reach. The points are found.
+void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+/// After the last sample: into the image.
+void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);
+
 /// tile/output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
+/// `groups`: the channels one after the other, in the order of groups. Nothing where the picture has no such pass.
+void glint_tile_store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass, const float *groups);
 bool glint_tile_wants_geometry(const glint_plan *plan);
 /// A component of the ray of sample i.
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i);

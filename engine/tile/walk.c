@@ -168,7 +168,7 @@ static void find_view(glint_tile *tile, const glint_tile_frame *frame, walk *w)
 static bool is_plain(const glint_tile_frame *frame, const walk *w)
 {
     const glint_plan *plan = frame->plan;
-    return !w->points && !frame->time_stages && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
+    return !w->points && !frame->time_stages && !plan->derivatives && !glint_pattern_needs_normals(plan) && plan->light_count == 1 &&
            !plan->lights[0].light_samples && !plan->lights[0].is_spot && !frame->geometry.triangles &&
            !frame->geometry.solids;
 }
@@ -291,6 +291,16 @@ static void find_depth_cue(glint_tile *tile, const glint_tile_frame *frame, walk
     glint_tile_find_depth_cue(tile, frame->plan, seen);
 }
 
+/// How fast what was shaded changes with parameters.
+static void derive(glint_tile *tile, const glint_tile_frame *frame, walk *w, bool any, uint32_t from, uint32_t count)
+{
+    if (any)
+        need_points(tile, frame, w);
+    glint_tile_derive(tile, frame, from, count);
+    if (from == 0)
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_DERIVATIVE, false);
+}
+
 /// One sample of every pixel: hits, then the lights, a chunk at a time.
 static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
 {
@@ -328,6 +338,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_remember_sample(tile, frame, count);
         else
             glint_tile_shade(tile, frame, from, count);
+        if (frame->plan->derivatives)
+            derive(tile, frame, &w, any, from, count);
         for (uint32_t i = 0; i < count && frame->plan->tints; i++)
             find_transparent_shadow(tile, frame, &w, from + i, i);
         from += count;
@@ -397,6 +409,8 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     if (frame->base)
         glint_tile_take_base(tile, frame);
     glint_tile_store_light(tile, frame);
+    if (plan->derivatives)
+        glint_tile_store_derivatives(tile, frame);
     const uint64_t rendered = clock_of(tile, frame);
     if (plan->runs[GLINT_STAGE_TONE]) {
         glint_tile_tone(tile, frame);

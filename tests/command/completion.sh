@@ -64,7 +64,7 @@ for line in options:gmatch "%f[^\n\0]%.TP\n%.BR? ([^\n]*)" do
 end
 END
 {
-    printf 'passes %s\n' "$("$glint" --help | tr -s ' \n' ' ' | sed -E 's/.*also write these: ([a-z_, ]*[a-z]) --.*/\1/')"
+    printf 'passes %s\n' "$("$glint" --help | tr -s ' \n' ' ' | sed -E 's/.*also write these: ([a-zA-Z_:, ]*[a-zA-Z]) --.*/\1/')"
     "$glint" --help | sed -nE 's/^  ((-., )?--[^ ]+( [^ ]+)?)(  .*)?$/\1/p'
 } | sort >"$work/heads"
 check "the options of the manual page" diff <("${LUA:-lua5.4}" "$work/heads.lua" <bindings/glint.1 | sort) "$work/heads"

@@ -145,7 +145,7 @@ static const field render_fields[] = {
     R(outline, CHOICE, 0, 3),       R(tone.curve, CHOICE, 0, 3),
     R(tone.transfer, CHOICE, 0, 3), R(tone.rounding, CHOICE, 0, 2),
     R(tone.bits, DEPTH, 0, 0),      R(tone.exposure, NUMBER, -2, 3),
-    R(region, REGION, 0, 0),
+    R(region, REGION, 0, 0), R(derivatives, FIXED, 0, 0), R(derivative_count, FIXED, 0, 0), // refused here, see tests/lua
 #undef R
 };
 

@@ -1,0 +1,128 @@
+// Passes d:NAME: which variables a frame is derived by, and what its scene's objects keep of their slopes.
+#include <stdlib.h>
+#include <string.h>
+
+#include "bindings/run/run.h"
+
+#define PI 0x1.921fb54442d18p+1
+
+static const char LIST; // its address is the registry's key of a frame's list, until the next one's
+
+bool glintL_wants_variable(const glintL_run *run, const char *name)
+{
+    const char *text = run->request.render_text[glintL_render_find("passes")];
+    const size_t length = strlen(name);
+    for (const char *at = text; at && *at;) {
+        at += strspn(at, " ,");
+        const size_t size = strcspn(at, " ,");
+        if (size == length + 2 && strncmp(at, "d:", 2) == 0 && strncmp(at + 2, name, length) == 0)
+            return true;
+        at += size;
+    }
+    return false;
+}
+
+const char *glintL_pass_name(const glintL_render *render, glint_pass pass, char room[GLINTL_PASS_NAME_SIZE])
+{
+    if (pass < GLINT_PASS_DERIVATIVE)
+        return glint_pass_name(pass);
+    snprintf(room, GLINTL_PASS_NAME_SIZE, "d:%s", render->derivative[pass - GLINT_PASS_DERIVATIVE]);
+    return room;
+}
+
+// What the C API calls a field that Lua has in degrees.
+static const char *engine_name(const glintL_field *field)
+{
+    if (field->kind != GLINTL_DEGREES)
+        return field->name;
+    return strcmp(field->name, "inner") == 0 ? "inner_rad" : "outer_rad";
+}
+
+typedef struct gathering {
+    const glint_scene *scene;
+    glint_slope *out; // NULL: they are counted
+    size_t count;
+} gathering;
+
+// The slopes of the object whose userdata is at `index` by a variable. Allocates nothing.
+static void gather_object(lua_State *L, int index, const char *type, int variable, gathering *g)
+{
+    const glintL_class *class = glintL_class_of(L, type);
+    void *object = glintL_test_object(L, index, type);
+    if (!object || (strcmp(type, GLINTL_SCENE) == 0 && object != g->scene))
+        return;
+    for (const glintL_field *field = class->variant(object)->fields; field->name; field++) {
+        glint_slope slope = { .field = engine_name(field) };
+        if (!glintL_get_slope(L, index, field, variable, slope.slope))
+            continue;
+        for (int c = 0; c < 3 && field->kind == GLINTL_DEGREES; c++)
+            slope.slope[c] *= PI / 180;
+        slope.material = strcmp(type, GLINTL_MATERIAL) == 0 ? object : NULL;
+        slope.light = strcmp(type, GLINTL_LIGHT) == 0 ? object : NULL;
+        if (g->out)
+            g->out[g->count] = slope;
+        g->count++;
+    }
+}
+
+static void gather(lua_State *L, int variable, gathering *g)
+{
+    static const char *const types[] = { GLINTL_MATERIAL, GLINTL_LIGHT, GLINTL_SCENE };
+    glintL_push_all_sloped(L);
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        for (size_t i = 0; i < sizeof types / sizeof *types; i++)
+            gather_object(L, lua_gettop(L) - 1, types[i], variable, g);
+    lua_pop(L, 1);
+}
+
+static void refuse_name(lua_State *L, const char *name)
+{
+    const char *near = glintL_near_variable(L, name);
+    if (near)
+        luaL_error(L, "passes: d:%s: no variable of that name; did you mean 'd:%s'?", name, near);
+    luaL_error(L,
+               "passes: d:%s: no variable of that name; glint.variable(\"%s\", x) makes one, and --passes d:%s makes one "
+               "of a parameter that the script reads",
+               name, name, name);
+}
+
+void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_render *render)
+{
+    const int top = lua_gettop(L), count = render->derivative_count;
+    size_t total = 0, first[GLINT_DERIVATIVES_MAX + 1] = { 0 };
+    render->desc.derivatives = NULL;
+    render->desc.derivative_count = 0;
+    if (count == 0)
+        return;
+    luaL_checkstack(L, 16, "derivatives");
+    for (int i = 0; i < count; i++) {
+        gathering g = { .scene = scene };
+        const int variable = glintL_find_variable(L, render->derivative[i]);
+        if (variable < 0)
+            refuse_name(L, render->derivative[i]);
+        gather(L, variable, &g);
+        total += g.count;
+        first[i + 1] = total;
+    }
+    // A finalizer that the allocation runs may change what is gathered: at most what was counted is taken.
+    struct {
+        glint_derivative of[GLINT_DERIVATIVES_MAX];
+        char names[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE];
+        glint_slope slopes[];
+    } *list = lua_newuserdatauv(L, sizeof *list + total * sizeof *list->slopes, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &LIST);
+    for (int i = 0; i < count; i++) {
+        gathering g = { .scene = scene };
+        const int variable = glintL_find_variable(L, render->derivative[i]);
+        gather(L, variable, &g);
+        if (g.count != first[i + 1] - first[i])
+            luaL_error(L, "passes: d:%s: a finalizer changed what it depends on", render->derivative[i]);
+        g = (gathering) { .scene = scene, .out = list->slopes + first[i] };
+        gather(L, variable, &g);
+        memcpy(list->names[i], render->derivative[i], sizeof list->names[i]);
+        list->of[i] = (glint_derivative) { list->names[i], list->slopes + first[i], g.count };
+    }
+    render->desc.derivatives = list->of;
+    render->desc.derivative_count = (size_t)count;
+    lua_settop(L, top);
+}

@@ -1,0 +1,472 @@
+/// Derivatives of a frame: from slopes of described fields to those of what shading reads.
+#include "engine/base/alloc.h"
+#include "engine/base/status.h"
+#include "engine/plan/plan.h"
+#include "engine/scene/area_light.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 0x1.921fb54442d18p+1
+
+// ---- Fields -------------------------------------------------------------------------------------------------------
+
+typedef struct slope_field {
+    const char *name;
+    size_t offset;
+    int count; ///< components
+    unsigned kinds; ///< of lights that have it, a bit each
+} slope_field;
+
+#define MATERIAL(name, count) { #name, offsetof(glint_material_desc, name), count, 0 }
+#define LIGHT(name, count, kinds) { #name, offsetof(glint_light_desc, name), count, kinds }
+#define SCENE(name) { #name, offsetof(glint_scene_desc, name), 3, 0 }
+#define KIND(name) (1u << GLINT_LIGHT_##name)
+#define AREA (KIND(DISK) | KIND(POLYGON) | KIND(SPHERE))
+#define ALL (KIND(POINT) | KIND(DIRECTIONAL) | KIND(SPOT) | AREA)
+
+static const slope_field material_fields[] = {
+    MATERIAL(diffuse, 3),   MATERIAL(ambient, 3), MATERIAL(specular, 3), MATERIAL(shininess, 1),
+    MATERIAL(roughness, 1), MATERIAL(f0, 3),      { NULL, 0, 0, 0 },
+};
+static const slope_field light_fields[] = {
+    LIGHT(color, 3, ALL),
+    LIGHT(intensity, 1, ALL),
+    LIGHT(ambient, 3, ALL),
+    LIGHT(diffuse, 3, ALL),
+    LIGHT(specular, 3, ALL),
+    LIGHT(attenuation, 3, ALL & ~KIND(DIRECTIONAL)),
+    LIGHT(position, 3, ALL & ~(KIND(DIRECTIONAL) | KIND(POLYGON))),
+    LIGHT(direction, 3, KIND(DIRECTIONAL) | KIND(SPOT)),
+    LIGHT(inner_rad, 1, KIND(SPOT)),
+    LIGHT(outer_rad, 1, KIND(SPOT)),
+    LIGHT(exponent, 1, KIND(SPOT)),
+    LIGHT(radiance, 1, AREA),
+    { NULL, 0, 0, 0 },
+};
+static const slope_field scene_fields[] = { SCENE(ambient), SCENE(background), { NULL, 0, 0, 0 } };
+
+static const slope_field *find_field(const slope_field *fields, const char *name)
+{
+    for (; name && fields->name; fields++)
+        if (strcmp(fields->name, name) == 0)
+            return fields;
+    return NULL;
+}
+
+static glint_status refuse_field(const glint_derivative *d, const char *object, const char *field,
+                                 const slope_field *offered, unsigned kinds, glint_error *error)
+{
+    char list[256] = "";
+    size_t used = 0;
+    for (; offered->name; offered++)
+        if (offered->kinds == kinds || offered->kinds & kinds)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", offered->name);
+    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s.%s: no derivative goes through this field; of %s: %s",
+                      d->name, object, field ? field : "(null)", object, used ? list : "none");
+}
+
+/// The slopes of a derivative, in the descriptions' own form: a number is how fast that of the description changes.
+typedef struct scene_slopes {
+    glint_material_desc *materials; ///< in the geometry's order
+    glint_light_desc *lights; ///< in the scene's
+    glint_scene_desc scene;
+} scene_slopes;
+
+static void add(void *desc, const slope_field *field, const double slope[3])
+{
+    double *to = (double *)((char *)desc + field->offset);
+    for (int c = 0; c < field->count; c++)
+        to[c] += slope[c];
+}
+
+static glint_status add_material(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
+                                 scene_slopes *out, glint_error *error)
+{
+    const glint_list *list = &plan->geometry->materials;
+    const slope_field *field = find_field(material_fields, s->field);
+    if (!field)
+        return refuse_field(d, "material", s->field, material_fields, 0, error);
+    for (size_t i = 0; i < list->count; i++)
+        if (list->items[i] == s->material)
+            add(&out->materials[i], field, s->slope);
+    return GLINT_OK;
+}
+
+static glint_status add_light(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
+                              scene_slopes *out, glint_error *error)
+{
+    const unsigned kind = 1u << s->light->desc.kind;
+    const slope_field *field = find_field(light_fields, s->field);
+    char name[2 * GLINT_NAME_SIZE];
+    if (!field || !(field->kinds & kind)) {
+        glint_describe_light(&s->light->desc, 0, name, sizeof name);
+        name[strcspn(name, " ")] = '\0';
+        return refuse_field(d, name, s->field, light_fields, kind, error);
+    }
+    for (size_t i = 0; i < scene->lights.count; i++)
+        if (scene->lights.items[i] == s->light)
+            add(&out->lights[i], field, s->slope);
+    return GLINT_OK;
+}
+
+static glint_status add_slope(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
+                              const glint_slope *s, scene_slopes *out, glint_error *error)
+{
+    static const slope_field none = { NULL, 0, 0, 0 };
+    for (int c = 0; c < 3; c++)
+        if (!isfinite(s->slope[c]))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: finite slopes expected, got %g", d->name,
+                              s->field ? s->field : "(null)", s->slope[c]);
+    if (s->material)
+        return add_material(plan, d, s, out, error);
+    if (s->light)
+        return add_light(scene, d, s, out, error);
+    if (s->shape || s->camera)
+        return refuse_field(d, s->shape ? "shape" : "camera", s->field, &none, 0, error);
+    const slope_field *field = find_field(scene_fields, s->field);
+    if (!field)
+        return refuse_field(d, "scene", s->field, scene_fields, 0, error);
+    add(&out->scene, field, s->slope);
+    return GLINT_OK;
+}
+
+// ---- Materials ----------------------------------------------------------------------------------------------------
+
+static void duals(glint_dual out[3], const double value[3], const double slope[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = dual(value[c], slope[c]);
+}
+
+/// Phong and Blinn-Phong; see power_init in plan/shading.c.
+static void power_material(glint_derivative_material *out, const glint_material_desc *desc)
+{
+    const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
+    const glint_dual s = out->shininess = blinn && desc->matched ? dual_scale(out->shininess, 4) : out->shininess;
+    const glint_dual two = dual(2, 0), four = dual(4, 0);
+    out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
+    out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
+    if (!desc->normalized)
+        return;
+    glint_dual norm = dual_scale(dual_add(s, two), 0.5);
+    if (blinn)
+        norm = dual_div(dual_mul(dual_add(s, two), dual_add(s, four)),
+                        dual_scale(dual_add(dual_exp2(dual_scale(s, -0.5)), s), 8));
+    for (int c = 0; c < 3; c++)
+        out->specular[c] = dual_mul(out->specular[c], norm);
+}
+
+static void facet_material(glint_derivative_material *out, const glint_material_desc *desc, const glint_dual f0[3],
+                           glint_dual roughness)
+{
+    out->highlight = GLINT_HIGHLIGHT_FACETS;
+    out->lobe = desc->distribution == GLINT_DISTRIBUTION_BECKMANN ? GLINT_LOBE_BECKMANN : GLINT_LOBE_GGX;
+    out->alpha = dual_mul(roughness, roughness);
+    if (out->alpha.value < 1e-18)
+        out->alpha = dual(1e-18, 0);
+    for (int c = 0; c < 3; c++) {
+        const glint_dual ks = out->specular[c];
+        out->specular[c] = dual_mul(ks, f0[c]);
+        out->grazing[c] = dual_mul(ks, dual_sub(dual(1, 0), f0[c]));
+    }
+}
+
+static bool has_slope(const glint_dual *list, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (list[i].slope != 0)
+            return true;
+    return false;
+}
+
+static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
+                          const glint_material_desc *slope, const glint_dual light[3])
+{
+    glint_material_desc d = *desc;
+    glint_dual f0[3];
+    glint_material_desc_resolve(&d);
+    duals(out->diffuse, d.diffuse, slope->diffuse);
+    duals(out->specular, d.specular, slope->specular);
+    duals(out->ambient, d.ambient, desc->has_ambient ? slope->ambient : slope->diffuse);
+    duals(f0, d.f0, slope->f0);
+    for (int c = 0; c < 3; c++)
+        out->ambient[c] = dual_mul(out->ambient[c], light[c]);
+    out->shininess = dual(d.shininess, slope->shininess);
+    bool shiny = has_slope(out->specular, 3);
+    for (int c = 0; c < 3; c++)
+        shiny = shiny || d.specular[c] != 0;
+    shiny = shiny && d.model != GLINT_MODEL_LAMBERT;
+    if (shiny && d.model == GLINT_MODEL_COOK_TORRANCE)
+        facet_material(out, &d, f0, dual(d.roughness, slope->roughness));
+    else if (shiny)
+        power_material(out, &d);
+    if (out->highlight == GLINT_HIGHLIGHT_NONE) // what nothing reads makes nothing vary
+        out->shininess = out->specular[0] = out->specular[1] = out->specular[2] = dual(0, 0);
+    if (out->highlight == GLINT_HIGHLIGHT_FACETS)
+        out->shininess = dual(0, 0);
+    out->varies = has_slope(out->diffuse, 3) || has_slope(out->specular, 3) || has_slope(out->grazing, 3) ||
+                  has_slope(out->ambient, 3) || has_slope(&out->shininess, 1) || has_slope(&out->alpha, 1);
+}
+
+// ---- Lights -------------------------------------------------------------------------------------------------------
+
+static void fill_spot(glint_derivative_light *out, const glint_light_desc *desc, const glint_light_desc *slope)
+{
+    const glint_dual inner = dual_cos(dual(desc->inner_rad, slope->inner_rad));
+    const glint_dual outer = dual_cos(dual(desc->outer_rad, slope->outer_rad));
+    out->is_spot = inner.value > -1 || desc->exponent > 0 || slope->exponent != 0;
+    out->outer = outer;
+    out->inverse = inner.value > outer.value ? dual_div(dual(1, 0), dual_sub(inner, outer)) : dual(HUGE_VAL, 0);
+    out->exponent = dual(desc->exponent, slope->exponent);
+    duals(out->axis, desc->direction, slope->direction);
+    dual_normalize(out->axis);
+}
+
+/// See light_init in plan/shading.c. `count`: of its samples.
+static glint_dual strength_of(const glint_light_desc *desc, const glint_light_desc *slope, double count, bool is_cap)
+{
+    if (!desc->has_radiance)
+        return dual_scale(dual(desc->intensity, slope->intensity), 1 / count);
+    const glint_dual radiance = dual(desc->radiance, slope->radiance);
+    if (is_cap)
+        return dual_scale(radiance, PI * (desc->radius * desc->radius));
+    return dual_scale(radiance, (desc->kind == GLINT_LIGHT_SPHERE ? PI : glint_light_sample_area(desc)) / count);
+}
+
+/// `rows`: the first of the plan's that are this light's; NULL: it has none.
+static void fill_light(glint_derivative_light *out, const glint_plan_light *rows, uint32_t count,
+                       const glint_light_desc *desc, const glint_light_desc *slope)
+{
+    const bool is_cap = rows && rows->cap;
+    const glint_dual strength = strength_of(desc, slope, count > 0 ? count : 1, is_cap);
+    duals(out->diffuse, desc->has_diffuse ? desc->diffuse : desc->color,
+          desc->has_diffuse ? slope->diffuse : slope->color);
+    duals(out->specular, desc->has_specular ? desc->specular : desc->color,
+          desc->has_specular ? slope->specular : slope->color);
+    for (int c = 0; c < 3; c++) {
+        out->diffuse[c] = dual_mul(out->diffuse[c], strength);
+        out->specular[c] = dual_mul(out->specular[c], strength);
+    }
+    out->directional = desc->kind == GLINT_LIGHT_DIRECTIONAL;
+    if (out->directional) {
+        duals(out->position, desc->direction, slope->direction);
+        dual_normalize(out->position);
+        for (int c = 0; c < 3; c++)
+            out->position[c] = dual_scale(out->position[c], -1);
+        out->coefficients[0] = dual(1, 0);
+    } else {
+        duals(out->position, desc->position, slope->position);
+        duals(out->coefficients, desc->attenuation, slope->attenuation);
+    }
+    if (desc->kind == GLINT_LIGHT_SPOT)
+        fill_spot(out, desc, slope);
+    out->attenuated = is_cap ? false : out->coefficients[0].value != 1 || out->coefficients[1].value != 0 ||
+                      out->coefficients[2].value != 0 || has_slope(out->coefficients, 3); // caps: what is seen has it
+    out->moves = has_slope(out->position, 3);
+    out->varies = out->moves || has_slope(out->diffuse, 3) || has_slope(out->specular, 3) ||
+                  has_slope(out->coefficients, 3) || has_slope(out->axis, 3) || out->outer.slope != 0 ||
+                  out->inverse.slope != 0 || out->exponent.slope != 0;
+}
+
+// ---- A derivative ---------------------------------------------------------------------------------------------------
+
+/// Ia, of the scene and all lights.
+static void total_ambient(const glint_scene *scene, const scene_slopes *slopes, glint_dual out[3])
+{
+    duals(out, scene->desc.ambient, slopes->scene.ambient);
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc, *slope = &slopes->lights[i];
+        for (int c = 0; c < 3; c++)
+            out[c] = dual_add(out[c], dual_mul(dual(desc->ambient[c], slope->ambient[c]),
+                                               dual(desc->intensity, slope->intensity)));
+    }
+}
+
+static void fill(const glint_plan *plan, const glint_scene *scene, const scene_slopes *slopes,
+                 glint_plan_derivative *out)
+{
+    const glint_list *list = &plan->geometry->materials;
+    glint_dual ambient[3];
+    total_ambient(scene, slopes, ambient);
+    for (size_t i = 0; i < list->count; i++)
+        fill_material(&out->materials[i], &((const glint_material *)list->items[i])->desc, &slopes->materials[i],
+                      ambient);
+    for (size_t i = 0; i < scene->lights.count; i++) {
+        const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
+        const glint_plan_light *rows = NULL;
+        uint32_t count = 0;
+        for (uint32_t k = 0; k < plan->light_count; k++)
+            if (plan->lights[k].source == i) {
+                rows = rows ? rows : &plan->lights[k];
+                count++;
+            }
+        fill_light(&out->lights[i], rows, count, desc, &slopes->lights[i]);
+        out->moves = out->moves || out->lights[i].moves;
+    }
+    for (int c = 0; c < 3; c++)
+        out->background[c] = scene->desc.background_program ? 0 : slopes->scene.background[c];
+}
+
+static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
+{
+    bool any = d->background[0] != 0 || d->background[1] != 0 || d->background[2] != 0;
+    for (size_t i = 0; i < plan->geometry->materials.count; i++)
+        any = any || d->materials[i].varies;
+    for (size_t i = 0; i < all->light_count; i++)
+        any = any || d->lights[i].varies;
+    return any;
+}
+
+static glint_status make_one(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
+                             scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
+{
+    const size_t materials = plan->geometry->materials.count, lights = scene->lights.count;
+    glint_status status = GLINT_OK;
+    memset(slopes->materials, 0, (materials + 1) * sizeof *slopes->materials);
+    memset(slopes->lights, 0, (lights + 1) * sizeof *slopes->lights);
+    memset(&slopes->scene, 0, sizeof slopes->scene);
+    for (size_t i = 0; i < d->slope_count && !status; i++)
+        status = add_slope(plan, scene, d, &d->slopes[i], slopes, error);
+    if (status)
+        return status;
+    snprintf(out->name, sizeof out->name, "%s", d->name);
+    out->materials = calloc(materials + 1, sizeof *out->materials);
+    out->lights = calloc(lights + 1, sizeof *out->lights);
+    if (!out->materials || !out->lights)
+        return glint_fail_nomem(error);
+    fill(plan, scene, slopes, out);
+    return GLINT_OK;
+}
+
+static glint_status check_names(const glint_render_desc *desc, glint_error *error)
+{
+    if (desc->derivative_count > GLINT_DERIVATIVES_MAX)
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative_count: at most %d derivatives of one frame expected, got %zu",
+                          GLINT_DERIVATIVES_MAX, desc->derivative_count);
+    for (size_t i = 0; i < desc->derivative_count; i++) {
+        const char *name = desc->derivatives[i].name;
+        if (!name || !*name || strlen(name) >= GLINT_DERIVATIVE_NAME_SIZE)
+            return glint_fail(error, GLINT_ERR_INVALID, "derivatives[%zu].name: 1 .. %d bytes expected, got '%.64s'", i,
+                              GLINT_DERIVATIVE_NAME_SIZE - 1, name ? name : "");
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(name, desc->derivatives[k].name) == 0)
+                return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': named twice", name);
+    }
+    return GLINT_OK;
+}
+
+static glint_status make_all(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
+                             glint_error *error)
+{
+    glint_plan_derivatives *all = plan->derivatives;
+    scene_slopes slopes = { .materials = malloc((plan->geometry->materials.count + 1) * sizeof *slopes.materials),
+                            .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights) };
+    glint_status status = slopes.materials && slopes.lights ? GLINT_OK : glint_fail_nomem(error);
+    all->light_count = scene->lights.count;
+    for (size_t i = 0; i < desc->derivative_count && !status; i++) {
+        glint_plan_derivative *d = &all->of[all->count++];
+        status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
+        all->moves = all->moves || d->moves;
+    }
+    free(slopes.materials);
+    free(slopes.lights);
+    return status;
+}
+
+glint_status glint_plan_find_derivatives(glint_plan *plan, const glint_scene *scene, const glint_render_desc *desc,
+                                         glint_error *error)
+{
+    glint_status status = check_names(desc, error);
+    if (status || !desc->derivative_count)
+        return status;
+    plan->derivatives = calloc(1, sizeof *plan->derivatives);
+    return plan->derivatives ? make_all(plan, scene, desc, error) : glint_fail_nomem(error);
+}
+
+void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
+{
+    for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
+        free(derivatives->of[i].materials);
+        free(derivatives->of[i].lights);
+    }
+    free(derivatives);
+}
+
+// ---- What has none ------------------------------------------------------------------------------------------------
+
+/// What of the frame no derivative goes through, or NULL.
+static const char *find_obstacle(const glint_plan *plan)
+{
+    if (plan->runs[GLINT_STAGE_INDIRECT])
+        return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
+    if (plan->runs[GLINT_STAGE_BOUNCE])
+        return "mirror, transmission: what mirrors and glass show has no derivative; max_depth = 0 leaves them out";
+    if (plan->tints)
+        return "transmission: shadows of what lets light through have no derivative; lights with shadows = false have";
+    if (plan->runs[GLINT_STAGE_VERTEX])
+        return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
+    if (plan->patterns)
+        return "material: patterns, shaders and bumps have no derivative; materials of plain numbers have";
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
+        return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
+    if (plan->shutter_times > 0)
+        return "camera.shutter: an open shutter has no derivative; shutter = 0 has";
+    if (plan->runs[GLINT_STAGE_REFINE])
+        return "adaptive: every pixel of a derivative has all samples; leave `adaptive` out";
+    return NULL;
+}
+
+static glint_status check_light(const glint_plan *plan, const glint_plan_derivative *d, const glint_scene *scene,
+                                size_t index, glint_error *error)
+{
+    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
+    char name[2 * GLINT_NAME_SIZE];
+    double shown[3];
+    const char *why = NULL;
+    if (desc->visible && glint_light_shows(desc, shown))
+        why = "visible: what a light itself looks like has no derivative; visible = false has";
+    for (uint32_t k = 0; k < plan->light_count; k++) {
+        const glint_plan_light *row = &plan->lights[k];
+        const bool moves = d->lights[index].moves;
+        if (row->source != index)
+            continue;
+        if (row->cap && (moves || has_slope(d->lights[index].coefficients, 3)))
+            why = "position, attenuation: caps have no derivative by them; shadow = \"rays\" has";
+        else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
+            why = "position: a sphere light by radiance has none that goes through its place; one by intensity has";
+    }
+    if (!why)
+        return GLINT_OK;
+    glint_describe_light(desc, index + 1, name, sizeof name);
+    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: %s", d->name, name, why);
+}
+
+glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    const glint_plan_derivatives *all = plan->derivatives;
+    const char *why = all ? find_obstacle(plan) : NULL;
+    glint_status status = GLINT_OK;
+    if (why)
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
+    for (size_t i = 0; all && i < all->count; i++) {
+        const glint_plan_derivative *d = &all->of[i];
+        if (!varies(plan, all, d))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
+        for (size_t k = 0; k < all->light_count && !status; k++)
+            status = d->lights[k].varies ? check_light(plan, d, scene, k, error) : GLINT_OK;
+        if (status)
+            return status;
+    }
+    return status;
+}
+
+glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key key)
+{
+    const glint_plan_derivative *d = &plan->derivatives->of[index];
+    key = glint_key_add_string(key, d->name);
+    key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);
+    key = glint_key_add(key, d->lights, plan->derivatives->light_count * sizeof *d->lights);
+    return glint_key_add(key, d->background, sizeof d->background);
+}

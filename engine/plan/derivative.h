@@ -1,0 +1,45 @@
+/// What derivatives of a frame read: materials and lights as dual numbers. Internal.
+#ifndef GLINT_DERIVATIVE_H
+#define GLINT_DERIVATIVE_H
+
+#include "engine/base/dual.h"
+#include "engine/base/hash.h"
+#include "engine/stages/stages.h"
+
+/// A material, as glint_shade_material has it.
+typedef struct glint_derivative_material {
+    uint32_t varies; ///< 0: nothing of it has a slope
+    uint32_t highlight, lobe; ///< glint_highlight, glint_lobe; of a material without a highlight that gets one, too
+    uint32_t unused; ///< 0: no padding
+    glint_dual diffuse[3], specular[3], grazing[3], ambient[3], shininess, alpha;
+} glint_derivative_material;
+
+/// A light of the scene, or what its samples have in common.
+typedef struct glint_derivative_light {
+    uint32_t varies;
+    uint32_t moves; ///< its shadows do
+    uint32_t directional, is_spot;
+    uint32_t attenuated; ///< by distance
+    uint32_t unused; ///< 0: no padding
+    glint_dual position[3]; ///< directional: the unit vector towards it; of an area light the slope is that of its samples
+    glint_dual coefficients[3], diffuse[3], specular[3];
+    glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
+} glint_derivative_light;
+
+typedef struct glint_plan_derivative {
+    char name[GLINT_DERIVATIVE_NAME_SIZE];
+    glint_derivative_material *materials; ///< beside the plan's
+    glint_derivative_light *lights; ///< in the scene's order
+    double background[3]; ///< slopes
+    bool moves; ///< some light does
+} glint_plan_derivative;
+
+typedef struct glint_plan_derivatives {
+    size_t count, light_count;
+    bool moves;
+    glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
+} glint_plan_derivatives;
+
+void glint_plan_derivatives_free(glint_plan_derivatives *derivatives); ///< NULL: nothing
+
+#endif

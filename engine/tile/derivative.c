@@ -1,0 +1,266 @@
+/// The stage derivative: how fast the light of each sample changes with parameters, hits and shadows held as they are.
+#include "engine/tile/derivative_light.h"
+
+#include "engine/base/alloc.h"
+#include "engine/stages/light/cone_sample.h"
+#include "engine/tile/tile.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MIXER 0x9e3779b1u
+#define NO_SHADOWS 0x811c9dc5u ///< where nothing is kept from a sample
+
+typedef struct glint_derivative_work {
+    _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    float plane[3][GLINT_TILE_SAMPLES];
+    glint_derivative_points points[GLINT_TILE_GROUPS];
+    uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
+    uint32_t first[GLINT_TILE_SAMPLES];
+    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that samples of the current light do not reach, do
+    uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches in part
+} glint_derivative_work;
+
+struct glint_derivative_work *glint_derivative_create(void) { return glint_alloc(1, sizeof(glint_derivative_work)); }
+
+void glint_derivative_destroy(struct glint_derivative_work *work) { free(work); }
+
+// ---- Points ---------------------------------------------------------------------------------------------------------
+
+/// The group's rays, by the tables that glint_tile_direction reads lane by lane.
+static void gather_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double out[3][GLINT_GROUP])
+{
+    const uint32_t x = g % tile->groups_across, y = g / tile->groups_across;
+    for (uint32_t c = 0; c < 3; c++) {
+        double down[GLINT_GROUP];
+        if (glint_tile_has_arrays(tile)) {
+            glint_reals_of(tile->rays.direction[c], precision, g, out[c]);
+            continue;
+        }
+        glint_reals_of(tile->rays.across, precision, 3 * x + c, out[c]);
+        glint_reals_of(tile->rays.down, precision, 3 * y + c, down);
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[c][i] = precision == GLINT_FLOAT ? (double)(float)(out[c][i] + down[i]) : out[c][i] + down[i];
+    }
+}
+
+static void gather_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g,
+                          glint_derivative_points *out)
+{
+    const glint_precision precision = frame->plan->desc.precision;
+    for (int c = 0; c < 3; c++) {
+        glint_reals_of(tile->surface.point[c], precision, g, out->point[c]);
+        glint_reals_of(tile->surface.normal[c], precision, g, out->normal[c]);
+    }
+    double d[3][GLINT_GROUP];
+    gather_directions(tile, precision, g, d);
+    for (int i = 0; i < GLINT_GROUP; i++) {
+        const double length = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
+        for (int c = 0; c < 3; c++)
+            out->eye[c][i] = -d[c][i] / length;
+    }
+}
+
+// ---- Lights -------------------------------------------------------------------------------------------------------
+
+/// Where group g sees a light, or its sample, with a weight in every lane.
+static void place_source(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                         const glint_derivative_points *points, glint_derivative_source *out)
+{
+    const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
+    out->radiant = sample && (sample->emission == GLINT_EMIT_RADIANT_FRONT || sample->emission == GLINT_EMIT_RADIANT_BOTH);
+    out->both = sample && sample->emission == GLINT_EMIT_RADIANT_BOTH;
+    for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+        for (int c = 0; c < 3; c++) {
+            out->position[c][i] = sample ? sample->position[c][i] : light->position[c];
+            out->normal[c][i] = sample ? sample->normal[c][i] : 0;
+        }
+        out->weight[i] = 1;
+        if (!sample || sample->emission != GLINT_EMIT_CONE)
+            continue;
+        const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
+        const double at[3] = { points->point[0][i], points->point[1][i], points->point[2][i] };
+        const double normal[3] = { points->normal[0][i], points->normal[1][i], points->normal[2][i] };
+        const glint_cone_sample own = glint_cone_at(
+            sample, light->scale, is_float ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE, at, normal, i);
+        for (int c = 0; c < 3; c++)
+            out->position[c][i] = at[c] + own.way[c] * own.far;
+        out->weight[i] = own.weight;
+    }
+}
+
+/// The lanes of group g, among those that are left, that show the material of the first of them.
+static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
+{
+    const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
+    unsigned lanes = 0;
+    *material = of[__builtin_ctz(left)];
+    for (unsigned rest = left; rest; rest &= rest - 1)
+        lanes |= of[__builtin_ctz(rest)] == *material ? rest & -rest : 0;
+    return lanes;
+}
+
+/// `reached`: lanes that the light reaches.
+static void derive_group(glint_tile *tile, const glint_tile_frame *frame, uint32_t row, uint32_t slot, uint32_t g,
+                         unsigned reached)
+{
+    glint_derivative_work *work = tile->derivative;
+    const glint_plan_derivatives *all = frame->plan->derivatives;
+    const glint_plan_light *light = &frame->plan->lights[row];
+    const float *visible = light->cap && light->shadows ? tile->at.light[slot].visible + (size_t)g * GLINT_GROUP : NULL;
+    glint_derivative_source whole, source;
+    bool placed = false;
+    for (unsigned left = reached, lanes; left; left &= ~lanes) {
+        uint32_t material;
+        lanes = lanes_alike(tile, g, left, &material);
+        for (size_t k = 0; k < all->count; k++) {
+            const glint_derivative_light *l = &all->of[k].lights[light->source];
+            const glint_derivative_material *m = &all->of[k].materials[material];
+            double *sum[3];
+            if (!l->varies && !m->varies)
+                continue;
+            if (!placed)
+                place_source(tile, frame, light, &work->points[g], &whole);
+            placed = true;
+            source = whole;
+            for (unsigned i = 0; i < GLINT_GROUP; i++)
+                source.weight[i] = !(lanes >> i & 1) ? 0 : visible ? whole.weight[i] * (double)visible[i] : whole.weight[i];
+            for (int c = 0; c < 3; c++)
+                sum[c] = &work->sum[k][c][(size_t)g * GLINT_GROUP];
+            glint_derive_light(l, m, &work->points[g], &source, sum);
+        }
+    }
+}
+
+/// Whether a derivative moves the shadows of a light.
+static bool moves(const glint_plan_derivatives *all, uint32_t source)
+{
+    bool any = false;
+    for (size_t k = 0; all->moves && k < all->count; k++)
+        any = any || all->of[k].lights[source].moves;
+    return any;
+}
+
+/// Notes which lanes above the horizon of a light it does not reach.
+static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32_t g, unsigned lit, unsigned open)
+{
+    glint_derivative_work *work = tile->derivative;
+    uint32_t *shadows = work->shadows + (size_t)g * GLINT_GROUP;
+    const unsigned kept = lit & ~open, fresh = kept & ~(light->joined ? work->kept[g] : 0u);
+    if (!light->joined)
+        work->kept[g] = work->given[g] = 0;
+    work->kept[g] |= (uint16_t)kept;
+    work->given[g] |= (uint16_t)open;
+    work->mixed[g] |= work->kept[g] & work->given[g];
+    for (unsigned rest = fresh; rest; rest &= rest - 1) {
+        uint32_t *hash = &shadows[__builtin_ctz(rest)];
+        *hash = (*hash ^ (light->source + 1)) * MIXER;
+    }
+}
+
+static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t row, uint32_t slot)
+{
+    const glint_plan_light *light = &frame->plan->lights[row];
+    const uint16_t *lit = tile->at.light[slot].lit;
+    const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
+    const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const unsigned hits = tile->at.hits[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
+        const unsigned reached = above ? open[g] & above : 0;
+        if (shift)
+            note_shadows(tile, light, g, above, reached);
+        if (reached)
+            derive_group(tile, frame, row, slot, g, reached);
+    }
+}
+
+// ---- A sample -----------------------------------------------------------------------------------------------------
+
+/// What a derivative has without lights.
+static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    glint_derivative_work *work = tile->derivative;
+    const glint_plan_derivatives *all = frame->plan->derivatives;
+    const unsigned hits = tile->at.hits[g];
+    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
+        const uint32_t i = g * GLINT_GROUP + lane;
+        const bool hit = hits >> lane & 1, active = tile->active[g] >> lane & 1;
+        const bool sky = active && !hit && !tile->transparent &&
+                         !(frame->plan->visible_light_count && glint_tile_sees_light(tile, i));
+        for (size_t k = 0; k < all->count && (hit || sky); k++)
+            for (int c = 0; c < 3; c++)
+                work->sum[k][c][i] += hit ? all->of[k].materials[tile->surface.material[i]].ambient[c].slope
+                                          : all->of[k].background[c];
+    }
+}
+
+/// Between samples: which lanes have not kept from them what the first had.
+static void turn_sample(glint_tile *tile, bool is_first)
+{
+    glint_derivative_work *work = tile->derivative;
+    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+        if (is_first)
+            work->first[i] = work->shadows[i];
+        else if (work->shadows[i] != work->first[i])
+            work->mixed[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        work->shadows[i] = NO_SHADOWS;
+    }
+}
+
+static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_derivative_work *work = tile->derivative;
+    const size_t count = tile->group_count * (size_t)GLINT_GROUP;
+    if (tile->sample == 0) {
+        memset(work->mixed, 0, sizeof work->mixed);
+        for (size_t k = 0; k < frame->plan->derivatives->count; k++)
+            for (int c = 0; c < 3; c++)
+                memset(work->sum[k][c], 0, count * sizeof **work->sum[k]);
+        for (size_t i = 0; i < count; i++)
+            work->shadows[i] = NO_SHADOWS;
+    } else {
+        turn_sample(tile, tile->sample == 1);
+    }
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        begin_group(tile, frame, g);
+        if (tile->at.hits[g])
+            gather_points(tile, frame, g, &work->points[g]);
+    }
+}
+
+void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
+{
+    if (from == 0)
+        begin_sample(tile, frame);
+    for (uint32_t i = 0; i < count; i++)
+        derive_light(tile, frame, from + i, i);
+}
+
+// ---- Into the image -----------------------------------------------------------------------------------------------
+
+static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_derivative_work *work = tile->derivative;
+    const size_t stride = (size_t)frame->image->width;
+    turn_sample(tile, frame->plan->desc.samples == 1);
+    for (uint32_t y = 0; y < tile->height; y++)
+        for (uint32_t x = 0; x < tile->width; x++) {
+            const uint32_t g = y / 4 * tile->groups_across + x / 4, lane = y % 4 * 4 + x % 4;
+            const uint32_t first = work->first[g * GLINT_GROUP + lane];
+            frame->image->shadows[(tile->y0 + y) * stride + tile->x0 + x] =
+                work->mixed[g] >> lane & 1 ? 0 : first ? first : 1;
+        }
+}
+
+void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame)
+{
+    glint_derivative_work *work = tile->derivative;
+    const glint_plan *plan = frame->plan;
+    for (size_t k = 0; k < plan->derivatives->count; k++) {
+        for (int c = 0; c < 3; c++)
+            for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
+                work->plane[c][i] = (float)(work->sum[k][c][i] / plan->desc.samples);
+        glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_DERIVATIVE + k), work->plane[0]);
+    }
+    store_shadows(tile, frame);
+}

@@ -1,0 +1,399 @@
+/// Derivatives of pictures against central differences of the formulas in 113 bits: every field that has one, of every model and
+/// kind of light.
+#include "tests/hard/oracle/drive.h"
+
+#include <math.h>
+#include <string.h>
+
+__extension__ typedef _Float128 quad;
+
+#define WIDTH 48
+#define HEIGHT 36
+#define STEP 1e-12 ///< of the differences, which are off by its square
+#define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< to 106 bits
+
+/// A sphere over a floor under one light: what the derivatives are by, each as three numbers, and what stays as it is.
+typedef struct world {
+    quad diffuse[3], ambient[3], specular[3], shininess[3], roughness[3], f0[3];
+    quad color[3], intensity[3], light_ambient[3], light_diffuse[3], light_specular[3], attenuation[3], position[3],
+        direction[3], inner[3], outer[3], exponent[3];
+    quad scene_ambient[3], background[3];
+    glint_model model;
+    bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has a diffuse and a specular of its own
+    glint_light_kind kind;
+} world;
+
+typedef struct number {
+    const char *object, *field;
+    size_t offset;
+    int components;
+} number;
+
+#define NUMBER(object, field, member, components) { object, field, offsetof(world, member), components }
+
+static const number numbers[] = {
+    NUMBER("material", "diffuse", diffuse, 3),
+    NUMBER("material", "ambient", ambient, 3),
+    NUMBER("material", "specular", specular, 3),
+    NUMBER("material", "shininess", shininess, 1),
+    NUMBER("material", "roughness", roughness, 1),
+    NUMBER("material", "f0", f0, 3),
+    NUMBER("light", "color", color, 3),
+    NUMBER("light", "intensity", intensity, 1),
+    NUMBER("light", "ambient", light_ambient, 3),
+    NUMBER("light", "diffuse", light_diffuse, 3),
+    NUMBER("light", "specular", light_specular, 3),
+    NUMBER("light", "attenuation", attenuation, 3),
+    NUMBER("light", "position", position, 3),
+    NUMBER("light", "direction", direction, 3),
+    NUMBER("light", "inner_rad", inner, 1),
+    NUMBER("light", "outer_rad", outer, 1),
+    NUMBER("light", "exponent", exponent, 1),
+    NUMBER("scene", "ambient", scene_ambient, 3),
+    NUMBER("scene", "background", background, 3),
+};
+
+static const double eye[3] = { 0.5, 2, 8 }, ball[3] = { 0.2, 0.1, 0 }, radius = 1.2, floor_y = -1;
+
+// ---- The formulas, from their definitions -------------------------------------------------------------------------
+
+static quad dot(const quad a[3], const quad b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void unit(quad v[3])
+{
+    const quad length = sqrtf128(dot(v, v));
+    for (int c = 0; c < 3; c++)
+        v[c] /= length;
+}
+
+/// The way of the ray through a pixel's centre: upright camera, 40 degrees, that looks at the origin.
+static void ray_of(int x, int y, quad d[3])
+{
+    quad forward[3], right[3], up[3], half = tanf128(20 * PI_Q / 180);
+    for (int c = 0; c < 3; c++)
+        forward[c] = -(quad)eye[c];
+    unit(forward);
+    right[0] = -forward[2], right[1] = 0, right[2] = forward[0];
+    unit(right);
+    up[0] = right[1] * forward[2] - right[2] * forward[1];
+    up[1] = right[2] * forward[0] - right[0] * forward[2];
+    up[2] = right[0] * forward[1] - right[1] * forward[0];
+    const quad across = ((x + (quad)0.5) * 2 / WIDTH - 1) * WIDTH / HEIGHT, down = 1 - (y + (quad)0.5) * 2 / HEIGHT;
+    for (int c = 0; c < 3; c++)
+        d[c] = forward[c] + half * (across * right[c] + down * up[c]);
+    unit(d);
+}
+
+/// The nearest way along a unit direction to the sphere; negative: none.
+static quad meet_ball(const quad o[3], const quad d[3])
+{
+    quad f[3];
+    for (int c = 0; c < 3; c++)
+        f[c] = o[c] - (quad)ball[c];
+    const quad b = dot(f, d), disc = b * b - (dot(f, f) - (quad)radius * radius);
+    return disc < 0 ? -1 : -b - sqrtf128(disc);
+}
+
+static quad smith_beckmann(quad alpha, quad x)
+{
+    const quad c = x / (alpha * sqrtf128(1 - x * x));
+    return c < (quad)1.6 ? (1 - (quad)1.259 * c + (quad)0.396 * c * c) / ((quad)3.535 * c + (quad)2.181 * c * c) : 0;
+}
+
+/// pi D G / (4 n.v), without F.
+static quad facets(const world *w, quad nh, quad nl, quad nv)
+{
+    const quad alpha = w->roughness[0] * w->roughness[0], aa = alpha * alpha, nh2 = nh * nh;
+    if (w->beckmann) {
+        const quad d = expf128((nh2 - 1) / (nh2 * aa)) / (PI_Q * aa * nh2 * nh2);
+        return PI_Q * d / (4 * nv) / (1 + smith_beckmann(alpha, nl) + smith_beckmann(alpha, nv));
+    }
+    const quad below = nh2 * (aa - 1) + 1, d = aa / (PI_Q * below * below);
+    const quad g = 2 * nl * nv / (nv * sqrtf128(aa + (1 - aa) * nl * nl) + nl * sqrtf128(aa + (1 - aa) * nv * nv));
+    return PI_Q * d * g / (4 * nv);
+}
+
+static void specular_of(const world *w, const quad n[3], const quad l[3], const quad v[3], quad out[3])
+{
+    const quad nl = dot(n, l), nv = dot(n, v), rv = 2 * nl * nv - dot(l, v);
+    quad h[3], s = w->shininess[0] * (w->matched ? 4 : 1), strength = 0;
+    for (int c = 0; c < 3; c++)
+        h[c] = l[c] + v[c];
+    unit(h);
+    if (w->model == GLINT_MODEL_PHONG)
+        strength = rv > 0 ? powf128(rv, s) * (w->normalized ? (s + 2) / 2 * nl : 1) : 0;
+    if (w->model == GLINT_MODEL_BLINN_PHONG)
+        strength = powf128(dot(n, h), s) *
+                   (w->normalized ? (s + 2) * (s + 4) / (8 * (exp2f128(-s / 2) + s)) * nl : 1);
+    for (int c = 0; c < 3; c++)
+        out[c] = w->specular[c] * strength;
+    for (int c = 0; c < 3 && w->model == GLINT_MODEL_COOK_TORRANCE; c++)
+        out[c] = w->specular[c] * facets(w, dot(n, h), nl, nv) *
+                 (w->f0[c] + (1 - w->f0[c]) * powf128(1 - dot(v, h), 5));
+}
+
+static quad cone(const world *w, const quad l[3])
+{
+    quad axis[3] = { w->direction[0], w->direction[1], w->direction[2] };
+    unit(axis);
+    const quad c = -dot(axis, l), inner = cosf128(w->inner[0]), outer = cosf128(w->outer[0]);
+    quad x = (c - outer) / (inner - outer);
+    x = x < 0 ? 0 : x > 1 ? 1 : x;
+    return c > 0 ? x * x * (3 - 2 * x) * powf128(c, w->exponent[0]) : 0;
+}
+
+/// What the light adds at a point.
+static void add_light(const world *w, const quad p[3], const quad n[3], const quad v[3], bool on_floor, quad out[3])
+{
+    quad l[3], strength = w->intensity[0], specular[3];
+    for (int c = 0; c < 3; c++)
+        l[c] = w->kind == GLINT_LIGHT_DIRECTIONAL ? -w->direction[c] : w->position[c] - p[c];
+    const quad distance = sqrtf128(dot(l, l));
+    unit(l);
+    if (dot(n, l) <= 0 || (on_floor && meet_ball(p, l) > 0))
+        return;
+    if (w->kind != GLINT_LIGHT_DIRECTIONAL)
+        strength /= w->attenuation[0] + w->attenuation[1] * distance + w->attenuation[2] * distance * distance;
+    if (w->kind == GLINT_LIGHT_SPOT)
+        strength *= cone(w, l);
+    specular_of(w, n, l, v, specular);
+    for (int c = 0; c < 3; c++)
+        out[c] += strength * (w->diffuse[c] * dot(n, l) * (w->own_terms ? w->light_diffuse[c] : w->color[c]) +
+                              specular[c] * (w->own_terms ? w->light_specular[c] : w->color[c]));
+}
+
+static void color_of(const world *w, int x, int y, quad out[3])
+{
+    quad d[3], o[3] = { eye[0], eye[1], eye[2] }, p[3], n[3] = { 0, 1, 0 }, v[3];
+    ray_of(x, y, d);
+    const quad on_ball = meet_ball(o, d), on_floor = ((quad)floor_y - o[1]) / d[1];
+    const bool is_ball = on_ball > 0 && !(on_floor > 0 && on_floor < on_ball);
+    memcpy(out, w->background, 3 * sizeof *out);
+    if (!is_ball && on_floor <= 0)
+        return;
+    for (int c = 0; c < 3; c++) {
+        p[c] = o[c] + (is_ball ? on_ball : on_floor) * d[c];
+        v[c] = -d[c];
+        n[c] = is_ball ? (p[c] - (quad)ball[c]) / radius : n[c];
+        out[c] = w->ambient[c] * (w->scene_ambient[c] + w->light_ambient[c] * w->intensity[0]);
+    }
+    add_light(w, p, n, v, !is_ball, out);
+}
+
+// ---- The engine ---------------------------------------------------------------------------------------------------
+
+static void put(double *out, const quad in[3], int count)
+{
+    for (int c = 0; c < count; c++)
+        out[c] = (double)in[c];
+}
+
+static glint_material *make_material(const world *w)
+{
+    glint_material_desc d = glint_material_desc_default();
+    glint_material *material;
+    glint_error error;
+    d.model = w->model;
+    d.distribution = w->beckmann ? GLINT_DISTRIBUTION_BECKMANN : GLINT_DISTRIBUTION_GGX;
+    d.normalized = w->normalized;
+    d.matched = w->matched;
+    d.has_ambient = d.has_specular = d.has_f0 = true;
+    put(d.diffuse, w->diffuse, 3);
+    put(d.ambient, w->ambient, 3);
+    put(d.specular, w->specular, 3);
+    put(&d.shininess, w->shininess, 1);
+    put(&d.roughness, w->roughness, 1);
+    put(d.f0, w->f0, 3);
+    must(glint_material_create(&d, &material, &error), &error);
+    return material;
+}
+
+static glint_light *make_light(const world *w)
+{
+    glint_light_desc d = glint_light_desc_default(w->kind);
+    glint_light *light;
+    glint_error error;
+    d.has_diffuse = d.has_specular = w->own_terms;
+    put(d.color, w->color, 3);
+    put(&d.intensity, w->intensity, 1);
+    put(d.ambient, w->light_ambient, 3);
+    put(d.diffuse, w->light_diffuse, 3);
+    put(d.specular, w->light_specular, 3);
+    put(d.attenuation, w->attenuation, 3);
+    put(d.position, w->position, 3);
+    put(d.direction, w->direction, 3);
+    put(&d.inner_rad, w->inner, 1);
+    put(&d.outer_rad, w->outer, 1);
+    put(&d.exponent, w->exponent, 1);
+    must(glint_light_create(&d, &light, &error), &error);
+    return light;
+}
+
+static glint_scene *make_scene(const world *w, glint_material *material, glint_light *light)
+{
+    glint_scene *scene = scene_new();
+    glint_camera_desc camera = glint_camera_desc_default();
+    glint_error error;
+    double background[3];
+    const hard_sphere sphere = { { ball[0], ball[1], ball[2] }, radius };
+    const hard_plane floor = { { 0, floor_y, 0 }, { 0, 1, 0 } };
+    memcpy(camera.eye, eye, sizeof camera.eye);
+    put(background, w->background, 3);
+    scene_light_up(scene, 0, background);
+    scene_camera(scene, &camera);
+    glint_scene_desc d = *glint_scene_get(scene);
+    put(d.ambient, w->scene_ambient, 3);
+    must(glint_scene_set(scene, &d, &error), &error);
+    scene_sphere(scene, &sphere, glint_material_retain(material));
+    scene_plane(scene, &floor, glint_material_retain(material));
+    must(glint_scene_add_light(scene, light, &error), &error);
+    return scene;
+}
+
+/// Whether the scene as it is reads the number.
+static bool is_read(const world *w, const number *n)
+{
+    const bool power = w->model == GLINT_MODEL_PHONG || w->model == GLINT_MODEL_BLINN_PHONG;
+    const bool directional = w->kind == GLINT_LIGHT_DIRECTIONAL, spot = w->kind == GLINT_LIGHT_SPOT;
+    const bool own = !strcmp(n->object, "light") && (!strcmp(n->field, "diffuse") || !strcmp(n->field, "specular"));
+    if (!strcmp(n->field, "shininess"))
+        return power;
+    if (!strcmp(n->field, "roughness") || !strcmp(n->field, "f0"))
+        return w->model == GLINT_MODEL_COOK_TORRANCE;
+    if (!strcmp(n->field, "specular") && w->model == GLINT_MODEL_LAMBERT)
+        return false;
+    if (own || !strcmp(n->field, "color"))
+        return own == w->own_terms;
+    if (!strcmp(n->field, "position") || !strcmp(n->field, "attenuation"))
+        return !directional;
+    if (!strcmp(n->field, "inner_rad") || !strcmp(n->field, "outer_rad") || !strcmp(n->field, "exponent"))
+        return spot;
+    return strcmp(n->field, "direction") != 0 || directional || spot;
+}
+
+static glint_image *render(const glint_scene *scene, const glint_derivative *derivative)
+{
+    glint_render_desc desc = glint_render_desc_default();
+    glint_renderer_desc r = glint_renderer_desc_default();
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    glint_error error;
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.derivatives = derivative;
+    desc.derivative_count = 1;
+    r.threads = 1;
+    must(glint_renderer_create(&r, &renderer, &error), &error);
+    must(glint_plan_create(scene, &desc, &plan, &error), &error);
+    must(glint_render(renderer, plan, &image, NULL, &error), &error);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+// ---- The comparison -----------------------------------------------------------------------------------------------
+
+/// The picture's derivative along `slope`, by the formulas.
+static void true_slopes(const world *w, const number *n, const double slope[3], double (*out)[3])
+{
+    world more = *w, less = *w;
+    for (int c = 0; c < 3; c++) {
+        ((quad *)((char *)&more + n->offset))[c] += (quad)STEP * slope[c];
+        ((quad *)((char *)&less + n->offset))[c] -= (quad)STEP * slope[c];
+    }
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        quad high[3], low[3];
+        color_of(&more, i % WIDTH, i / WIDTH, high);
+        color_of(&less, i % WIDTH, i / WIDTH, low);
+        for (int c = 0; c < 3; c++)
+            out[i][c] = (double)((high[c] - low[c]) / (2 * (quad)STEP));
+    }
+}
+
+/// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
+static void compare(const world *w, const number *n, const glint_scene *scene, glint_material *material,
+                    glint_light *light)
+{
+    static double want[WIDTH * HEIGHT][3];
+    double slope[3] = { 0 }, most = 0, worst = 0;
+    glint_error error;
+    for (int c = 0; c < n->components; c++)
+        slope[c] = uniform(-1, 1);
+    glint_slope s = { .field = n->field, .slope = { slope[0], slope[1], slope[2] } };
+    s.material = strcmp(n->object, "material") == 0 ? material : NULL;
+    s.light = strcmp(n->object, "light") == 0 ? light : NULL;
+    const glint_derivative derivative = { "number", &s, 1 };
+    glint_image *image = render(scene, &derivative);
+    true_slopes(w, n, slope, want);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        for (int c = 0; c < 3; c++)
+            most = fmax(most, fabs(want[i][c]));
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        float got[3];
+        must(glint_image_pixel(image, GLINT_PASS_DERIVATIVE, i % WIDTH, i / WIDTH, got, &error), &error);
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, fabs(got[c] - want[i][c]) / (0x1p-23 * fabs(want[i][c]) + 0x1p-40 * most));
+    }
+    hard_check(most > 0 && worst <= 1, "%s.%s, model %d, light %d: %.2f of the bound, steepest pixel %g", n->object,
+               n->field, (int)w->model, (int)w->kind, worst, most);
+    if (hard_table)
+        printf("| %s.%s | %d | %d | %.3g | %.2f |\n", n->object, n->field, (int)w->model, (int)w->kind, most, worst);
+    glint_image_release(image);
+}
+
+static void fill(quad out[3], double low, double high)
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = uniform(low, high);
+}
+
+static world random_world(int turn)
+{
+    world w = { .model = (glint_model)(turn % 4), .kind = (glint_light_kind)(turn / 4 % 3) };
+    w.beckmann = turn % 8 == 7;
+    w.normalized = turn / 4 % 2;
+    w.matched = w.model == GLINT_MODEL_BLINN_PHONG && turn % 3 == 0;
+    w.own_terms = turn % 5 == 0;
+    fill(w.diffuse, 0.2, 0.9);
+    fill(w.ambient, 0.1, 0.5);
+    fill(w.specular, 0.2, 0.9);
+    fill(w.shininess, 2, 60);
+    fill(w.roughness, 0.2, 0.7);
+    fill(w.f0, 0.1, 0.9);
+    fill(w.color, 0.3, 1);
+    fill(w.intensity, 0.5, 2);
+    fill(w.light_ambient, 0, 0.2);
+    fill(w.light_diffuse, 0.3, 1);
+    fill(w.light_specular, 0.3, 1);
+    fill(w.attenuation, 0.01, 0.3);
+    fill(w.position, 2.5, 5);
+    fill(w.direction, -1.2, -0.8);
+    fill(w.inner, 0.1, 0.2);
+    fill(w.outer, 0.4, 0.7);
+    fill(w.exponent, 0.5, 4);
+    fill(w.scene_ambient, 0.1, 0.4);
+    fill(w.background, 0.1, 0.6);
+    return w;
+}
+
+int main(int argc, char **argv)
+{
+    hard_begin(argc, argv);
+    hard_test("D1", "every field that has a derivative, of each model and light");
+    if (hard_table)
+        printf("| field | model | light | steepest pixel | error / bound |\n| --- | --- | --- | --- | --- |\n");
+    for (int turn = 0; turn < 24; turn++) {
+        const world w = random_world(turn);
+        glint_material *material = make_material(&w);
+        glint_light *light = make_light(&w);
+        glint_scene *scene = make_scene(&w, material, light);
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+            if (is_read(&w, &numbers[i]))
+                compare(&w, &numbers[i], scene, material, light);
+        glint_scene_release(scene);
+        glint_light_release(light);
+        glint_material_release(material);
+    }
+    return hard_end();
+}

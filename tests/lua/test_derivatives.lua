@@ -1,0 +1,248 @@
+-- Derivatives by variables: properties that need no other formula, differences, duals in Lua, errors, and the same bits.
+local tally = dofile "tests/lua/tally.lua"
+local check, near = tally.check, tally.near
+local glint = require "glint"
+local BUILD = os.getenv "BUILD" or "build"
+
+local W, H = 48, 36
+local tests = {}
+
+local function render(scene, passes, more)
+  local fields = { width = W, height = H, passes = passes, output = "none" }
+  for name, value in pairs(more or {}) do fields[name] = value end
+  return scene:render(fields)
+end
+
+-- A shiny ball over a matt floor.
+local function scene_of(lamp, more)
+  more = more or {}
+  return glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = more.ambient or 0,
+    background = more.background or 0, lamp,
+    glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5 } },
+    glint.sphere { center = { 0, 0, 0 }, radius = 1, material = more.material or
+      glint.material { diffuse = { 0.7, 0.2, 0.1 }, specular = 0.5, shininess = 20 } } }
+end
+
+-- Calls f with the three numbers of each pixel of two passes, of one image or two.
+local function each(a, pass_a, b, pass_b, f)
+  for y = 0, H - 1 do
+    for x = 0, W - 1 do
+      local p, q = { a:pixel(x, y, pass_a) }, { b:pixel(x, y, pass_b) }
+      for c = 1, 3 do f(p[c], q[c], x, y) end
+    end
+  end
+end
+
+-- The largest distance of k times pass b from pass a, in shares of the largest of a.
+local function off(a, pass_a, b, pass_b, k)
+  local worst, most = 0, 0
+  each(a, pass_a, b, pass_b, function(p, q)
+    worst, most = math.max(worst, math.abs(p - k * q)), math.max(most, math.abs(p))
+  end)
+  check(most > 0, "%s is 0 everywhere", pass_a)
+  return worst / most
+end
+
+function tests.light_is_linear_in_its_intensity()
+  for _, kind in ipairs { "point", "spot", "directional", "disk", "sphere" } do
+    local fields = { intensity = glint.variable("strength", 1.7) }
+    if kind ~= "directional" then fields.position = { 2, 4, 3 } end
+    if kind == "spot" or kind == "directional" then fields.direction = { -2, -4, -3 } end
+    if kind == "spot" then fields.inner, fields.outer = 10, 20 end
+    if kind == "disk" then fields.normal = { -2, -4, -3 } end
+    if kind == "disk" or kind == "sphere" then fields.radius = 0.6 end
+    local image = render(scene_of(glint[kind .. "_light"](fields)), "d:strength")
+    near(off(image, "d:strength", image, "beauty", 1 / 1.7), 0, 4e-7, kind .. " light by its intensity")
+  end
+  for _, shadow in ipairs { "rays", "caps", "hard" } do
+    local lamp = glint.sphere_light { position = { 2, 4, 3 }, radius = 0.6, shadow = shadow,
+      radiance = glint.variable("strength", 3) }
+    local image = render(scene_of(lamp), "d:strength", { samples = 4 })
+    near(off(image, "d:strength", image, "beauty", 1 / 3), 0, 4e-7, "radiance with shadows by " .. shadow)
+  end
+end
+
+function tests.a_dark_lamp_has_a_derivative()
+  local dark = render(scene_of(glint.point_light { position = { 2, 4, 3 }, intensity = glint.variable("strength", 0) }),
+    "d:strength")
+  local lit = render(scene_of(glint.point_light { position = { 2, 4, 3 } }), "beauty")
+  near(off(dark, "d:strength", lit, "beauty", 1), 0, 4e-7, "a lamp of intensity 0")
+end
+
+function tests.chain_rule()
+  local t = glint.variable("t", 0.8)
+  local strength = t ^ 2 * math.sin(t) + glint.exp(-t) / (1 + t) + math.sqrt(t) - math.min(t, 2)
+  local s = glint.value(strength)
+  local function of(x) return x ^ 2 * math.sin(x) + math.exp(-x) / (1 + x) + math.sqrt(x) - x end
+  near(s, of(0.8), 1e-15, "the value")
+  local slope = (of(0.8 + 1e-5) - of(0.8 - 1e-5)) / 2e-5
+  local image = render(scene_of(glint.point_light { position = { 2, 4, 3 }, intensity = strength }), "d:t")
+  near(off(image, "d:t", image, "beauty", slope / s), 0, 1e-6, "through a curved function")
+end
+
+function tests.passes_add_up()
+  local x, y, both = glint.variable("x", 2), glint.variable("y", 4), glint.variable("both", 0)
+  local lamp = glint.point_light { position = { x + 2 * both, y - 3 * both, 3 }, attenuation = { 1, 0, 0.02 } }
+  local image = render(scene_of(lamp), "d:x,d:y,d:both")
+  check(table.concat(image.passes, " ") == "beauty d:x d:y d:both", "passes are %s", table.concat(image.passes, " "))
+  local worst = 0
+  for py = 0, H - 1 do
+    for px = 0, W - 1 do
+      local dx, dy, d = image:pixel(px, py, "d:x"), image:pixel(px, py, "d:y"), image:pixel(px, py, "d:both")
+      worst = math.max(worst, math.abs(d - (2 * dx - 3 * dy)))
+    end
+  end
+  near(worst, 0, 1e-6, "2 d:x - 3 d:y")
+  lamp.y = 4 -- a component alone: nothing of it depends on y now
+  local ok, message = pcall(render, lamp and scene_of(lamp), "d:y")
+  check(not ok and message:find("derivative 'y': nothing in the scene depends on it", 1, true), "got %s", message)
+  check(glint.value(lamp.x) == 2 and tostring(lamp.position[1]) == "2.0", "fields read back as they were written")
+end
+
+-- Against differences of pictures, whose float32 leaves five digits of them: area lights, whose samples move with them.
+function tests.area_lights_against_differences()
+  local function compare(name, make, at, h)
+    local image = render(make(glint.variable("p", at)), "d:p")
+    local high, low = render(make(at + h), "beauty"), render(make(at - h), "beauty")
+    local list, most = {}, 0
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    local distances = {}
+    each(image, "d:p", image, "d:p", function(d)
+      distances[#distances + 1] = math.abs(d - list[#distances + 1])
+      most = math.max(most, math.abs(d))
+    end)
+    table.sort(distances) -- the last of a hundred: where a sample of the light comes to shine at a point, there is a step
+    local worst = distances[#distances * 99 // 100]
+    check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+  end
+  compare("disk by radiance", function(x) return scene_of(glint.disk_light { position = { x, 4, 3 }, radius = 0.5,
+    normal = { -2, -4, -3 }, radiance = 3, shadows = false }) end, 2, 1e-2)
+  compare("disk by intensity", function(x) return scene_of(glint.disk_light { position = { 2, x, 3 }, radius = 0.5,
+    normal = { -2, -4, -3 }, attenuation = { 1, 0.1 * x, 0.01 }, shadows = false }) end, 4, 1e-2)
+  compare("sphere by intensity", function(x) return scene_of(glint.sphere_light { position = { 2, 4, x }, radius = 0.5,
+    shadows = false }) end, 3, 1e-2)
+  compare("polygon by radiance", function(x) return scene_of(glint.polygon_light { two_sided = true, radiance = x * x,
+    vertices = { { 2, 4, 3 }, { 3, 4, 3 }, { 3, 4, 2 } } }) end, 2, 1e-2)
+  compare("what the sky and the ambient light are", function(x)
+    return scene_of(glint.point_light { position = { 2, 4, 3 }, ambient = { 0, x * 0.1, 0 } },
+      { ambient = x ^ 2 * 0.1, background = { x * 0.1, 0, math.cos(x) ^ 2 } })
+  end, 1.3, 1e-2)
+  compare("a shininess through math and comparisons", function(x)
+    local s = x > 5 and math.max(x * 2, 3) or 0
+    return scene_of(glint.point_light { position = { 2, 4, 3 } },
+      { material = glint.material { diffuse = 0.1, specular = 0.5, shininess = math.abs(-s) } })
+  end, 10, 1e-1)
+end
+
+function tests.duals_are_numbers()
+  local x = glint.variable("x", 3)
+  check(x + 1 == x + 1 and x < 4 and x <= 3.5 and 2 < x and -x < 0, "comparisons")
+  check(tostring(x * 2) == "6.0" and "x = " .. x == "x = 3.0", "as text: %s", tostring(x))
+  check(x // 2 == 1 and glint.value(x % 2) == 1 and math.type(math.floor(x)) == "integer", "whole parts")
+  check(type(x - x) == "number" and type(x * 0) == "number", "what does not change is a plain number")
+  check(glint.value(math.max(x, 2, 9)) == 9 and glint.value(math.min(x, 5)) == 3, "math.max, math.min")
+  check(math.sin(0.5) == math.sin(0.5) and math.max(1, 2.5) == 2.5 and math.floor(2.7) == 2, "math of plain numbers")
+  near(glint.value(math.atan(x, 2)), math.atan(3, 2), 0, "math.atan")
+  near(glint.value(glint.pow(x, 2.5)), 3 ^ 2.5, 1e-12, "glint.pow")
+  local material = glint.material { diffuse = x / 10 }
+  check(glint.value(material.diffuse[2]) == 0.3, "a grey of one number")
+  material.diffuse = { 0.1, 0.2, 0.3 }
+  check(math.abs(material.diffuse.g - 0.2) < 1e-15, "a plain colour again")
+end
+
+function tests.errors_are_told()
+  local x = glint.variable("x", 3)
+  local function raises(text, f, ...)
+    local ok, message = pcall(f, ...)
+    check(not ok and tostring(message):find(text, 1, true), "'%s' expected, got %s", text, ok and "no error" or message)
+  end
+  local lamp = glint.point_light { position = { x, 4, 3 } }
+  raises("d:q: no variable of that name", render, scene_of(lamp), "d:q")
+  raises("did you mean 'd:strength'", render, scene_of(lamp), "d:strenght")
+  raises("'d:': a name of 1 .. 31 bytes", render, scene_of(lamp), "d:")
+  raises("'d:x' was not kept", function() render(scene_of(lamp), "beauty"):pixel(0, 0, "d:x") end)
+  raises("sphere.radius: no derivative goes through here", glint.sphere, { center = { 0, 0, 0 }, radius = x })
+  raises("camera.eye: no derivative goes through here", glint.camera, { eye = { x, 0, 0 } })
+  raises("material.ior: no derivative goes through here", glint.material, { ior = x })
+  raises("no derivative goes through here", glint.translate, { x, 0, 0 })
+  raises("variable.name: string", glint.variable, 3, 3)
+  raises("variable.value: number", glint.variable, "x", "y")
+  raises("variable.name: name of 1 to 31 bytes", glint.variable, "a,b", 1)
+  local glass = scene_of(lamp, { material = glint.material { mirror = 0.5 } })
+  raises("derivative 'x': mirror, transmission", render, glass, "d:x")
+  render(glass, "d:x", { max_depth = 0 })
+  local lit = scene_of(lamp)
+  lit.indirect = { samples = 4 }
+  raises("derivative 'x': scene.indirect", render, lit, "d:x")
+  local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end) }
+  raises("derivative 'x': material: patterns", render, scene_of(lamp, { material = bricks }), "d:x")
+  raises("derivative 'x': adaptive", render, scene_of(lamp), "d:x", { samples = 4, adaptive = 0.1 })
+  local seen = glint.sphere_light { position = { x, 4, 3 }, radius = 1, visible = true }
+  raises("sphere_light #1: visible", render, scene_of(seen), "d:x")
+  local cone = glint.sphere_light { position = { x, 4, 3 }, radius = 1, radiance = 1 }
+  raises("sphere_light #1: position", render, scene_of(cone), "d:x")
+  local names = {}
+  for i = 1, 9 do names[i] = "d:v" .. i end
+  raises("of at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
+end
+
+-- The same script by the command: threads, instruction sets, reuse and further passes change no byte.
+function tests.bits()
+  local folder = os.tmpname()
+  os.remove(folder)
+  os.execute("mkdir " .. folder)
+  local script = folder .. "/s.lua"
+  local file = assert(io.open(script, "w"))
+  file:write [[
+local glint = require "glint"
+local P = glint.params { x = 2.5, s = 20 }
+local lamp = glint.point_light { position = { P.x, 4, 3 } }
+local soft = glint.disk_light { position = { -3, 5, 2 }, normal = { 3, -5, -2 }, radius = 0.5, intensity = 0.3 }
+local shiny = glint.material { diffuse = { 0.7, 0.2, 0.1 }, specular = 0.5, shininess = P.s }
+local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp, soft,
+  glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
+  glint.sphere { center = { 0, 0, 0 }, radius = 1, material = shiny } }
+return glint.animation { scene = scene, frames = 9, width = 100, height = 60, frame = function(_, n)
+  lamp.position = { P.x + (n > 5 and 1 or 0), 4, 3 }
+  shiny.shininess = P.s * (n > 7 and 2 or 1)
+  scene.ambient = n > 8 and 0.2 * P.x or 0.1
+end }
+]]
+  file:close()
+  local function run(name, options, before)
+    local ok = os.execute(("%s %s/glint %s -o '%s/%s_%%d.pfm' %s >/dev/null 2>&1"):format(before or "", BUILD, script,
+      folder, name, options))
+    check(ok, "%s ran", name)
+  end
+  local function same(name, pass)
+    for n = 1, 9 do
+      local ok = os.execute(("cmp -s %s/first_%d.%s.pfm %s/%s_%d.%s.pfm"):format(folder, n, pass, folder, name, n, pass))
+      check(ok, "frame %d of %s by %s is as the first", n, pass, name)
+    end
+  end
+  run("first", "--passes d:x,d:s --no-reuse --threads 1")
+  run("reuse", "--passes d:x,d:s --threads 1")
+  run("threads", "--passes d:x,d:s,normal --threads 3")
+  for _, name in ipairs { "reuse", "threads" } do
+    same(name, "d_x")
+    same(name, "d_s")
+  end
+  run("alone", "--passes d:s")
+  same("alone", "d_s")
+  for _, isa in ipairs { "ref", "generic", "sse2" } do
+    run(isa, "--passes d:x", "GLINT_ISA=" .. isa)
+    same(isa, "d_x")
+  end
+  local pipe = io.popen(("%s/glint %s -f 1 --passes d:x,d:s -o %s/e_%%d.png --json"):format(BUILD, script, folder))
+  local event = pipe:read "a"
+  pipe:close()
+  local share = tonumber(event:match '"shifted":([%d.e-]+)')
+  check(share and share > 0.001 and share < 0.2, "the share of pixels beside moved shadows is told: %s", share)
+  check(event:find('"d:x":"' .. folder .. '/e_1.d_x.png"', 1, true), "the event names the files")
+  local again = os.execute(("%s/glint reproduce %s/e_1.d_s.png %s >/dev/null"):format(BUILD, folder, script))
+  check(again, "a derivative is reproduced byte for byte")
+  os.execute("rm -r " .. folder)
+end
+
+tally.run(tests)
+tally.finish()
