@@ -16,7 +16,7 @@ say() { # STATUS NAME
 
 # picture NAME OPTION...: scripts/NAME.lua; of several frames, --frames chooses one.
 picture() {
-    local name=$1 kept=scripts/pictures/$1.png made
+    local name=$1 made
     shift
     rm -f "$out/$name"*.png
     "$glint" "scripts/$name.lua" --size 320x200 "$@" --encode small --quiet --force -o "$out/$name.png" || {
@@ -24,6 +24,25 @@ picture() {
         return
     }
     made=$(ls "$out/$name.png" "$out/$name"_[0-9]*[0-9].png 2>/dev/null | head -n 1)
+    keep "$name" "$made"
+}
+
+# steps NAME OPTION...: all pictures of scripts/NAME.lua on a sheet, with their differences from the first.
+steps() {
+    local name=$1
+    shift
+    rm -f "$out/$name"*.png
+    if "$glint" "scripts/$name.lua" "$@" --quiet --force -o "$out/$name.%02d.png" 2>/dev/null >&2 &&
+        "$glint" sheet "$out/$name.##.png" --columns 5 --difference 1 -o "$out/$name.png" >/dev/null 2>&1; then
+        keep "$name" "$out/$name.png"
+    else
+        say "not ok" "$name: no picture"
+    fi
+}
+
+# keep NAME FILE: the picture of a script as it is now.
+keep() {
+    local name=$1 kept=scripts/pictures/$1.png made=$2
     if "$glint" compare "$kept" "$made" --fail 0 --warn 0 >/dev/null 2>&1; then
         say ok "$name is current"
     elif [ "$mode" = update ]; then
@@ -39,6 +58,7 @@ picture adaptive --frames 3
 picture bricks --frames 1
 picture caps --frames 6
 picture chessboard --frames 1
+steps fit
 picture flight --frames 30
 picture earth --frames 1
 picture furnace

@@ -244,5 +244,24 @@ end }
   os.execute("rm -r " .. folder)
 end
 
+-- scripts/fit.lua finds its hidden numbers, from a picture of its own and from that picture's file.
+function tests.fit()
+  local hidden = { lamp_x = 3.2, lamp_y = 4.1, lamp_z = 2.4, intensity = 1.6, shininess = 45 }
+  local folder = os.tmpname()
+  os.remove(folder)
+  for _, options in ipairs { "-o '%s/%%d.pfm'", "-o none --set file=%s/1.pfm" } do
+    local pipe = io.popen(("%s/glint scripts/fit.lua --quiet %s 2>/dev/null"):format(BUILD, options:format(folder)))
+    local found = 0
+    for line in pipe:lines() do
+      local name, value = line:match "^(%S+) (%S+)$"
+      local want = hidden[name]
+      if want then near(tonumber(value), want, 2e-5 * want, name .. " by " .. options) end
+      found = found + (want and 1 or 0)
+    end
+    check(pipe:close() and found == 5, "fit.lua %s gives five numbers", options)
+  end
+  os.execute("rm -r " .. folder)
+end
+
 tally.run(tests)
 tally.finish()
