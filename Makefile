@@ -52,6 +52,11 @@ ifeq ($(call have,freetype2),yes)
   FONT_CFLAGS := -DGLINT_HAVE_FREETYPE $(shell pkg-config --cflags freetype2)
   FONT_LIBS := $(shell pkg-config --libs freetype2)
 endif
+# Likewise: what draws in terminals.
+ifeq ($(call have,libsixel),yes)
+  SIXEL_CFLAGS := -DGLINT_HAVE_SIXEL $(shell pkg-config --cflags libsixel)
+  SIXEL_LIBS := $(shell pkg-config --libs libsixel)
+endif
 # Of OpenEXR its core in C alone.
 ifeq ($(call have,'OpenEXR >= 3.1'),yes)
   EXR_LIBS := $(filter -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR))
@@ -88,7 +93,7 @@ COMPILE := $(HERE) -I. -I$(BUILD) $(DEFINES) $(shell pkg-config --cflags $(PACKA
            $(filter-out $(UNWANTED),$(CFLAGS)) $(STRICT) $(SAN_FLAGS) -pthread
 LUA_CFLAGS := $(shell pkg-config --cflags lua5.4 2>/dev/null)
 LUA_LIBS   := $(shell pkg-config --libs lua5.4 2>/dev/null)
-LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(EXR_LIBS) -lm -pthread
+LIBS       := $(shell pkg-config --libs $(PACKAGES) 2>/dev/null) $(FONT_LIBS) $(SIXEL_LIBS) $(EXR_LIBS) -lm -pthread
 TEST_LIBS  := $(shell pkg-config --libs cmocka 2>/dev/null) $(if $(call have,mpfr),$(shell pkg-config --libs mpfr))
 LINK       := $(SAN_FLAGS) $(HARDEN_LINK) $(LDFLAGS) $(LINK_NEEDED)
 
@@ -133,6 +138,7 @@ $(BUILD)/engine/stages/simd/select.o: ISA := $(KERNELS:%=-DGLINT_KERNEL_%)
 $(addprefix $(BUILD)/engine/,compare/flip.o tile/derivative_light.o tile/pattern_inputs.o tile/shader.o): ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/engine/text/letters.o $(BUILD)/shared/engine/text/letters.o: OWN := $(FONT_CFLAGS)
+$(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)
 
 # Files that the command carries with it, as C: bindings/watch/page.html.h has the bytes of bindings/watch/page.html.
 CARRIED := $(patsubst %,$(BUILD)/%.h,$(wildcard bindings/*/*.html bindings/*/*.css $(filter-out bindings/meta/%,$(wildcard bindings/*/*.lua)) scripts/lib/gr.lua scripts/lib/gr/*.lua))
@@ -186,7 +192,7 @@ shared: $(BUILD)/$(SHARED) ## the shared library build/libglint.so.$(VERSION)
 # Other flags or libraries than last time: everything is compiled again.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(KERNELS)' > $@
+	@echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS) $(KERNELS)' | cmp -s - $@ || echo '$(CC) $(COMPILE) $(HARDEN) $(LUA_CFLAGS) $(FONT_CFLAGS) $(SIXEL_CFLAGS) $(KERNELS)' > $@
 
 need:
 	@tests/deps.sh need

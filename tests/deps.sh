@@ -20,6 +20,7 @@ libdeflate-dev  module:libdeflate
 libopenexr-dev  module:OpenEXR
 libfreetype-dev module:freetype2
 fonts-dejavu-core file:/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+libsixel-dev    module:libsixel
 libseccomp-dev  module:libseccomp
 '
 test_required='

@@ -10,7 +10,6 @@
 #include "bindings/watch/watch.h"
 
 #define ANSWER_MS 150 // a terminal that has not answered by then never will
-#define SIXEL_SIDE 6 // levels of each primary
 
 // ---- What the terminal says ----
 
@@ -159,70 +158,7 @@ static void draw_blocks(const watch_terminal *terminal, const glint_image *image
     free(small.rgb);
 }
 
-// ---- Sixels: six rows at a time, for each colour the dots it has ----
-
-// Which of the cube's colours stands for a pixel: ordered dither, Bayer's 4 x 4 matrix.
-static int sixel_color(const unsigned char *rgb, int x, int y)
-{
-    static const int bayer[4][4] = { { 0, 8, 2, 10 }, { 12, 4, 14, 6 }, { 3, 11, 1, 9 }, { 15, 7, 13, 5 } };
-    int threshold = bayer[y % 4][x % 4] * 2 + 1, color = 0;
-    for (int c = 0; c < 3; c++)
-        color = color * SIXEL_SIDE + (rgb[c] * (SIXEL_SIDE - 1) * 32 / 255 + threshold) / 32;
-    return color;
-}
-
-static void put_run(int dots, int count)
-{
-    if (count > 3)
-        fprintf(stderr, "!%d%c", count, 63 + dots);
-    else
-        for (int i = 0; i < count; i++)
-            fputc(63 + dots, stderr);
-}
-
-// One colour's dots in a band of up to six rows.
-static void put_band(const unsigned char *colors, int width, int rows, int color)
-{
-    int before = 0, count = 0;
-    fprintf(stderr, "#%d", color);
-    for (int x = 0; x < width; x++) {
-        int dots = 0;
-        for (int y = 0; y < rows; y++)
-            dots |= (colors[(size_t)y * (size_t)width + (size_t)x] == color) << y;
-        if (dots != before)
-            put_run(before, count);
-        count = dots == before ? count + 1 : 1;
-        before = dots;
-    }
-    if (before)
-        put_run(before, count);
-    fputc('$', stderr);
-}
-
-static void put_sixels(const watch_small *small, unsigned char *colors)
-{
-    const int all = SIXEL_SIDE * SIXEL_SIDE * SIXEL_SIDE, level = 100 / (SIXEL_SIDE - 1);
-    fprintf(stderr, "\033Pq\"1;1;%d;%d", small->width, small->height);
-    for (int i = 0; i < all; i++)
-        fprintf(stderr, "#%d;2;%d;%d;%d", i, i / (SIXEL_SIDE * SIXEL_SIDE) * level, i / SIXEL_SIDE % SIXEL_SIDE * level,
-                i % SIXEL_SIDE * level);
-    for (int top = 0; top < small->height; top += 6) {
-        bool used[SIXEL_SIDE * SIXEL_SIDE * SIXEL_SIDE] = { false };
-        int rows = small->height - top < 6 ? small->height - top : 6;
-        for (int y = 0; y < rows; y++)
-            for (int x = 0; x < small->width; x++) {
-                size_t at = (size_t)y * (size_t)small->width + (size_t)x;
-                int color = sixel_color(small->rgb + ((size_t)top * (size_t)small->width + at) * 3, x, top + y);
-                colors[at] = (unsigned char)color;
-                used[color] = true;
-            }
-        for (int i = 0; i < all; i++)
-            if (used[i])
-                put_band(colors, small->width, rows, i);
-        fputc('-', stderr);
-    }
-    fputs("\033\\\n", stderr);
-}
+// ---- Sixels ----
 
 static void draw_sixels(const glint_image *image)
 {
@@ -230,12 +166,10 @@ static void draw_sixels(const glint_image *image)
     watch_small small;
     int width, height;
     fit(image, p.width ? p.width : 640, p.height ? p.height : 360, &width, &height);
-    unsigned char *colors = malloc((size_t)width * 6);
-    if (colors && watch_small_create(image, width, height, &small)) {
-        put_sixels(&small, colors);
-        free(small.rgb);
-    }
-    free(colors);
+    if (!watch_small_create(image, width, height, &small))
+        return;
+    watch_sixels_put(&small);
+    free(small.rgb);
 }
 
 // ---- The kitty graphics protocol: the PNG file itself, in base 64 ----

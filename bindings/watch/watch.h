@@ -38,6 +38,8 @@ typedef struct watch_small { ///< a picture of sRGB bytes
 
 /// Scales a picture to `width` x `height` by means over its linear light. False: out of memory.
 bool watch_small_create(const glint_image *image, int width, int height, watch_small *out);
+/// Writes it to stderr as sixels.
+void watch_sixels_put(const watch_small *small);
 
 // ---- watch/files.c ----
 
