@@ -305,8 +305,12 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const scene_s
         fill_light(&out->lights[i], rows, count, desc, &slopes->lights[i]);
         out->moves = out->moves || out->lights[i].moves;
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         out->background[c] = scene->desc.background_program ? 0 : slopes->scene.background[c];
+        out->everywhere = out->everywhere || out->background[c] != 0;
+    }
+    for (size_t i = 0; i < list->count; i++)
+        out->everywhere = out->everywhere || has_slope(out->materials[i].ambient, 3);
 }
 
 static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
@@ -369,6 +373,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
         glint_plan_derivative *d = &all->of[all->count++];
         status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
         all->moves = all->moves || d->moves;
+        all->everywhere = all->everywhere || d->everywhere;
     }
     free(slopes.materials);
     free(slopes.lights);

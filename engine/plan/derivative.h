@@ -32,11 +32,12 @@ typedef struct glint_plan_derivative {
     glint_derivative_light *lights; ///< in the scene's order
     double background[3]; ///< slopes
     bool moves; ///< some light does
+    bool everywhere; ///< something has a slope that no light brings
 } glint_plan_derivative;
 
 typedef struct glint_plan_derivatives {
     size_t count, light_count;
-    bool moves;
+    bool moves, everywhere;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
 } glint_plan_derivatives;
 

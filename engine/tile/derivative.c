@@ -13,8 +13,10 @@
 
 typedef struct glint_derivative_work {
     _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
+    _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
     float plane[3][GLINT_TILE_SAMPLES];
-    glint_derivative_points points[GLINT_TILE_GROUPS];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
     uint32_t first[GLINT_TILE_SAMPLES];
     uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that samples of the current light do not reach, do
@@ -44,49 +46,72 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
     }
 }
 
-static void gather_points(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g,
-                          glint_derivative_points *out)
+static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
+    glint_derivative_work *work = tile->derivative;
     const glint_precision precision = frame->plan->desc.precision;
-    for (int c = 0; c < 3; c++) {
-        glint_reals_of(tile->surface.point[c], precision, g, out->point[c]);
-        glint_reals_of(tile->surface.normal[c], precision, g, out->normal[c]);
-    }
-    double d[3][GLINT_GROUP];
+    const size_t at = (size_t)g * GLINT_GROUP;
+    _Alignas(64) double d[3][GLINT_GROUP];
     gather_directions(tile, precision, g, d);
-    for (int i = 0; i < GLINT_GROUP; i++) {
-        const double length = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
-        for (int c = 0; c < 3; c++)
-            out->eye[c][i] = -d[c][i] / length;
+    glint_derive_eyes(d, (double *const[3]) { work->eye[0] + at, work->eye[1] + at, work->eye[2] + at });
+    for (int c = 0; c < 3 && precision == GLINT_FLOAT; c++) {
+        glint_reals_of(tile->surface.point[c], precision, g, work->point[c] + at);
+        glint_reals_of(tile->surface.normal[c], precision, g, work->normal[c] + at);
     }
+}
+
+static glint_derivative_points points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    const glint_derivative_work *work = tile->derivative;
+    const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
+    const size_t at = (size_t)g * GLINT_GROUP;
+    glint_derivative_points out;
+    for (int c = 0; c < 3; c++) {
+        out.point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
+        out.normal[c] = (is_float ? work->normal[c] : tile->surface.normal[c]) + at;
+        out.eye[c] = work->eye[c] + at;
+    }
+    return out;
 }
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
-/// Where group g sees a light, or its sample, with a weight in every lane.
-static void place_source(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
-                         const glint_derivative_points *points, glint_derivative_source *out)
+/// A light as all groups see it, but for GLINT_EMIT_CONE; a plain one's place is put into every lane.
+static glint_derivative_source source_of(glint_tile *tile, const glint_plan_light *light)
 {
+    glint_derivative_work *work = tile->derivative;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    out->radiant = sample && (sample->emission == GLINT_EMIT_RADIANT_FRONT || sample->emission == GLINT_EMIT_RADIANT_BOTH);
-    out->both = sample && sample->emission == GLINT_EMIT_RADIANT_BOTH;
+    glint_derivative_source out = { .weight = NULL };
+    for (int c = 0; c < 3; c++) {
+        out.position[c] = sample ? sample->position[c] : work->position[c];
+        out.normal[c] = sample ? sample->normal[c] : work->position[c]; // of a plain one not read
+        for (int i = 0; i < GLINT_GROUP && !sample; i++)
+            work->position[c][i] = light->position[c];
+    }
+    out.both = sample && sample->emission == GLINT_EMIT_RADIANT_BOTH;
+    out.radiant = out.both || (sample && sample->emission == GLINT_EMIT_RADIANT_FRONT);
+    return out;
+}
+
+/// The sample that each lane of a group has of a ball, in the cone in which it sees that.
+static void take_cone(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
+                      const glint_derivative_points *points, glint_derivative_source *out)
+{
+    glint_derivative_work *work = tile->derivative;
+    const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
+    const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
     for (uint32_t i = 0; i < GLINT_GROUP; i++) {
-        for (int c = 0; c < 3; c++) {
-            out->position[c][i] = sample ? sample->position[c][i] : light->position[c];
-            out->normal[c][i] = sample ? sample->normal[c][i] : 0;
-        }
-        out->weight[i] = 1;
-        if (!sample || sample->emission != GLINT_EMIT_CONE)
-            continue;
-        const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
         const double at[3] = { points->point[0][i], points->point[1][i], points->point[2][i] };
         const double normal[3] = { points->normal[0][i], points->normal[1][i], points->normal[2][i] };
         const glint_cone_sample own = glint_cone_at(
             sample, light->scale, is_float ? GLINT_CONE_SLACK_FLOAT : GLINT_CONE_SLACK_DOUBLE, at, normal, i);
         for (int c = 0; c < 3; c++)
-            out->position[c][i] = at[c] + own.way[c] * own.far;
-        out->weight[i] = own.weight;
+            work->position[c][i] = at[c] + own.way[c] * own.far;
+        work->weight[i] = own.weight;
     }
+    for (int c = 0; c < 3; c++)
+        out->position[c] = work->position[c];
+    out->weight = work->weight;
 }
 
 /// The lanes of group g, among those that are left, that show the material of the first of them.
@@ -95,39 +120,37 @@ static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, u
     const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
     unsigned lanes = 0;
     *material = of[__builtin_ctz(left)];
+    if (glint_all_are(of, *material)) // the common case
+        return left;
     for (unsigned rest = left; rest; rest &= rest - 1)
         lanes |= of[__builtin_ctz(rest)] == *material ? rest & -rest : 0;
     return lanes;
 }
 
 /// `reached`: lanes that the light reaches.
-static void derive_group(glint_tile *tile, const glint_tile_frame *frame, uint32_t row, uint32_t slot, uint32_t g,
-                         unsigned reached)
+static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
+                         glint_derivative_source source, uint32_t g, unsigned reached)
 {
     glint_derivative_work *work = tile->derivative;
     const glint_plan_derivatives *all = frame->plan->derivatives;
-    const glint_plan_light *light = &frame->plan->lights[row];
-    const float *visible = light->cap && light->shadows ? tile->at.light[slot].visible + (size_t)g * GLINT_GROUP : NULL;
-    glint_derivative_source whole, source;
-    bool placed = false;
+    const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
+    const glint_derivative_points points = points_of(tile, frame, g);
+    const size_t at = (size_t)g * GLINT_GROUP;
+    if (sample && sample->emission == GLINT_EMIT_CONE)
+        take_cone(tile, frame, light, &points, &source);
+    for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
+        work->weight[i] = (double)tile->at.light[slot].visible[at + (size_t)i];
+        source.weight = work->weight;
+    }
     for (unsigned left = reached, lanes; left; left &= ~lanes) {
         uint32_t material;
         lanes = lanes_alike(tile, g, left, &material);
         for (size_t k = 0; k < all->count; k++) {
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
-            double *sum[3];
-            if (!l->varies && !m->varies)
-                continue;
-            if (!placed)
-                place_source(tile, frame, light, &work->points[g], &whole);
-            placed = true;
-            source = whole;
-            for (unsigned i = 0; i < GLINT_GROUP; i++)
-                source.weight[i] = !(lanes >> i & 1) ? 0 : visible ? whole.weight[i] * (double)visible[i] : whole.weight[i];
-            for (int c = 0; c < 3; c++)
-                sum[c] = &work->sum[k][c][(size_t)g * GLINT_GROUP];
-            glint_derive_light(l, m, &work->points[g], &source, sum);
+            double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
+            if (l->varies || m->varies)
+                glint_derive_light(l, m, &points, &source, lanes, sum);
         }
     }
 }
@@ -164,13 +187,14 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     const uint16_t *lit = tile->at.light[slot].lit;
     const uint16_t *open = light->shadows ? tile->at.light[slot].open : lit;
     const bool shift = light->shadows && moves(frame->plan->derivatives, light->source);
+    const glint_derivative_source source = source_of(tile, light);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const unsigned hits = tile->at.hits[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
         if (shift)
             note_shadows(tile, light, g, above, reached);
         if (reached)
-            derive_group(tile, frame, row, slot, g, reached);
+            derive_group(tile, frame, light, slot, source, g, reached);
     }
 }
 
@@ -218,13 +242,14 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
                 memset(work->sum[k][c], 0, count * sizeof **work->sum[k]);
         for (size_t i = 0; i < count; i++)
             work->shadows[i] = NO_SHADOWS;
-    } else {
+    } else if (frame->plan->derivatives->moves) {
         turn_sample(tile, tile->sample == 1);
     }
     for (uint32_t g = 0; g < tile->group_count; g++) {
-        begin_group(tile, frame, g);
+        if (frame->plan->derivatives->everywhere)
+            begin_group(tile, frame, g);
         if (tile->at.hits[g])
-            gather_points(tile, frame, g, &work->points[g]);
+            gather_points(tile, frame, g);
     }
 }
 
@@ -241,26 +266,24 @@ void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
-    const size_t stride = (size_t)frame->image->width;
     turn_sample(tile, frame->plan->desc.samples == 1);
-    for (uint32_t y = 0; y < tile->height; y++)
-        for (uint32_t x = 0; x < tile->width; x++) {
-            const uint32_t g = y / 4 * tile->groups_across + x / 4, lane = y % 4 * 4 + x % 4;
-            const uint32_t first = work->first[g * GLINT_GROUP + lane];
-            frame->image->shadows[(tile->y0 + y) * stride + tile->x0 + x] =
-                work->mixed[g] >> lane & 1 ? 0 : first ? first : 1;
-        }
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        for (unsigned rest = work->mixed[g]; rest; rest &= rest - 1)
+            work->first[g * GLINT_GROUP + (unsigned)__builtin_ctz(rest)] = 0;
+    glint_tile_store_plane(tile, work->first, frame->image->shadows, frame->image->width);
 }
 
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
     const glint_plan *plan = frame->plan;
+    const double share = 1 / plan->desc.samples;
     for (size_t k = 0; k < plan->derivatives->count; k++) {
         for (int c = 0; c < 3; c++)
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
-                work->plane[c][i] = (float)(work->sum[k][c][i] / plan->desc.samples);
+                work->plane[c][i] = (float)(work->sum[k][c][i] * share);
         glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_DERIVATIVE + k), work->plane[0]);
     }
-    store_shadows(tile, frame);
+    if (plan->derivatives->moves)
+        store_shadows(tile, frame);
 }

@@ -64,7 +64,7 @@ typedef struct shine {
     lanes weight; ///< by distance, cone and surface, and what of it reaches
 } shine;
 
-INLINE void load(const double from[3][GLINT_GROUP], int i, vd out[3])
+INLINE void load(const double *const from[3], int i, vd out[3])
 {
     for (int c = 0; c < 3; c++)
         out[c] = d_load(from[c] + i);
@@ -95,7 +95,7 @@ INLINE shine find_shine(const glint_derivative_light *light, const glint_derivat
     load(points->point, i, point);
     load(points->normal, i, normal);
     load(source->position, i, place);
-    s.weight = make(d_load(source->weight + i), d_set(0));
+    s.weight = make(source->weight ? d_load(source->weight + i) : d_set(1), d_set(0));
     for (int c = 0; c < 3; c++) {
         const vd from = light->directional ? d_set(0) : point[c];
         s.way[c] = make(place[c] - from, d_set(light->position[c].slope));
@@ -198,8 +198,19 @@ INLINE void find_lobe(const glint_derivative_material *material, const shine *s,
     *grazing = where(there, *grazing, zero);
 }
 
+void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3])
+{
+    for (int i = 0; i < GLINT_GROUP; i += VD) {
+        const vd x = d_load(direction[0] + i), y = d_load(direction[1] + i), z = d_load(direction[2] + i);
+        const vd inverse = d_set(-1) / d_sqrt((x * x + y * y) + z * z);
+        d_store(eye[0] + i, x * inverse);
+        d_store(eye[1] + i, y * inverse);
+        d_store(eye[2] + i, z * inverse);
+    }
+}
+
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
-                        const glint_derivative_points *points, const glint_derivative_source *source,
+                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
                         double *const sum[3])
 {
     const vd zero = d_set(0);
@@ -210,10 +221,10 @@ void glint_derive_light(const glint_derivative_light *light, const glint_derivat
         kg[c] = mul(of(material->grazing[c]), of(light->specular[c]));
     }
     for (int i = 0; i < GLINT_GROUP; i += VD) {
-        const dm reached = d_lt(zero, d_load(source->weight + i));
+        const dm reached = dm_from_bits(which >> i & ((1u << VD) - 1));
         lanes specular = number(0), grazing = number(0);
         vd normal[3], eye[3];
-        if (!dm_bits(reached))
+        if (!(which >> i & ((1u << VD) - 1)))
             continue;
         const shine s = find_shine(light, points, source, i);
         load(points->normal, i, normal);

@@ -4,25 +4,27 @@
 
 #include "engine/plan/derivative.h"
 
-/// Points of a group, doubles.
+/// Points of a group: sixteen doubles each.
 typedef struct glint_derivative_points {
-    _Alignas(64) double point[3][GLINT_GROUP];
-    _Alignas(64) double normal[3][GLINT_GROUP]; ///< unit, turned to the eye
-    _Alignas(64) double eye[3][GLINT_GROUP]; ///< unit, towards it
+    const double *point[3];
+    const double *normal[3]; ///< unit, turned to the eye
+    const double *eye[3]; ///< unit, towards it
 } glint_derivative_points;
 
 /// A light as a group sees it, or one sample of it.
 typedef struct glint_derivative_source {
-    _Alignas(64) double position[3][GLINT_GROUP]; ///< directional: the unit vector towards it
-    _Alignas(64) double normal[3][GLINT_GROUP]; ///< of its surface; read of radiant ones
-    _Alignas(64) double weight[GLINT_GROUP]; ///< share of it that reaches the point; 0: none
+    const double *position[3]; ///< directional: the unit vector towards it
+    const double *normal[3]; ///< of its surface; read of radiant ones
+    const double *weight; ///< share of it that reaches the point; NULL: 1
     bool radiant; ///< with cos' / distance^2
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
 
-/// Adds the slope of what a light leaves on lanes of one material, which have a weight, to `sum`.
+/// Unit vectors against the directions of rays.
+void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3]);
+/// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`.
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
-                        const glint_derivative_points *points, const glint_derivative_source *source,
+                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
                         double *const sum[3]);
 
 #endif

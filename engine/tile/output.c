@@ -4,16 +4,16 @@
 
 #include <string.h>
 
-/// Copies a group-ordered array of a tile into an image plane.
-static void store_plane(const glint_tile *tile, const float *groups, float *plane, int stride)
+void glint_tile_store_plane(const glint_tile *tile, const void *groups, void *plane, int stride)
 {
+    _Static_assert(sizeof(float) == sizeof(uint32_t), "numbers of planes");
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const uint32_t x = 4 * (g % tile->groups_across), y = 4 * (g / tile->groups_across);
         const uint32_t columns = tile->width - x < 4 ? tile->width - x : 4;
         const uint32_t rows = tile->height - y < 4 ? tile->height - y : 4;
-        float *to = plane + (size_t)(tile->y0 + y) * (size_t)stride + tile->x0 + x;
+        uint32_t *to = (uint32_t *)plane + (size_t)(tile->y0 + y) * (size_t)stride + tile->x0 + x;
         for (uint32_t r = 0; r < rows; r++, to += stride) {
-            const float *from = groups + g * GLINT_GROUP + 4 * r;
+            const uint32_t *from = (const uint32_t *)groups + g * GLINT_GROUP + 4 * r;
             if (columns == 4)
                 memcpy(to, from, 4 * sizeof *to);
             else
@@ -28,7 +28,7 @@ void glint_tile_store_pass(const glint_tile *tile, const glint_tile_frame *frame
     if (!(frame->plan->desc.passes >> pass & 1))
         return;
     for (int c = 0; c < glint_pass_channels(pass); c++)
-        store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
+        glint_tile_store_plane(tile, groups + (size_t)c * GLINT_TILE_SAMPLES, frame->image->plane[pass][c], frame->image->width);
 }
 
 double glint_tile_direction(const glint_tile *tile, glint_precision precision, int c, uint32_t i)

@@ -444,6 +444,8 @@ void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);
 
 /// tile/output.c: puts the finished tile into the image's planes and codes; its geometry is that of sample 0.
+/// Copies an array of the tile, in the order of its groups, into a plane of the image; of numbers of four bytes.
+void glint_tile_store_plane(const glint_tile *tile, const void *groups, void *plane, int stride);
 /// `groups`: the channels one after the other, in the order of groups. Nothing where the picture has no such pass.
 void glint_tile_store_pass(const glint_tile *tile, const glint_tile_frame *frame, glint_pass pass, const float *groups);
 bool glint_tile_wants_geometry(const glint_plan *plan);
