@@ -665,8 +665,8 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
 /// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
 /// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces; colours are passed over.
 /// else  Wavefront .obj: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative), and where
-///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd
-///       (.png). What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
+///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd,
+///       map_Ks and map_d (.png; of the last, where red is below one half there is a hole). What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
 ///       are passed over.
 ///
 /// Of .stl and .ply, faces without an area are left out.

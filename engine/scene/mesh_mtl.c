@@ -1,4 +1,4 @@
-/// Materials of .obj files: Kd, Ks, Ns, d and map_Kd of the .mtl files that they name.
+/// Materials of .obj files: Kd, Ks, Ns, d, map_Kd, map_Ks and map_d of the .mtl files that they name.
 #include "engine/scene/mesh_mtl.h"
 
 #include "engine/base/status.h"
@@ -8,6 +8,9 @@
 
 #define NO_FACE 0xffffffffu
 
+/// Pictures that a material may have.
+typedef enum map_kind { MAP_KD, MAP_KS, MAP_D, MAP_COUNT } map_kind;
+
 /// A material as a file has it. Sets find these by their key.
 typedef struct entry {
     glint_key key; ///< of its name; 0: the faces before the first usemtl
@@ -15,12 +18,12 @@ typedef struct entry {
     double clear; ///< what it lets through: 1 - d
     bool dull; ///< illum 0 or 1: without a highlight
     bool lacks_uv; ///< a face has it and a corner without coordinates
-    char *map; ///< map_Kd; NULL: none
-    glint_mesh_map place; ///< of the map
+    char *map[MAP_COUNT]; ///< NULL: none
+    glint_mesh_map place[MAP_COUNT]; ///< of each
 } entry;
 
 typedef struct picture {
-    glint_key key; ///< of its path and of `clamp`
+    glint_key key; ///< of its path, of `clamp`, and of whether its codes are numbers as they are
     glint_texture *texture; ///< NULL: it cannot be read
 } picture;
 
@@ -52,12 +55,18 @@ glint_mesh_library *glint_mesh_library_create(void)
 static entry *known_at(const glint_mesh_library *library, size_t i) { return (entry *)library->known.items + i; }
 static entry *used_at(const glint_mesh_library *library, size_t i) { return (entry *)library->used.items + i; }
 
+static void free_maps(entry *e)
+{
+    for (int kind = 0; kind < MAP_COUNT; kind++)
+        free(e->map[kind]);
+}
+
 void glint_mesh_library_free(glint_mesh_library *library)
 {
     if (!library)
         return;
     for (size_t i = 0; i < library->known.count; i++)
-        free(known_at(library, i)->map);
+        free_maps(known_at(library, i));
     for (size_t i = 0; i < library->materials.count; i++)
         glint_material_release(((glint_material **)library->materials.items)[i]);
     for (size_t i = 0; i < library->pictures.count; i++)
@@ -177,24 +186,27 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
     return glint_skip_blanks(at);
 }
 
-static glint_status read_map(const glint_mesh_text *text, const char *at, entry *to)
+static glint_status read_map(const glint_mesh_text *text, const char *at, map_kind kind, entry *to)
 {
+    glint_mesh_map *place = &to->place[kind];
     at = glint_skip_blanks(at);
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
         at = skip_option(text, at, words,
-                         glint_mesh_is_word(at, "-o")   ? to->place.offset
-                         : glint_mesh_is_word(at, "-s") ? to->place.scale
+                         glint_mesh_is_word(at, "-o")   ? place->offset
+                         : glint_mesh_is_word(at, "-s") ? place->scale
                                                         : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
-            to->place.clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
+            place->clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
     }
     if (!*at)
         return glint_mesh_refuse(text, "the name of a picture", at);
-    free(to->map);
-    to->map = glint_mesh_beside(text->path, at);
-    return to->map ? GLINT_OK : glint_fail_nomem(text->error);
+    free(to->map[kind]);
+    to->map[kind] = glint_mesh_beside(text->path, at);
+    return to->map[kind] ? GLINT_OK : glint_fail_nomem(text->error);
 }
+
+static const char *const map_words[MAP_COUNT] = { "map_Kd", "map_Ks", "map_d" };
 
 static glint_status read_field(const glint_mesh_text *text, const char *at, entry *to)
 {
@@ -216,22 +228,25 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, entr
     } else if (glint_mesh_is_word(at, "illum")) {
         status = read_range(text, at + 5, 1e308, &number);
         to->dull = !status && number < 2;
-    } else if (glint_mesh_is_word(at, "map_Kd")) {
-        status = read_map(text, at + 6, to);
     }
+    for (int kind = 0; kind < MAP_COUNT; kind++)
+        if (glint_mesh_is_word(at, map_words[kind]))
+            status = read_map(text, at + strlen(map_words[kind]), (map_kind)kind, to);
     return status;
 }
 
 /// newmtl: the entry that the lines below are about. A second one of a name is another.
 static glint_status begin(glint_mesh_library *library, const glint_mesh_text *text, const char *name, uint32_t *number)
 {
-    entry made = { .key = key_of(name), .desc = glint_material_desc_default(), .place.scale = { 1, 1 } };
+    entry made = { .key = key_of(name), .desc = glint_material_desc_default() };
+    for (int kind = 0; kind < MAP_COUNT; kind++)
+        made.place[kind].scale[0] = made.place[kind].scale[1] = 1;
     copy_name(made.desc.name, name);
     glint_status status =
         glint_mesh_find(&library->known_set, &library->known, &made, sizeof(glint_key), number, text->error);
     if (status)
         return status;
-    free(known_at(library, *number)->map);
+    free_maps(known_at(library, *number));
     *known_at(library, *number) = made;
     return GLINT_OK;
 }
@@ -307,13 +322,14 @@ glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_me
 
 /// The picture of a material; *out NULL, after a warning: there is none.
 static glint_status find_picture(glint_mesh_library *library, const glint_mesh_reader *reader, const entry *e,
-                                 glint_texture **out)
+                                 map_kind kind, glint_texture **out)
 {
+    const bool how[2] = { e->place[kind].clamp, kind == MAP_D };
     uint32_t number;
     glint_texture_desc desc = glint_texture_desc_default();
     glint_error inner;
     const size_t before = library->pictures.count;
-    const picture wanted = { .key = glint_key_add(key_of(e->map), &e->place.clamp, sizeof e->place.clamp) };
+    const picture wanted = { .key = glint_key_add(key_of(e->map[kind]), how, sizeof how) };
     glint_status status =
         glint_mesh_find(&library->picture_set, &library->pictures, &wanted, sizeof(glint_key), &number, reader->error);
     *out = NULL;
@@ -321,16 +337,17 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
         return status;
     picture *found = (picture *)library->pictures.items + number;
     if (library->pictures.count > before) {
-        desc.path = e->map;
-        desc.wrap = e->place.clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
+        desc.path = e->map[kind];
+        desc.linear = kind == MAP_D; // a number, not a colour
+        desc.wrap = e->place[kind].clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
         if (reader->desc->reads)
-            reader->desc->reads(reader->desc->context, e->map);
+            reader->desc->reads(reader->desc->context, e->map[kind]);
         status = glint_texture_create(&desc, &found->texture, &inner);
         if (status == GLINT_ERR_NOMEM)
             return glint_fail_nomem(reader->error);
         if (status)
-            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has its Kd in place of its map_Kd: %.200s",
-                            e->desc.name, inner.message);
+            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has its %s in place of its %s: %.200s",
+                            e->desc.name, map_words[kind] + 4, map_words[kind], inner.message);
     }
     *out = found->texture;
     return GLINT_OK;
@@ -350,24 +367,43 @@ static void dissolve(entry *e)
         e->desc.ior = 1;
 }
 
+/// The pattern of one of its pictures, times what the file says beside it.
+static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *reader, const entry *e, map_kind kind,
+                          glint_program **out)
+{
+    static const double one[3] = { 1, 1, 1 };
+    const double *const ks = e->desc.has_specular || e->dull ? e->desc.specular : one;
+    const double *const factor[MAP_COUNT] = { e->desc.diffuse, ks, one };
+    glint_texture *texture = NULL;
+    glint_status status = GLINT_OK;
+    if (e->map[kind] && e->lacks_uv)
+        glint_mesh_warn(reader->desc, reader->text.path,
+                        "material '%s' has its %s in place of its %s: faces of it have no coordinates (vt)", e->desc.name,
+                        map_words[kind] + 4, map_words[kind]);
+    else if (e->map[kind])
+        status = find_picture(library, reader, e, kind, &texture);
+    if (!status && texture)
+        status = glint_mesh_paint(texture, &e->place[kind], factor[kind], kind == MAP_D ? 1 : 3, out, reader->error);
+    return status;
+}
+
 static glint_status make_material(glint_mesh_library *library, const glint_mesh_reader *reader, uint32_t number)
 {
     entry e = *used_at(library, number);
-    glint_texture *texture = NULL;
     glint_material *material;
+    glint_program *made[MAP_COUNT] = { NULL };
     glint_status status = GLINT_OK;
     dissolve(&e);
-    if (e.map && e.lacks_uv)
-        glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s' has its Kd in place of its map_Kd: faces of it have no coordinates (vt)",
-                        e.desc.name);
-    else if (e.map)
-        status = find_picture(library, reader, &e, &texture);
-    if (!status && texture)
-        status = glint_mesh_paint(texture, &e.place, e.desc.diffuse, &e.desc.program.diffuse, reader->error);
+    for (int kind = 0; kind < MAP_COUNT && !status; kind++)
+        status = paint(library, reader, &e, (map_kind)kind, &made[kind]);
+    e.desc.program.diffuse = made[MAP_KD];
+    e.desc.program.specular = made[MAP_KS];
+    e.desc.program.opacity = made[MAP_D];
+    e.desc.has_specular = e.desc.has_specular || made[MAP_KS];
     if (!status)
         status = glint_material_create(&e.desc, &material, reader->error);
-    glint_program_release(e.desc.program.diffuse);
+    for (int kind = 0; kind < MAP_COUNT; kind++)
+        glint_program_release(made[kind]);
     if (status)
         return status;
     status = glint_mesh_append(&library->materials, &material, reader->error);

@@ -10,8 +10,8 @@ typedef struct glint_mesh_map {
     bool clamp; ///< beyond 0 .. 1 is the picture's border, not the picture again
 } glint_mesh_map;
 
-/// A pattern of the picture times a colour.
-glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double kd[3],
+/// A pattern of the picture's first `channels` (1 or 3) times numbers.
+glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3], size_t channels,
                               glint_program **out, glint_error *error);
 
 /// NULL: out of memory.

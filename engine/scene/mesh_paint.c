@@ -1,4 +1,4 @@
-/// The pattern of a material's picture: map_Kd of .mtl files.
+/// The pattern of a material's picture: map_Kd, map_Ks and map_d of .mtl files.
 #include "engine/scene/mesh_mtl.h"
 #include "engine/base/maker.h"
 
@@ -11,7 +11,7 @@ static glint_value place_of(glint_maker *p, const glint_mesh_map *map, int axis)
     return glint_maker_with(p, GLINT_OP_ADD, glint_maker_with(p, GLINT_OP_MUL, at, map->scale[axis]), map->offset[axis]);
 }
 
-glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double kd[3],
+glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3], size_t channels,
                               glint_program **out, glint_error *error)
 {
     glint_maker p = { .error = error };
@@ -23,9 +23,9 @@ glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map
     if (!p.status)
         p.status = glint_builder_texel(p.builder, texture, u, v, width, color, error);
     for (int c = 0; c < 3; c++)
-        color[c] = glint_maker_with(&p, GLINT_OP_MUL, color[c], kd[c]);
+        color[c] = glint_maker_with(&p, GLINT_OP_MUL, color[c], factor[c]);
     if (!p.status)
-        p.status = glint_builder_finish(p.builder, color, 3, out, error);
+        p.status = glint_builder_finish(p.builder, color, channels, out, error);
     glint_builder_destroy(p.builder);
     return p.status;
 }

@@ -211,6 +211,40 @@ function tests.colours_by_face()
     "a pattern in place of Kd stays with the scene")
 end
 
+-- The right plate's upper half is cut out, and its highlight is the picture's: red and half of the blue below.
+function tests.pictures_of_highlights_and_holes()
+  os.execute("mkdir -p " .. folder .. "/sub")
+  local function halves(name, upper, lower) -- linear codes
+    glint.scene { camera = glint.camera { eye = { 0, 1, 9 }, at = { 0, 1, 0 } }, ambient = 1, background = upper,
+      glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = lower } },
+    }:render { width = 8, height = 8, transfer = "linear", bits = 16 }:save(folder .. "/sub/" .. name,
+      { transfer = "linear", bits = 16 })
+  end
+  halves("hole.png", 0, { 1, 0, 0 })
+  halves("shine.png", { 0, 1, 0 }, { 1, 0, 0.5 })
+  local function render(text)
+    write("some file.mtl", text)
+    local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 }, fov = 40 }, background = { 0, 0, 1 },
+      glint.directional_light { direction = { 0, 0, -1 }, ambient = 0 }, (load("plates.obj", PLATES)) }
+    return scene:render { width = 64, height = 36, passes = "specular" }
+  end
+  local image = render "newmtl left of it\nKd 1 1 1\nnewmtl right\nKd 0.5 0.5 0.5\nmap_d -clamp on sub/hole.png\n"
+  local r, g, b = image:pixel(36, 14)
+  check(r == 0 and g == 0 and b == 1, "what is behind the hole, got %g %g %g", r, g, b)
+  r, g, b = image:pixel(36, 21)
+  check(r == 0.5 and g == 0.5 and b == 0.5, "what is there, got %g %g %g", r, g, b)
+  for _, ks in ipairs { "", "Ks 0.5 0.5 0.5\n" } do
+    image = render("newmtl left of it\nKd 1 1 1\nnewmtl right\nKd 0 0 0\nNs 0\n" .. ks .. "map_Ks -clamp on sub/shine.png\n")
+    local part = ks == "" and 1 or 0.5
+    r, g, b = image:pixel(36, 21, "specular")
+    near(r, part, 1e-4, "Ns 0: the picture times Ks") near(g, 0, 0, "green") near(b, part / 2, 1e-4, "blue")
+    r, g = image:pixel(36, 14, "specular")
+    check(r == 0 and math.abs(g - part) < 1e-4, "above, got %g %g", r, g)
+  end
+  image = render "newmtl left of it\nKd 1 1 1\nnewmtl right\nKd 0 0 0\nNs 0\nillum 1\nmap_Ks -clamp on sub/shine.png\n"
+  check(image:pixel(36, 21, "specular") == 0, "illum 1 has no highlight")
+end
+
 function tests.a_material_of_the_script_comes_first()
   write("some file.mtl", MATERIALS)
   local own = glint.material { diffuse = 0.5 }
