@@ -517,7 +517,10 @@ typedef enum glint_shape_kind {
     GLINT_SHAPE_CYLINDER, ///< `base`, `top`, `radius`
     GLINT_SHAPE_CONE, ///< `base`, `top`, the apex, `radius` at the base
     GLINT_SHAPE_TORUS, ///< `center`, `axis`, `major`, `minor`
-    GLINT_SHAPE_GROUP ///< of shapes; see glint_group_add
+    GLINT_SHAPE_GROUP, ///< of shapes; see glint_group_add
+    GLINT_SHAPE_UNION, ///< one solid of several, its parts: what is in any of them; see glint_group_add
+    GLINT_SHAPE_INTERSECTION, ///< what is in all of them
+    GLINT_SHAPE_DIFFERENCE ///< what is in the first and in none of the others
 } glint_shape_kind;
 
 /// An affine map: out_i = m[i][0] x + m[i][1] y + m[i][2] z + m[i][3].
@@ -552,7 +555,8 @@ typedef enum glint_shading {
 /// The fields of a shape; each kind reads those that name it, and those that name none. Lengths in world units.
 typedef struct glint_shape_desc {
     glint_shape_kind kind; ///< of glint_shape_create: not spheres and mesh
-    glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none
+    glint_material *material; ///< retained by the shape; NULL: a material with default fields. A group has none. NULL, of a
+        ///< part of a combined solid: that of the solid; of that: of its first part that has one
     glint_transform transform; ///< of the shape as described here; default identity; must be possible to undo
     bool two_sided; ///< default true: the normal turns to the viewer; false: the back gets ambient light only
     double center[3], radius; ///< sphere, disk (and cylinder, cone: radius; torus: center): finite, radius > 0; see glint_scene_cast
@@ -575,7 +579,8 @@ glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out,
 /// Replaces the description by a copy, of the same kind; on error nothing changes.
 glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, glint_error *error);
 /// The description; of a GLINT_SHAPE_SPHERES shape only kind, transform, two_sided, name and material (its first) mean
-/// anything, of a mesh these and `shading`, of a group kind, transform and name. Setting `material` replaces the first.
+/// anything, of a mesh these and `shading`, of a group kind, transform and name, of a combined solid these, two_sided and
+/// material. Setting `material` replaces the first.
 const glint_shape_desc *glint_shape_get(const glint_shape *shape);
 /// Takes another reference; returns its argument.
 glint_shape *glint_shape_retain(glint_shape *shape);
@@ -589,14 +594,21 @@ size_t glint_shape_materials(const glint_shape *shape, glint_material *const **l
 /// with the box untouched: the shape is of another kind, and its description says where it is.
 bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[3]);
 
-#define GLINT_GROUP_DEPTH 64 ///< groups one within the other
+#define GLINT_GROUP_DEPTH 64 ///< groups and combined solids one within the other
 
-/// The group retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
-/// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice.
+// Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces: the side away from the normal is inside), other
+// combined solids, and groups, which stand for the union of what is in them; at most 64 in all, a torus counts twice. The whole is one object; a part shows
+// nowhere but where it bounds the whole, with its own material, in its own space. Light that goes in through any part is in one medium: `ior` and
+// `absorption` are those of the whole's material. `two_sided` of parts means nothing. Faces that coincide leave nothing between them: a box
+// less one that ends at the same face is open there; where several parts bound the whole at one place, the first defined shows.
+
+/// The group or combined solid retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
+/// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice; what has
+/// no inside in a combined solid.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
-/// Takes the shape out of the group and releases it. GLINT_ERR_INVALID when it is not there.
+/// Takes the shape out of the group or combined solid and releases it. GLINT_ERR_INVALID when it is not there.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);
-/// How many shapes the group holds itself, those within its groups not counted.
+/// How many shapes the group or combined solid holds itself, those within its groups not counted.
 size_t glint_group_count(const glint_shape *group);
 glint_shape *glint_group_child(const glint_shape *group, size_t index); ///< borrowed
 
@@ -846,7 +858,8 @@ typedef struct glint_hit {
     double normal[3]; ///< unit, geometric, outward (a plane's own normal; a triangle's faces where its corners run
         ///< counter-clockwise)
     glint_shape *shape; ///< borrowed from the scene
-    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, which triangle of a mesh, from 0
+    size_t element; ///< which sphere of a GLINT_SHAPE_SPHERES shape, which triangle of a mesh, which part of a combined solid
+        ///< (those of parts that have parts are counted one by one), from 0
 } glint_hit;
 
 /// Finds the nearest hit of one ray with t > 0, by the kernels a frame uses. `direction` need not be unit; not zero. Spheres and

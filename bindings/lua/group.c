@@ -1,4 +1,4 @@
-// glint.group: a list of shapes under one transform; its methods.
+// glint.group: a list of shapes under one transform, and the combined solids: their parts and methods.
 #include <stdio.h>
 
 #include "bindings/value/glintL.h"
@@ -6,7 +6,7 @@
 static glint_shape *check_group(lua_State *L, int index)
 {
     glint_shape *shape = glintL_check_object(L, index, GLINTL_SHAPE);
-    if (glint_shape_get(shape)->kind != GLINT_SHAPE_GROUP)
+    if (glint_shape_get(shape)->kind < GLINT_SHAPE_GROUP)
         glintL_refuse(L, index, "", "group");
     return shape;
 }
@@ -26,13 +26,22 @@ static void add_child(lua_State *L, int index, int value, const char *path)
     glintL_check_status(L, "", &error, glint_group_add(group, child, &error));
 }
 
+// "group.add", "union.add" ...
+static const char *method_of(lua_State *L, const char *name)
+{
+    static const char *const kinds[] = { "group", "union", "intersection", "difference" };
+    return lua_pushfstring(L, "%s.%s", kinds[glint_shape_get(check_group(L, 1))->kind - GLINT_SHAPE_GROUP], name);
+}
+
 int glintL_group_add(lua_State *L)
 {
-    check_group(L, 1);
-    glintL_refuse_within_trace(L, "group.add");
-    if (lua_gettop(L) != 2)
-        return glintL_error(L, "group.add: one shape expected, got %d", lua_gettop(L) - 1);
-    add_child(L, 1, 2, "group.add");
+    const int count = lua_gettop(L) - 1;
+    const char *name = method_of(L, "add");
+    glintL_refuse_within_trace(L, name);
+    if (count != 1)
+        return glintL_error(L, "%s: one shape expected, got %d", name, count);
+    add_child(L, 1, 2, name);
+    lua_settop(L, 2);
     return 1;
 }
 
@@ -41,9 +50,11 @@ int glintL_group_remove(lua_State *L)
     char key[32];
     glint_error error;
     glint_shape *group = check_group(L, 1), *child = glintL_test_object(L, 2, GLINTL_SHAPE);
-    glintL_refuse_within_trace(L, "group.remove");
+    lua_settop(L, 2);
+    const char *name = method_of(L, "remove");
+    glintL_refuse_within_trace(L, name);
     if (!child)
-        glintL_refuse(L, 2, "group.remove", "shape");
+        glintL_refuse(L, 2, name, "shape");
     snprintf(key, sizeof key, "%p", (void *)child);
     glintL_check_status(L, "", &error, glint_group_remove(group, child, &error));
     lua_settop(L, 2);
@@ -58,13 +69,15 @@ int glintL_group_count(lua_State *L)
     return 1;
 }
 
-void glintL_group_fill(lua_State *L, int list, int index)
+void glintL_group_fill(lua_State *L, int list, int index, const char *name)
 {
-    const size_t count = glintL_check_list(L, list, "group", true);
+    const size_t count = glintL_check_list(L, list, name, true);
+    if (count == 0 && glint_shape_get(check_group(L, index))->kind != GLINT_SHAPE_GROUP)
+        glintL_error(L, "%s: shapes expected, such as glint.%s { glint.sphere {...}, glint.box {...} }", name, name);
     for (size_t i = 1; i <= count; i++) {
         char path[32];
         lua_rawgeti(L, list, (lua_Integer)i);
-        snprintf(path, sizeof path, "group[%zu]", i);
+        snprintf(path, sizeof path, "%s[%zu]", name, i);
         add_child(L, index, lua_gettop(L), path);
         lua_pop(L, 1);
     }

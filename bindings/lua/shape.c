@@ -1,4 +1,5 @@
-// glint.sphere, plane, box, disk, cylinder, cone, torus and group; the fields of glint.spheres and glint.mesh, whose constructors are in spheres.c and mesh.c
+// glint.sphere, plane, box, disk, cylinder, cone, torus, group, union, intersection and difference; the fields of glint.spheres and
+// glint.mesh, whose constructors are in spheres.c and mesh.c
 #include <string.h>
 
 #include "bindings/value/glintL.h"
@@ -71,6 +72,8 @@ static const glintL_field GROUP_FIELDS[] = {
     { .name = "name", .kind = GLINTL_STRING, .offset = AT(name) },
     { .name = NULL },
 };
+
+static const glintL_field COMBINED_FIELDS[] = { EVERY_SHAPE, { .name = NULL } };
 
 static const luaL_Reg GROUP_GETTERS[] = { { "count", glintL_group_count }, { NULL, NULL } };
 static const luaL_Reg GROUP_METHODS[] = { { "add", glintL_group_add },
@@ -151,6 +154,18 @@ static const glintL_variant VARIANTS[] = {
                             .fields = GROUP_FIELDS,
                             .getters = GROUP_GETTERS,
                             .methods = GROUP_METHODS },
+    [GLINT_SHAPE_UNION] = { .name = "union",
+                            .fields = COMBINED_FIELDS,
+                            .getters = GROUP_GETTERS,
+                            .methods = GROUP_METHODS },
+    [GLINT_SHAPE_INTERSECTION] = { .name = "intersection",
+                                   .fields = COMBINED_FIELDS,
+                                   .getters = GROUP_GETTERS,
+                                   .methods = GROUP_METHODS },
+    [GLINT_SHAPE_DIFFERENCE] = { .name = "difference",
+                                 .fields = COMBINED_FIELDS,
+                                 .getters = GROUP_GETTERS,
+                                 .methods = GROUP_METHODS },
 };
 
 static const glintL_variant *variant(const void *object) { return &VARIANTS[glint_shape_get(object)->kind]; }
@@ -198,7 +213,7 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
     glint_error error;
     lua_settop(L, 1);
     glintL_box *box = glintL_new_box(L, GLINTL_SHAPE);
-    glintL_read_table(L, 1, v->name, v->fields, &desc, kind == GLINT_SHAPE_GROUP);
+    glintL_read_table(L, 1, v->name, v->fields, &desc, kind >= GLINT_SHAPE_GROUP);
     glintL_check_status(L, v->name, &error, glint_shape_create(&desc, &shape, &error));
     box->object = shape;
     glintL_remember(L, shape);
@@ -208,8 +223,8 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
         glintL_keep(L, 2, "material", -1);
         lua_pop(L, 1);
     }
-    if (kind == GLINT_SHAPE_GROUP)
-        glintL_group_fill(L, 1, 2);
+    if (kind >= GLINT_SHAPE_GROUP)
+        glintL_group_fill(L, 1, 2, v->name);
     lua_settop(L, 2);
     return 1;
 }
@@ -225,6 +240,12 @@ static int new_cone(lua_State *L) { return new_shape(L, GLINT_SHAPE_CONE); }
 static int new_torus(lua_State *L) { return new_shape(L, GLINT_SHAPE_TORUS); }
 
 static int new_group(lua_State *L) { return new_shape(L, GLINT_SHAPE_GROUP); }
+
+static int new_union(lua_State *L) { return new_shape(L, GLINT_SHAPE_UNION); }
+
+static int new_intersection(lua_State *L) { return new_shape(L, GLINT_SHAPE_INTERSECTION); }
+
+static int new_difference(lua_State *L) { return new_shape(L, GLINT_SHAPE_DIFFERENCE); }
 
 static int new_sphere(lua_State *L) { return new_shape(L, GLINT_SHAPE_SPHERE); }
 
@@ -242,6 +263,9 @@ void glintL_open_shape(lua_State *L)
         { "cone", new_cone },
         { "torus", new_torus },
         { "group", new_group },
+        { "union", new_union },
+        { "intersection", new_intersection },
+        { "difference", new_difference },
         { "mesh", glintL_new_mesh },
         { "sphere_mesh", glintL_new_sphere_mesh },
         { NULL, NULL },

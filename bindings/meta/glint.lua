@@ -272,12 +272,13 @@ function glint.camera(fields) end
 -- ---- Shapes ----
 
 ---@class glint.shape_fields
----@field material? glint.material  Default: a material of its own with default fields
+---@field material? glint.material  Default: a material of its own with default fields; of a part of a combined solid that of the solid
 ---@field transform? glint.transform  of the shape as described; nil: where it is described
 ---@field two_sided? boolean  the normal turns to the viewer; false: the back gets ambient light only. Default true
 ---@field name? string  for messages and `glint explain`, at most 63 bytes. Default ""
 
----@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group
+---@alias glint.shape glint.sphere|glint.plane|glint.spheres|glint.mesh|glint.box|glint.disk|glint.cylinder|glint.cone|glint.torus|glint.group|glint.union|glint.intersection|glint.difference
+
 
 --- An affine map: a value that does not change. `a * b` is first b, then a; equal when all numbers are.
 ---@class glint.transform
@@ -517,6 +518,74 @@ function group:close() end
 ---@param fields glint.group_fields
 ---@return glint.group
 function glint.group(fields) end
+
+---@class glint.combined_fields: glint.shape_fields
+---@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, combined solids and groups of these
+
+--- What is in any part.
+--- One solid of several: its parts, 1 .. 64 in all, where a torus counts twice. A plane is the half-space behind it, a group what any of it is. A part shows only where
+--- it bounds the whole, with its own material or, without one, the whole's, which is that of its first part that has one where it is not
+--- given; light inside has the `ior` and `absorption` of that. The whole is one object. `two_sided` of parts means nothing.
+---@class glint.union: glint.combined_fields
+---@field count integer  how many parts it was given; only read
+local union = {}
+
+--- Adds a part; returns it.
+---@param shape glint.shape
+---@return glint.shape
+function union:add(shape) end
+
+---@param shape glint.shape
+function union:remove(shape) end
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function union:close() end
+
+---@param fields glint.combined_fields
+---@return glint.union
+function glint.union(fields) end
+
+--- What is in all parts.
+--- See glint.union for its parts, their materials and what is inside.
+---@class glint.intersection: glint.combined_fields
+---@field count integer  how many parts it was given; only read
+local intersection = {}
+
+--- Adds a part; returns it.
+---@param shape glint.shape
+---@return glint.shape
+function intersection:add(shape) end
+
+---@param shape glint.shape
+function intersection:remove(shape) end
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function intersection:close() end
+
+---@param fields glint.combined_fields
+---@return glint.intersection
+function glint.intersection(fields) end
+
+--- What is in the first part and in none of the others. Where one of these ends at a face of the first, that face is open.
+--- See glint.union for its parts, their materials and what is inside.
+---@class glint.difference: glint.combined_fields
+---@field count integer  how many parts it was given; only read
+local difference = {}
+
+--- Adds a part; returns it.
+---@param shape glint.shape
+---@return glint.shape
+function difference:add(shape) end
+
+---@param shape glint.shape
+function difference:remove(shape) end
+
+--- Gives the object back at once instead of when it is collected. A scene that holds it goes on using it.
+function difference:close() end
+
+---@param fields glint.combined_fields
+---@return glint.difference
+function glint.difference(fields) end
 
 -- ---- Overlays: labels, colour bars, axes ----
 

@@ -363,7 +363,7 @@ static void look_into(lua_State *L, const look *l, const glint_shape *shape, con
     ball b;
     const glint_shape_desc *desc = glint_shape_get(shape);
     const glint_transform placed = glint_transform_product(outer, &desc->transform);
-    if (++*count > MEMBERS_MAX)
+    if (++*count > MEMBERS_MAX || desc->kind >= GLINT_SHAPE_UNION) // no part of a combined solid stands alone
         return;
     for (size_t i = 0; i < glint_group_count(shape); i++) {
         const glint_shape *child = glint_group_child(shape, i);

@@ -336,7 +336,7 @@ int glintL_new_sphere_mesh(lua_State *L);
 int glintL_group_add(lua_State *L);
 int glintL_group_remove(lua_State *L);
 int glintL_group_count(lua_State *L);
-void glintL_group_fill(lua_State *L, int list, int index);
+void glintL_group_fill(lua_State *L, int list, int index, const char *name);
 
 /// Sets an object's field by name, for a sweep's axis: the value is on top of the stack and stays there.
 /// Works on anything with __newindex; raises as the assignment would.

@@ -49,6 +49,16 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
     *out = (glint_hit) { .t = g->t[0] * scale, .shape = part->shape, .element = id - part->first_prim };
+    for (uint32_t whole = id; part->whole; whole--) { // whose id is before those of its parts
+        const glint_part *other = &geometry->parts[geometry->prim_part[whole]];
+        if (other->whole)
+            continue;
+        out->shape = part->whole;
+        out->element = 0;
+        for (uint32_t i = 0; i < geometry->member_count; i++)
+            out->element += geometry->members[i].id > whole && geometry->members[i].id < id && geometry->members[i].face != 1;
+        break;
+    }
     const double turn = g->back & 1 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
         out->point[c] = g->point[c][0];

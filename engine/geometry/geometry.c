@@ -67,7 +67,7 @@ static void make_keys(glint_geometry *geometry)
             const bool triangle = prim->kind == GLINT_PRIM_TRIANGLE, flat = !triangle || prim->item == GLINT_MISS;
             const bool shading_points = triangle && prim->shading_points != GLINT_MISS;
             const uint32_t *part =
-                geometry->prim_part + i + n; // where a mesh follows another, the places do not say it
+                geometry->prim_part + prim->id; // where a mesh follows another, the places do not say it
             const bool other = triangle && i + n > 0 && prim[-1].kind == GLINT_PRIM_TRIANGLE && part[-1] != part[0];
             look[n][0] = prim->two_sided | (flat ? 0 : 2u) | (shading_points ? 4u : 0) | (other ? 8u : 0);
             look[n][1] = prim->material;
@@ -76,6 +76,11 @@ static void make_keys(glint_geometry *geometry)
         }
         geometry->where = glint_key_add(geometry->where, place, numbers * sizeof *place);
         geometry->look = glint_key_add(geometry->look, look, n * sizeof look[0]);
+    }
+    for (uint32_t i = 0; i < geometry->member_count; i++) {
+        const glint_prim *member = &geometry->members[i];
+        const uint32_t look[3] = { member->two_sided, member->material, member->medium };
+        geometry->look = glint_key_add(geometry->look, look, sizeof look);
     }
     geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
     if (shared)
@@ -120,6 +125,8 @@ static void choose_frame(glint_geometry *geometry)
         vec_sub(upper, upper, table->reference);
         largest = fmax(largest, fmax(vec_max_abs(lower), vec_max_abs(upper)));
     }
+    for (uint32_t i = 0; i < geometry->member_count; i++)
+        table->extent = fmax(table->extent, vec_max_abs(geometry->members[i].center));
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
@@ -269,7 +276,7 @@ static void arrange_chunk(void *context, size_t chunk, int worker)
 /// Where each id is among those in the order of the index.
 static bool find_places(glint_geometry *geometry, const glint_prim *arranged, uint32_t count)
 {
-    geometry->places = glint_alloc(geometry->table.prim_count, sizeof *geometry->places);
+    geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places);
     if (!geometry->places)
         return false;
     for (uint32_t i = 0; i < count; i++)
@@ -281,7 +288,8 @@ static bool find_places(glint_geometry *geometry, const glint_prim *arranged, ui
 static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
-    arranging a = { geometry->index, geometry->prims, glint_alloc_large(count, sizeof *geometry->prims) };
+    arranging a = { geometry->index, geometry->prims,
+                    glint_alloc_large((size_t)count + geometry->member_count, sizeof *geometry->prims) };
     if (!a.to)
         return glint_fail_nomem(error);
     const size_t chunks = (bounded + ARRANGE_CHUNK - 1) / ARRANGE_CHUNK;
@@ -301,6 +309,8 @@ static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_er
     free(geometry->prims);
     geometry->table.prims = geometry->prims = a.to;
     geometry->table.prim_count = bounded + geometry->table.unbounded_count;
+    if (geometry->member_count)
+        memcpy(a.to + geometry->table.prim_count, geometry->members, geometry->member_count * sizeof *a.to);
     geometry->arranged = true;
     return GLINT_OK;
 }
@@ -402,6 +412,8 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->maps);
     free(geometry->normals);
     free(geometry->solids);
+    free(geometry->combined);
+    free(geometry->members);
     free(geometry->faces);
     free(geometry->unbounded);
     free(geometry->shading_points);
@@ -420,7 +432,6 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
         status = find_repeats(geometry, error);
     if (status)
         return status;
-    geometry->id_count = geometry->table.prim_count;
     make_keys(geometry);
     choose_frame(geometry);
     status = index_create(geometry, error);
@@ -435,7 +446,7 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id)
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
-    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim);
+    return part->first_object + (part->shape->mesh ? 0 : id - part->first_prim); // a part of a combined solid has one id
 }
 
 /// Every change of a shape gives it a number that no other state of any shape has.

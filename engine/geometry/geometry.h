@@ -7,6 +7,7 @@
 #include "engine/geometry/bvh.h"
 #include "engine/scene/objects.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -27,6 +28,8 @@ typedef struct glint_index {
 /// A shape's run of primitives; as many as there are groups that show it.
 typedef struct glint_part {
     glint_shape *shape; ///< the scene's
+    const glint_shape *dress; ///< the shape whose materials it has: itself, but of parts of combined solids that have none
+    glint_shape *whole; ///< of such a part: the combined solid that is an object of the scene; NULL: it is one itself
     uint32_t first_prim, first_object; ///< ids of its first primitive and of its first object, from 0
     const glint_transform *map; ///< of it and of its groups, one of the geometry's; NULL: the identity
 } glint_part;
@@ -38,14 +41,17 @@ struct glint_geometry {
     bool arranged; ///< the latter
     uint32_t *prim_part; ///< which part each is of, by id
     bool *repeats; ///< which are bit-equal to one before, by id; until the index is made
-    glint_part *parts; ///< in order of definition
+    glint_part *parts; ///< in order of definition; parts of combined solids after all else
     glint_transform *maps; ///< of those that have one
-    uint32_t part_count;
+    uint32_t part_count, whole_count; ///< whole_count: of those that are no part of a combined solid
     glint_corner_normals *normals; ///< of triangles that are shaded smoothly
     glint_shading_points *shading_points; ///< of triangles whose light is worked out at sites
     uint32_t *shading_point_prims; ///< id of the first triangle of each site
     uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
     glint_solid *solids;
+    glint_combined *combined;
+    glint_prim *members; ///< the parts of combined solids, in order of definition; prims has them, too, once arranged
+    uint32_t member_count;
     glint_face *faces; ///< of solids and triangles
     uint32_t *unbounded;
     glint_list materials; ///< in order of first use; the scene's shapes own them
@@ -54,7 +60,7 @@ struct glint_geometry {
     bool has_others; ///< `others` is built
     uint32_t triangle_count;
     double thinnest; ///< least size of what is curved, world units; infinite: nothing is
-    uint32_t id_count; ///< primitives that were described, repeats included
+    uint32_t id_count; ///< primitives that were described, parts of combined solids and repeats included
     glint_geometry_table table; ///< for the kernels; without `nodes` until the index is built
     glint_key where, look; ///< of the places; of materials and sides
 };
@@ -97,6 +103,15 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
 /// A box around a primitive that has an end.
 void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double lower[3], double upper[3]);
 
-static inline bool glint_prim_bounded(const glint_prim *prim) { return prim->kind != GLINT_PRIM_PLANE; }
+static inline bool glint_prim_bounded(const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_COMBINED ? prim->corner[1][0] > -HUGE_VAL : prim->kind != GLINT_PRIM_PLANE;
+}
+
+/// geometry/combined.c: the box of a combined solid whose program and members are there: the middle, the lower and the upper corner; -inf
+/// and inf where it has no end.
+void glint_combined_box(const glint_geometry *geometry, const glint_combined *combined, double box[3][3]);
+/// Whether a place is inside the combined solid.
+bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3]);
 
 #endif

@@ -129,7 +129,7 @@ static bool see_all(grid_maker *maker)
     double way[3];
     for (uint32_t i = 0; i < table->prim_count; i++) {
         const glint_prim *prim = &table->prims[i];
-        if (prim->kind == GLINT_PRIM_PLANE)
+        if (!glint_prim_bounded(prim))
             continue;
         if (is_small(maker, prim, way) && see(maker, prim, i, way, &maker->seen[maker->count]))
             maker->count++;

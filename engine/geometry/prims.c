@@ -43,6 +43,19 @@ static int copy_face(double *out, const glint_face *face)
     return 6;
 }
 
+/// A key over the places of all parts stands for them.
+static int combined_place(const glint_geometry *geometry, const glint_combined *combined, double out[GLINT_PLACE_MAX])
+{
+    glint_key key = glint_key_add((glint_key) { 0 }, combined->program, combined->length);
+    for (uint32_t j = 0; j < combined->count; j++) {
+        double place[GLINT_PLACE_MAX];
+        const int count = glint_prim_place(geometry, &geometry->members[combined->first + j], place);
+        key = glint_key_add(key, place, (size_t)count * sizeof *place);
+    }
+    memcpy(out + 1, &key, sizeof key);
+    return 1 + (int)(sizeof key / sizeof *out);
+}
+
 int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX])
 {
     out[0] = prim->kind;
@@ -50,6 +63,8 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
         memcpy(out + 1, prim->corner, sizeof prim->corner);
         return 10 + (prim->face ? copy_face(out + 10, &geometry->faces[prim->face - 1]) : 0);
     }
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return combined_place(geometry, &geometry->combined[prim->item], out);
     vec_copy(out + 1, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &geometry->solids[prim->item];
@@ -95,6 +110,11 @@ void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double
 {
     if (prim->kind == GLINT_PRIM_SOLID) {
         solid_bounds(&solids[prim->item], prim->center, lower, upper);
+        return;
+    }
+    if (prim->kind == GLINT_PRIM_COMBINED) {
+        vec_copy(lower, prim->corner[1]);
+        vec_copy(upper, prim->corner[2]);
         return;
     }
     for (int c = 0; c < 3; c++) {
@@ -230,12 +250,13 @@ static void solid_init(glint_prim *prim, glint_solid *solid, glint_form form, co
 typedef struct filler {
     glint_geometry *geometry;
     uint32_t *numbers; ///< of the materials of the shape at hand
-    uint32_t object_count;
+    uint32_t object_count, id_count;
+    size_t members, combined; ///< parts of combined solids, and those
     size_t prims, parts, smooth, shared, shading_points, solids, faces,
         materials; ///< how many there are; materials: most of any shape
     size_t maps; ///< of parts, at most
     size_t visits, map_count;
-    uint32_t normal_count, shared_count, solid_count, face_count;
+    uint32_t normal_count, shared_count, solid_count, face_count, combined_count;
     int level_axis; ///< of the last triangle of the shape that is square to an axis; 3: none so far
     double level; ///< where on it
     glint_error *error;
@@ -377,13 +398,24 @@ static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc,
     solid_init(prim, &f->geometry->solids[prim->item], form, &unit, place, faces);
 }
 
+/// What of a primitive is no place.
+static void dress_prim(filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
+{
+    prim->id = f->id_count++;
+    prim->two_sided = two_sided;
+    prim->turned = 0;
+    prim->material = material;
+    prim->medium = medium;
+    f->geometry->prim_part[prim->id] = part;
+}
+
 static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     const glint_shape_desc *desc = &shape->desc;
-    const uint32_t at = geometry->table.prim_count++;
-    glint_prim *prim = &geometry->prims[at];
-    prim->id = at;
+    const uint32_t material = f->numbers[shape->index ? shape->index[i] : 0];
+    glint_prim *prim = &geometry->prims[geometry->table.prim_count++];
+    dress_prim(f, prim, part, material, material, desc->two_sided);
     switch (desc->kind) {
     case GLINT_SHAPE_MESH:
         add_triangle(f, prim, shape, i, place);
@@ -401,12 +433,19 @@ static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t par
         add_solid(f, prim, desc, place);
         break;
     }
-    prim->two_sided = desc->two_sided;
-    prim->material = f->numbers[shape->index ? shape->index[i] : 0];
-    geometry->prim_part[at] = part;
 }
 
-static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around);
+static void start_part(filler *f, uint32_t part, glint_shape *shape, const glint_placing *place)
+{
+    glint_geometry *geometry = f->geometry;
+    geometry->parts[part] =
+        (glint_part) { .shape = shape, .dress = shape, .first_prim = f->id_count, .first_object = f->object_count };
+    if (place->map) {
+        geometry->maps[f->map_count] = *place->map;
+        geometry->parts[part].map = &geometry->maps[f->map_count++];
+    }
+    geometry->part_count++;
+}
 
 static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing *place)
 {
@@ -416,12 +455,8 @@ static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing
         if (status)
             return status;
     }
-    const uint32_t part = geometry->part_count++;
-    geometry->parts[part] = (glint_part) { shape, geometry->table.prim_count, f->object_count, NULL };
-    if (place->map) {
-        geometry->maps[f->map_count] = *place->map;
-        geometry->parts[part].map = &geometry->maps[f->map_count++];
-    }
+    const uint32_t part = geometry->whole_count++;
+    start_part(f, part, shape, place);
     f->level_axis = 3;
     for (size_t i = 0; i < shape->count; i++)
         add_prim(f, shape, i, part, place);
@@ -432,26 +467,166 @@ static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing
     return GLINT_OK;
 }
 
+/// around: the map of the groups that the shape is in; NULL: the identity. map: room for its own under that.
+static glint_status find_placing(const filler *f, const glint_shape *shape, const glint_transform *around,
+                                 glint_transform *map, glint_placing *place)
+{
+    double linear[3][3], factor = 1;
+    glint_status status = GLINT_OK;
+    *map = around ? glint_transform_product(around, &shape->desc.transform) : shape->desc.transform;
+    *place = (glint_placing) { .map = map };
+    if (glint_transform_is_identity(map))
+        place->map = NULL;
+    else if (around)
+        status = glint_check_transform("group.transform: with those around it", map, f->error);
+    if (status)
+        return status;
+    glint_transform_linear(map, linear);
+    scale_linear(linear);
+    place->determinant = glint_linear_cofactors(linear, place->cofactors);
+    place->similar = !place->map || glint_transform_similar(map, &factor);
+    return GLINT_OK;
+}
+
+// ---- Combined solids ----
+
+/// A combined solid that is being filled.
+typedef struct maker {
+    glint_shape *shape; ///< the whole
+    glint_combined *combined;
+    uint32_t nothings; ///< groups without anything in them
+    uint32_t medium; ///< number of its material
+} maker;
+
+/// What the parts that have no material are dressed as: it has one, or a part of it has.
+static const glint_shape *find_dress(const glint_shape *shape)
+{
+    if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
+        return shape;
+    for (size_t i = 0; i < shape->children.count; i++) {
+        const glint_shape *found = find_dress(shape->children.items[i]);
+        if (found)
+            return found;
+    }
+    return NULL;
+}
+
+static glint_status too_many_parts(const filler *f, const maker *m)
+{
+    char name[2 * GLINT_NAME_SIZE];
+    glint_describe_shape(&m->shape->desc, f->geometry->whole_count, name, sizeof name);
+    return glint_fail(f->error, GLINT_ERR_INVALID, "%s: at most %d parts expected", name, GLINT_PARTS_MAX);
+}
+
+/// A part is a solid or a plane, a ball too; half: see glint_prim.face.
+static glint_status add_member(filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
+                               bool turned, uint32_t half)
+{
+    glint_geometry *geometry = f->geometry;
+    uint32_t material;
+    const char *refusal = glint_part_refusal(shape);
+    char name[2 * GLINT_NAME_SIZE];
+    glint_describe_shape(&m->shape->desc, geometry->whole_count, name, sizeof name);
+    if (refusal)
+        return glint_fail(f->error, GLINT_ERR_INVALID, "%s: parts with an inside expected: %s, got %s", name, refusal,
+                          glint_shape_kind_name(shape->desc.kind));
+    glint_status status = material_number(&geometry->materials, dress->materials[0], &material, f->error);
+    if (status)
+        return status;
+    const uint32_t part = (uint32_t)f->parts + geometry->member_count;
+    glint_prim *prim = &geometry->members[geometry->member_count++];
+    start_part(f, part, shape, place);
+    geometry->parts[part].dress = dress;
+    geometry->parts[part].whole = m->shape;
+    dress_prim(f, prim, part, material, m->medium, m->shape->desc.two_sided);
+    prim->turned = turned;
+    if (shape->desc.kind == GLINT_SHAPE_PLANE)
+        plane_init(prim, shape->desc.point, shape->desc.normal, place);
+    else
+        add_solid(f, prim, &shape->desc, place);
+    prim->face = half;
+    m->combined->program[m->combined->length++] = (uint8_t)m->combined->count++;
+    if (half == 2)
+        m->combined->program[m->combined->length++] = GLINT_COMBINE_UNION;
+    return GLINT_OK;
+}
+
+static uint8_t operation_of(const glint_shape *shape)
+{
+    return shape->desc.kind == GLINT_SHAPE_INTERSECTION ? GLINT_COMBINE_INTERSECTION
+           : shape->desc.kind == GLINT_SHAPE_DIFFERENCE ? GLINT_COMBINE_DIFFERENCE
+                                                        : GLINT_COMBINE_UNION;
+}
+
+/// Adds what a shape is to a whole. dress: of what has no material of its own.
+static glint_status add_to_whole(filler *f, maker *m, glint_shape *shape, const glint_transform *around,
+                                 const glint_shape *dress, bool turned)
+{
+    glint_combined *combined = m->combined;
+    glint_transform map;
+    glint_placing place;
+    glint_status status = find_placing(f, shape, around, &map, &place);
+    if (status)
+        return status;
+    if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
+        dress = shape;
+    const bool torus = shape->desc.kind == GLINT_SHAPE_TORUS;
+    if (combined->count + m->nothings + torus >= GLINT_PARTS_MAX)
+        return too_many_parts(f, m);
+    if (torus)
+        status = add_member(f, m, shape, &place, dress, turned, 1);
+    if (!glint_shape_has_children(shape))
+        return status ? status : add_member(f, m, shape, &place, dress, turned, torus ? 2 : 0);
+    if (shape->children.count == 0) {
+        combined->program[combined->length++] = GLINT_COMBINE_NOTHING;
+        m->nothings++;
+    }
+    for (size_t i = 0; i < shape->children.count && !status; i++) {
+        const bool away = i > 0 && shape->desc.kind == GLINT_SHAPE_DIFFERENCE;
+        status = add_to_whole(f, m, shape->children.items[i], place.map, dress, turned != away);
+        if (i > 0)
+            combined->program[combined->length++] = operation_of(shape);
+    }
+    return status;
+}
+
+/// around: as of add_shape.
+static glint_status add_combined(filler *f, glint_shape *shape, const glint_placing *place,
+                                 const glint_transform *around)
+{
+    glint_geometry *geometry = f->geometry;
+    glint_prim *prim = &geometry->prims[geometry->table.prim_count++];
+    const uint32_t part = geometry->whole_count++;
+    const glint_shape *dress = find_dress(shape);
+    maker m = { .shape = shape, .combined = &geometry->combined[f->combined_count] };
+    if (!dress)
+        dress = shape;
+    glint_status status = material_number(&geometry->materials, dress->materials[0], &m.medium, f->error);
+    if (status)
+        return status;
+    start_part(f, part, shape, place);
+    geometry->parts[part].dress = dress;
+    *m.combined = (glint_combined) { .first = geometry->member_count };
+    dress_prim(f, prim, part, m.medium, m.medium, shape->desc.two_sided);
+    prim->kind = GLINT_PRIM_COMBINED;
+    prim->item = f->combined_count++;
+    status = add_to_whole(f, &m, shape, around, dress, false);
+    if (!status)
+        glint_combined_box(geometry, m.combined, prim->corner);
+    f->object_count++;
+    return status;
+}
+
 /// around: the map of the groups that the shape is in; NULL: the identity.
 static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around)
 {
-    glint_transform map = shape->desc.transform;
-    glint_placing place = { .map = &map };
-    double linear[3][3];
-    glint_status status = GLINT_OK;
-    if (around)
-        map = glint_transform_product(around, &shape->desc.transform);
-    if (glint_transform_is_identity(&map))
-        place.map = NULL;
-    else if (around)
-        status = glint_check_transform("group.transform: with those around it", &map, f->error);
+    glint_transform map;
+    glint_placing place;
+    glint_status status = find_placing(f, shape, around, &map, &place);
     if (status)
         return status;
-    glint_transform_linear(&map, linear);
-    scale_linear(linear);
-    place.determinant = glint_linear_cofactors(linear, place.cofactors);
-    double factor = 1;
-    place.similar = !place.map || glint_transform_similar(&map, &factor);
+    if (glint_shape_combines(shape))
+        return add_combined(f, shape, &place, around);
     if (shape->desc.kind != GLINT_SHAPE_GROUP)
         return add_prims(f, shape, &place);
     for (size_t i = 0; i < shape->children.count && !status; i++)
@@ -461,24 +636,34 @@ static glint_status add_shape(filler *f, glint_shape *shape, const glint_transfo
 
 #define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each as often as it shows
 
-/// mapped: within a group that has a transform.
-static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped)
+/// mapped: within a group that has a transform; within: a combined solid.
+static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped, bool within)
 {
-    const bool group = shape->desc.kind == GLINT_SHAPE_GROUP;
+    const bool group = glint_shape_has_children(shape) && (within || !glint_shape_combines(shape));
     glint_status status = GLINT_OK;
     mapped = mapped || !glint_transform_is_identity(&shape->desc.transform);
     if (++f->visits > VISITS_MAX)
         return glint_fail(f->error, GLINT_ERR_INVALID, "scene: at most %zu shapes and groups expected", VISITS_MAX);
     for (size_t i = 0; i < shape->children.count && !status; i++)
-        status = count_shape(f, shape->children.items[i], mapped);
+        status = count_shape(f, shape->children.items[i], mapped, within || glint_shape_combines(shape));
+    if (within && !group) {
+        const size_t count = shape->desc.kind == GLINT_SHAPE_TORUS ? 2 : 1;
+        f->members += count;
+        f->maps += mapped ? count : 0;
+        f->solids += count;
+        f->faces += 6; // at most
+        f->materials = f->materials ? f->materials : 1;
+        return status;
+    }
+    f->combined += !within && glint_shape_combines(shape);
     f->parts += !group;
     f->maps += !group && mapped; // at most
-    f->prims += shape->count;
+    f->prims += group ? 0 : shape->count;
     f->smooth += is_smooth(shape) ? shape->count : 0;
     f->shared += is_shared(shape) ? shape->count : 0;
     f->shading_points += count_shading_points(shape);
-    f->solids += mapped || shape->desc.kind >= GLINT_SHAPE_BOX ? shape->count : 0; // at most
-    f->faces += shape->mesh ? glint_count_levels(shape->mesh) : shape->desc.kind >= GLINT_SHAPE_BOX ? 6 : 0; // at most
+    f->solids += mapped || glint_shape_is_solid(shape) ? shape->count : 0; // at most
+    f->faces += shape->mesh ? glint_count_levels(shape->mesh) : glint_shape_is_solid(shape) ? 6 : 0;
     f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
     return status;
 }
@@ -501,12 +686,17 @@ static bool allocate(filler *f)
     glint_geometry *geometry = f->geometry;
     f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
     geometry->prims = glint_alloc(f->prims, sizeof *geometry->prims);
-    geometry->prim_part = glint_alloc(f->prims, sizeof *geometry->prim_part);
-    geometry->parts = glint_alloc(f->parts, sizeof *geometry->parts);
+    geometry->members = f->members ? glint_alloc(f->members, sizeof *geometry->members) : NULL;
+    geometry->combined = f->combined ? glint_alloc(f->combined, sizeof *geometry->combined) : NULL;
+    geometry->prim_part = glint_alloc(f->prims + f->members, sizeof *geometry->prim_part);
+    geometry->parts = glint_alloc(f->parts + f->members, sizeof *geometry->parts);
     geometry->maps = f->maps ? glint_alloc(f->maps, sizeof *geometry->maps) : NULL;
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
+    f->solids += f->combined > 0; // the kernels look for either where there are solids
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
+    if ((f->members && !geometry->members) || (f->combined && !geometry->combined))
+        return false;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
            (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && (geometry->faces || !f->faces) &&
            allocate_shading_points(f);
@@ -517,10 +707,10 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     filler f = { .geometry = geometry, .error = error };
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < scene->shapes.count && !status; i++)
-        status = count_shape(&f, glint_scene_shape(scene, i), false);
-    if (!status && f.prims >= INT32_MAX)
+        status = count_shape(&f, glint_scene_shape(scene, i), false, false);
+    if (!status && f.prims + f.members >= INT32_MAX)
         status =
-            glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims);
+            glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims + f.members);
     if (!status && f.shading_points >= INT32_MAX)
         status = glint_fail(error, GLINT_ERR_INVALID,
                             "scene: fewer than 2147483647 faces and vertices with light of their own expected, got %zu",
@@ -533,6 +723,8 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     geometry->table.prims = geometry->prims;
     geometry->table.corner_normals = geometry->normals;
     geometry->table.solids = geometry->solids;
+    geometry->table.combined = geometry->combined;
+    geometry->id_count = f.id_count;
     geometry->table.shading_points = geometry->shading_points;
     geometry->table.faces = geometry->faces;
     return status;

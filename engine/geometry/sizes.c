@@ -51,11 +51,18 @@ static void name_prim(const glint_geometry *geometry, const glint_prim *prim, ch
         snprintf(out, size, "%s", owner);
 }
 
+/// Primitive i, of those that rays meet and of the parts of combined solids after them.
+static const glint_prim *prim_at(const glint_geometry *geometry, uint32_t i)
+{
+    const uint32_t count = geometry->table.prim_count;
+    return i < count ? &geometry->prims[i] : &geometry->members[i - count];
+}
+
 glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *error)
 {
     geometry->thinnest = HUGE_VAL;
-    for (uint32_t i = 0; i < geometry->table.prim_count; i++) {
-        const glint_prim *prim = &geometry->prims[i];
+    for (uint32_t i = 0; i < geometry->table.prim_count + geometry->member_count; i++) {
+        const glint_prim *prim = prim_at(geometry, i);
         char name[3 * GLINT_NAME_SIZE];
         extents e;
         if (!extents_of(geometry, prim, &e))
@@ -79,8 +86,8 @@ glint_status glint_geometry_check_reach(const glint_geometry *geometry, const ch
 {
     if (vec_max_abs(from) + geometry->table.extent <= AWAY_MOST * geometry->thinnest)
         return GLINT_OK;
-    for (uint32_t i = 0; i < geometry->table.prim_count; i++) {
-        const glint_prim *prim = &geometry->prims[i];
+    for (uint32_t i = 0; i < geometry->table.prim_count + geometry->member_count; i++) {
+        const glint_prim *prim = prim_at(geometry, i);
         char name[3 * GLINT_NAME_SIZE];
         double away[3];
         extents e;

@@ -154,7 +154,7 @@ static void materials(explainer *e, const char *effect, material_test *test)
     char owner[2 * GLINT_NAME_SIZE], caller[4 * GLINT_NAME_SIZE];
     begin(e, effect);
     for (uint32_t i = 0; i < e->plan->geometry->part_count && !e->status; i++) {
-        const glint_shape *shape = e->plan->geometry->parts[i].shape;
+        const glint_shape *shape = e->plan->geometry->parts[i].dress;
         for (size_t m = 0; m < shape->material_count && !e->status; m++) {
             glint_material *material = shape->materials[m];
             if (!test(&material->desc) || glint_list_find(&seen, material) < seen.count)
@@ -201,10 +201,6 @@ static void patterns(explainer *e)
 typedef bool shape_test(const glint_shape *shape);
 
 static bool is_mesh(const glint_shape *shape) { return shape->mesh; }
-static bool is_solid(const glint_shape *shape)
-{
-    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
-}
 static bool is_shaded(const glint_shape *shape, glint_shading shading)
 {
     return shape->mesh && shape->desc.shading == shading;
@@ -221,7 +217,7 @@ static void shapes(explainer *e, const char *effect, shape_test *test)
 {
     char caller[2 * GLINT_NAME_SIZE];
     begin(e, effect);
-    for (uint32_t i = 0; i < e->plan->geometry->part_count; i++) {
+    for (uint32_t i = 0; i < e->plan->geometry->whole_count; i++) {
         const glint_shape *shape = e->plan->geometry->parts[i].shape;
         if (!test(shape))
             continue;
@@ -303,7 +299,8 @@ static void list_effects(explainer *e, const glint_scene *scene)
             shapes(e, "flat shading", is_flat);
             shapes(e, "Gouraud shading", is_gouraud);
         }
-        shapes(e, "solid by an affine map", is_solid);
+        shapes(e, "solid by an affine map", glint_shape_is_solid);
+        shapes(e, "combined solid", glint_shape_combines);
         shapes(e, "open cylinder or cone", is_uncapped);
     }
     if (plan->patterns)

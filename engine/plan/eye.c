@@ -31,6 +31,8 @@ static bool holds(const glint_geometry *geometry, const glint_prim *prim, const 
     vec_sub(e, point, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID)
         return glint_solid_holds(&geometry->solids[prim->item], prim->center, point);
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return glint_combined_holds(geometry, &geometry->combined[prim->item], point);
     if (prim->kind == GLINT_PRIM_PLANE)
         return vec_dot(prim->normal, e) < 0;
     return sqrt(vec_dot(e, e)) < prim->radius;
@@ -99,7 +101,7 @@ static double diagonal(const double lower[3], const double upper[3])
 static double size_of(const glint_geometry *geometry, const glint_prim *prim)
 {
     double lower[3], upper[3];
-    if (prim->kind == GLINT_PRIM_PLANE)
+    if (!glint_prim_bounded(prim))
         return HUGE_VAL;
     if (prim->kind == GLINT_PRIM_SPHERE)
         return 2 * sqrt(3) * prim->radius;
@@ -138,7 +140,7 @@ static void find_media(const glint_plan *plan, hull *hulls, around *eye)
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             add_triangle(&hulls[geometry->prim_part[prim->id]], plan, prim);
         else if (holds(geometry, prim, plan->camera.eye))
-            add_holder(eye, size_of(geometry, prim), prim->id, prim->material);
+            add_holder(eye, size_of(geometry, prim), prim->id, prim->medium);
     }
     pthread_mutex_unlock(&geometry->index->lock);
     for (uint32_t i = 0; i < hull_count; i++)

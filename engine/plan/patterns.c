@@ -299,8 +299,8 @@ static glint_status find_places(glint_plan_patterns *patterns, const glint_geome
     for (uint32_t i = 0; i < geometry->part_count; i++) {
         const glint_part *part = &geometry->parts[i];
         bool begun = false;
-        for (size_t k = 0; k < part->shape->material_count; k++) {
-            glint_plan_pattern *own = &patterns->of[glint_list_find(&geometry->materials, part->shape->materials[k])];
+        for (size_t k = 0; k < part->dress->material_count; k++) {
+            glint_plan_pattern *own = &patterns->of[glint_list_find(&geometry->materials, part->dress->materials[k])];
             if (!own->any)
                 continue;
             if (!begun)

@@ -55,6 +55,8 @@ static glint_cached_place *find_places(const glint_geometry *geometry, uint32_t 
         }
         place->radius = prim->kind == GLINT_PRIM_SPHERE ? prim->radius : sqrt(vec_dot(half, half));
     }
+    for (uint32_t i = 0; places && i < geometry->member_count; i++) // a whole's key has what its parts are
+        places[geometry->members[i].id] = (glint_cached_place) { .at = geometry->table.prim_count + i };
     return places;
 }
 

@@ -48,12 +48,13 @@ struct glint_shape {
     glint_shape_desc desc;
     size_t count; ///< spheres, or triangles; 1 for other kinds
     glint_mesh *mesh; ///< GLINT_SHAPE_MESH
-    glint_list children; ///< GLINT_SHAPE_GROUP
+    glint_list children; ///< of a group or combined solid
     size_t level; ///< how many groups it has been within
     uint64_t stamp; ///< of the last search that came by
     size_t probed; ///< the level that search supposed
     uint64_t checked; ///< a group: the last revision given to any shape when its children were looked at
     uint64_t children_hash; ///< of their revisions then
+    bool dressed; ///< it was given a material, which is not that of what it is a part of
     double lower[3], upper[3]; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: a box around them
     double (*spheres)[4]; ///< GLINT_SHAPE_SPHERES: centre and radius of each
     uint32_t *index; ///< GLINT_SHAPE_SPHERES and GLINT_SHAPE_MESH: material of each sphere or triangle, or NULL
@@ -78,6 +79,18 @@ static inline glint_light *glint_scene_light(const glint_scene *scene, size_t i)
 glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_count);
 /// Makes the box of the shape hold a ball around the point, too; `first`: it holds nothing yet.
 void glint_shape_stretch(glint_shape *shape, const double center[3], double radius, bool first);
+static inline bool glint_shape_combines(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_UNION; }
+/// Whether it is nothing but its children.
+static inline bool glint_shape_has_children(const glint_shape *shape) { return shape->desc.kind >= GLINT_SHAPE_GROUP; }
+/// Whether rays meet it by the rules of solids: a box, disk, cylinder, cone or torus.
+static inline bool glint_shape_is_solid(const glint_shape *shape)
+{
+    return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
+}
+/// Why it cannot be a part of a combined solid, or have `child` as a part; NULL: it can.
+const char *glint_part_refusal(const glint_shape *child);
+/// "difference", ... of a kind.
+const char *glint_shape_kind_name(glint_shape_kind kind);
 /// Gives a shape a new revision.
 void glint_shape_changed(glint_shape *shape);
 /// Its revision; of a group, another one after every change of anything within.

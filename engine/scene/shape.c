@@ -115,7 +115,7 @@ void glint_shape_changed(glint_shape *shape) { shape->revision = next_revision()
 
 uint64_t glint_shape_revision(glint_shape *shape)
 {
-    if (shape->desc.kind != GLINT_SHAPE_GROUP || shape->checked == atomic_load(&last_revision))
+    if (!glint_shape_has_children(shape) || shape->checked == atomic_load(&last_revision))
         return shape->revision;
     glint_key key = { 0 };
     for (size_t i = 0; i < shape->children.count; i++) {
@@ -147,6 +147,7 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
     shape->revision = next_revision();
     shape->desc = *desc;
     shape->count = desc->kind != GLINT_SHAPE_GROUP;
+    shape->dressed = desc->material != NULL;
     shape->materials = calloc(material_count, sizeof *shape->materials);
     if (!shape->materials) {
         free(shape);
@@ -157,7 +158,7 @@ glint_shape *glint_shape_alloc(const glint_shape_desc *desc, size_t material_cou
 
 glint_status glint_shape_create(const glint_shape_desc *desc, glint_shape **out, glint_error *error)
 {
-    if (desc->kind > GLINT_SHAPE_GROUP || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
+    if (desc->kind > GLINT_SHAPE_DIFFERENCE || desc->kind == GLINT_SHAPE_SPHERES || desc->kind == GLINT_SHAPE_MESH)
         return glint_fail(error, GLINT_ERR_INVALID, "kind: one that a description alone makes expected");
     glint_status status = check(desc, error);
     if (status)
@@ -187,9 +188,11 @@ glint_status glint_shape_set(glint_shape *shape, const glint_shape_desc *desc, g
         status = glint_mesh_prepare(shape->mesh, shape->index, desc->shading, error);
     if (status)
         return status;
+    const bool dressed = desc->material && (shape->dressed || desc->material != shape->materials[0]);
     glint_material *material = glint_material_or_default(desc->material, error);
     if (!material)
         return GLINT_ERR_NOMEM;
+    shape->dressed = dressed;
     glint_material_release(shape->materials[0]);
     shape->materials[0] = material;
     shape->desc = *desc;
@@ -329,14 +332,21 @@ glint_status glint_spheres_create(const glint_spheres_desc *desc, glint_shape **
     return GLINT_OK;
 }
 
+const char *glint_shape_kind_name(glint_shape_kind kind)
+{
+    static const char *const kinds[] = { "sphere",   "plane", "spheres", "mesh",  "box",   "disk",
+                                         "cylinder", "cone",  "torus",   "group", "union", "intersection",
+                                         "difference" };
+    return kinds[kind];
+}
+
 void glint_describe_shape(const glint_shape_desc *desc, size_t number, char *out, size_t size)
 {
-    static const char *const kinds[] = { "sphere", "plane",    "spheres", "mesh",  "box",
-                                         "disk",   "cylinder", "cone",    "torus", "group" };
+    const char *kind = glint_shape_kind_name(desc->kind);
     if (desc->name[0])
-        snprintf(out, size, "%s '%s'", kinds[desc->kind], desc->name);
+        snprintf(out, size, "%s '%s'", kind, desc->name);
     else
-        snprintf(out, size, "%s #%zu", kinds[desc->kind], number);
+        snprintf(out, size, "%s #%zu", kind, number);
 }
 
 size_t glint_shape_materials(const glint_shape *shape, glint_material *const **list)

@@ -142,6 +142,12 @@ static void take_hits(glint_batch *batch, const glint_tile_frame *frame)
     }
 }
 
+/// What is inside the surface of sample i.
+static uint32_t medium_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
+{
+    return frame->geometry.prims[tile->at.prim[i]].medium;
+}
+
 /// Weakens the rays by what they went through since their last surface.
 static void absorb(glint_batch *batch, const glint_tile_frame *frame)
 {
@@ -154,7 +160,7 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
         const bool sampled = glint_batch_has_sample(batch, i), hit = sampled && glint_has_lane(tile->at.hits, at);
         const uint32_t medium =
             hit && frame->plan->bouncing[tile->surface.material[at]].transmits
-                ? glint_media_before(&rays->media[i], tile->surface.material[at], glint_has_lane(tile->hit.back, at))
+                ? glint_media_before(&rays->media[i], medium_of(tile, frame, at), glint_has_lane(tile->hit.back, at))
                 : glint_media_top(&rays->media[i]);
         if (medium == GLINT_NO_MEDIUM)
             continue;
@@ -250,15 +256,15 @@ static double index_of(const glint_plan *plan, uint32_t medium)
 }
 
 /// The refractive index on the ray's side of a surface over that beyond it. What lets nothing through is solid: its
-/// index is beyond, from whichever side it is seen.
-static double index_ratio(const glint_plan *plan, const glint_media *media, uint32_t material, bool back)
+/// index is beyond, from whichever side it is seen. medium: what is inside.
+static double index_ratio(const glint_plan *plan, const glint_media *media, uint32_t material, uint32_t medium, bool back)
 {
     const glint_bounce_material *m = &plan->bouncing[material];
     glint_media beyond = *media;
     if (!m->transmits)
         return index_of(plan, glint_media_top(media)) / m->ior;
-    glint_media_cross(&beyond, material, back);
-    return index_of(plan, glint_media_before(media, material, back)) / index_of(plan, glint_media_top(&beyond));
+    glint_media_cross(&beyond, medium, back);
+    return index_of(plan, glint_media_before(media, medium, back)) / index_of(plan, glint_media_top(&beyond));
 }
 
 static const glint_media *media_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
@@ -286,7 +292,7 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
         for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
             const double ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->surface.material[i],
-                                             glint_has_lane(tile->hit.back, i));
+                                             medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
             glint_real_put(batch->ratio, precision, i, ratio);
         }
     if (glint_plan_bumps(frame->plan))
@@ -363,5 +369,5 @@ void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const g
          m->fresnel ? 1 - mirrored : 1);
     through->inward = total ? back : !back;
     if (!total)
-        glint_media_cross(&through->media, tile->surface.material[i], back);
+        glint_media_cross(&through->media, medium_of(tile, frame, i), back);
 }

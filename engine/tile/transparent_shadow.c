@@ -46,12 +46,15 @@ struct glint_transparent_shadow *glint_transparent_shadow_create(void)
 void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow) { free(transparent_shadow); }
 
 /// What is around a sample's point, on the side of the viewer, to which the light comes as well.
-static glint_media media_at(const glint_tile *tile, const glint_plan *plan, uint32_t i)
+static glint_media media_at(const glint_tile *tile, const glint_tile_frame *frame, uint32_t i)
 {
+    const glint_plan *plan = frame->plan;
     glint_media media = tile->batch ? *glint_batch_media(tile->batch, i) : plan->eye_media;
-    const uint32_t material = tile->surface.material[i];
-    if (plan->bouncing[material].transmits && glint_has_lane(tile->hit.back, i) && !glint_media_has(&media, material))
-        glint_media_enter(&media, material);
+    if (!plan->bouncing[tile->surface.material[i]].transmits || !glint_has_lane(tile->hit.back, i))
+        return media;
+    const uint32_t medium = frame->geometry.prims[tile->at.prim[i]].medium;
+    if (!glint_media_has(&media, medium))
+        glint_media_enter(&media, medium);
     return media;
 }
 
@@ -67,7 +70,7 @@ void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t g = 0; g < tile->group_count; g++) {
         tile->transparent_shadow->dim[g] = 0;
         for (unsigned left = tile->at.hits[g]; left; left &= left - 1) {
-            const glint_media media = media_at(tile, frame->plan, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            const glint_media media = media_at(tile, frame, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
             tile->transparent_shadow->dim[g] |= (uint16_t)(absorbs(frame->plan, &media) ? left & -left : 0);
         }
     }
@@ -130,7 +133,7 @@ static void begin(struct glint_transparent_shadow *transparent_shadow, const gli
         }
         for (unsigned left = transparent_shadow->active[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            transparent_shadow->media[i] = media_at(tile, frame->plan, i);
+            transparent_shadow->media[i] = media_at(tile, frame, i);
             find_target(transparent_shadow, tile, frame, light, i);
             aim(transparent_shadow, frame, light, tile->surface.point, i, tile->at.prim[i],
                 tile->hit.back[g] & left & -left);
@@ -165,7 +168,7 @@ static void dim(struct glint_transparent_shadow *transparent_shadow, const glint
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = tile->at.light[slot].open[g] & transparent_shadow->dim[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            transparent_shadow->media[i] = media_at(tile, frame->plan, i);
+            transparent_shadow->media[i] = media_at(tile, frame, i);
             find_target(transparent_shadow, tile, frame, light, i);
             aim(transparent_shadow, frame, light, tile->surface.point, i, tile->at.prim[i], false);
             arrive(transparent_shadow, frame, light, i);
@@ -231,12 +234,14 @@ static void find_transmission(struct glint_transparent_shadow *transparent_shado
 }
 
 /// Takes the colour of one surface, and of the distance up to it. Returns whether any light is left.
-static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_plan *plan, uint32_t i,
+static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile_frame *frame, uint32_t i,
                   double length)
 {
-    const uint32_t material = transparent_shadow->material[i];
+    const glint_plan *plan = frame->plan;
+    const uint32_t material = transparent_shadow->material[i],
+                   inside = frame->geometry.prims[transparent_shadow->prim[i]].medium;
     const bool back = transparent_shadow->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
-    const uint32_t medium = glint_media_before(&transparent_shadow->media[i], material, back);
+    const uint32_t medium = glint_media_before(&transparent_shadow->media[i], inside, back);
     bool any = false;
     double room[3];
     const double *transmission = glint_color_at(transparent_shadow->planes, plan, GLINT_FIELD_TRANSMISSION, material, i,
@@ -245,7 +250,7 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
         transparent_shadow->color[c][i] *= transmission[c] * left_of(plan, medium, c, length);
         any = any || transparent_shadow->color[c][i] > 0;
     }
-    glint_media_cross(&transparent_shadow->media[i], material, back);
+    glint_media_cross(&transparent_shadow->media[i], inside, back);
     transparent_shadow->crossed[i] = true;
     return any;
 }
@@ -280,7 +285,7 @@ static bool step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                     arrive(transparent_shadow, frame, light, i);
             } else if ((transparent_shadow->holes[g] & bit) ||
                        (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
-                        cross(transparent_shadow, frame->plan, i, length_of(transparent_shadow, precision, i)))) {
+                        cross(transparent_shadow, frame, i, length_of(transparent_shadow, precision, i)))) {
                 aim(transparent_shadow, frame, light, (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i,
                     transparent_shadow->prim[i], !(transparent_shadow->back[g] & bit));
                 on |= bit;

@@ -11,6 +11,8 @@
 --   gr.cylinder(name)                                   radius 1 around the z axis, from z = 0 to z = 1, closed
 --   gr.cone(name)                                       base of radius 1 at z = 0, apex at z = 1, closed
 --   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
+--   gr.union(name, a, b)  gr.intersection  gr.difference one solid of two or more; csg_union ...; name optional
+--   gr.csg(name, a, "+"|"*"|"-", b)                    the same
 --   gr.material({kd}, {ks}, shininess)
 --   gr.material({kd}, {ks}, shininess, r, t, n)         and what else may follow: bindings/README.md has the forms
 --   gr.reflective_material(...)  gr.material_refl(...)  gr.material_refr(...)  gr.reflective()  gr.refractive(n)
@@ -120,6 +122,32 @@ function gr.mesh(name, vertices, faces)
     check.refuse("mesh", "vertices", "table, or the name of an .obj file,", vertices)
   end
   return new_node("mesh", name, { kind = "mesh", model = model })
+end
+
+-- ---- Combined solids ----
+
+local OPERATIONS = { ["+"] = "union", ["*"] = "intersection", ["-"] = "difference" }
+
+local function new_combined(call, operation, name, parts)
+  if #parts < 2 then check.raise("gr.%s: two nodes expected, got %d", call, #parts) end
+  local list = {}
+  for i, part in ipairs(parts) do list[i] = node_of(call, "part " .. i, part) end
+  return new_node(call, name, { kind = "combined", operation = operation, parts = list })
+end
+
+for _, operation in pairs(OPERATIONS) do
+  for _, call in pairs { operation, "csg_" .. operation } do
+    gr[call] = function(name, ...)
+      if nodes[name] then return new_combined(call, operation, call, { name, ... }) end
+      return new_combined(call, operation, name, { ... })
+    end
+  end
+end
+
+-- What may follow, the size of a ball around it, is of no use here.
+function gr.csg(name, a, sign, b)
+  local operation = OPERATIONS[sign] or check.refuse("csg", "operation", '"+", "*" or "-"', sign)
+  return new_combined("csg", operation, name, { a, b })
 end
 
 -- ---- Methods ----

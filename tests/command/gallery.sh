@@ -58,6 +58,7 @@ picture adaptive --frames 3
 picture bricks --frames 1
 picture caps --frames 6
 picture chessboard --frames 1
+picture combined --samples 4
 steps fit
 picture flight --frames 30
 picture earth --frames 1

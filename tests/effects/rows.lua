@@ -49,6 +49,10 @@ return {
     call = function(glint, parts, scene)
       scene:add(glint.box { min = { -1, 4, -1 }, max = { 1, 6, 1 }, material = parts.ball })
     end },
+  { name = "combined", part = "COMBINED", functions = { "combined" },
+    call = function(glint, parts, scene)
+      scene:add(glint.union { glint.box { min = { -1, 4, -1 }, max = { 1, 6, 1 } }, material = parts.ball })
+    end },
   { name = "indirect", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter" },
     call = function(_, _, scene) scene.indirect = { samples = 1, bounces = 1 } end },
   { name = "ambient_occlusion", part = "INDIRECT", stage = "indirect", rays = "indirect", functions = { "scatter", "open_sky" },

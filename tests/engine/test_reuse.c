@@ -14,7 +14,7 @@
 #include "engine/film/image.h"
 #include "engine/stages/stages.h"
 
-#define SHAPES 6
+#define SHAPES 7
 #define LIGHTS 6 ///< one of each kind
 
 static uint64_t state;
@@ -392,6 +392,29 @@ static glint_shape *new_group(const glint_shape_desc *like)
     return outer;
 }
 
+/// A box less a cylinder and less what is in a ball and before a plane.
+static glint_shape *new_combined(const glint_shape_desc *like)
+{
+    static const glint_shape_kind kinds[] = { GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_SPHERE, GLINT_SHAPE_PLANE };
+    glint_shape *outer, *inner, *part;
+    glint_shape_desc d = glint_shape_desc_default(GLINT_SHAPE_DIFFERENCE);
+    d.material = like->material;
+    assert_int_equal(glint_shape_create(&d, &outer, NULL), GLINT_OK);
+    d = glint_shape_desc_default(GLINT_SHAPE_INTERSECTION);
+    assert_int_equal(glint_shape_create(&d, &inner, NULL), GLINT_OK);
+    for (int k = 0; k < 4; k++) {
+        d = glint_shape_desc_default(kinds[k]);
+        d.material = k == 1 ? like->material : NULL;
+        d.radius = 0.8;
+        assert_int_equal(glint_shape_create(&d, &part, NULL), GLINT_OK);
+        assert_int_equal(glint_group_add(k < 2 ? outer : inner, part, NULL), GLINT_OK);
+        glint_shape_release(part);
+    }
+    assert_int_equal(glint_group_add(outer, inner, NULL), GLINT_OK);
+    glint_shape_release(inner);
+    return outer;
+}
+
 static void make_world(world *w)
 {
     memset(w, 0, sizeof *w);
@@ -415,7 +438,7 @@ static void make_world(world *w)
         d.point[1] = -2;
         for (int k = 0; k < 3; k++)
             d.center[k] = uniform(-2, 2);
-        w->shapes[i] = i == 1 ? new_mesh(&d) : i == 2 ? new_group(&d) : NULL;
+        w->shapes[i] = i == 1 ? new_mesh(&d) : i == 2 ? new_group(&d) : i == 3 ? new_combined(&d) : NULL;
         if (!w->shapes[i])
             assert_int_equal(glint_shape_create(&d, &w->shapes[i], NULL), GLINT_OK);
         assert_int_equal(glint_scene_add_shape(w->scene, w->shapes[i], NULL), GLINT_OK);

@@ -297,6 +297,53 @@ says("gr.mesh('a', {}, {}) gr.mesh('b', 'b.obj')", nil, nil)
 says("function unpack(t) end my.unpack(t) t:unpack(1) unrequire(x) x.require(y)", nil, nil)
 says("n:rotate('x', 1)", nil, nil)
 
+-- ---- Combined solids ----
+
+-- The codes of a scene whose root has what `text` adds; its shapes have flat faces and round sides, no spheres, whose parts are others.
+local function combined_codes(text)
+  local output, status = scene([[
+red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)
+blue = gr.material({0.1, 0.2, 0.8}, {0.4, 0.4, 0.4}, 20)
+local function dressed(shape, material) shape:set_material(material) return shape end
+box = dressed(gr.nh_box('box', {-1, -1, -1}, 2), red)
+far = dressed(gr.nh_box('far', {90, 0, 0}, 1), blue)
+all = gr.nh_box('all', {-50, -50, -50}, 100)
+post = dressed(gr.cylinder('post'), blue)
+post:scale(0.5, 0.5, 3)
+root = gr.node('root')
+root:rotate('x', 25)
+root:rotate('y', 30)
+]] .. text .. [[
+
+gr.render(root, 'combined.png', 64, 48, {0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 50, {0.3, 0.3, 0.3}, {gr.light({5, 9, 9}, {0.9, 0.9, 0.9}, {1, 0, 0})})]])
+  check(status == 0, "a scene of combined solids: %s", output)
+  local _, _, codes = read_codes(folder .. "/combined.png")
+  return codes
+end
+
+local both = combined_codes "root:add_child(box) root:add_child(post)"
+for _, text in ipairs { "gr.union('u', box, post)", "gr.union(box, post)", "gr.csg_union('u', box, post)", "gr.csg('u', box, '+', post, 2)" } do
+  check(combined_codes("root:add_child(" .. text .. ")") == both, "%s is both", text)
+end
+local alone = combined_codes "box:translate(0.5, 0, 0) root:add_child(box)"
+for _, text in ipairs { "gr.difference('d', box, far)", "gr.csg('d', box, '-', far)", "gr.csg_difference('d', box, far, gr.node('none'))",
+  "gr.difference(gr.intersection('i', box, dressed(all, blue)), far)" } do
+  check(combined_codes("a = " .. text .. " a:translate(0.5, 0, 0) root:add_child(a)") == alone, "%s is the box", text)
+end
+check(combined_codes "root:add_child(gr.difference('d', box, box))" == combined_codes "", "a box less itself is nothing")
+check(combined_codes "n = gr.node('n') n:add_child(far) n:add_child(post) root:add_child(gr.difference('d', box, n))" ~= both,
+  "a node takes away what is in it")
+for text, message in pairs {
+  ["d = gr.difference('d', box, gr.nh_box('bare', {0, 0, 0}, 1))"] = "nh_box 'bare' has no material",
+  ["d = gr.union('d', box, dressed(gr.mesh('m', {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}), red))"] = "mesh 'm' is a part of a combined solid",
+  ["d = gr.union('d', box, post) post:add_child(d)"] = "is within itself",
+} do
+  local output = scene("red = gr.material({1, 0, 0}, {0, 0, 0}, 1) local function dressed(s, m) s:set_material(m) return s end"
+    .. " box = dressed(gr.nh_box('box', {0, 0, 0}, 1), red) post = dressed(gr.cylinder('post'), red) " .. text
+    .. " root = gr.node('r') root:add_child(d) gr.render(root, 'e', 8, 8, {0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})")
+  check(output:find(message, 1, true), "%s expected, got %s", message, output)
+end
+
 -- ---- Wrong input: the function, the argument, the value; at the scene's line ----
 
 local function refuses(text, message, options)
@@ -308,6 +355,10 @@ refuses("gr.torus('t')", "gr.torus: tube: number expected, got nil")
 refuses("gr.torus('t', 1)", "gr.torus: tube: number above 0 and below the ring's radius (1) expected, got 1")
 refuses("gr.torus('t', 1.2, 0.5)", "gr.torus: tube: number above 0 and below the ring's radius (0.5) expected, got 1.2")
 refuses("gr.torus('t', 1, -2)", "gr.torus: ring: number above 0 expected, got -2")
+refuses("gr.union('u', gr.sphere('s'))", "gr.union: two nodes expected, got 1")
+refuses("gr.difference('u', gr.sphere('s'), 3)", "gr.difference: part 2: node expected, got 3")
+refuses("gr.csg('c', gr.sphere('s'), '/', gr.sphere('s'))", 'gr.csg: operation: "+", "*" or "-" expected, got "/"')
+refuses("gr.csg_merge('c', gr.sphere('s'), gr.sphere('s'))", "gr.csg_merge: this function is not part of the dialect")
 refuses("gr.sphere('s'):set_normal('x.png')", "gr.set_normal: this function is not part of the dialect")
 refuses("gr.material({1,1,1}, {0,0,0}, 1):set_opacity(0, 1.5)",
   "material:set_opacity: this method is not part of the dialect")

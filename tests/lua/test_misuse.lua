@@ -8,7 +8,7 @@ math.randomseed(20240611)
 local function any(list) return list[math.random(#list)] end
 
 local KINDS = {
-  "box", "camera", "cone", "cylinder", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light",
+  "box", "camera", "cone", "cylinder", "difference", "directional_light", "disk", "disk_light", "group", "material", "mesh", "pattern", "plane", "point_light",
   "polygon_light", "scene", "shader",
   "sphere", "sphere_light", "spheres", "spot_light", "torus", "triple", "vector",
 }
@@ -34,6 +34,7 @@ local function objects()
     cone = glint.cone { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 1 },
     torus = glint.torus { center = { 0, 0, 0 }, major = 1, minor = 0.3 },
     group = glint.group { ball, transform = glint.translate(1, 0, 0) },
+    difference = glint.difference { ball, glint.box { min = { 0, 0, 0 }, max = { 1, 1, 1 } } },
     scene = glint.scene { ball, lamp },
     vector = ball.center,
     pattern = glint.pattern(function(p) return p * 2 end),

@@ -21,6 +21,7 @@
 --   fresnel      reflection { 0, 1 fresnel on } conserve_energy
 --   shapes       box { min, max }; cylinder { base, top, r } and cone { base, r, top, 0 }, with `open` for capped = false;
 --                an ellipsoid is sphere { 0, 1 scale s translate c }; torus { major, minor sturm } is around the y axis
+--   sets         difference, intersection, and merge for union, which leaves no surface inside
 --   mesh         mesh { triangle { a, b, c } } is faceted; mesh2 with normal_vectors is shading = "phong". Corners and normals are
 --                float there; a normal that looks away from the eye is turned, here one that looks through its face
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
@@ -99,6 +100,12 @@ local function shape(s, center, radius)
   if not s then return ("sphere { %s, %.17g"):format(vector(center), radius) end
   if s.kind == "mesh" then return mesh(s) end
   if s.kind == "box" then return ("box { %s, %s"):format(vector(s.min), vector(s.max)) end
+  if s.kind == "ball" then return ("sphere { %s, %.17g"):format(vector(s.center), s.radius) end
+  if s.parts then
+    local parts = {}
+    for i, p in ipairs(s.parts) do parts[i] = shape(p) .. " }" end
+    return (s.kind == "union" and "merge" or s.kind) .. " { " .. table.concat(parts, " ")
+  end
   if s.kind == "sphere" then return ("sphere { 0, 1 scale %s translate %s"):format(vector(s.scale), vector(center)) end
   if s.kind == "torus" then
     local axis = unit(s.axis)

@@ -4,7 +4,7 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "rings", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
+     "rings", "combined", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
   sky = { "", doc = "the PNG file of the sky" },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
@@ -53,10 +53,25 @@ local function material(surface, fields)
   return glint.material(fields)
 end
 
+-- A part of a combined solid.
+local function part(s)
+  if s.kind == "ball" then return glint.sphere { center = s.center, radius = s.radius } end
+  if s.kind == "box" then return glint.box { min = s.min, max = s.max } end
+  if not s.parts then return glint[s.kind] { base = s.base, top = s.top, radius = s.radius } end
+  local fields = {}
+  for i, p in ipairs(s.parts) do fields[i] = part(p) end
+  return glint[s.kind](fields)
+end
+
 -- What stands in a sphere's place.
 local function shape(s, sphere, surface, coat)
   local center = { sphere[1][1], sphere[1][2] + (surface.lift or 0), sphere[1][3] }
   if not s then return glint.sphere { center = center, radius = sphere[2], material = coat } end
+  if s.parts then
+    local whole = part(s)
+    whole.material = coat
+    return whole
+  end
   if s.kind == "box" then return glint.box { min = s.min, max = s.max, material = coat } end
   if s.kind == "mesh" then
     return glint.mesh { vertices = s.mesh.vertices, normals = s.mesh.normals, faces = s.mesh.faces, material = coat,

@@ -57,6 +57,28 @@ return {
       [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 6, 3.5, 2 }, radius = 1.8, open = true },
       [5] = { kind = "cone", base = { 0.2, 3.9, 5.6 }, top = { 0.9, 0.25, 4.2 }, radius = 1.9, open = true },
     },
+    combined = {
+      [2] = { kind = "difference", parts = {
+        { kind = "box", min = { -4.5, 0.1, -7 }, max = { 1.5, 6, -2.5 } },
+        { kind = "ball", center = { -1.5, 5, -3 }, radius = 2.6 },
+        { kind = "cylinder", base = { -1.5, 2, -9 }, top = { -1.5, 2, 0 }, radius = 0.9 },
+        { kind = "intersection", parts = {
+          { kind = "ball", center = { -4.5, 3, -4 }, radius = 1.5 }, { kind = "box", min = { -9, 3, -9 }, max = { 9, 9, 9 } } } },
+      } },
+      [3] = { kind = "union", parts = {
+        { kind = "ball", center = { 5.8, 3, -1 }, radius = 2 },
+        { kind = "cylinder", base = { 3.2, 3, -1 }, top = { 8.4, 3, -0.5 }, radius = 1 },
+        { kind = "cone", base = { 5.8, 4, -1 }, top = { 5.8, 7, -1 }, radius = 1.4 },
+      } },
+      [4] = { kind = "intersection", parts = {
+        { kind = "difference", parts = {
+          { kind = "ball", center = { -6.6, 2.5, 0.5 }, radius = 2.5 },
+          { kind = "cylinder", base = { -8.6, 4.5, 4.5 }, top = { -5, 1, -3 }, radius = 1.1 } } },
+        { kind = "box", min = { -8.6, 0.8, -1.5 }, max = { -4.6, 4.4, 2.4 } },
+      } },
+      [5] = { kind = "intersection", parts = {
+        { kind = "ball", center = { 0.6, 2.4, 2.9 }, radius = 2.2 }, { kind = "ball", center = { 0.6, 2.4, 5.4 }, radius = 2.2 } } },
+    },
     prism = {
       [2] = { kind = "box", min = { -4.5, 0.5, -6 }, max = { 0.5, 4.5, -2.5 } },
       [3] = { kind = "cylinder", base = { 5, 0.5, -1 }, top = { 7, 5, -2 }, radius = 1.8 },
@@ -78,6 +100,7 @@ return {
     sky = { [2] = { mirror = 0.5 }, [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 } },
     mirror = { [2] = { mirror = 0.5 }, [4] = { mirror = 0.3 } },
     glass = { [5] = { lift = 0.5, transmission = 0.8, ior = 1.5 }, [3] = { lift = 0.5, transmission = 0.6, ior = 1.2, mirror = 0.1 } },
+    combined = { [5] = { transmission = 0.8, ior = 1.5, specular = 0 } },
     prism = { [2] = { transmission = 0.9, ior = 1.5, specular = 0 }, [3] = { transmission = 0.8, ior = 1.7, mirror = 0.1, specular = 0 } },
     rings = { [2] = { mirror = 0.4 }, [5] = { transmission = 0.8, ior = 1.3, specular = 0 } },
     nested = { [5] = { lift = 0.5, transmission = 0.9, ior = 1.5, specular = 0 } },

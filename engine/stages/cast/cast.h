@@ -95,7 +95,7 @@ INNER void R(cast_mixed)(R(tile_cast) * tile, const R(candidate) *const *candida
         order[found] = candidates[k];
         found += near[found] != 0;
     }
-    if (found == 1 && !tile->deep) {
+    if (found == 1 && !tile->deep && order[0]->prim->kind != GLINT_PRIM_COMBINED) {
         if (order[0]->prim->kind == GLINT_PRIM_SPHERE)
             R(cast_alone)(tile, order[0], true, x, y, near[0]);
         else

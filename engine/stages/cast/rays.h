@@ -36,9 +36,12 @@ static inline rm R(way_back)(const glint_solid *solid, const glint_prim *prim, c
     return R(meet_torus)(solid, f, e, start, t);
 }
 
-/// Whether a ray that goes through the surface may meet it again.
-static inline bool R(has_inside)(const glint_geometry_table *table, const glint_prim *prim)
+/// Whether a ray that goes through the surface may meet it again; a part of a combined solid is met by way of that alone.
+static inline bool R(has_inside)(const glint_geometry_table *table, uint32_t id)
 {
+    if (id >= table->prim_count)
+        return false;
+    const glint_prim *prim = &table->prims[id];
     return prim->kind == GLINT_PRIM_SPHERE ||
            (prim->kind == GLINT_PRIM_SOLID && table->solids[prim->item].form != GLINT_FORM_DISK);
 }
@@ -53,7 +56,7 @@ static inline void R(cast_on_own)(const glint_cast_args *args, uint32_t g)
         const uint32_t id = args->leaving[at + (size_t)__builtin_ctz(lanes)];
         unsigned same = lanes & lanes_equal(args->leaving + at, id);
         lanes &= ~same;
-        if (id == GLINT_MISS || !R(has_inside)(table, &table->prims[id]))
+        if (!R(has_inside)(table, id))
             continue;
         const bool torus = is_torus(table, &table->prims[id]);
         if (!torus)
@@ -84,6 +87,8 @@ static inline bool R(decide_rays)(const glint_cast_args *args, uint32_t g, uint3
     const unsigned on_surfaces = rounded ? ~lanes_equal(args->leaving + at, GLINT_MISS) : 0;
     bool any = false;
     R(flat) flat;
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return R(cast_combined_rays)(args, g, prim, near);
     count_tests(args->tests, near);
     if (shared_edge)
         flat = R(flat_of)(prim, args->geometry->scale);

@@ -235,6 +235,25 @@ static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], 
     return rm_or(hit, surely);
 }
 
+/// Where rays are inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where they do not come out between, from the
+/// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
+static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
+{
+    const R(torus_line) l = R(along_torus)(solid, f, e, start);
+    const vr zero = r_set(0), none = r_set(-HUGE_VAL);
+    for (int stretch = 0; stretch < 4; stretch++) {
+        const rm here = rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch));
+        ends[stretch] = none;
+        if (!rm_bits(here))
+            continue;
+        const R(torus_stretch) at = R(stretch_at)(&l, stretch);
+        ends[stretch] = r_select(here, R(torus_root)(&l, &at, rm_bits(here)), none);
+    }
+    ends[2] = r_select(rm_and(l.near, r_lt(zero, l.gap[1])), ends[2], ends[0]);
+    const rm out = rm_or(r_lt(zero, ends[1]), r_lt(zero, ends[3]));
+    ends[3] = r_select(rm_andnot(rm_and(start.leaves, start.inward), out), r_set(GLINT_LEAST_WAY), ends[3]);
+}
+
 /// Brings points next to the surface onto it; g: the outward normal there.
 static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
 {

@@ -26,18 +26,21 @@ typedef enum glint_prim_kind {
     GLINT_PRIM_SPHERE,
     GLINT_PRIM_PLANE,
     GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH_MESH, 2),
-    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3)
+    GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3),
+    GLINT_PRIM_COMBINED = GLINT_KIND(GLINT_WITH_COMBINED, 4)
 } glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
 typedef struct glint_prim {
     _Alignas(64) uint16_t kind;
-    uint16_t two_sided; ///< 0: seen from behind it gets ambient light only
+    uint8_t two_sided; ///< 0: seen from behind it gets ambient light only
+    uint8_t turned; ///< 1: a part that is taken away: what is outside of it is the inside of the whole
     uint32_t id; ///< its number in order of definition, from 0
     uint32_t material; ///< index in the material table
     float filter_center[3]; ///< of a sphere around it: (center - reference) * scale, in the index's frame
     float filter_bound; ///< >= its radius (1 + 2e-6) + 16 * 2^-24 |filter_center|, in the index's units; plane: +inf; triangle:
                         ///< of its box, where the box has on each side 13 GLINT_POINT_SLACK_DOUBLE extent scale besides
+    uint32_t medium; ///< index in the material table: of what light is in that has gone in through it; a part: of its whole
     union {
         struct {
             double center[3]; ///< sphere, solid: centre; plane: a point of it
@@ -48,10 +51,13 @@ typedef struct glint_prim {
             double places; ///< plane: 2 (|normal| . |center|), above 0; 0: it is along two axes, and heights are exact
         };
         struct {
-            double corner[3][3]; ///< triangle
-            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids
+            double corner[3][3]; ///< triangle; combined: the middle of its box, the box's lower and its upper corner, -inf
+                ///< and inf where it has no end
+            uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids;
+                ///< combined: index in combined
             uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
-            uint32_t face; ///< triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
+            uint32_t face; ///< a part of a combined solid: 1 and 2: a torus, by the first and by the second stretch that a ray is inside
+                ///< of it, two parts that follow each other; 0: any other. Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
         };
     };
 } glint_prim;
@@ -108,6 +114,25 @@ typedef struct glint_solid {
     double tube; ///< torus: radius of its tube where that circle's is 1, above 0 and below 1
     uint32_t form;
 } glint_solid;
+
+#define GLINT_PARTS_MAX 64 ///< of a combined solid
+
+/// What the program of a combined solid has beside numbers of parts.
+enum {
+    GLINT_COMBINE_UNION = GLINT_PARTS_MAX, ///< of the two sets before it, like the next two
+    GLINT_COMBINE_INTERSECTION,
+    GLINT_COMBINE_DIFFERENCE, ///< the second is taken away from the first
+    GLINT_COMBINE_NOTHING ///< an empty set
+};
+
+/// Solids and planes, the half-space that a plane's normal leaves, made one by a program in postfix. No ray meets its parts but by
+/// way of it; hits are theirs: they have numbers in prims, which are beyond those of what rays meet.
+typedef struct glint_combined {
+    uint32_t first; ///< prims[prim_count + first] is part 0
+    uint32_t count; ///< of parts
+    uint32_t length; ///< of the program
+    uint8_t program[2 * GLINT_PARTS_MAX];
+} glint_combined;
 
 /// How many pairs of faces there are.
 static inline int glint_slab_count(uint32_t form)
@@ -169,7 +194,8 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
 
 /// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
-    const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory
+    const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory; after them
+        ///< the parts of combined solids, which are not counted
     uint32_t prim_count;
     const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
     const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
@@ -178,7 +204,8 @@ typedef struct glint_geometry_table {
     double extent; ///< bound of every coordinate and radius, world units
     bool triangles, tori; ///< there are some
     const glint_corner_normals *corner_normals;
-    const glint_solid *solids;
+    const glint_solid *solids; ///< NULL: there are none, nor combined ones
+    const glint_combined *combined;
     const glint_face *faces; ///< of triangles
     const glint_shading_points *shading_points;
     uint32_t shading_point_count; ///< 0: all light is worked out for each sample

@@ -10,6 +10,9 @@
 #ifndef GLINT_WITH_SOLID
 #define GLINT_WITH_SOLID 1
 #endif
+#ifndef GLINT_WITH_COMBINED
+#define GLINT_WITH_COMBINED 1
+#endif
 #ifndef GLINT_WITH_RASTER
 #define GLINT_WITH_RASTER 1
 #endif

@@ -86,10 +86,12 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     finish_screen(view);
 }
 
-/// Which way the planes' corner rays run decides whether a ray between them can meet it.
+/// Which way the corner rays run decides whether a ray between them can meet a plane; nothing is said of what else has no end.
 static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_view *view, const glint_prim *prim)
 {
     double e[3], away = 0;
+    if (prim->kind != GLINT_PRIM_PLANE)
+        return true;
     for (int k = 0; k < 3; k++) {
         e[k] = camera->eye[k] - prim->center[k];
         away = fmax(away, fabs(e[k]));
@@ -230,6 +232,10 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
         R(start_at_eye)(&args->geometry->solids[prim->item], prim, eye, candidate->f, candidate->height);
         return;
     }
+    if (prim->kind == GLINT_PRIM_COMBINED) {
+        candidate->f[0] = candidate->f[1] = candidate->f[2] = candidate->c = 0; // its parts have their own
+        return;
+    }
     R(offset)(origin, prim, f);
     for (int k = 0; k < 3; k++)
         candidate->f[k] = R(first_lane)(f[k]);
@@ -246,7 +252,7 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
         R(make_plane_filter)(tile, candidate);
     } else if (prim->kind == GLINT_PRIM_TRIANGLE) {
         R(make_triangle_filter)(tile, candidate);
-    } else if (prim->kind == GLINT_PRIM_SOLID) {
+    } else if (prim->kind == GLINT_PRIM_SOLID || prim->kind == GLINT_PRIM_COMBINED) {
         R(make_solid_filter)(args, candidate);
     } else {
         const double from[3] = { candidate->f[0], candidate->f[1], candidate->f[2] };
@@ -303,6 +309,8 @@ INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * cand
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
     bool any = false;
+    if (candidate->prim->kind == GLINT_PRIM_COMBINED)
+        return R(cast_combined_pixels)(args, candidate->prim, x, y, at, near);
     count_tests(args->tests, near);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         if (!(near >> i & ((1u << VR) - 1)))

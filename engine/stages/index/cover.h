@@ -21,7 +21,8 @@ static inline uint64_t R(all_groups)(const R(tile_cast) * tile)
 
 INNER bool R(is_round)(const R(candidate) * candidate)
 {
-    return candidate->prim->kind == GLINT_PRIM_SPHERE || candidate->prim->kind == GLINT_PRIM_SOLID;
+    const uint16_t kind = candidate->prim->kind;
+    return kind == GLINT_PRIM_SPHERE || kind == GLINT_PRIM_SOLID || kind == GLINT_PRIM_COMBINED;
 }
 
 // ---- What a candidate is to groups ----

@@ -228,6 +228,12 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
                                      own & light->open[s], near & light->open[s], light->sides[k][s].outside);
         return;
     }
+    if (prim->kind == GLINT_PRIM_COMBINED) {
+        for (uint32_t s = 0; s < args->sample_count; s++)
+            light->open[s] &= ~R(blocked_by_combined)(args, prim, light->light_samples.light_sample[s].position, at,
+                                                      near & light->open[s]);
+        return;
+    }
     for (uint32_t s = 0; back && s < args->sample_count; s++)
         light->open[s] &= ~(back & light->sides[k][s].outside);
     for (int i = 0; i < GLINT_GROUP; i += VR) {

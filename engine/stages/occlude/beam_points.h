@@ -7,6 +7,7 @@ typedef struct R(beam_batch) {
     _Alignas(64) real point[3][GLINT_GROUP];
     uint16_t back;
     uint16_t from[GLINT_GROUP]; ///< index in the beam
+    _Alignas(64) uint32_t on[GLINT_GROUP]; ///< the primitive of each
     int count;
     unsigned own; ///< lanes that are on the surface itself
 } R(beam_batch);

@@ -45,7 +45,7 @@ static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim,
     double f[3], height;
     for (int k = 0; k < 3; k++)
         f[k] = position[k] - prim->center[k];
-    if (prim->kind == GLINT_PRIM_TRIANGLE)
+    if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED)
         return 0; // decided lane by lane
     if (prim->kind == GLINT_PRIM_SOLID)
         return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], prim->center, position) ? 1 : -1;
@@ -237,6 +237,35 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
+/// The lanes of `wanted` that a combined solid blocks: a segment from one of its parts begins within where that is seen from
+/// behind, else outside.
+static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const glint_prim *prim,
+                                       const real position[3][GLINT_GROUP], size_t at, unsigned wanted)
+{
+    const glint_combined *whole = &args->geometry->combined[prim->item];
+    const unsigned back = args->back[at / GLINT_GROUP];
+    unsigned blocked = 0;
+    count_tests(args->tests, wanted);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & ((1u << VR) - 1);
+        R(stretches) s;
+        vr p[3], d[3];
+        if (!lanes)
+            continue;
+        R(load3)(args->point, at + i, p);
+        R(directions_to)(args, position, at, i, d);
+        R(find_stretches)(args->geometry, whole, p, d, args->prim + at + i, back >> i, &s);
+        if (!s.live)
+            continue;
+        const vr t = R(first_change)(&s);
+        rm hit = r_lt(t, r_set(HUGE_VAL));
+        if (!args->directional)
+            hit = rm_and(hit, r_lt(t * r_set(args->scale), r_set(1)));
+        blocked |= (rm_bits(hit) & lanes) << i;
+    }
+    return blocked;
+}
+
 /// Of VR segments from lane i of the group at `at` along d, those that a sphere or a plane blocks, a bit each; none of the
 /// points is its own.
 static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, R(light_sides) sides,
@@ -271,6 +300,12 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
             R(make_shadow_rays)(tile, group);
         wanted &= own | R(near_rays)(&group->rays, prim);
         return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
+    }
+    if (prim->kind == GLINT_PRIM_COMBINED) {
+        if (!group->made)
+            R(make_shadow_rays)(tile, group);
+        wanted &= R(near_rays)(&group->rays, prim);
+        return R(blocked_by_combined)(args, prim, tile->position, group->at, wanted);
     }
     if (own && sphere)
         blocked = own & args->back[group->at / GLINT_GROUP] & occluder.sides.outside;

@@ -11,6 +11,8 @@ static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, u
     const R(light_sides) sides = R(seen_sides)(tile, NULL, prim);
     if (prim->kind == GLINT_PRIM_SOLID)
         return R(blocked_by_solid)(&batch->args, prim, tile->position, 0, own, wanted, sides.outside);
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return R(blocked_by_combined)(&batch->args, prim, tile->position, 0, wanted);
     unsigned blocked = own & batch->back & sides.outside;
     wanted &= ~own;
     count_tests(batch->args.tests, wanted);
@@ -36,14 +38,15 @@ static void R(decide_batch)(R(beam) * beam, const glint_prim *prim)
     batch->back = 0;
 }
 
-static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint32_t i, bool own, bool back)
+static inline void R(add_to_batch)(R(beam) * beam, const glint_prim *prim, uint32_t i, uint32_t on, bool own)
 {
     R(beam_batch) *batch = &beam->batch;
     real *const point[3] = { batch->point[0], batch->point[1], batch->point[2] };
     const int n = batch->count++;
     batch->from[n] = (uint16_t)i;
+    batch->on[n] = on & ~BEAM_BACK;
     batch->own |= (unsigned)own << n;
-    batch->back |= (uint16_t)((unsigned)back << n);
+    batch->back |= (uint16_t)((unsigned)((on & BEAM_BACK) != 0) << n);
     R(copy_point)(beam, i, false, n, point, NULL, NULL);
     if (batch->count == GLINT_GROUP)
         R(decide_batch)(beam, prim);
@@ -74,7 +77,7 @@ INNER void R(block_run)(R(beam) * beam, const R(beam_blocker) * b, uint32_t i, u
         for (unsigned near = behind & ~front & near_shape(&b->shape, u, v); near; near &= near - 1) {
             const unsigned lane = (unsigned)__builtin_ctz(near);
             const uint32_t on = beam->own[i + lane];
-            R(add_to_batch)(beam, b->prim, i + lane, (on & ~BEAM_BACK) == b->id, (on & BEAM_BACK) != 0);
+            R(add_to_batch)(beam, b->prim, i + lane, on, (on & ~BEAM_BACK) == b->id);
         }
     }
 }
@@ -149,9 +152,11 @@ static void R(begin_batch)(const glint_occlude_args *args, R(beam_batch) * batch
     batch->args = *args;
     batch->args.camera = NULL;
     batch->args.back = &batch->back;
+    batch->args.prim = batch->on;
     for (int k = 0; k < 3; k++)
         batch->args.point[k] = batch->point[k];
     memset(batch->point, 0, sizeof batch->point); // lanes without a point are computed too
+    memset(batch->on, 0xff, sizeof batch->on);
 }
 
 /// Takes out of args->open what the index blocks. False: no beam can be made of these points, and nothing is done.

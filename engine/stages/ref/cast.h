@@ -38,7 +38,9 @@ static REAL NAME(plane_t)(REAL h, NAME(vec3) direction, const glint_prim *prim)
     return nd * nd >= NAME(PLANE_GRAZING) * NAME(length2)(direction) && t > 0 ? t : 0;
 }
 
-/// Likewise for any primitive.
+#include "engine/stages/ref/combined.h"
+
+/// Likewise for any primitive but a combined solid.
 static REAL NAME(prim_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                          NAME(vec3) direction, bool on_surface)
 {
@@ -84,6 +86,24 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
     return true;
 }
 
+/// Where ray i meets a primitive; 0: nowhere. *met: what it is then on. eye: no ray starts on a surface.
+static REAL NAME(meets)(const glint_cast_args *args, bool eye, uint32_t index, NAME(vec3) origin, NAME(vec3) direction,
+                        uint32_t i, uint32_t *met)
+{
+    const glint_prim *prim = &args->geometry->prims[index];
+    const bool starts_on = !eye && args->leaving && args->leaving[i] != GLINT_MISS;
+    REAL t;
+    *met = index;
+    if (prim->kind == GLINT_PRIM_COMBINED) {
+        NAME(start) start = { starts_on ? args->leaving[i] : GLINT_MISS, false };
+        start.inward = starts_on && args->inward[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;
+        return NAME(combined_t)(args->geometry, prim, origin, direction, start, met);
+    }
+    if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
+        t = NAME(prim_t)(args->geometry, prim, origin, direction, starts_on);
+    return t;
+}
+
 /// `eye`: where all rays start; NULL: each has its own origin.
 static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, uint32_t i)
 {
@@ -93,16 +113,14 @@ static void NAME(cast_sample)(const glint_cast_args *args, const double *eye, ui
         NAME(vec3) direction = NAME(direction_of)(eye ? args->camera : NULL, args->direction, i);
         NAME(vec3) origin = eye ? NAME(rounded)(eye) : NAME(load)(args->origin, i);
         for (uint32_t index = 0; index < args->geometry->prim_count; index++) {
-            REAL t;
+            uint32_t met;
             note_test(args->tests);
-            if (eye || !NAME(leaves)(args, index, origin, direction, i, &t))
-                t = NAME(prim_t)(args->geometry, &args->geometry->prims[index], origin, direction,
-                                 !eye && args->leaving && args->leaving[i] != GLINT_MISS);
+            REAL t = NAME(meets)(args, eye != NULL, index, origin, direction, i, &met);
             bool first = t == best && best_prim != GLINT_MISS &&
-                         args->geometry->prims[index].id < args->geometry->prims[best_prim].id;
+                         args->geometry->prims[met].id < args->geometry->prims[best_prim].id;
             if (t > 0 && t < INFINITY && (t < best || first)) {
                 best = t;
-                best_prim = index;
+                best_prim = met;
             }
         }
     }

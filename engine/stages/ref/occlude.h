@@ -27,6 +27,8 @@ static bool NAME(prim_blocks)(const glint_occlude_args *args, const glint_prim *
                               uint32_t i)
 {
     bool sphere = prim->kind == GLINT_PRIM_SPHERE;
+    if (prim->kind == GLINT_PRIM_COMBINED)
+        return NAME(combined_blocks)(args, prim, NAME(rounded)(position), i);
     int side = light_side(args->directional, position, prim, args->geometry->solids);
     bool own = args->prim[i] != GLINT_MISS && prim == &args->geometry->prims[args->prim[i]];
     bool back = args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1;

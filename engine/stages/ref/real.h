@@ -187,6 +187,8 @@ static bool NAME(surface_hit)(const glint_surface_args *args, uint32_t i)
         else
             point = NAME(sub)(point, NAME(times)(n, NAME(dot)(n, NAME(sub)(point, NAME(rounded)(prim->center)))));
     }
+    if (prim->turned)
+        n = NAME(negated)(n);
     if (prim->kind != GLINT_PRIM_TRIANGLE)
         slack = -NAME(POINT_SLACK) * NAME(largest)(point);
     bool back = NAME(dot)(n, direction) > 0;

@@ -179,7 +179,7 @@ static bool is_within(const glint_solid *solid, const glint_prim *prim, const do
 /// 1 in front of a plane or outside a sphere, -1 behind or inside, 0 on it. In double whatever the precision.
 static int light_side(bool directional, const double position[3], const glint_prim *prim, const glint_solid *solids)
 {
-    if (prim->kind == GLINT_PRIM_TRIANGLE)
+    if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED)
         return 0; // decided lane by lane
     if (prim->kind == GLINT_PRIM_SOLID)
         return directional || !is_within(&solids[prim->item], prim, position) ? 1 : -1;

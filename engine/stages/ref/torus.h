@@ -167,6 +167,20 @@ static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, 
     return leaves && inward ? (REAL)GLINT_LEAST_WAY : 0;
 }
 
+/// Where a ray is inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where it does not come out between, from the
+/// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
+static void NAME(torus_ends)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward, REAL ends[4])
+{
+    NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
+    for (int stretch = 0; stretch < 4; stretch++)
+        ends[stretch] = NAME(torus_crosses)(&l, stretch) && NAME(torus_ahead)(&l, stretch) ? NAME(torus_root)(&l, stretch)
+                                                                                           : (REAL)-INFINITY;
+    if (!(l.near && l.gap[1] > 0))
+        ends[2] = ends[0];
+    if (leaves && inward && !(ends[1] > 0) && !(ends[3] > 0))
+        ends[3] = (REAL)GLINT_LEAST_WAY;
+}
+
 /// Brings a point next to the surface onto it. Returns the outward normal there.
 static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
 {

@@ -94,7 +94,7 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             R(triangle_normal)(prim, args->scale, n);
         for (int k = 0; k < 3; k++)
-            seen.normal[k] = (real)n[k];
+            seen.normal[k] = (real)(prim->turned ? -n[k] : n[k]);
         seen.level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
         for (int k = 0; k < 3 && args->camera; k++) {
             seen.from[k] = (real)(k == seen.level ? prim->center[k] : args->camera->eye[k]);
@@ -139,6 +139,8 @@ INNER void R(find_on_solid)(const glint_surface_args *args, const R(seen_prim) *
     if (!args->camera)
         R(unit_offset)(solid, seen->prim, from, start.f);
     R(solid_surface)(solid, seen->prim, &start, d, t, n, p);
+    for (int k = 0; seen->prim->turned && k < 3; k++)
+        n[k] = -n[k];
 }
 
 INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * seen, R(group_directions) directions,

@@ -21,6 +21,15 @@ local MOST_SHAPES = 1 << 22
 
 local OPEN = -1
 
+-- A combined solid is one shape; what it is made of is looked at for cycles and meshes.
+local function below(node)
+  if not node.parts then return node.children end
+  local list = {}
+  for _, part in ipairs(node.parts) do list[#list + 1] = part end
+  for _, child in ipairs(node.children) do list[#list + 1] = child end
+  return list
+end
+
 -- How often a shape shows under each node. Raises when a node is within itself.
 local function count_shapes(root)
   local count, stack = {}, { root }
@@ -28,7 +37,7 @@ local function count_shapes(root)
     local node = stack[#stack]
     if not count[node] then
       count[node] = OPEN
-      for _, child in ipairs(node.children) do
+      for _, child in ipairs(below(node)) do
         if count[child] == OPEN then check.raise("gr.render: node '%s' is within itself", child.name) end
         if not count[child] then stack[#stack + 1] = child end
       end
@@ -174,6 +183,46 @@ local function place_of(node, n, map)
   return shape
 end
 
+-- ---- Combined solids ----
+
+local function need_material(node)
+  if not node.material and not node.picture then
+    check.raise("gr.render: %s '%s' has no material; set_material gives it one", node.call, node.name)
+  end
+end
+
+local combine
+
+-- A shape in a combined solid; nil where there is nothing in it. dressed: the solid has a material.
+local function part_of(node, order, count, map, dressed)
+  if node.kind == "combined" then return combine(node, order, count, map, dressed) end
+  if node.is_nothing then return nil end
+  if node.kind == "mesh" then
+    check.raise("gr.render: mesh '%s' is a part of a combined solid, which is made of other shapes only", node.name)
+  end
+  if not dressed then need_material(node) end
+  local plain = not node.material and not node.picture
+  local fields = { material = not plain and shade_of(node, map) or nil, name = cut_name(node.name), transform = map }
+  return try(makers[node.kind], fields, node)
+end
+
+-- One solid of what is under each of the node's parts.
+function combine(node, order, count, map, dressed)
+  local own = node.material or node.picture
+  local fields = { two_sided = false, name = cut_name(node.name), transform = map }
+  if own then fields.material = shade_of(node, map) end
+  for i, part in ipairs(node.parts) do
+    local list = {}
+    if count[part] > 0 then
+      walk(part, order, count, function(n, at)
+        list[#list + 1] = part_of(n, order, count, at, dressed or own)
+      end)
+    end
+    fields[i] = #list == 1 and list[1] or engine(glint.group, list)
+  end
+  return try(glint[node.operation], fields)
+end
+
 -- ---- The scene ----
 
 local last = { members = {} } -- the scene of the last picture, and what is in it
@@ -189,9 +238,11 @@ end
 local function members_of(root, order, count, lights)
   local members, seen = {}, {}
   walk(root, order, count, function(node, map)
-    if not node.material and not node.picture then
-      check.raise("gr.render: %s '%s' has no material; set_material gives it one", node.call, node.name)
+    if node.kind == "combined" then -- made anew for each picture
+      members[#members + 1] = combine(node, order, count, map)
+      return
     end
+    need_material(node)
     seen[node] = (seen[node] or 0) + 1
     members[#members + 1] = place_of(node, seen[node], map)
   end)

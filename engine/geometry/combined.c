@@ -1,0 +1,115 @@
+/// Combined solids as sets: the box around one, and whether a place is in it.
+#include "engine/base/vec.h"
+#include "engine/geometry/geometry.h"
+
+typedef struct corners {
+    double lower[3], upper[3];
+} corners;
+
+/// Of a half-space, whose end is known where it is square to an axis.
+static corners box_behind(const glint_prim *plane)
+{
+    corners box = { { 0 }, { 0 } };
+    const int axis = glint_axis_along(plane->normal);
+    for (int c = 0; c < 3; c++) {
+        const double at = plane->center[c], loose = 0x1p-50 * fabs(at);
+        box.lower[c] = c == axis && plane->normal[c] < 0 ? at - loose : -HUGE_VAL;
+        box.upper[c] = c == axis && plane->normal[c] > 0 ? at + loose : HUGE_VAL;
+    }
+    return box;
+}
+
+/// Looser than the solid by what its inverse and rounding may differ by.
+static corners box_around(const glint_geometry *geometry, const glint_prim *part)
+{
+    corners box = { { 0 }, { 0 } };
+    if (part->kind == GLINT_PRIM_PLANE)
+        return box_behind(part);
+    glint_prim_bounds(geometry->solids, part, box.lower, box.upper);
+    for (int c = 0; c < 3; c++) {
+        const double half = 0.5 * box.upper[c] - 0.5 * box.lower[c];
+        const double loose = 0x1p-30 * half + 0x1p-50 * fmax(fabs(box.lower[c]), fabs(box.upper[c]));
+        box.lower[c] -= loose;
+        box.upper[c] += loose;
+    }
+    return box;
+}
+
+static bool is_empty(const corners *box)
+{
+    return box->lower[0] > box->upper[0] || box->lower[1] > box->upper[1] || box->lower[2] > box->upper[2];
+}
+
+static corners empty_box(void)
+{
+    return (corners) { { HUGE_VAL, HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL } };
+}
+
+static corners combine_boxes(uint8_t operation, const corners *a, const corners *b)
+{
+    corners out = *a;
+    if (operation == GLINT_COMBINE_DIFFERENCE)
+        return out;
+    const bool both = operation == GLINT_COMBINE_INTERSECTION;
+    for (int c = 0; c < 3; c++) {
+        out.lower[c] = both ? fmax(a->lower[c], b->lower[c]) : fmin(a->lower[c], b->lower[c]);
+        out.upper[c] = both ? fmin(a->upper[c], b->upper[c]) : fmax(a->upper[c], b->upper[c]);
+    }
+    return is_empty(&out) ? empty_box() : out;
+}
+
+void glint_combined_box(const glint_geometry *geometry, const glint_combined *combined, double box[3][3])
+{
+    corners stack[GLINT_PARTS_MAX] = { { { 0 }, { 0 } } };
+    int top = 0;
+    bool ends = true;
+    for (uint32_t k = 0; k < combined->length; k++) {
+        const uint8_t p = combined->program[k];
+        if (p < GLINT_PARTS_MAX) {
+            stack[top++] = box_around(geometry, &geometry->members[combined->first + p]);
+        } else if (p == GLINT_COMBINE_NOTHING) {
+            stack[top++] = empty_box();
+        } else {
+            top--;
+            stack[top - 1] = combine_boxes(p, &stack[top - 1], &stack[top]);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        const bool empty = is_empty(&stack[0]);
+        box[1][c] = empty ? 0 : stack[0].lower[c];
+        box[2][c] = empty ? 0 : stack[0].upper[c];
+        ends = ends && isfinite(box[1][c]) && isfinite(box[2][c]);
+    }
+    for (int c = 0; c < 3; c++) {
+        box[1][c] = ends ? box[1][c] : -HUGE_VAL;
+        box[2][c] = ends ? box[2][c] : HUGE_VAL;
+        box[0][c] = ends ? 0.5 * box[1][c] + 0.5 * box[2][c] : 0;
+    }
+}
+
+static bool part_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
+{
+    double e[3];
+    vec_sub(e, place, part->center);
+    if (part->kind == GLINT_PRIM_PLANE)
+        return vec_dot(part->normal, e) < 0;
+    return glint_solid_holds(&geometry->solids[part->item], part->center, place);
+}
+
+bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3])
+{
+    bool stack[GLINT_PARTS_MAX] = { false };
+    int top = 0;
+    for (uint32_t k = 0; k < combined->length; k++) {
+        const uint8_t p = combined->program[k];
+        if (p < GLINT_PARTS_MAX) {
+            stack[top++] = part_holds(geometry, &geometry->members[combined->first + p], place);
+        } else if (p == GLINT_COMBINE_NOTHING) {
+            stack[top++] = false;
+        } else {
+            const bool b = stack[--top], a = stack[top - 1];
+            stack[top - 1] = p == GLINT_COMBINE_UNION ? a || b : p == GLINT_COMBINE_INTERSECTION ? a && b : a && !b;
+        }
+    }
+    return stack[0];
+}

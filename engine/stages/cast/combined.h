@@ -1,0 +1,271 @@
+// combined: solids made of others by union, intersection and difference. Each part of one gives the stretch of a ray that is
+// inside of it; where a stretch ends, and there alone, the whole may begin or end: it does where the program says so of what holds
+// before and of what holds after, of all parts at that one t. Parts whose faces are in one plane have bit-equal ends there, so that
+// they change at once. Contract: stages.h, cast.
+
+/// Where rays are inside each part, from t[0] to t[1]; t[0] = inf: nowhere.
+typedef struct R(stretches) {
+    vr t[2][GLINT_PARTS_MAX];
+    uint64_t live; ///< parts that have some, and are of the program
+    uint32_t length;
+    uint8_t program[2 * GLINT_PARTS_MAX]; ///< the whole's for these rays
+} R(stretches);
+
+/// The half-space behind a plane.
+static void R(stretch_behind)(const glint_prim *plane, const vr o[3], const vr d[3], vr t[2])
+{
+    vr f[3];
+    R(offset)(o, plane, f);
+    const vr h = R(point_constant)(f, plane), zero = r_set(0);
+    const vr n[3] = { r_set(plane->normal[0]), r_set(plane->normal[1]), r_set(plane->normal[2]) };
+    const vr nd = DOT(n, d), at = -h / nd;
+    const rm across = r_le(r_set(GLINT_PARALLEL) * DOT(d, d), nd * nd), out = r_lt(zero, nd), under = r_le(h, zero);
+    const vr low = r_set(-HUGE_VAL), high = r_set(HUGE_VAL);
+    t[0] = r_select(across, r_select(out, low, at), r_select(under, low, high));
+    t[1] = r_select(across, r_select(out, at, high), r_select(under, high, low));
+}
+
+/// Returns whether any ray is inside the part ahead of where it starts.
+static bool R(stretch_within)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
+                              vr t[2])
+{
+    if (part->kind == GLINT_PRIM_PLANE) {
+        R(stretch_behind)(part, o, d, t);
+        return rm_bits(r_lt(r_set(0), t[1])) != 0;
+    }
+    const glint_solid *solid = &table->solids[part->item];
+    R(solid_start) start;
+    R(start_at)(solid, part, o, &start);
+    R(span) span = R(span_along)(solid, &start, d, false);
+    if (R(is_spent)(&span))
+        return false;
+    t[0] = r_select(span.hit, span.t[0], r_set(HUGE_VAL));
+    t[1] = r_select(span.hit, span.t[1], r_set(-HUGE_VAL));
+    return true;
+}
+
+/// Lanes of `own` start on the part; where they go into it they are inside up to its other side, else nowhere.
+static void R(stretch_from)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
+                            unsigned own, unsigned into, vr t[2])
+{
+    vr out = r_set(HUGE_VAL);
+    if (part->kind == GLINT_PRIM_SOLID && (own & into)) {
+        const glint_solid *solid = &table->solids[part->item];
+        R(solid_start) start;
+        R(start_at)(solid, part, o, &start);
+        const R(span) span = R(span_along)(solid, &start, d, true);
+        out = r_max(span.t[1], r_set(GLINT_LEAST_WAY));
+    }
+    const rm on = rm_from_bits(own), in = rm_from_bits(into & ((1u << VR) - 1));
+    t[0] = r_select(on, r_select(in, r_set(-HUGE_VAL), r_set(HUGE_VAL)), t[0]);
+    t[1] = r_select(on, r_select(in, out, r_set(-HUGE_VAL)), t[1]);
+}
+
+/// One of the two stretches that rays may be inside of a torus; own, into: as above. Returns whether any is.
+static bool R(stretch_of_torus)(const glint_geometry_table *table, const glint_prim *part, const vr o[3], const vr d[3],
+                                unsigned own, unsigned into, vr t[2])
+{
+    const glint_solid *solid = &table->solids[part->item];
+    const R(torus_start) start = { rm_from_bits(own), rm_from_bits(own & into) };
+    vr f[3], e[3], ends[4];
+    R(unit_offset)(solid, part, o, f);
+    R(to_unit)(solid, d, e);
+    R(torus_ends)(solid, f, e, start, ends);
+    t[0] = ends[2 * (part->face - 1)];
+    t[1] = ends[2 * (part->face - 1) + 1];
+    return rm_bits(r_lt(r_set(0), t[1])) != 0;
+}
+
+/// Lanes of a vector whose entries are `wanted`.
+static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
+{
+    unsigned lanes = 0;
+    for (int i = 0; i < VR; i++)
+        lanes |= (unsigned)(list[i] == wanted) << i;
+    return lanes;
+}
+
+/// Makes the program of a vector of rays: that of the whole without what none of them is in. That leaves little of many parts.
+static void R(make_program)(const glint_combined *whole, uint64_t live, R(stretches) * s)
+{
+    uint32_t begin[GLINT_PARTS_MAX]; // of the code of each set so far; such that has none is empty
+    uint32_t top = 0, n = 0;
+    for (uint32_t k = 0; k < whole->length; k++) {
+        const uint8_t p = whole->program[k];
+        if (p < GLINT_PARTS_MAX || p == GLINT_COMBINE_NOTHING) {
+            begin[top++] = n;
+            if (p < GLINT_PARTS_MAX && live >> p & 1)
+                s->program[n++] = p;
+            continue;
+        }
+        const uint32_t second = begin[--top], first = begin[top - 1];
+        const bool any_first = first < second, any_second = second < n;
+        if (any_first && any_second)
+            s->program[n++] = p;
+        else if (p == GLINT_COMBINE_INTERSECTION || (p == GLINT_COMBINE_DIFFERENCE && !any_first))
+            n = first;
+    }
+    s->length = n;
+    s->live = 0;
+    for (uint32_t k = 0; k < n; k++)
+        if (s->program[k] < GLINT_PARTS_MAX)
+            s->live |= (uint64_t)1 << s->program[k];
+}
+
+/// on: the primitive that each ray starts on; NULL: on none. inward: lanes that go into it there.
+static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3],
+                              const vr d[3], const uint32_t *on, unsigned inward, R(stretches) * s)
+{
+    const uint32_t first = table->prim_count + whole->first;
+    bool starts = false;
+    for (int i = 0; on && i < VR; i++)
+        starts = starts || on[i] - first < whole->count;
+    uint64_t live = 0;
+    for (uint32_t j = 0; j < whole->count; j++) {
+        const glint_prim *part = &table->prims[first + j];
+        const unsigned into = part->turned ? ~inward : inward;
+        unsigned own = starts ? R(vector_lanes)(on, first + j) : 0;
+        vr t[2] = { r_set(HUGE_VAL), r_set(-HUGE_VAL) };
+        bool any;
+        if (part->face) {
+            own |= starts ? R(vector_lanes)(on, part->face == 1 ? first + j + 1 : first + j - 1) : 0;
+            any = R(stretch_of_torus)(table, part, o, d, own, into, t);
+        } else {
+            any = R(stretch_within)(table, part, o, d, t);
+            if (own)
+                R(stretch_from)(table, part, o, d, own, into, t);
+        }
+        if (any || own)
+            live |= (uint64_t)1 << j;
+        s->t[0][j] = t[0];
+        s->t[1][j] = t[1];
+    }
+    R(make_program)(whole, live, s);
+}
+
+/// What holds next to places on rays, of one set.
+typedef struct R(change) {
+    rm before, after; ///< the ray is in it
+    vr part; ///< whose surface the change is, where there is one
+} R(change);
+
+static inline rm R(unlike)(rm a, rm b) { return rm_or(rm_andnot(a, b), rm_andnot(b, a)); }
+
+INNER rm R(combine_masks)(uint8_t operation, rm a, rm b)
+{
+    if (operation == GLINT_COMBINE_UNION)
+        return rm_or(a, b);
+    return operation == GLINT_COMBINE_INTERSECTION ? rm_and(a, b) : rm_andnot(a, b);
+}
+
+/// The change explains itself by the first of the two sets that changes as their combination does.
+INNER void R(combine)(uint8_t operation, R(change) * a, const R(change) * b, const bool parts)
+{
+    const rm before = R(combine_masks)(operation, a->before, b->before);
+    const rm after = R(combine_masks)(operation, a->after, b->after);
+    if (parts)
+        a->part = r_select(rm_or(R(unlike)(a->before, before), R(unlike)(a->after, after)), b->part, a->part);
+    a->before = before;
+    a->after = after;
+}
+
+/// parts, a constant: change->part is wanted.
+INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
+{
+    R(change) stack[GLINT_PARTS_MAX];
+    int top = 0;
+    for (uint32_t k = 0; k < s->length; k++) {
+        const uint8_t p = s->program[k];
+        R(change) *here = &stack[top];
+        if (p < GLINT_PARTS_MAX) {
+            const vr in = s->t[0][p], out = s->t[1][p];
+            here->before = rm_and(r_lt(in, t), r_le(t, out));
+            here->after = rm_and(r_le(in, t), r_lt(t, out));
+            here->part = r_set(p);
+            top++;
+        } else {
+            R(combine)(p, here - 2, here - 1, parts);
+            top--;
+        }
+    }
+    return stack[0];
+}
+
+/// Where the whole changes first; inf: nowhere.
+static vr R(first_change)(const R(stretches) * s)
+{
+    vr best = r_set(HUGE_VAL);
+    for (uint64_t left = s->live; left; left &= left - 1)
+        for (int end = 0; end < 2; end++) {
+            const vr t = s->t[end][__builtin_ctzll(left)];
+            const rm ahead = rm_and(r_lt(r_set(0), t), r_lt(t, best));
+            if (!rm_bits(ahead))
+                continue;
+            const R(change) change = R(change_at)(s, t, false);
+            best = r_select(rm_and(ahead, R(unlike)(change.before, change.after)), t, best);
+        }
+    return best;
+}
+
+/// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. on, inward: see
+/// find_stretches. Returns whether any hit was kept.
+static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim, size_t at, const vr o[3],
+                             const vr d[3], const uint32_t *on, unsigned inward)
+{
+    const glint_combined *whole = &args->geometry->combined[prim->item];
+    R(stretches) s;
+    R(find_stretches)(args->geometry, whole, o, d, on, inward, &s);
+    if (!s.live)
+        return false;
+    const vr t = R(first_change)(&s);
+    const rm hit = r_lt(t, r_set(HUGE_VAL));
+    if (!rm_bits(hit))
+        return false;
+    const vr part = R(change_at)(&s, t, true).part;
+    for (uint64_t left = s.live; left; left &= left - 1) {
+        const uint32_t j = (uint32_t)__builtin_ctzll(left);
+        const rm mine = rm_and(hit, r_eq(part, r_set(j)));
+        if (rm_bits(mine))
+            R(keep_nearest)(args, at, args->geometry->prim_count + whole->first + j, mine, t);
+    }
+    return true;
+}
+
+/// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
+static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const glint_prim *prim, unsigned near)
+{
+    const size_t at = (size_t)g * GLINT_GROUP;
+    bool any = false;
+    count_tests(args->tests, near);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr o[3], d[3];
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        R(load3)(args->origin, at + (size_t)i, o);
+        R(load3)(args->direction, at + (size_t)i, d);
+        const uint32_t *on = args->leaving ? args->leaving + at + i : NULL;
+        if (R(cast_combined)(args, prim, at + (size_t)i, o, d, on, on ? args->inward[g] >> i : 0))
+            any = true;
+    }
+    return any;
+}
+
+/// The same of the eye's rays, in group (x, y) of a tile.
+static bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim, int x, int y, size_t at,
+                                    unsigned near)
+{
+    const double *eye = args->camera->eye;
+    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
+    bool any = false;
+    count_tests(args->tests, near);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        R(load_direction)(directions, args->direction, 0, i, d);
+        if (R(cast_combined)(args, prim, at + (size_t)i, o, d, NULL, 0))
+            any = true;
+    }
+    return any;
+}

@@ -1,0 +1,144 @@
+// The reference of combined solids, for one type of real; included by ref/cast.h. One line of stages.h after the other.
+
+/// Where a ray is inside a part: in < out, or nowhere.
+typedef struct NAME(stretch) {
+    REAL in, out;
+} NAME(stretch);
+
+/// Which parts a ray that starts on one of them is on, and whether it goes into the whole there.
+typedef struct NAME(start) {
+    uint32_t on; ///< index in prims, or GLINT_MISS
+    bool inward;
+} NAME(start);
+
+static NAME(stretch) NAME(nowhere)(void) { return (NAME(stretch)) { INFINITY, -INFINITY }; }
+
+static NAME(stretch) NAME(behind_plane)(const glint_prim *plane, NAME(vec3) origin, NAME(vec3) direction)
+{
+    REAL h = NAME(over_plane)(plane, origin, true), nd = NAME(dot)(NAME(rounded)(plane->normal), direction);
+    if (!(nd * nd >= NAME(PLANE_GRAZING) * NAME(length2)(direction)))
+        return h <= 0 ? (NAME(stretch)) { -INFINITY, INFINITY } : NAME(nowhere)();
+    REAL t = -h / nd;
+    return nd > 0 ? (NAME(stretch)) { -INFINITY, t } : (NAME(stretch)) { t, INFINITY };
+}
+
+static NAME(stretch) NAME(within_part)(const glint_geometry_table *geometry, const glint_prim *part,
+                                       NAME(vec3) origin, NAME(vec3) direction)
+{
+    if (part->kind == GLINT_PRIM_PLANE)
+        return NAME(behind_plane)(part, origin, direction);
+    NAME(passage) p = NAME(pass_prim)(&geometry->solids[part->item], part, origin, direction);
+    return p.hit ? (NAME(stretch)) { p.in.t, p.out.t } : NAME(nowhere)();
+}
+
+/// The same of a ray that starts on the part: in it up to its other side, or not at all.
+static NAME(stretch) NAME(from_part)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
+                                     NAME(vec3) direction, bool inward)
+{
+    if (inward == (part->turned != 0))
+        return NAME(nowhere)();
+    if (part->kind == GLINT_PRIM_PLANE)
+        return (NAME(stretch)) { -INFINITY, INFINITY };
+    NAME(passage) p = NAME(pass_prim)(&geometry->solids[part->item], part, origin, direction);
+    return (NAME(stretch)) { -INFINITY, NAME(max)(p.out.t, (REAL)GLINT_LEAST_WAY) };
+}
+
+/// One of the two stretches that a ray may be inside of a torus.
+static NAME(stretch) NAME(within_torus)(const glint_geometry_table *geometry, const glint_prim *part, NAME(vec3) origin,
+                                        NAME(vec3) direction, bool own, bool inward)
+{
+    const glint_solid *solid = &geometry->solids[part->item];
+    REAL ends[4];
+    NAME(torus_ends)(solid, NAME(unit_place)(solid, part, origin), NAME(into_unit)(solid, direction), own,
+                     inward != (part->turned != 0), ends);
+    return (NAME(stretch)) { ends[2 * (part->face - 1)], ends[2 * (part->face - 1) + 1] };
+}
+
+static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint32_t index, NAME(vec3) origin,
+                                      NAME(vec3) direction, NAME(start) start)
+{
+    const glint_prim *part = &geometry->prims[index];
+    if (part->face)
+        return NAME(within_torus)(geometry, part, origin, direction,
+                                  start.on == index || start.on == (part->face == 1 ? index + 1 : index - 1), start.inward);
+    return start.on == index ? NAME(from_part)(geometry, part, origin, direction, start.inward)
+                             : NAME(within_part)(geometry, part, origin, direction);
+}
+
+/// What holds of a set next to a place on a ray.
+typedef struct NAME(change) {
+    bool before, after; ///< the ray is in it
+    uint32_t part; ///< whose surface the change is, where there is one
+} NAME(change);
+
+static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change) b)
+{
+    NAME(change) out;
+    if (operation == GLINT_COMBINE_DIFFERENCE) {
+        b.before = !b.before;
+        b.after = !b.after;
+    }
+    if (operation == GLINT_COMBINE_UNION) {
+        out.before = a.before || b.before;
+        out.after = a.after || b.after;
+    } else {
+        out.before = a.before && b.before;
+        out.after = a.after && b.after;
+    }
+    out.part = a.before == out.before && a.after == out.after ? a.part : b.part;
+    return out;
+}
+
+static NAME(change) NAME(change_at)(const glint_combined *whole, const NAME(stretch) * part, REAL t)
+{
+    NAME(change) stack[GLINT_PARTS_MAX];
+    int top = 0;
+    for (uint32_t k = 0; k < whole->length; k++) {
+        uint8_t p = whole->program[k];
+        if (p == GLINT_COMBINE_NOTHING) {
+            stack[top++] = (NAME(change)) { false, false, 0 };
+        } else if (p < GLINT_PARTS_MAX) {
+            bool before = part[p].in < t && t <= part[p].out, after = part[p].in <= t && t < part[p].out;
+            stack[top++] = (NAME(change)) { before, after, p };
+        } else {
+            top--;
+            stack[top - 1] = NAME(combine)(p, stack[top - 1], stack[top]);
+        }
+    }
+    return stack[0];
+}
+
+/// The distance at which a ray meets a combined solid; 0 stands for a miss. *met: the part, an index in prims.
+static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
+                             NAME(vec3) direction, NAME(start) start, uint32_t *met)
+{
+    const glint_combined *whole = &geometry->combined[prim->item];
+    const uint32_t first = geometry->prim_count + whole->first;
+    NAME(stretch) part[GLINT_PARTS_MAX];
+    REAL best = INFINITY;
+    for (uint32_t j = 0; j < whole->count; j++)
+        part[j] = NAME(stretch_of)(geometry, first + j, origin, direction, start);
+    for (uint32_t k = 0; k < 2 * whole->count; k++) {
+        REAL t = k % 2 ? part[k / 2].out : part[k / 2].in;
+        if (!(t > 0 && t < best))
+            continue;
+        NAME(change) change = NAME(change_at)(whole, part, t);
+        if (change.before == change.after)
+            continue;
+        best = t;
+        *met = first + change.part;
+    }
+    return best < INFINITY ? best : 0;
+}
+
+/// Of a segment from a point of some surface to the light.
+static bool NAME(combined_blocks)(const glint_occlude_args *args, const glint_prim *prim, NAME(vec3) position,
+                                  uint32_t i)
+{
+    NAME(vec3) point = NAME(load)(args->point, i);
+    NAME(vec3) d = args->directional ? position : NAME(times)(NAME(sub)(position, point), (REAL)args->scale);
+    NAME(start) start = { args->prim[i], args->back[i / GLINT_GROUP] >> i % GLINT_GROUP & 1 };
+    uint32_t met;
+    REAL t = NAME(combined_t)(args->geometry, prim, point, d, start, &met);
+    return t > 0 && (args->directional || t * (REAL)args->scale < 1);
+}
