@@ -124,6 +124,7 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
         glint_layout layout = begin(overlays, i, dpi, letters, out);
         draw(&layout, dpi);
     }
+    out->lost = out->lost || glint_letters_lost(letters);
     glint_letters_close(letters);
     if (!out->lost)
         return GLINT_OK;

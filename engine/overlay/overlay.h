@@ -17,6 +17,7 @@ typedef struct glint_overlays {
     atomic_int references;
     int width, height; ///< of the whole picture, pixels
     double view[3][3]; ///< unit: to the right, up and away from the eye
+    glint_key letters; ///< see glint_letters_key
     size_t count;
     glint_overlay_desc of[]; ///< in the order in which they are drawn
 } glint_overlays;

@@ -19,12 +19,19 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     *out = NULL;
     if (!shown)
         return GLINT_OK;
+    glint_letters *letters;
+    glint_status status = glint_letters_open(&letters, error);
+    if (status)
+        return status;
+    const glint_key font = glint_letters_key(letters);
+    glint_letters_close(letters);
     glint_overlays *overlays = malloc(sizeof *overlays + shown * sizeof *overlays->of);
     if (!overlays)
         return glint_fail_nomem(error);
     atomic_init(&overlays->references, 1);
     overlays->width = width;
     overlays->height = height;
+    overlays->letters = font;
     overlays->count = 0;
     for (int i = 0; i < 3; i++)
         vec_normalize(overlays->view[i], view[i]);
@@ -64,7 +71,7 @@ static glint_key place_key(const glint_overlay_desc *d, glint_key key)
 
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
 {
-    key = glint_letters_key(key);
+    ADD(key, overlays->letters);
     for (size_t i = 0; i < overlays->count; i++) {
         const glint_overlay_desc *d = &overlays->of[i];
         const double bar[] = { d->map, d->low, d->high, d->orientation, (double)d->tick_count };

@@ -307,7 +307,7 @@ static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
     if (!status && l->desc->difference)
         draw_differences(l, &canvas);
     draw_titles(l, &canvas);
-    if (!status && l->lost)
+    if (!status && (l->lost || glint_letters_lost(l->letters)))
         status = glint_fail_nomem(error);
     if (!status)
         status = write_canvas(&canvas, l->desc->dpi, path, error);

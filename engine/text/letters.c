@@ -10,7 +10,9 @@
 
 #include <ft2build.h>
 #include FT_FREETYPE_H
+#include FT_MODULE_H
 #include FT_OUTLINE_H
+#include FT_SYSTEM_H
 #include FT_TRUETYPE_TABLES_H
 
 #include <pthread.h>
@@ -22,8 +24,31 @@
 struct glint_letters {
     FT_Library library;
     FT_Face face;
+    struct FT_MemoryRec_ memory; ///< FreeType goes on without what it had no memory for: this notes it
+    bool lost;
     double em; ///< that the face is set to; 0: none yet
 };
+
+static void *note_lost(FT_Memory memory, void *block)
+{
+    glint_letters *letters = memory->user;
+    letters->lost = letters->lost || !block;
+    return block;
+}
+
+static void *allocate(FT_Memory memory, long size) { return note_lost(memory, malloc((size_t)size)); }
+
+static void release(FT_Memory memory, void *block)
+{
+    (void)memory;
+    free(block);
+}
+
+static void *resize(FT_Memory memory, long before, long size, void *block)
+{
+    (void)before;
+    return note_lost(memory, realloc(block, (size_t)size));
+}
 
 /// Where systems have the font.
 static const char *const places[] = {
@@ -53,8 +78,25 @@ void glint_letters_close(glint_letters *letters)
         return;
     if (letters->face)
         FT_Done_Face(letters->face);
-    FT_Done_FreeType(letters->library);
+    if (letters->library)
+        FT_Done_Library(letters->library);
     free(letters);
+}
+
+bool glint_letters_lost(const glint_letters *letters) { return letters && letters->lost; }
+
+static glint_letters *begin(void)
+{
+    glint_letters *letters = calloc(1, sizeof *letters);
+    if (!letters)
+        return NULL;
+    letters->memory = (struct FT_MemoryRec_) { letters, allocate, release, resize };
+    if (!FT_New_Library(&letters->memory, &letters->library)) {
+        FT_Add_Default_Modules(letters->library);
+        return letters;
+    }
+    free(letters);
+    return NULL;
 }
 
 glint_status glint_letters_open(glint_letters **out, glint_error *error)
@@ -63,21 +105,20 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
     *out = NULL;
     if (wanted && strcmp(wanted, "bitmap") == 0)
         return GLINT_OK;
-    glint_letters *letters = calloc(1, sizeof *letters);
+    glint_letters *letters = begin();
     if (!letters)
         return glint_fail_nomem(error);
-    if (FT_Init_FreeType(&letters->library)) {
-        free(letters);
-        return glint_fail_nomem(error);
-    }
     bool found = wanted && *wanted && open_path(letters, wanted);
     for (size_t i = 0; i < sizeof places / sizeof *places && !found && !(wanted && *wanted); i++)
         found = open_path(letters, places[i]);
-    if (found) {
+    const bool lost = letters->lost;
+    if (found && !lost) {
         *out = letters;
         return GLINT_OK;
     }
     glint_letters_close(letters);
+    if (lost)
+        return glint_fail_nomem(error);
     if (wanted && *wanted)
         return glint_fail(error, GLINT_ERR_INVALID, "GLINT_FONT: the file of a scalable font, or bitmap, expected, got '%.300s'",
                           wanted);
@@ -85,13 +126,12 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
 }
 
 /// A font's file has a sum of all of it.
-glint_key glint_letters_key(glint_key key)
+glint_key glint_letters_key(const glint_letters *letters)
 {
-    glint_letters *letters;
-    glint_error error;
-    if (glint_letters_open(&letters, &error) || !letters)
-        return glint_key_add_string(key, "bitmap");
+    glint_key key = { 0 };
     FT_Int version[3];
+    if (!letters)
+        return glint_key_add_string(key, "bitmap");
     FT_Library_Version(letters->library, &version[0], &version[1], &version[2]);
     const TT_Header *head = FT_Get_Sfnt_Table(letters->face, FT_SFNT_HEAD);
     const double numbers[] = { version[0], version[1], version[2], head ? (double)head->CheckSum_Adjust : 0,
@@ -101,7 +141,6 @@ glint_key glint_letters_key(glint_key key)
         key = glint_key_add_string(key, letters->face->family_name);
     if (letters->face->style_name)
         key = glint_key_add_string(key, letters->face->style_name);
-    glint_letters_close(letters);
     return key;
 }
 
@@ -180,6 +219,7 @@ static void draw_letter(glint_letters *letters, double x, int y, glint_mask *mas
     part.num_grays = 256;
     part.pitch = (int)part.width;
     part.buffer = calloc(part.rows, part.width);
+    letters->lost = letters->lost || !part.buffer;
     FT_Outline_Translate(outline, -left * 64, bottom * 64);
     if (part.buffer && !FT_Outline_Get_Bitmap(letters->library, outline, &part))
         add_coverage(&part, (int)left, (int)top, mask);
@@ -232,7 +272,17 @@ glint_status glint_letters_open(glint_letters **out, glint_error *error)
 
 void glint_letters_close(glint_letters *letters) { (void)letters; }
 
-glint_key glint_letters_key(glint_key key) { return glint_key_add_string(key, "bitmap"); }
+bool glint_letters_lost(const glint_letters *letters)
+{
+    (void)letters;
+    return false;
+}
+
+glint_key glint_letters_key(const glint_letters *letters)
+{
+    (void)letters;
+    return glint_key_add_string((glint_key) { 0 }, "bitmap");
+}
 
 void glint_letters_measure(glint_letters *letters, double em, int *above, int *below, int *line)
 {

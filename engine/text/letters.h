@@ -14,8 +14,10 @@ typedef struct glint_letters glint_letters; ///< an open font; of one thread at 
 /// *out NULL: the bitmap font. GLINT_ERR_INVALID: GLINT_FONT names what is no font.
 glint_status glint_letters_open(glint_letters **out, glint_error *error);
 void glint_letters_close(glint_letters *letters); ///< NULL: nothing
-/// Continues a key with what the pixels of text depend on beside the text: the font, and the library's version.
-glint_key glint_letters_key(glint_key key);
+/// Whether there was no memory for something: text that was measured or drawn is not as it should be.
+bool glint_letters_lost(const glint_letters *letters);
+/// Of what the pixels of text depend on beside the text: the font, and the library's version.
+glint_key glint_letters_key(const glint_letters *letters);
 
 /// "FreeType 2.12.1"; a static string; NULL: this build has none.
 const char *glint_letters_library(void);

@@ -61,6 +61,10 @@ for moves in lamp all; do
         grep -q "\"kept\":0"'
 done
 check "a shutter is explained" eval '"$glint" explain "$scene" --set times=3 | grep -q "shutter  *camera: mean of 3 times"'
+scene=$root/scripts/labels.lua
+check "labels: their parts" eval '"$glint" "$scene" --size 160x100 -f 3 -q -o a.png && "$glint" "$scene" --size 160x100 -f 3 -q \
+    --region 0,0,160,37 -o t.png && "$glint" "$scene" --size 160x100 -f 3 -q --region 0,37,160,63 -o u.png &&
+    "$glint" join t_0003.png u_0003.png -o v.png -q && cmp a_0003.png v.png'
 scene=$root/scripts/mirror_and_glass.lua
 check "floats of a part are those of the whole" eval '"$glint" "$scene" --size 40x30 -q -o w.pfm --passes depth &&
     "$glint" "$scene" --size 40x30 -q -o p.pfm --passes depth --region 0,0,40,30 && cmp w.pfm p.pfm && cmp w.depth.pfm p.depth.pfm'
