@@ -90,7 +90,7 @@ void glint_light_grid_destroy(glint_light_grid *grid);
 /// The number of a primitive's object in order of definition, from 0: a mesh is one object, a sphere of many is one.
 uint32_t glint_geometry_object(const glint_geometry *geometry, uint32_t id);
 
-/// geometry/prims.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
+/// geometry/fill.c: makes the primitives of the scene's shapes, in order of definition, with their materials and parts.
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error);
 /// geometry/sizes.c: refuses what is too small or too large for the squares that the kernels take of it. Fills `thinnest`.
 glint_status glint_geometry_check_sizes(glint_geometry *geometry, glint_error *error);

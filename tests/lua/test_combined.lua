@@ -177,6 +177,34 @@ function tests.glass()
   near(scene:render { width = 1, height = 1, output = "none" }:pixel(0, 0), math.exp(-0.25), 1e-6, "the eye in the hollow")
 end
 
+-- Turned at will, in matt, mirrors and glass, under a soft light: halves are the whole, a cutter may end in the face it cuts,
+-- and what has an opacity of 0 is not there; to the last bit.
+function tests.pictures()
+  local map = glint.translate(0.2, 0.1, 0) * glint.rotate({ 1, 2, 3 }, 37)
+  local function picture(shape)
+    local scene = glint.scene { camera = glint.camera { eye = { 1, 3, 8 }, at = { 0, 0.5, 0 } }, ambient = 0.1, background = { 0.2, 0.3, 0.5 },
+      glint.sphere_light { position = { 4, 8, 5 }, radius = 0.5, samples = 4 }, glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
+      ball(-1.5, 0, -2, 1, { material = glint.material { diffuse = { 0.8, 0.2, 0.1 }, mirror = 0.4 } }), shape }
+    local image, rows = scene:render { width = 80, height = 60, output = "none" }, {}
+    for y = 0, 59 do
+      for x = 0, 79 do rows[#rows + 1] = string.pack("fff", image:pixel(x, y)) end
+    end
+    return table.concat(rows)
+  end
+  local function pocket(top, more)
+    return glint.difference { box(CUBE[1], CUBE[2], more), box({ -0.6, -0.5, -0.6 }, { 0.6, top, 0.6 }), transform = map }
+  end
+  for name, fields in pairs { matt = { diffuse = 0.8 }, mirror = { diffuse = 0.3, mirror = 0.5 },
+    glass = { diffuse = 0.05, transmission = 0.9, ior = 1.3, absorption = 0.2 } } do
+    local more = { material = glint.material(fields) }
+    local halves = glint.union { box(CUBE[1], { 0, 1, 1 }, more), box({ 0, -1, -1 }, CUBE[2]), transform = map }
+    check(picture(halves) == picture(box(CUBE[1], CUBE[2], { material = more.material, transform = map })), "halves, %s", name)
+    check(picture(pocket(1, more)) == picture(pocket(3, more)), "a flush cutter, %s", name)
+  end
+  local clear = { material = glint.material { opacity = 0 } }
+  check(picture(pocket(1, clear)) == picture(box({ 0, -9, 0 }, { 1, -8, 1 })), "what is not there")
+end
+
 -- Light through a hole, beside it, and through glass.
 function tests.shadows()
   local roof = glint.difference { box({ -3, 2, -3 }, { 3, 3, 3 }), box({ -1, 2, -1 }, { 1, 3, 1 }) }

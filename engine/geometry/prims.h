@@ -1,0 +1,17 @@
+/// Primitives of what describes them, one by one; fill.c makes those of a scene. Internal.
+#ifndef GLINT_PRIMS_H
+#define GLINT_PRIMS_H
+
+#include "engine/geometry/faces.h"
+#include "engine/geometry/geometry.h"
+
+void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
+void glint_plane_init(glint_prim *prim, const double point[3], const double normal[3], const glint_placing *place);
+/// Of a ball, box, disk, cylinder, cone or torus; faces: room for those that it has. Returns how many these are.
+int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,
+                     glint_face *faces);
+
+/// Scales a map by a power of two, so that no product of two of its numbers overflows or is lost. Returns the factor.
+double glint_linear_scale(double m[3][3]);
+
+#endif
