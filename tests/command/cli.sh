@@ -299,7 +299,7 @@ options() {
     exits 2 "a pass that is none" ten.lua --passes diffuse,normals
     says "names it and the nearest" "^glint: error: --passes: 'normals' is no pass; did you mean 'normal'\\?$"
     exits 2 "a pass like none" ten.lua --passes diffuse,xyzzy
-    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo expected$"
+    says "names it and all" "'xyzzy' is no pass; list of beauty, .*, albedo, d:NAME expected$"
     exits 0 "--version --verbose" --version --verbose
     prints "libraries" '^libraries: Lua 5\.4.*libpng [0-9].*xxhash [0-9]'
     prints "kernels" '^kernels: ref generic.*; in use: [a-z0-9]+, [0-9]+ threads$'
