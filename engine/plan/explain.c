@@ -271,7 +271,7 @@ static void list_effects(explainer *e, const glint_scene *scene)
     const glint_plan *plan = e->plan;
     const bool surfaces = plan->geometry->table.prim_count > 0;
     one(e, plan->camera.orthographic, "orthographic projection", "camera");
-    one(e, plan->lens, "lens", "camera.aperture = %.15g, focus %.15g away", plan->camera.aperture, plan->camera.focus);
+    one(e, plan->lens, "lens", "camera.aperture = %g, focus %g away", plan->camera.aperture, plan->camera.focus);
     one(e, any(plan->background), "background", "scene.background");
     lights(e, scene, "visible light", is_seen);
     if (surfaces) {

@@ -188,24 +188,6 @@ static inline unsigned R(lanes_near_shape)(const R(tile_cast) * tile, const shap
     return lanes;
 }
 
-/// The same of rays that start on a lens: by how far beside the eye's they are where they pass the middle of the shape.
-static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
-                                             float near, int x, int y)
-{
-    const R(tile_lens) *lens = tile->lens;
-    const vf share = f_set(1 - middle * lens->seen.per_focus), k = f_set(shape->k);
-    unsigned lanes = 0;
-    for (int i = 0; i < GLINT_GROUP; i += VF) {
-        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
-        if (!open)
-            continue;
-        const vf u = f_load(tile->s[x] + i) * k + f_load(lens->across[0] + i) * share;
-        const vf v = f_load(lens->across[1] + i) * share - f_load(tile->t[y] + i) * k;
-        lanes |= (open & shape_at(shape, u, v)) << i;
-    }
-    return lanes;
-}
-
 /// Tests a primitive of a node against the groups it may show in. What it is to all rays is worked out when the first of
 /// them needs it.
 static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node_on_screen *seen, int slot)
@@ -243,12 +225,14 @@ static void R(cast_slot)(R(tile_cast) * tile, const glint_node *node, const node
 static void R(cast_prims)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node, const node_on_screen *seen,
                           unsigned mask)
 {
-    const unsigned triangles = tile->parallel ? 0 : triangles_in(tile->args->geometry, node, mask);
+    const unsigned triangles = tile->parallel && !tile->lens ? 0 : triangles_in(tile->args->geometry, node, mask);
     int order[GLINT_NODE_WIDTH];
     const int count = sort_slots(mask & ~triangles, seen->near, order);
     for (int i = 0; i < count; i++)
         R(cast_slot)(tile, node, seen, order[i]);
-    if (triangles)
+    if (triangles && GLINT_WITH_LENS && tile->lens)
+        R(cast_lens_triangles)(tile, leaf, node, seen, triangles);
+    else if (triangles)
         R(cast_triangles)(tile, leaf, node, seen, triangles);
 }
 

@@ -5,7 +5,9 @@
 
 /// The triangles of one node, and pairs that are to be decided.
 typedef struct R(cast_leaf) {
-    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle, from the eye, in units of the table
+    _Alignas(64) real corner[3][3][GLINT_NODE_WIDTH]; ///< of each slot's triangle, from the eye, in units of the table; where rays
+        ///< start on a lens, in the world
+    _Alignas(64) real origin[3][GLINT_PAIRS]; ///< there: where the ray starts
     _Alignas(64) real direction[3][GLINT_PAIRS], t[GLINT_PAIRS];
     _Alignas(64) uint32_t slot[GLINT_PAIRS];
     uint16_t at[GLINT_PAIRS]; ///< the ray
@@ -73,28 +75,38 @@ static unsigned R(pixels_of_leaf)(const R(tile_cast) * tile, const node_on_scree
     return mask | edge_on;
 }
 
-/// Whether the eye is in the plane of a triangle.
-static bool R(begins_in_plane)(const R(tile_cast) * tile, const glint_prim *prim)
+/// Where the ray of a pair starts. `lens` is a constant, here and below: whether that is the pair's own.
+INNER void R(start_of_pair)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n, real place[3])
 {
-    const double *eye = tile->args->camera->eye;
-    const real place[3] = { (real)eye[0], (real)eye[1], (real)eye[2] };
+    for (int k = 0; k < 3; k++)
+        place[k] = lens ? leaf->origin[k][n] : (real)tile->args->camera->eye[k];
+}
+
+/// Whether the ray of a pair starts in the plane of a triangle.
+INNER bool R(begins_in_plane)(const R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n,
+                              const glint_prim *prim)
+{
+    real place[3];
+    R(start_of_pair)(tile, leaf, lens, n, place);
     const R(flat) flat = R(flat_of)(prim, tile->args->geometry->scale);
     return R(is_in_plane)(&flat, place, false);
 }
 
 /// The hits of pairs from i on. Triangles that share their planes with others are decided anew; `through`: lanes whose rays pass
 /// between the edges.
-static unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, int i, unsigned through, unsigned hits)
+INNER unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, bool lens, int i, unsigned through,
+                               unsigned hits)
 {
     const glint_geometry_table *table = tile->args->geometry;
-    const double *eye = tile->args->camera->eye;
-    const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };
     for (; through; through &= through - 1) {
         const unsigned lane = through & -through;
         const int n = i + __builtin_ctz(through);
         if (!(leaf->faced >> leaf->slot[n] & 1))
             continue;
         const glint_prim *prim = &table->prims[leaf->node->child[leaf->slot[n]] & ~GLINT_NODE_PRIM];
+        real place[3];
+        R(start_of_pair)(tile, leaf, lens, n, place);
+        const vr o[3] = { r_set(place[0]), r_set(place[1]), r_set(place[2]) };
         const vr d[3] = { r_set(leaf->direction[0][n]), r_set(leaf->direction[1][n]), r_set(leaf->direction[2][n]) };
         leaf->t[n] = R(first_lane)(R(face_way)(R(face_of)(table, prim), o, d));
         hits = 0 < leaf->t[n] ? hits | lane : hits & ~lane;
@@ -102,8 +114,8 @@ static unsigned R(decide_faced)(const R(tile_cast) * tile, R(cast_leaf) * leaf, 
     return hits;
 }
 
-/// Keeps what is nearer than all before. near: beyond it no triangle is in the eye's plane.
-static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, int n, real near, uint64_t *moved)
+/// Keeps what is nearer than all before. near: beyond it no ray starts in the triangle's plane.
+INNER void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, bool lens, int n, real near, uint64_t *moved)
 {
     const glint_cast_args *args = tile->args;
     const glint_prim *prims = args->geometry->prims;
@@ -111,7 +123,7 @@ static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, 
     const real t = leaf->t[n];
     real *best = (real *)args->t + at;
     uint32_t *best_id = args->prim + at;
-    if (t <= near && !prims[id].face && R(begins_in_plane)(tile, &prims[id]))
+    if (t <= near && !prims[id].face && R(begins_in_plane)(tile, leaf, lens, n, &prims[id]))
         return;
     const bool tie = t == *best && t < (real)HUGE_VAL && *best_id != GLINT_MISS && prims[id].id < prims[*best_id].id;
     if (!(t < *best || tie))
@@ -122,7 +134,18 @@ static inline void R(keep_pair)(R(tile_cast) * tile, const R(cast_leaf) * leaf, 
     *moved |= (uint64_t)1 << at / GLINT_GROUP;
 }
 
-static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
+/// The corners of VR pairs from their rays' starts, in units of the table.
+INNER void R(corners_of_pairs)(const R(cast_leaf) * leaf, bool lens, int i, vr scale, vr p[3][3])
+{
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++) {
+            p[j][k] = r_pick(leaf->corner[j][k], leaf->slot + i);
+            if (lens)
+                p[j][k] = (p[j][k] - r_load(leaf->origin[k] + i)) * scale;
+        }
+}
+
+INNER void R(decide_pairs_of)(R(tile_cast) * tile, R(cast_leaf) * leaf, bool lens)
 {
     const real scale = (real)tile->args->geometry->scale, near = R(near_shared_edge)(tile->args->geometry);
     uint64_t moved = 0;
@@ -130,14 +153,15 @@ static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
         *tile->args->tests += (unsigned)leaf->count;
     for (int n = leaf->count; n % VR; n++) {
         leaf->slot[n] = leaf->slot[0];
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++) {
             leaf->direction[k][n] = leaf->direction[k][0];
+            if (lens)
+                leaf->origin[k][n] = leaf->origin[k][0];
+        }
     }
     for (int i = 0; i < leaf->count; i += VR) {
         vr p[3][3], d[3], t;
-        for (int j = 0; j < 3; j++)
-            for (int k = 0; k < 3; k++)
-                p[j][k] = r_pick(leaf->corner[j][k], leaf->slot + i);
+        R(corners_of_pairs)(leaf, lens, i, r_set(scale), p);
         for (int k = 0; k < 3; k++)
             d[k] = r_load(leaf->direction[k] + i);
         const unsigned there = leaf->count - i < VR ? (1u << (leaf->count - i)) - 1 : (1u << VR) - 1;
@@ -145,9 +169,9 @@ static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
         unsigned hits = rm_bits(R(meet_seen)(&edges, p, d, d, r_set(scale), NULL, &t)) & there;
         r_store(leaf->t + i, t);
         if (leaf->faced)
-            hits = R(decide_faced)(tile, leaf, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
+            hits = R(decide_faced)(tile, leaf, lens, i, rm_bits(R(passes)(&edges, p, d)) & there, hits);
         for (; hits; hits &= hits - 1)
-            R(keep_pair)(tile, leaf, i + __builtin_ctz(hits), near, &moved);
+            R(keep_pair)(tile, leaf, lens, i + __builtin_ctz(hits), near, &moved);
     }
     for (; moved; moved &= moved - 1) {
         const int g = __builtin_ctzll(moved);
@@ -155,6 +179,9 @@ static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf)
     }
     leaf->count = 0;
 }
+
+static void R(decide_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf) { R(decide_pairs_of)(tile, leaf, false); }
+static void R(decide_lens_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf) { R(decide_pairs_of)(tile, leaf, true); }
 
 /// Pairs a triangle with lanes of group (x, y).
 static inline void R(add_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, int x, int y, unsigned lanes)
@@ -204,4 +231,80 @@ static void R(cast_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const gl
     for (mask = R(pixels_of_leaf)(tile, seen, mask, leaf); mask; mask &= mask - 1)
         R(cast_triangle)(tile, leaf, __builtin_ctz(mask));
     R(decide_pairs)(tile, leaf);
+}
+
+// ---- Rays that start on a lens ----
+
+/// Pairs a triangle with lanes of group g.
+static inline void R(add_lens_pairs)(R(tile_cast) * tile, R(cast_leaf) * leaf, int slot, uint32_t g, unsigned lanes)
+{
+    const glint_cast_args *args = tile->args;
+    int n = leaf->count;
+    for (; lanes; lanes &= lanes - 1, n++) {
+        const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(lanes);
+        leaf->slot[n] = (uint32_t)slot;
+        leaf->at[n] = (uint16_t)at;
+        for (int k = 0; k < 3; k++) {
+            leaf->origin[k][n] = ((const real *)args->origin[k])[at];
+            leaf->direction[k][n] = ((const real *)args->direction[k])[at];
+        }
+    }
+    leaf->count = n;
+    if (n > GLINT_PAIRS - GLINT_GROUP)
+        R(decide_lens_pairs)(tile, leaf);
+}
+
+/// Loads the corners. Lanes without a triangle keep what they had.
+static void R(load_lens_leaf)(const R(tile_cast) * tile, unsigned mask, R(cast_leaf) * leaf, leaf_through_lens *out)
+{
+    const glint_cast_args *args = tile->args;
+    R(load_leaf)(args, mask, leaf);
+    show_through_lens(&leaf->shown, &tile->view, &tile->lens->seen, GLINT_REAL == 32, out);
+    for (; mask; mask &= mask - 1) {
+        const int slot = __builtin_ctz(mask);
+        const glint_prim *prim = &args->geometry->prims[leaf->node->child[slot] & ~GLINT_NODE_PRIM];
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                leaf->corner[j][k][slot] = (real)prim->corner[j][k];
+    }
+}
+
+/// Finds the rays that may meet the triangle in a slot.
+static void R(cast_lens_triangle)(R(tile_cast) * tile, R(cast_leaf) * leaf, const leaf_through_lens *shown,
+                                  const node_on_screen *seen, int slot)
+{
+    const R(tile_lens) *lens = tile->lens;
+    const screen_cells cells = seen->cells[slot];
+    const float near = seen->near[slot];
+    const unsigned columns = bit_range(first_column(cells), last_column(cells));
+    for (int y = first_row(cells); y <= last_row(cells); y++)
+        for (unsigned left = behind_in_row((const float(*)[SCREEN_ACROSS])tile->far, y, near, columns); left;
+             left &= left - 1) {
+            const int x = __builtin_ctz(left);
+            const uint32_t g = (uint32_t)(y * tile->across + x);
+            unsigned lanes = 0;
+            for (int i = 0; i < GLINT_GROUP; i += VF) {
+                const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[g] + i)));
+                if (open)
+                    lanes |= (open & meets_through_lens(shown, slot, f_load(tile->s[x] + i), -f_load(tile->t[y] + i),
+                                                        f_load(lens->across[0] + i), f_load(lens->across[1] + i)))
+                             << i;
+            }
+            if (lanes)
+                R(add_lens_pairs)(tile, leaf, slot, g, lanes);
+        }
+}
+
+/// Casts the triangles in the slots of `mask`, nearest first.
+static void R(cast_lens_triangles)(R(tile_cast) * tile, R(cast_leaf) * leaf, const glint_node *node,
+                                   const node_on_screen *seen, unsigned mask)
+{
+    leaf_through_lens shown;
+    int order[GLINT_NODE_WIDTH];
+    const int count = sort_slots(mask, seen->near, order);
+    leaf->node = node;
+    R(load_lens_leaf)(tile, mask, leaf, &shown);
+    for (int i = 0; i < count; i++)
+        R(cast_lens_triangle)(tile, leaf, &shown, seen, order[i]);
+    R(decide_lens_pairs)(tile, leaf);
 }

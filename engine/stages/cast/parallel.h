@@ -53,6 +53,13 @@ static void R(aim_parallel)(const glint_cast_args *args, R(tile_cast) * tile, R(
     tile->parallel = tile->deep = true;
 }
 
+/// Whether rays of a lens may meet a plane; those of an orthographic camera may.
+static inline bool R(lens_sees_plane)(const R(tile_cast) * tile, const glint_prim *prim)
+{
+    const glint_camera_args *camera = tile->args->camera;
+    return camera->orthographic || R(plane_ahead)(camera, &tile->view, prim);
+}
+
 /// The rays and the planes: what all of the tile has behind it is known before the walk.
 static void R(cast_planes)(R(tile_cast) * tile, uint32_t g)
 {
@@ -60,10 +67,13 @@ static void R(cast_planes)(R(tile_cast) * tile, uint32_t g)
     _Alignas(64) float local[3][GLINT_GROUP];
     R(ray_group) rays;
     R(start_group)(tile->args, g);
-    if (geometry->unbounded_count > 0)
+    if (geometry->unbounded_count > 0 && !tile->lens)
         R(make_ray_group)(tile->args, g, local, &rays);
     for (uint32_t i = 0; i < geometry->unbounded_count; i++)
-        R(cast_on_group)(tile->args, g, &rays, geometry->unbounded[i]);
+        if (!tile->lens)
+            R(cast_on_group)(tile->args, g, &rays, geometry->unbounded[i]);
+        else if (R(lens_sees_plane)(tile, &geometry->prims[geometry->unbounded[i]]))
+            R(decide_rays)(tile->args, g, geometry->unbounded[i], tile->args->active[g]);
     R(note_depth)(tile, (int)g % tile->across, (int)g / tile->across);
 }
 

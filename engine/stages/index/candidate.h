@@ -86,10 +86,12 @@ static void R(aim_screen)(const glint_camera_args *camera, const glint_geometry_
     finish_screen(view);
 }
 
-/// Which way the corner rays run decides whether a ray between them can meet a plane; nothing is said of what else has no end.
+/// Which way the corner rays run decides whether a ray between them, from the eye or the lens around it, can meet a plane; nothing
+/// is said of what else has no end.
 static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_view *view, const glint_prim *prim)
 {
-    double e[3], away = 0;
+    const double aside = camera->lens ? camera->lens->radius : 0, bend = aside > 0 ? aside * camera->lens->per_focus : 0;
+    double e[3], away = aside;
     if (prim->kind != GLINT_PRIM_PLANE)
         return true;
     for (int k = 0; k < 3; k++) {
@@ -97,17 +99,17 @@ static inline bool R(plane_ahead)(const glint_camera_args *camera, const screen_
         away = fmax(away, fabs(e[k]));
     }
     const double height = DOT(prim->normal, e);
-    if (!(fabs(height) > (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
+    if (!(fabs(height) > 1.000001 * aside + (GLINT_REAL == 64 ? 1e-12 : 1e-5) * away))
         return true;
     for (int corner = 0; corner < 4; corner++) {
         const double s = corner & 1 ? view->last[0] : view->first[0];
         const double t = -(corner & 2 ? view->last[1] : view->first[1]);
-        double d[3], size = 0;
+        double d[3], size = bend;
         for (int k = 0; k < 3; k++) {
             d[k] = (camera->forward[k] + s * camera->right[k]) + t * camera->up[k];
             size += fabs(d[k]);
         }
-        if (!(DOT(prim->normal, d) * (height > 0 ? 1 : -1) > 1e-5 * size))
+        if (!(DOT(prim->normal, d) * (height > 0 ? 1 : -1) > 1.000001 * bend + 1e-5 * size))
             return true;
     }
     return false;
@@ -375,4 +377,23 @@ static void R(begin_tile)(const glint_cast_args *args, R(tile_cast) * tile)
     for (int y = 0; y < tile->down; y++)
         for (int x = 0; x < SCREEN_ACROSS; x++)
             tile->far[y][x] = x < tile->across ? HUGE_VALF : -HUGE_VALF;
+}
+
+/// Lanes of a group that may meet a shape, by how far beside the eye's rays those of the lens are where they pass its middle, before
+/// what they have met. Its box begins at `near`.
+static inline unsigned R(lanes_through_lens)(const R(tile_cast) * tile, const shape_on_screen *shape, float middle,
+                                             float near, int x, int y)
+{
+    const R(tile_lens) *lens = tile->lens;
+    const vf share = f_set(1 - middle * lens->seen.per_focus), k = f_set(shape->k);
+    unsigned lanes = 0;
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        const unsigned open = fm_bits(f_le(f_set(near), f_load(tile->depth[y * tile->across + x] + i)));
+        if (!open)
+            continue;
+        const vf u = f_load(tile->s[x] + i) * k + f_load(lens->across[0] + i) * share;
+        const vf v = f_load(lens->across[1] + i) * share - f_load(tile->t[y] + i) * k;
+        lanes |= (open & shape_at(shape, u, v)) << i;
+    }
+    return lanes;
 }
