@@ -1,6 +1,10 @@
 /// compare16 A.png B.png [MAX_SHARE]: compares two 16-bit RGB PNGs code by code. Prints every pixel with a channel that
 /// is off by more than one code, then a line of totals. Exit 0 when their share is at most MAX_SHARE (default 0.0001),
 /// 1 when it is more, 2 when the files cannot be compared.
+///
+/// compare16 A.png B.png MOST blocks: pictures with noise. The means of blocks of 4 x 4 pixels, of which borders that do not fill
+/// one are left out, differ by at most MOST of full scale, root mean square.
+#include <math.h>
 #include <png.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -84,14 +88,44 @@ static totals compare(const picture *a, const picture *b)
     return t;
 }
 
+#define BLOCK 4
+
+/// The sum of a channel over the block at (x, y).
+static double block_sum(const picture *p, png_uint_32 x, png_uint_32 y, int channel)
+{
+    double sum = 0;
+    for (png_uint_32 i = 0; i < BLOCK * BLOCK; i++)
+        sum += code(p->rows[y + i / BLOCK] + 2 * CHANNELS * (x + i % BLOCK), channel);
+    return sum;
+}
+
+/// Root mean square of the differences of blocks, in shares of full scale.
+static double compare_blocks(const picture *a, const picture *b)
+{
+    double squares = 0, count = 0;
+    for (png_uint_32 y = 0; y + BLOCK <= a->height; y += BLOCK)
+        for (png_uint_32 x = 0; x + BLOCK <= a->width; x += BLOCK)
+            for (int c = 0; c < CHANNELS; c++, count++) {
+                const double off = (block_sum(a, x, y, c) - block_sum(b, x, y, c)) / (BLOCK * BLOCK * 65535.);
+                squares += off * off;
+            }
+    return sqrt(squares / count);
+}
+
 int main(int argc, char **argv)
 {
-    if (argc < 3 || argc > 4)
-        return fprintf(stderr, "usage: compare16 A.png B.png [MAX_SHARE]\n"), 2;
-    double max_share = argc == 4 ? atof(argv[3]) : 1e-4;
+    const bool blocks = argc == 5 && strcmp(argv[4], "blocks") == 0;
+    if (argc < 3 || (argc > 4 && !blocks))
+        return fprintf(stderr, "usage: compare16 A.png B.png [MAX_SHARE | MOST blocks]\n"), 2;
+    double max_share = argc >= 4 ? atof(argv[3]) : 1e-4;
     picture a = read_picture(argv[1]), b = read_picture(argv[2]);
     if (a.width != b.width || a.height != b.height)
         fail(argv[2], "another size");
+    if (blocks) {
+        const double off = compare_blocks(&a, &b);
+        printf("  blocks are off by %.6f of full scale, root mean square\n", off);
+        return !(off <= atof(argv[3]));
+    }
     totals t = compare(&a, &b);
     double share = (double)t.off / (double)t.pixels;
     printf("  %lu pixels: %lu equal, %lu off by one code, %lu by more (%.5f %%), largest %d codes\n", t.pixels, t.same,

@@ -62,6 +62,7 @@ picture combined --samples 4
 steps fit
 picture flight --frames 30
 picture earth --frames 1
+picture focus --frames 16
 picture furnace
 picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4

@@ -66,6 +66,8 @@ picture bricks_0001 scripts/bricks.lua -f 1
 picture shaders scripts/shaders.lua
 picture toon_teapot_0001 scripts/toon_teapot.lua -f 1
 picture lantern_0001 scripts/lantern.lua -f 1
+picture focus_0016 scripts/focus.lua -f 16
+picture focus_orthographic_0016 scripts/focus.lua -f 16 --set blades=0 --set projection=orthographic --samples 8
 picture shutter_0001 scripts/shutter.lua -f 1
 picture shutter_lamp_0001 scripts/shutter.lua -f 1 --set moves=lamp
 picture gr_scene scripts/gr_scene.lua --dialect gr

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # POV-Ray as witness: every pixel of the workshop scene at 1280x720, 16-bit linear, within 1/65535 of POV-Ray's, but for
-# at most 0.01 % of the pixels (ties at shadow edges and silhouettes), each printed. The mapping is in povray/pov.lua.
+# at most 0.01 % of the pixels (ties at shadow edges and silhouettes), each printed. Through a lens, where both have noise: blocks
+# of 4 x 4 pixels within 0.0015 of full scale, root mean square; a lens wider by a tenth is off by 0.0026, a narrower one by 0.0016.
+# The mapping is in povray/pov.lua.
 set -u
 build=${BUILD:-build}
 glint=${GLINT:-$build/glint}
@@ -17,7 +19,7 @@ if ! command -v povray >/dev/null 2>&1; then
 fi
 
 bad=0
-# compare MODEL LIGHT PROJECTION [SURFACES]
+# compare MODEL LIGHT PROJECTION [SURFACES [SAMPLES MOST blocks]]
 compare() {
     local surfaces=${4:-plain}
     local name=$1_$2_$3_$surfaces
@@ -30,8 +32,8 @@ compare() {
         return
     }
     "$glint" tests/povray/scene.lua --set "model=$1" --set "light=$2" --set "projection=$3" --set "surfaces=$surfaces" --set "sky=$out/sky.png" --size ${width}x$height \
-        --quiet --force -o "$out/$name.png" &&
-        "$build/tests/compare16" "$out/$name.png" "$out/$name.pov.png" 0.0001 || {
+        --quiet --force --samples "${5:-1}" -o "$out/$name.png" &&
+        "$build/tests/compare16" "$out/$name.png" "$out/$name.pov.png" ${6:-0.0001} ${7:-} || {
         echo "not ok - $name"
         bad=1
         return
@@ -54,4 +56,6 @@ for surfaces in mirror glass absorbing inside fresnel solids combined open rings
 done
 compare phong point orthographic
 compare blinn_phong directional orthographic
+width=640 height=360
+compare phong point perspective lens 64 0.0015 blocks
 exit $bad

@@ -282,6 +282,13 @@ local odd = study("odd", still("odd.lua", matt, [[samples = 9, precision = "floa
 check(find(odd, "samples", 9).default and find(odd, "samples", 16) and find(odd, "precision", "float").default,
   "the script's own values are in their places")
 
+-- Samples are those of a lens, too: its blur is what the first ones lack.
+local lens = study("lens", write("lens.lua", (read "film.lua":gsub("at = { 0, 0.5, 0 }", "%0, aperture = 0.6, focus = 3")))
+  .. " --knobs samples")
+check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse
+  and find(lens, "samples", 16).rmse > 1.5 * find(lens, "samples", 64).rmse, "a lens converges: %g, %g, %g",
+  find(lens, "samples", 1).rmse, find(lens, "samples", 16).rmse, find(lens, "samples", 64).rmse)
+
 -- Lights with a surface, in their units and in radiance, of which a knob must leave everything as it was; and a cone.
 local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { vertices = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } },
   radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },

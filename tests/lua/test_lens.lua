@@ -336,6 +336,18 @@ function tests.parts()
   check(same(smaller, render(scene, { samples = 9 }), "beauty"), "a lens that was stopped down and opened")
 end
 
+-- The plan says who called for a lens, and how far away its focus is; without an aperture there is none.
+function tests.explained()
+  local command = os.getenv "GLINT" or (os.getenv "BUILD" or "build") .. "/glint"
+  local function lens_of(options)
+    local pipe <close> = assert(io.popen(("%s explain scripts/focus.lua --frame 1 %s"):format(command, options)))
+    return pipe:read("a"):match "\n%s*(lens[^\n]*)"
+  end
+  local line = lens_of ""
+  check(line and line:find "camera.aperture = 0.16, focus %d+%.%d+ away", "explain: '%s'", line)
+  check(not lens_of "--set aperture=0", "no aperture, no lens")
+end
+
 local function raises(message, fields, more)
   local ok, got = pcall(function()
     local scene = glint.scene { camera = camera(fields), glint.sphere { center = { 0, 0, 0 }, radius = 1 } }

@@ -27,6 +27,8 @@
 --   checker      pigment { checker C, D }: D where floor(x) + floor(y) + floor(z) is odd, of coordinates 1e-10 larger
 --   background   sky_sphere { pigment { image_map { map_type 1 } } }: there the left edge of a picture is +x, here it is +z, and it
 --                runs on as it does here; texels are not mixed
+--   lens         aperture 4 r (as measured: its rays start up to a quarter of it from the middle), focal_point a point of the plane of
+--                focus, blur_samples n variance 0. A pixel's rays all go through its centre there: blocks of pixels are compared
 --   max_depth    max_trace_level - 1, with adc_bailout 0: else weak rays are dropped
 -- Shadow rays start at t > 1e-3 there, and at the surface here: pixels at the very edge of a shadow may differ.
 local model, light, projection, width, height, surfaces, sky = table.unpack(arg)
@@ -53,8 +55,14 @@ if surfaces == "sky" then
 else
   line("background { rgb %s }", vector(w.background))
 end
-line("camera { %s location %s direction %s right %s up %s }", projection, vector(w.eye), vector(forward),
-  vector(scaled(right, extent * width / height)), vector(scaled(up, extent)))
+local lens = ""
+if surfaces == "lens" then
+  local e, f = w.eye, scaled(forward, w.lens.focus)
+  lens = ("aperture %.17g focal_point %s blur_samples %d variance 0"):format(4 * w.lens.aperture,
+    vector { e[1] + f[1], e[2] + f[2], e[3] + f[3] }, w.lens.blur_samples)
+end
+line("camera { %s location %s direction %s right %s up %s %s }", projection, vector(w.eye), vector(forward),
+  vector(scaled(right, extent * width / height)), vector(scaled(up, extent)), lens)
 if light == "point" then
   line("light_source { %s rgb %s }", vector(w.light.position), vector(w.light.color))
 elseif light == "spot" then

@@ -4,7 +4,7 @@ local P = glint.params {
   model = { "phong", choices = { "phong", "blinn_phong" } },
   light = { "point", choices = { "point", "directional", "spot", "fade", "area" } },
   surfaces = { "plain", choices = { "plain", "mirror", "glass", "absorbing", "inside", "fresnel", "solids", "open",
-     "rings", "combined", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky" } },
+     "rings", "combined", "faceted", "smooth", "stretched", "prism", "nested", "checker", "sky", "lens" } },
   sky = { "", doc = "the PNG file of the sky" },
   projection = { "perspective", choices = { "perspective", "orthographic" } },
 }
@@ -38,6 +38,7 @@ if P.projection == "perspective" then
 else
   camera.height = w.height
 end
+if P.surfaces == "lens" then camera.aperture, camera.focus = w.lens.aperture, w.lens.focus end
 
 -- What lets light through has no colour of its own.
 local function material(surface, fields)

@@ -114,6 +114,7 @@ return {
       { center = { 0.7, 2.4, 4.5 }, radius = 0.7, transmission = 0.9, ior = 1.8, absorption = 0.1, specular = 0 },
     },
   },
+  lens = { aperture = 0.6, focus = 17, blur_samples = 120 },
   depths = { nested = 14, prism = 14 }, -- other values of max_depth
   spheres = { -- center, radius, colour
     { { 0, -10000, 0 }, 10000, { 0.45, 0.42, 0.40 } },
