@@ -957,13 +957,17 @@ typedef struct glint_slope {
     double slope[3]; ///< of each component; of a single number the first
 } glint_slope;
 
-/// How fast the picture's light, linear beauty, changes with a parameter: exact where hits, shadows and the samples of area
-/// lights stay as they are. Slopes of what the scene does not have count as nothing.
+/// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
+/// lights are seen where they were, a point of a surface moving with what sees it. Slopes of what the scene does not have count
+/// as nothing.
 ///
 ///   material  diffuse, ambient, specular, shininess, roughness, f0
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
 ///   scene     ambient, background
+///   shape     spheres: center, radius; planes: point, normal; both by themselves, without transforms
+///   camera    eye, at, direction, up, fov_y_rad, of perspective cameras without a lens that see spheres, planes and faceted
+///             triangles alone
 typedef struct glint_derivative {
     const char *name; ///< 1 .. 31 bytes; "lamp_x"
     const glint_slope *slopes; ///< those of one field add up
@@ -1131,8 +1135,8 @@ typedef struct glint_frame_stats {
     uint64_t pixels; ///< rendered: of a region those of the tiles that it touches; `clipped` and `nonfinite` are of these
     uint64_t clipped; ///< pixels with a channel above 1; 0 without codes
     uint64_t nonfinite; ///< pixels with a channel that is not finite; 0 without codes
-    uint64_t shifted; ///< pixels beside an edge that a derivative's parameter moves, such as a shadow's, or within a soft
-        ///< one: what the edge's way adds to a difference is not in the derivative. 0 without derivatives
+    uint64_t shifted; ///< pixels beside an edge of a shape or shadow that a derivative's parameter moves, or within a soft
+        ///< shadow: what the edge's way adds to a difference is not in the derivative. 0 without derivatives
     uint64_t odd; ///< times that a pattern was run and gave NaN, a number below 0 or one above 2^100; and of one of them:
     const char *odd_field; ///< static string: "diffuse"; "background" of the scene; NULL: there is none
     char odd_material[GLINT_NAME_SIZE]; ///< name of the material; may be empty

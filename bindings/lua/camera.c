@@ -16,11 +16,11 @@ _Static_assert(sizeof(desc_type) <= GLINTL_DESC_SIZE, "GLINTL_DESC_SIZE");
 static const char *const PROJECTIONS[] = { "perspective", "orthographic", NULL };
 
 static const glintL_field FIELDS[] = {
-    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true },
-    { .name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at) },
-    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction) },
-    { .name = "up", .kind = GLINTL_VECTOR, .offset = AT(up) },
-    { .name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad) },
+    { .name = "eye", .kind = GLINTL_VECTOR, .offset = AT(eye), .required = true, .slopes = true },
+    { .name = "at", .kind = GLINTL_VECTOR, .offset = AT(at), .set_offset = offsetof(desc_type, has_at), .slopes = true },
+    { .name = "direction", .kind = GLINTL_VECTOR, .offset = AT(direction), .set_offset = AT(has_direction), .slopes = true },
+    { .name = "up", .kind = GLINTL_VECTOR, .offset = AT(up), .slopes = true },
+    { .name = "fov", .kind = GLINTL_DEGREES, .offset = AT(fov_y_rad), .slopes = true },
     { .name = "projection", .kind = GLINTL_ENUM, .offset = AT(projection), .names = PROJECTIONS },
     { .name = "height", .kind = GLINTL_NUMBER, .offset = AT(height) },
     { .name = "pixel_offset", .kind = GLINTL_NUMBER, .offset = AT(pixel_offset) },
@@ -108,6 +108,7 @@ static int new_camera(lua_State *L)
     glintL_check_status(L, "camera", &error, glint_camera_create(&read, &camera, &error));
     box->object = camera;
     glintL_remember(L, camera);
+    glintL_keep_table_slopes(L, 2, 1, FIELDS);
     return 1;
 }
 

@@ -20,15 +20,15 @@ static const char *const MATERIAL[] = { GLINTL_MATERIAL };
 // clang-format on
 
 static const glintL_field SPHERE_FIELDS[] = {
-    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true },
-    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true },
+    { .name = "center", .kind = GLINTL_VECTOR, .offset = AT(center), .required = true, .slopes = true },
+    { .name = "radius", .kind = GLINTL_NUMBER, .offset = AT(radius), .required = true, .slopes = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
 
 static const glintL_field PLANE_FIELDS[] = {
-    { .name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true },
-    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true },
+    { .name = "point", .kind = GLINTL_VECTOR, .offset = AT(point), .required = true, .slopes = true },
+    { .name = "normal", .kind = GLINTL_VECTOR, .offset = AT(normal), .required = true, .slopes = true },
     EVERY_SHAPE,
     { .name = NULL },
 };
@@ -217,6 +217,7 @@ static int new_shape(lua_State *L, glint_shape_kind kind)
     glintL_check_status(L, v->name, &error, glint_shape_create(&desc, &shape, &error));
     box->object = shape;
     glintL_remember(L, shape);
+    glintL_keep_table_slopes(L, 2, 1, v->fields);
     if (desc.material) {
         lua_pushliteral(L, "material");
         lua_rawget(L, 1);

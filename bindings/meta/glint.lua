@@ -815,7 +815,7 @@ function image:close() end
 function glint.params(list) end
 
 --- A number that knows how fast it changes with variables: what arithmetic and functions of `math` make of it does, too, and
---- fields of materials, lights and scenes take it.
+--- fields of materials, lights, spheres, planes, cameras and scenes take it.
 ---@class glint.dual
 ---@operator add(any): any
 ---@operator sub(any): any

@@ -35,6 +35,8 @@ static const char *engine_name(const glintL_field *field)
 {
     if (field->kind != GLINTL_DEGREES)
         return field->name;
+    if (strcmp(field->name, "fov") == 0)
+        return "fov_y_rad";
     return strcmp(field->name, "inner") == 0 ? "inner_rad" : "outer_rad";
 }
 
@@ -59,6 +61,8 @@ static void gather_object(lua_State *L, int index, const char *type, int variabl
             slope.slope[c] *= PI / 180;
         slope.material = strcmp(type, GLINTL_MATERIAL) == 0 ? object : NULL;
         slope.light = strcmp(type, GLINTL_LIGHT) == 0 ? object : NULL;
+        slope.shape = strcmp(type, GLINTL_SHAPE) == 0 ? object : NULL;
+        slope.camera = strcmp(type, GLINTL_CAMERA) == 0 ? object : NULL;
         if (g->out)
             g->out[g->count] = slope;
         g->count++;
@@ -67,7 +71,7 @@ static void gather_object(lua_State *L, int index, const char *type, int variabl
 
 static void gather(lua_State *L, int variable, gathering *g)
 {
-    static const char *const types[] = { GLINTL_MATERIAL, GLINTL_LIGHT, GLINTL_SCENE };
+    static const char *const types[] = { GLINTL_MATERIAL, GLINTL_LIGHT, GLINTL_SHAPE, GLINTL_CAMERA, GLINTL_SCENE };
     glintL_push_all_sloped(L);
     for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
         for (size_t i = 0; i < sizeof types / sizeof *types; i++)

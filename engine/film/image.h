@@ -27,7 +27,7 @@ struct glint_image {
     glint_outline_color outline; ///< drawn over beauty in a PNG; the pass `outline` is then there
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< names; "": there is none
     uint32_t *shadows; ///< of frames whose derivatives move shadows, a number a pixel: in equal ones the same lights are
-        ///< kept from all samples or from none; 0: that differs among the samples. NULL: none. Owned
+        ///< kept from all samples or from none, and where shapes or the eye move the same surface is seen; 0: that differs among the samples. NULL: none. Owned
     int channels; ///< of codes: 3, RGB; with alpha 4
     glint_tone_desc code_tone; ///< how the codes were made
     glint_film_stamp *film; ///< one a tile, left to right, top to bottom. may be NULL. Owned

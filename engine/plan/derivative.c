@@ -45,12 +45,22 @@ static const slope_field light_fields[] = {
     LIGHT(radiance, 1, AREA),
     { NULL, 0, 0, 0 },
 };
+#define SHAPE(name, count, kind) { #name, offsetof(glint_shape_desc, name), count, 1u << GLINT_SHAPE_##kind }
+#define CAMERA(name, count) { #name, offsetof(glint_camera_desc, name), count, 0 }
+static const slope_field shape_fields[] = {
+    SHAPE(center, 3, SPHERE), SHAPE(radius, 1, SPHERE), SHAPE(point, 3, PLANE), SHAPE(normal, 3, PLANE),
+    { NULL, 0, 0, 0 },
+};
+static const slope_field camera_fields[] = {
+    CAMERA(eye, 3), CAMERA(at, 3), CAMERA(direction, 3), CAMERA(up, 3), CAMERA(fov_y_rad, 1), { NULL, 0, 0, 0 },
+};
 static const slope_field scene_fields[] = { SCENE(ambient), SCENE(background), { NULL, 0, 0, 0 } };
 
-static const slope_field *find_field(const slope_field *fields, const char *name)
+/// kinds: of what has the field, a bit each; 0: all are alike.
+static const slope_field *find_field(const slope_field *fields, const char *name, unsigned kinds)
 {
     for (; name && fields->name; fields++)
-        if (strcmp(fields->name, name) == 0)
+        if (strcmp(fields->name, name) == 0 && (fields->kinds & kinds) == kinds)
             return fields;
     return NULL;
 }
@@ -71,6 +81,8 @@ static glint_status refuse_field(const glint_derivative *d, const char *object, 
 typedef struct scene_slopes {
     glint_material_desc *materials; ///< in the geometry's order
     glint_light_desc *lights; ///< in the scene's
+    glint_shape_desc *shapes; ///< of the geometry's parts
+    glint_camera_desc camera;
     glint_scene_desc scene;
 } scene_slopes;
 
@@ -85,7 +97,7 @@ static glint_status add_material(const glint_plan *plan, const glint_derivative 
                                  scene_slopes *out, glint_error *error)
 {
     const glint_list *list = &plan->geometry->materials;
-    const slope_field *field = find_field(material_fields, s->field);
+    const slope_field *field = find_field(material_fields, s->field, 0);
     if (!field)
         return refuse_field(d, "material", s->field, material_fields, 0, error);
     for (size_t i = 0; i < list->count; i++)
@@ -98,9 +110,9 @@ static glint_status add_light(const glint_scene *scene, const glint_derivative *
                               scene_slopes *out, glint_error *error)
 {
     const unsigned kind = 1u << s->light->desc.kind;
-    const slope_field *field = find_field(light_fields, s->field);
+    const slope_field *field = find_field(light_fields, s->field, kind);
     char name[2 * GLINT_NAME_SIZE];
-    if (!field || !(field->kinds & kind)) {
+    if (!field) {
         glint_describe_light(&s->light->desc, 0, name, sizeof name);
         name[strcspn(name, " ")] = '\0';
         return refuse_field(d, name, s->field, light_fields, kind, error);
@@ -111,10 +123,43 @@ static glint_status add_light(const glint_scene *scene, const glint_derivative *
     return GLINT_OK;
 }
 
+static glint_status add_shape(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
+                              scene_slopes *out, glint_error *error)
+{
+    const unsigned kind = 1u << s->shape->desc.kind;
+    const slope_field *field = find_field(shape_fields, s->field, kind);
+    const bool known = kind & (1u << GLINT_SHAPE_SPHERE | 1u << GLINT_SHAPE_PLANE);
+    if (!field)
+        return refuse_field(d, kind == 1u << GLINT_SHAPE_SPHERE ? "sphere" : known ? "plane" : "shape", s->field,
+                            shape_fields, known ? kind : 1u << 31, error);
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
+        const glint_part *part = &plan->geometry->parts[i];
+        if (part->shape != s->shape)
+            continue;
+        if (part->map || part->whole)
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "derivative '%s': %s: a shape under a transform or in a combined solid has no derivative; by "
+                              "itself it has",
+                              d->name, s->field);
+        add(&out->shapes[i], field, s->slope);
+    }
+    return GLINT_OK;
+}
+
+static glint_status add_camera(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
+                               scene_slopes *out, glint_error *error)
+{
+    const slope_field *field = find_field(camera_fields, s->field, 0);
+    if (!field)
+        return refuse_field(d, "camera", s->field, camera_fields, 0, error);
+    if (scene->desc.camera == s->camera)
+        add(&out->camera, field, s->slope);
+    return GLINT_OK;
+}
+
 static glint_status add_slope(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
                               const glint_slope *s, scene_slopes *out, glint_error *error)
 {
-    static const slope_field none = { NULL, 0, 0, 0 };
     for (int c = 0; c < 3; c++)
         if (!isfinite(s->slope[c]))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: finite slopes expected, got %g", d->name,
@@ -123,9 +168,11 @@ static glint_status add_slope(const glint_plan *plan, const glint_scene *scene, 
         return add_material(plan, d, s, out, error);
     if (s->light)
         return add_light(scene, d, s, out, error);
-    if (s->shape || s->camera)
-        return refuse_field(d, s->shape ? "shape" : "camera", s->field, &none, 0, error);
-    const slope_field *field = find_field(scene_fields, s->field);
+    if (s->shape)
+        return add_shape(plan, d, s, out, error);
+    if (s->camera)
+        return add_camera(scene, d, s, out, error);
+    const slope_field *field = find_field(scene_fields, s->field, 0);
     if (!field)
         return refuse_field(d, "scene", s->field, scene_fields, 0, error);
     add(&out->scene, field, s->slope);
@@ -270,6 +317,60 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
                   out->inverse.slope != 0 || out->exponent.slope != 0;
 }
 
+// ---- Surfaces and the eye -----------------------------------------------------------------------------------------
+
+static bool any_slope(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
+
+static void fill_part(glint_derivative_part *out, const glint_shape_desc *desc, const glint_shape_desc *slope)
+{
+    glint_dual normal[3];
+    if (desc->kind == GLINT_SHAPE_SPHERE) {
+        memcpy(out->place, slope->center, sizeof out->place);
+        out->radius = slope->radius;
+    } else if (desc->kind == GLINT_SHAPE_PLANE) {
+        memcpy(out->place, slope->point, sizeof out->place);
+        duals(normal, desc->normal, slope->normal);
+        dual_normalize(normal);
+        for (int c = 0; c < 3; c++)
+            out->normal[c] = normal[c].slope;
+    }
+    out->moves = any_slope(out->place) || out->radius != 0 || any_slope(out->normal);
+}
+
+static void dual_cross(glint_dual out[3], const glint_dual a[3], const glint_dual b[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const int i = (c + 1) % 3, k = (c + 2) % 3;
+        out[c] = dual_sub(dual_mul(a[i], b[k]), dual_mul(a[k], b[i]));
+    }
+}
+
+/// See plan/camera.c.
+static void fill_view(glint_derivative_view *out, const glint_plan *plan, const glint_camera_desc *desc,
+                      const glint_camera_desc *slope)
+{
+    const double half = desc->fov_y_rad / 2, tangent = glint_tan(half);
+    const glint_dual size = dual_scale(dual(tangent, (1 + tangent * tangent) * (slope->fov_y_rad / 2)), 1 / plan->desc.height);
+    glint_dual eye[3], forward[3], up[3], right[3];
+    duals(eye, desc->eye, slope->eye);
+    duals(forward, desc->has_direction ? desc->direction : desc->at, desc->has_direction ? slope->direction : slope->at);
+    for (int c = 0; c < 3 && !desc->has_direction; c++)
+        forward[c] = dual_sub(forward[c], eye[c]);
+    dual_normalize(forward);
+    duals(up, desc->up, slope->up);
+    dual_normalize(up);
+    dual_cross(right, forward, up);
+    dual_normalize(right);
+    dual_cross(up, right, forward);
+    for (int c = 0; c < 3; c++) {
+        out->eye[c] = eye[c].slope;
+        out->forward[c] = forward[c].slope;
+        out->right[c] = dual_mul(right[c], size).slope;
+        out->up[c] = dual_mul(up[c], size).slope;
+    }
+    out->moves = any_slope(out->eye) || any_slope(out->forward) || any_slope(out->right) || any_slope(out->up);
+}
+
 // ---- A derivative ---------------------------------------------------------------------------------------------------
 
 /// Ia, of the scene and all lights.
@@ -305,6 +406,13 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const scene_s
         fill_light(&out->lights[i], rows, count, desc, &slopes->lights[i]);
         out->moves = out->moves || out->lights[i].moves;
     }
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
+        fill_part(&out->parts[i], &plan->geometry->parts[i].shape->desc, &slopes->shapes[i]);
+        out->bends = out->bends || out->parts[i].moves;
+    }
+    fill_view(&out->view, plan, glint_camera_get(scene->desc.camera), &slopes->camera);
+    out->bends = out->bends || out->view.moves;
+    out->moves = out->moves || out->bends;
     for (int c = 0; c < 3; c++) {
         out->background[c] = scene->desc.background_program ? 0 : slopes->scene.background[c];
         out->everywhere = out->everywhere || out->background[c] != 0;
@@ -315,7 +423,7 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const scene_s
 
 static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
 {
-    bool any = d->background[0] != 0 || d->background[1] != 0 || d->background[2] != 0;
+    bool any = d->bends || any_slope(d->background);
     for (size_t i = 0; i < plan->geometry->materials.count; i++)
         any = any || d->materials[i].varies;
     for (size_t i = 0; i < all->light_count; i++)
@@ -327,9 +435,12 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
                              scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
 {
     const size_t materials = plan->geometry->materials.count, lights = scene->lights.count;
+    const size_t parts = plan->geometry->part_count;
     glint_status status = GLINT_OK;
     memset(slopes->materials, 0, (materials + 1) * sizeof *slopes->materials);
     memset(slopes->lights, 0, (lights + 1) * sizeof *slopes->lights);
+    memset(slopes->shapes, 0, (parts + 1) * sizeof *slopes->shapes);
+    memset(&slopes->camera, 0, sizeof slopes->camera);
     memset(&slopes->scene, 0, sizeof slopes->scene);
     for (size_t i = 0; i < d->slope_count && !status; i++)
         status = add_slope(plan, scene, d, &d->slopes[i], slopes, error);
@@ -338,7 +449,8 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
     snprintf(out->name, sizeof out->name, "%s", d->name);
     out->materials = calloc(materials + 1, sizeof *out->materials);
     out->lights = calloc(lights + 1, sizeof *out->lights);
-    if (!out->materials || !out->lights)
+    out->parts = calloc(parts + 1, sizeof *out->parts);
+    if (!out->materials || !out->lights || !out->parts)
         return glint_fail_nomem(error);
     fill(plan, scene, slopes, out);
     return GLINT_OK;
@@ -366,17 +478,20 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
 {
     glint_plan_derivatives *all = plan->derivatives;
     scene_slopes slopes = { .materials = malloc((plan->geometry->materials.count + 1) * sizeof *slopes.materials),
-                            .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights) };
-    glint_status status = slopes.materials && slopes.lights ? GLINT_OK : glint_fail_nomem(error);
+                            .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights),
+                            .shapes = malloc((plan->geometry->part_count + 1) * sizeof *slopes.shapes) };
+    glint_status status = slopes.materials && slopes.lights && slopes.shapes ? GLINT_OK : glint_fail_nomem(error);
     all->light_count = scene->lights.count;
     for (size_t i = 0; i < desc->derivative_count && !status; i++) {
         glint_plan_derivative *d = &all->of[all->count++];
         status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
         all->moves = all->moves || d->moves;
+        all->bends = all->bends || d->bends;
         all->everywhere = all->everywhere || d->everywhere;
     }
     free(slopes.materials);
     free(slopes.lights);
+    free(slopes.shapes);
     return status;
 }
 
@@ -395,6 +510,7 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
     for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
         free(derivatives->of[i].materials);
         free(derivatives->of[i].lights);
+        free(derivatives->of[i].parts);
     }
     free(derivatives);
 }
@@ -423,6 +539,19 @@ static const char *find_obstacle(const glint_plan *plan)
     return NULL;
 }
 
+/// What of it no moving eye's derivative goes through, or NULL.
+static const char *find_view_obstacle(const glint_plan *plan)
+{
+    const glint_geometry_table *table = &plan->geometry->table;
+    if (plan->camera.orthographic)
+        return "camera: an orthographic one has no derivative; a perspective one has";
+    if (plan->lens)
+        return "camera: one with a lens has no derivative; aperture = 0 has";
+    if (table->solids || table->corner_normals)
+        return "camera: it has derivatives where it sees spheres, planes and faceted triangles alone";
+    return NULL;
+}
+
 static glint_status check_light(const glint_plan *plan, const glint_plan_derivative *d, const glint_scene *scene,
                                 size_t index, glint_error *error)
 {
@@ -430,17 +559,17 @@ static glint_status check_light(const glint_plan *plan, const glint_plan_derivat
     char name[2 * GLINT_NAME_SIZE];
     double shown[3];
     const char *why = NULL;
-    if (desc->visible && glint_light_shows(desc, shown))
+    if (d->lights[index].varies && desc->visible && glint_light_shows(desc, shown))
         why = "visible: what a light itself looks like has no derivative; visible = false has";
     for (uint32_t k = 0; k < plan->light_count; k++) {
         const glint_plan_light *row = &plan->lights[k];
-        const bool moves = d->lights[index].moves;
+        const bool moves = d->lights[index].moves || d->bends;
         if (row->source != index)
             continue;
         if (row->cap && (moves || has_slope(d->lights[index].coefficients, 3)))
-            why = "position, attenuation: caps have no derivative by them; shadow = \"rays\" has";
+            why = "position, attenuation: with caps nothing that moves has a derivative; shadow = \"rays\" has";
         else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
-            why = "position: a sphere light by radiance has none that goes through its place; one by intensity has";
+            why = "position: of a sphere light by radiance nothing that moves has a derivative; one by intensity has";
     }
     if (!why)
         return GLINT_OK;
@@ -457,10 +586,12 @@ glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_sc
         return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
     for (size_t i = 0; all && i < all->count; i++) {
         const glint_plan_derivative *d = &all->of[i];
+        if (d->view.moves && (why = find_view_obstacle(plan)))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
         if (!varies(plan, all, d))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
         for (size_t k = 0; k < all->light_count && !status; k++)
-            status = d->lights[k].varies ? check_light(plan, d, scene, k, error) : GLINT_OK;
+            status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;
         if (status)
             return status;
     }
@@ -473,5 +604,7 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     key = glint_key_add_string(key, d->name);
     key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);
     key = glint_key_add(key, d->lights, plan->derivatives->light_count * sizeof *d->lights);
+    key = glint_key_add(key, d->parts, plan->geometry->part_count * sizeof *d->parts);
+    key = glint_key_add(key, &d->view, sizeof d->view);
     return glint_key_add(key, d->background, sizeof d->background);
 }

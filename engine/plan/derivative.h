@@ -26,18 +26,37 @@ typedef struct glint_derivative_light {
     glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
 } glint_derivative_light;
 
+/// A surface that moves; slopes.
+typedef struct glint_derivative_part {
+    uint32_t moves;
+    uint32_t unused; ///< 0: no padding
+    double place[3]; ///< of a sphere's centre or a plane's point
+    double radius; ///< of a sphere
+    double normal[3]; ///< of a plane's unit normal
+} glint_derivative_part;
+
+/// The eye of a perspective camera; slopes.
+typedef struct glint_derivative_view {
+    uint32_t moves;
+    uint32_t unused; ///< 0: no padding
+    double eye[3], forward[3], right[3], up[3]; ///< as in glint_plan_camera
+} glint_derivative_view;
+
 typedef struct glint_plan_derivative {
     char name[GLINT_DERIVATIVE_NAME_SIZE];
     glint_derivative_material *materials; ///< beside the plan's
     glint_derivative_light *lights; ///< in the scene's order
+    glint_derivative_part *parts; ///< beside the geometry's
+    glint_derivative_view view;
     double background[3]; ///< slopes
-    bool moves; ///< some light does
+    bool moves; ///< some shadow does
+    bool bends; ///< some surface moves, or the eye
     bool everywhere; ///< something has a slope that no light brings
 } glint_plan_derivative;
 
 typedef struct glint_plan_derivatives {
     size_t count, light_count;
-    bool moves, everywhere;
+    bool moves, bends, everywhere;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
 } glint_plan_derivatives;
 

@@ -16,6 +16,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
     _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
     _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
+    _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
     float plane[3][GLINT_TILE_SAMPLES];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
     uint32_t first[GLINT_TILE_SAMPLES];
@@ -65,7 +66,7 @@ static glint_derivative_points points_of(const glint_tile *tile, const glint_til
     const glint_derivative_work *work = tile->derivative;
     const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
     const size_t at = (size_t)g * GLINT_GROUP;
-    glint_derivative_points out;
+    glint_derivative_points out = { .slope = { { NULL } } };
     for (int c = 0; c < 3; c++) {
         out.point[c] = (is_float ? work->point[c] : tile->surface.point[c]) + at;
         out.normal[c] = (is_float ? work->normal[c] : tile->surface.normal[c]) + at;
@@ -136,6 +137,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
     const glint_derivative_points points = points_of(tile, frame, g);
     const size_t at = (size_t)g * GLINT_GROUP;
+    glint_derivative_points bent_points = points;
+    for (int i = 0; i < 9; i++)
+        bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
     if (sample && sample->emission == GLINT_EMIT_CONE)
         take_cone(tile, frame, light, &points, &source);
     for (int i = 0; i < GLINT_GROUP && light->cap && light->shadows; i++) {
@@ -149,8 +153,11 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
             double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
-            if (l->varies || m->varies)
-                glint_derive_light(l, m, &points, &source, lanes, sum);
+            const unsigned bent = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
+            if (bent)
+                glint_derive_light(l, m, &bent_points, &source, bent, sum);
+            if (lanes & ~bent && (l->varies || m->varies))
+                glint_derive_light(l, m, &points, &source, lanes & ~bent, sum);
         }
     }
 }
@@ -160,7 +167,7 @@ static bool moves(const glint_plan_derivatives *all, uint32_t source)
 {
     bool any = false;
     for (size_t k = 0; all->moves && k < all->count; k++)
-        any = any || all->of[k].lights[source].moves;
+        any = any || all->of[k].lights[source].moves || all->of[k].bends;
     return any;
 }
 
@@ -250,6 +257,10 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);
+        for (unsigned rest = frame->plan->derivatives->bends ? tile->at.hits[g] : 0; rest; rest &= rest - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(rest);
+            work->shadows[i] = (NO_SHADOWS ^ (frame->geometry.prims[tile->at.prim[i]].id + 1)) * MIXER;
+        }
     }
 }
 

@@ -86,19 +86,35 @@ INLINE lanes cone(const glint_derivative_light *light, const lanes way[3])
     return mul(step, power(c, of(light->exponent)));
 }
 
-INLINE shine find_shine(const glint_derivative_light *light, const glint_derivative_points *points,
+/// Number `what` of points->slope: 0 where nothing bends.
+INLINE void load_dual(bool bends, const glint_derivative_points *points, int what, int i, lanes out[3])
+{
+    const double *const *from = what == 0 ? points->point : what == 1 ? points->normal : points->eye;
+    for (int c = 0; c < 3; c++)
+        out[c] = make(d_load(from[c] + i), bends ? d_load(points->slope[what][c] + i) : d_set(0));
+}
+
+/// The product with a vector that has slopes if `bends`, a constant.
+INLINE lanes dot_bent(bool bends, const lanes a[3], const lanes b[3])
+{
+    const vd fixed[3] = { b[0].v, b[1].v, b[2].v };
+    return bends ? dot(a, b) : dot_fixed(a, fixed);
+}
+
+INLINE shine find_shine(bool bends, const glint_derivative_light *light, const glint_derivative_points *points,
                         const glint_derivative_source *source, int i)
 {
     shine s;
-    vd point[3], normal[3], place[3];
+    lanes point[3], normal[3];
+    vd place[3];
     lanes distance = number(1);
-    load(points->point, i, point);
-    load(points->normal, i, normal);
+    load_dual(bends, points, 0, i, point);
+    load_dual(bends, points, 1, i, normal);
     load(source->position, i, place);
     s.weight = make(source->weight ? d_load(source->weight + i) : d_set(1), d_set(0));
     for (int c = 0; c < 3; c++) {
-        const vd from = light->directional ? d_set(0) : point[c];
-        s.way[c] = make(place[c] - from, d_set(light->position[c].slope));
+        const lanes to = make(place[c], d_set(light->position[c].slope));
+        s.way[c] = light->directional ? to : bends ? sub(to, point[c]) : make(to.v - point[c].v, to.d);
     }
     if (!light->directional) {
         const lanes length2 = dot(s.way, s.way);
@@ -121,22 +137,23 @@ INLINE shine find_shine(const glint_derivative_light *light, const glint_derivat
     }
     if (light->is_spot)
         s.weight = mul(s.weight, cone(light, s.way));
-    s.cosine = dot_fixed(s.way, normal);
+    s.cosine = dot_bent(bends, s.way, normal);
     return s;
 }
 
 /// S of Phong and Blinn-Phong.
-INLINE lanes find_power(const glint_derivative_material *material, const shine *s, const vd normal[3], const vd eye[3])
+INLINE lanes find_power(bool bends, const glint_derivative_material *material, const shine *s, const lanes normal[3],
+                        const lanes eye[3])
 {
     lanes x;
     if (material->highlight == GLINT_HIGHLIGHT_PHONG) {
-        const vd facing = (normal[0] * eye[0] + normal[1] * eye[1]) + normal[2] * eye[2];
-        x = sub(times(s->cosine, d_set(2) * facing), dot_fixed(s->way, eye));
+        const lanes facing = dot_bent(bends, normal, eye), twice = times(facing, d_set(2));
+        x = sub(bends ? mul(s->cosine, twice) : times(s->cosine, twice.v), dot_bent(bends, s->way, eye));
     } else {
         lanes h[3];
         for (int c = 0; c < 3; c++)
-            h[c] = make(s->way[c].v + eye[c], s->way[c].d);
-        x = divide(dot_fixed(h, normal), root(dot(h, h)));
+            h[c] = add(s->way[c], eye[c]);
+        x = divide(dot_bent(bends, h, normal), root(dot(h, h)));
     }
     const lanes strength = power(x, of(material->shininess));
     return material->lobe == GLINT_LOBE_POWER_COSINE ? mul(strength, s->cosine) : strength;
@@ -172,24 +189,24 @@ INLINE lanes find_facets(const glint_derivative_material *material, lanes sine2,
 }
 
 /// S of microfacets, and that times Schlick's (1 - v.h)^5.
-INLINE void find_lobe(const glint_derivative_material *material, const shine *s, const vd normal[3], const vd eye[3],
-                      lanes *specular, lanes *grazing)
+INLINE void find_lobe(bool bends, const glint_derivative_material *material, const shine *s, const lanes normal[3],
+                      const lanes eye[3], lanes *specular, lanes *grazing)
 {
     const lanes zero = number(0), one = number(1);
     lanes h[3], across[3];
     for (int c = 0; c < 3; c++)
-        h[c] = make(s->way[c].v + eye[c], s->way[c].d);
+        h[c] = add(s->way[c], eye[c]);
     for (int c = 0; c < 3; c++) {
         const int a = (c + 1) % 3, b = (c + 2) % 3;
-        across[c] = sub(times(h[b], normal[a]), times(h[a], normal[b]));
+        across[c] = sub(mul(h[b], normal[a]), mul(h[a], normal[b]));
     }
     const lanes h2 = dot(h, h);
     lanes sine2 = divide(dot(across, across), h2);
     sine2 = where(d_lt(sine2.v, one.v), sine2, one);
-    const vd facing = (normal[0] * eye[0] + normal[1] * eye[1]) + normal[2] * eye[2];
-    const lanes l = where(d_lt(s->cosine.v, one.v), s->cosine, one), v = make(d_min(facing, one.v), zero.v);
+    const lanes facing = dot_bent(bends, normal, eye);
+    const lanes l = where(d_lt(s->cosine.v, one.v), s->cosine, one), v = where(d_lt(facing.v, one.v), facing, one);
     *specular = find_facets(material, sine2, l, v);
-    lanes z = times(add(one, dot_fixed(s->way, eye)), d_set(0.5));
+    lanes z = times(add(one, dot_bent(bends, s->way, eye)), d_set(0.5));
     z = where(d_lt(z.v, one.v), z, one);
     const lanes m = sub(one, root(where(d_lt(zero.v, z.v), z, zero))), mm = mul(m, m);
     *grazing = mul(*specular, mul(mul(mm, mm), m));
@@ -209,9 +226,10 @@ void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3])
     }
 }
 
-void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
-                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
-                        double *const sum[3])
+/// `bends` is a constant.
+INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const glint_derivative_material *material,
+                         const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
+                         double *const sum[3])
 {
     const vd zero = d_set(0);
     lanes kd[3], ks[3], kg[3];
@@ -223,16 +241,16 @@ void glint_derive_light(const glint_derivative_light *light, const glint_derivat
     for (int i = 0; i < GLINT_GROUP; i += VD) {
         const dm reached = dm_from_bits(which >> i & ((1u << VD) - 1));
         lanes specular = number(0), grazing = number(0);
-        vd normal[3], eye[3];
+        lanes normal[3], eye[3];
         if (!(which >> i & ((1u << VD) - 1)))
             continue;
-        const shine s = find_shine(light, points, source, i);
-        load(points->normal, i, normal);
-        load(points->eye, i, eye);
+        const shine s = find_shine(bends, light, points, source, i);
+        load_dual(bends, points, 1, i, normal);
+        load_dual(bends, points, 2, i, eye);
         if (material->highlight == GLINT_HIGHLIGHT_FACETS)
-            find_lobe(material, &s, normal, eye, &specular, &grazing);
+            find_lobe(bends, material, &s, normal, eye, &specular, &grazing);
         else if (material->highlight != GLINT_HIGHLIGHT_NONE)
-            specular = find_power(material, &s, normal, eye);
+            specular = find_power(bends, material, &s, normal, eye);
         for (int c = 0; c < 3; c++) {
             lanes light_left = mul(kd[c], s.cosine);
             light_left = add(light_left, mul(ks[c], specular));
@@ -240,4 +258,14 @@ void glint_derive_light(const glint_derivative_light *light, const glint_derivat
             d_store(sum[c] + i, d_load(sum[c] + i) + d_select(reached, light_left.d, zero));
         }
     }
+}
+
+void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
+                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
+                        double *const sum[3])
+{
+    if (points->slope[0][0])
+        derive_lanes(true, light, material, points, source, which, sum);
+    else
+        derive_lanes(false, light, material, points, source, which, sum);
 }

@@ -9,6 +9,7 @@ typedef struct glint_derivative_points {
     const double *point[3];
     const double *normal[3]; ///< unit, turned to the eye
     const double *eye[3]; ///< unit, towards it
+    const double *slope[3][3]; ///< of the three; slope[0][0] NULL: all are 0
 } glint_derivative_points;
 
 /// A light as a group sees it, or one sample of it.
@@ -20,6 +21,12 @@ typedef struct glint_derivative_source {
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
 
+/// tile/derivative_bend.c: the slopes of those points of a group, among `lanes`, that derivative number `index` moves; returns
+/// which they are.
+struct glint_tile;
+struct glint_tile_frame;
+unsigned glint_bend_points(const struct glint_tile *tile, const struct glint_tile_frame *frame, size_t index, uint32_t g,
+                           unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
 /// Unit vectors against the directions of rays.
 void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3]);
 /// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`.

@@ -18,6 +18,7 @@ typedef struct world {
     quad color[3], intensity[3], light_ambient[3], light_diffuse[3], light_specular[3], attenuation[3], position[3],
         direction[3], inner[3], outer[3], exponent[3];
     quad scene_ambient[3], background[3];
+    quad ball[3], radius[3], point[3], normal[3], eye[3], at[3], up[3], fov[3];
     glint_model model;
     bool beckmann, normalized, matched, own_terms; ///< own_terms: the light has a diffuse and a specular of its own
     glint_light_kind kind;
@@ -51,9 +52,15 @@ static const number numbers[] = {
     NUMBER("light", "exponent", exponent, 1),
     NUMBER("scene", "ambient", scene_ambient, 3),
     NUMBER("scene", "background", background, 3),
+    NUMBER("sphere", "center", ball, 3),
+    NUMBER("sphere", "radius", radius, 1),
+    NUMBER("plane", "point", point, 3),
+    NUMBER("plane", "normal", normal, 3),
+    NUMBER("camera", "eye", eye, 3),
+    NUMBER("camera", "at", at, 3),
+    NUMBER("camera", "up", up, 3),
+    NUMBER("camera", "fov_y_rad", fov, 1),
 };
-
-static const double eye[3] = { 0.5, 2, 8 }, ball[3] = { 0.2, 0.1, 0 }, radius = 1.2, floor_y = -1;
 
 // ---- The formulas, from their definitions -------------------------------------------------------------------------
 
@@ -66,18 +73,23 @@ static void unit(quad v[3])
         v[c] /= length;
 }
 
-/// The way of the ray through a pixel's centre: upright camera, 40 degrees, that looks at the origin.
-static void ray_of(int x, int y, quad d[3])
+static void cross(const quad a[3], const quad b[3], quad out[3])
 {
-    quad forward[3], right[3], up[3], half = tanf128(20 * PI_Q / 180);
     for (int c = 0; c < 3; c++)
-        forward[c] = -(quad)eye[c];
+        out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
+}
+
+/// The way of the ray through a pixel's centre.
+static void ray_of(const world *w, int x, int y, quad d[3])
+{
+    quad forward[3], right[3], up[3];
+    const quad half = tanf128(w->fov[0] / 2);
+    for (int c = 0; c < 3; c++)
+        forward[c] = w->at[c] - w->eye[c];
     unit(forward);
-    right[0] = -forward[2], right[1] = 0, right[2] = forward[0];
+    cross(forward, w->up, right);
     unit(right);
-    up[0] = right[1] * forward[2] - right[2] * forward[1];
-    up[1] = right[2] * forward[0] - right[0] * forward[2];
-    up[2] = right[0] * forward[1] - right[1] * forward[0];
+    cross(right, forward, up);
     const quad across = ((x + (quad)0.5) * 2 / WIDTH - 1) * WIDTH / HEIGHT, down = 1 - (y + (quad)0.5) * 2 / HEIGHT;
     for (int c = 0; c < 3; c++)
         d[c] = forward[c] + half * (across * right[c] + down * up[c]);
@@ -85,12 +97,12 @@ static void ray_of(int x, int y, quad d[3])
 }
 
 /// The nearest way along a unit direction to the sphere; negative: none.
-static quad meet_ball(const quad o[3], const quad d[3])
+static quad meet_ball(const world *w, const quad o[3], const quad d[3])
 {
     quad f[3];
     for (int c = 0; c < 3; c++)
-        f[c] = o[c] - (quad)ball[c];
-    const quad b = dot(f, d), disc = b * b - (dot(f, f) - (quad)radius * radius);
+        f[c] = o[c] - w->ball[c];
+    const quad b = dot(f, d), disc = b * b - (dot(f, f) - w->radius[0] * w->radius[0]);
     return disc < 0 ? -1 : -b - sqrtf128(disc);
 }
 
@@ -150,7 +162,7 @@ static void add_light(const world *w, const quad p[3], const quad n[3], const qu
         l[c] = w->kind == GLINT_LIGHT_DIRECTIONAL ? -w->direction[c] : w->position[c] - p[c];
     const quad distance = sqrtf128(dot(l, l));
     unit(l);
-    if (dot(n, l) <= 0 || (on_floor && meet_ball(p, l) > 0))
+    if (dot(n, l) <= 0 || (on_floor && meet_ball(w, p, l) > 0))
         return;
     if (w->kind != GLINT_LIGHT_DIRECTIONAL)
         strength /= w->attenuation[0] + w->attenuation[1] * distance + w->attenuation[2] * distance * distance;
@@ -164,17 +176,20 @@ static void add_light(const world *w, const quad p[3], const quad n[3], const qu
 
 static void color_of(const world *w, int x, int y, quad out[3])
 {
-    quad d[3], o[3] = { eye[0], eye[1], eye[2] }, p[3], n[3] = { 0, 1, 0 }, v[3];
-    ray_of(x, y, d);
-    const quad on_ball = meet_ball(o, d), on_floor = ((quad)floor_y - o[1]) / d[1];
+    quad d[3], p[3], n[3] = { w->normal[0], w->normal[1], w->normal[2] }, v[3], over[3];
+    ray_of(w, x, y, d);
+    unit(n);
+    for (int c = 0; c < 3; c++)
+        over[c] = w->point[c] - w->eye[c];
+    const quad on_ball = meet_ball(w, w->eye, d), on_floor = dot(n, over) / dot(n, d);
     const bool is_ball = on_ball > 0 && !(on_floor > 0 && on_floor < on_ball);
     memcpy(out, w->background, 3 * sizeof *out);
     if (!is_ball && on_floor <= 0)
         return;
     for (int c = 0; c < 3; c++) {
-        p[c] = o[c] + (is_ball ? on_ball : on_floor) * d[c];
+        p[c] = w->eye[c] + (is_ball ? on_ball : on_floor) * d[c];
         v[c] = -d[c];
-        n[c] = is_ball ? (p[c] - (quad)ball[c]) / radius : n[c];
+        n[c] = is_ball ? (p[c] - w->ball[c]) / w->radius[0] : n[c];
         out[c] = w->ambient[c] * (w->scene_ambient[c] + w->light_ambient[c] * w->intensity[0]);
     }
     add_light(w, p, n, v, !is_ball, out);
@@ -229,23 +244,30 @@ static glint_light *make_light(const world *w)
     return light;
 }
 
-static glint_scene *make_scene(const world *w, glint_material *material, glint_light *light)
+static glint_scene *make_scene(const world *w, glint_material *material, glint_light *light, glint_shape *shapes[2])
 {
     glint_scene *scene = scene_new();
     glint_camera_desc camera = glint_camera_desc_default();
     glint_error error;
     double background[3];
-    const hard_sphere sphere = { { ball[0], ball[1], ball[2] }, radius };
-    const hard_plane floor = { { 0, floor_y, 0 }, { 0, 1, 0 } };
-    memcpy(camera.eye, eye, sizeof camera.eye);
+    hard_sphere sphere;
+    hard_plane floor;
+    put(sphere.c, w->ball, 3);
+    put(&sphere.r, w->radius, 1);
+    put(floor.p, w->point, 3);
+    put(floor.n, w->normal, 3);
+    put(camera.eye, w->eye, 3);
+    put(camera.at, w->at, 3);
+    put(camera.up, w->up, 3);
+    put(&camera.fov_y_rad, w->fov, 1);
     put(background, w->background, 3);
     scene_light_up(scene, 0, background);
     scene_camera(scene, &camera);
     glint_scene_desc d = *glint_scene_get(scene);
     put(d.ambient, w->scene_ambient, 3);
     must(glint_scene_set(scene, &d, &error), &error);
-    scene_sphere(scene, &sphere, glint_material_retain(material));
-    scene_plane(scene, &floor, glint_material_retain(material));
+    shapes[0] = scene_sphere(scene, &sphere, glint_material_retain(material));
+    shapes[1] = scene_plane(scene, &floor, glint_material_retain(material));
     must(glint_scene_add_light(scene, light, &error), &error);
     return scene;
 }
@@ -268,6 +290,8 @@ static bool is_read(const world *w, const number *n)
         return !directional;
     if (!strcmp(n->field, "inner_rad") || !strcmp(n->field, "outer_rad") || !strcmp(n->field, "exponent"))
         return spot;
+    if (!strcmp(n->field, "point")) // along rays no angle changes under parallel light
+        return !directional;
     return strcmp(n->field, "direction") != 0 || directional || spot;
 }
 
@@ -313,7 +337,7 @@ static void true_slopes(const world *w, const number *n, const double slope[3], 
 
 /// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
 static void compare(const world *w, const number *n, const glint_scene *scene, glint_material *material,
-                    glint_light *light)
+                    glint_light *light, glint_shape *const shapes[2])
 {
     static double want[WIDTH * HEIGHT][3];
     double slope[3] = { 0 }, most = 0, worst = 0;
@@ -323,6 +347,8 @@ static void compare(const world *w, const number *n, const glint_scene *scene, g
     glint_slope s = { .field = n->field, .slope = { slope[0], slope[1], slope[2] } };
     s.material = strcmp(n->object, "material") == 0 ? material : NULL;
     s.light = strcmp(n->object, "light") == 0 ? light : NULL;
+    s.shape = strcmp(n->object, "sphere") == 0 ? shapes[0] : strcmp(n->object, "plane") == 0 ? shapes[1] : NULL;
+    s.camera = strcmp(n->object, "camera") == 0 ? glint_scene_get(scene)->camera : NULL;
     const glint_derivative derivative = { "number", &s, 1 };
     glint_image *image = render(scene, &derivative);
     true_slopes(w, n, slope, want);
@@ -374,6 +400,21 @@ static world random_world(int turn)
     fill(w.exponent, 0.5, 4);
     fill(w.scene_ambient, 0.1, 0.4);
     fill(w.background, 0.1, 0.6);
+    fill(w.ball, -0.3, 0.3);
+    fill(w.radius, 1, 1.3);
+    fill(w.point, -1.5, -1.3);
+    fill(w.normal, -0.1, 0.1);
+    fill(w.eye, 0.5, 1.5);
+    fill(w.at, -0.2, 0.2);
+    fill(w.up, -0.1, 0.1);
+    fill(w.fov, 0.6, 0.8);
+    w.normal[1] += 1;
+    w.up[1] += 1;
+    w.eye[2] += 7;
+    for (int c = 0; c < 3; c++) { // what the engine gets
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+            ((quad *)((char *)&w + numbers[i].offset))[c] = (double)((quad *)((char *)&w + numbers[i].offset))[c];
+    }
     return w;
 }
 
@@ -387,10 +428,11 @@ int main(int argc, char **argv)
         const world w = random_world(turn);
         glint_material *material = make_material(&w);
         glint_light *light = make_light(&w);
-        glint_scene *scene = make_scene(&w, material, light);
+        glint_shape *shapes[2];
+        glint_scene *scene = make_scene(&w, material, light, shapes);
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
             if (is_read(&w, &numbers[i]))
-                compare(&w, &numbers[i], scene, material, light);
+                compare(&w, &numbers[i], scene, material, light, shapes);
         glint_scene_release(scene);
         glint_light_release(light);
         glint_material_release(material);

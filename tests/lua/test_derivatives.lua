@@ -1,4 +1,4 @@
--- Derivatives by variables: properties that need no other formula, differences, duals in Lua, errors, and the same bits.
+-- Derivatives by variables: properties that need no other formula, differences, dual numbers, errors, and the same bits.
 local tally = dofile "tests/lua/tally.lua"
 local check, near = tally.check, tally.near
 local glint = require "glint"
@@ -134,6 +134,42 @@ function tests.area_lights_against_differences()
   end, 10, 1e-1)
 end
 
+-- The eye over faces, within a ball, and a ball that moves under a lens: nineteen pixels of twenty, which are no edges.
+function tests.what_moves_against_differences()
+  local h = 1e-3
+  local function compare(name, make, at, more)
+    local image = render(make(glint.variable("p", at)), "d:p", more)
+    local high, low = render(make(at + h), "beauty", more), render(make(at - h), "beauty", more)
+    local list, most, distances = {}, 0, {}
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    each(image, "d:p", image, "d:p", function(d)
+      distances[#distances + 1] = math.abs(d - list[#distances + 1])
+      most = math.max(most, math.abs(d))
+    end)
+    table.sort(distances)
+    local worst = distances[#distances * 19 // 20]
+    check(most > 0 and worst < 2e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+  end
+  local lamp = glint.point_light { position = { 2, 4, 3 }, attenuation = { 1, 0, 0.02 } }
+  compare("faces", function(x)
+    local scene = scene_of(lamp)
+    scene:add(glint.mesh { vertices = { { -3, -1, 0 }, { 3, -1, 1 }, { 0, 3, 0.5 } }, faces = { { 1, 2, 3 } },
+      material = glint.material { diffuse = 0.3, specular = 0.5, shininess = 10 } })
+    scene.camera.eye = { x, 2, 8 }
+    return scene
+  end, 0.3)
+  compare("within a ball", function(x)
+    return glint.scene { camera = glint.camera { eye = { 0, 0, 0.5 }, at = { 0, 0, 0 }, fov = 80 },
+      glint.point_light { position = { 0.2, 0.4, 0 } }, glint.sphere { center = { x, 0, 0 }, radius = 2 + x,
+        material = glint.material { specular = 0.5, shininess = 10 } } }
+  end, 0.1)
+  compare("a ball and a floor under a lens", function(x)
+    local camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 }, aperture = 0.05 }
+    return glint.scene { camera = camera, lamp, glint.sphere { center = { 0, x, 0 }, radius = 1.5 },
+      glint.plane { point = { 0, x - 2, 0 }, normal = { x, 5, 0 } } }
+  end, 0.2, { samples = 4 })
+end
+
 function tests.duals_are_numbers()
   local x = glint.variable("x", 3)
   check(x + 1 == x + 1 and x < 4 and x <= 3.5 and 2 < x and -x < 0, "comparisons")
@@ -161,8 +197,23 @@ function tests.errors_are_told()
   raises("did you mean 'd:strength'", render, scene_of(lamp), "d:strenght")
   raises("'d:': a name of 1 .. 31 bytes", render, scene_of(lamp), "d:")
   raises("'d:x' was not kept", function() render(scene_of(lamp), "beauty"):pixel(0, 0, "d:x") end)
-  raises("sphere.radius: no derivative goes through here", glint.sphere, { center = { 0, 0, 0 }, radius = x })
-  raises("camera.eye: no derivative goes through here", glint.camera, { eye = { x, 0, 0 } })
+  raises("box.min: no derivative goes through here", glint.box, { min = { x, 0, 0 }, max = { 9, 9, 9 } })
+  raises("camera.height: no derivative goes through here", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, height = x })
+  local moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
+  local ball = glint.sphere { center = { x, 0, 0 }, radius = 0.2 }
+  moved:add(glint.group { ball, transform = glint.translate { 0, 1, 0 } })
+  raises("derivative 'x': center: a shape under a transform", render, moved, "d:x")
+  moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
+  moved:add(glint.difference { glint.sphere { center = { 0, 0, 0 }, radius = 2 },
+    glint.sphere { center = { 0, x, 2 }, radius = 1 } })
+  raises("derivative 'x': center: a shape under a transform or in a combined solid", render, moved, "d:x")
+  moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
+  moved:add(glint.cylinder { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 0.2 })
+  moved.camera.eye = { x, 2, 8 }
+  raises("derivative 'x': camera: it has derivatives where", render, moved, "d:x")
+  moved = scene_of(glint.sphere_light { position = { 2, 4, 3 }, radius = 1, radiance = 1 })
+  moved.camera.fov = 10 * x
+  raises("sphere_light #1: position", render, moved, "d:x")
   raises("material.ior: no derivative goes through here", glint.material, { ior = x })
   raises("no derivative goes through here", glint.translate, { x, 0, 0 })
   raises("variable.name: string", glint.variable, 3, 3)
