@@ -281,8 +281,12 @@ end }
   run("alone", "--passes d:s")
   same("alone", "d_s")
   for _, isa in ipairs { "ref", "generic", "sse2" } do
-    run(isa, "--passes d:x", "GLINT_ISA=" .. isa)
-    same(isa, "d_x")
+    local probe = ("GLINT_ISA=%s %s/glint %s -f 1 -o none 2>&1"):format(isa, BUILD, script)
+    local told = io.popen(probe):read "a"
+    if not told:find("this machine lacks '" .. isa .. "'", 1, true) then -- nor does a build of one set have others
+      run(isa, "--passes d:x", "GLINT_ISA=" .. isa)
+      same(isa, "d_x")
+    end
   end
   local pipe = io.popen(("%s/glint %s -f 1 --passes d:x,d:s -o %s/e_%%d.png --json"):format(BUILD, script, folder))
   local event = pipe:read "a"
