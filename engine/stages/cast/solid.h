@@ -363,12 +363,13 @@ static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, cons
 
 /// The same of a torus. inside: lanes whose light is; own: whose segment begins on it, of these `back`: and goes in.
 static rm R(torus_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
-                          double scale, bool directional, unsigned inside, unsigned own, unsigned back)
+                          double scale, bool directional, unsigned inside, unsigned own, unsigned back,
+                          unsigned wanted)
 {
     vr f[3], e[3];
     R(unit_offset)(solid, prim, point, f);
     R(to_unit)(solid, d, e);
     const vr end = r_set(directional ? HUGE_VAL : 1 / scale);
     const R(torus_start) start = { rm_from_bits(own), rm_from_bits(own & back) };
-    return R(torus_parts)(solid, f, e, end, rm_from_bits(inside), start);
+    return R(torus_parts)(solid, f, e, end, rm_from_bits(inside), start, wanted);
 }

@@ -40,7 +40,7 @@ INNER vr R(last_turn)(vr bend, vr lean, unsigned wanted)
 {
     const vr three = r_set(3), zero = r_set(0), r = r_sqrt(r_max(-bend, zero));
     const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
-    vr x = r + r_min(lean / by, (r_set(2) + lean) / three);
+    vr x = r + r_min(lean / by, (r_set(2) + lean) * r_set(0.34));
     for (int n = 0; n < GLINT_TURN_STEPS && wanted; n++) {
         const vr value = (x * x + bend) * x - lean, slope = three * (x * x) + bend;
         const vr step = value * slope / (slope * slope - value * (three * x));
@@ -100,6 +100,22 @@ static inline void R(begin_on_torus)(R(torus_line) * l, const glint_solid *solid
     l->gap[2] = r_select(rm_and(next[2], r_lt(zero, l->gap[2])), zero, l->gap[2]);
 }
 
+/// Lines that may come near the tube: of others, what is as high as it is within the ring's hole, or nowhere within reach. How far
+/// from its axis a line is grows towards both ends. Written so that NaN keeps the line.
+INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
+{
+    const vr one = r_set(1), wide = l->tube * r_set(1.01) + (within + r_set(1024 * GLINT_ON_FACE)), hole = one - wide;
+    const vr per_level = one / l->u[2], a = (-wide - l->p[2]) * per_level, b = (wide - l->p[2]) * per_level;
+    const vr end[2] = { r_max(r_min(a, b), -l->reach), r_min(r_max(a, b), l->reach) };
+    rm out = rm_from_bits((1u << VR) - 1);
+    for (int i = 0; i < 2; i++) {
+        const vr x = l->p[0] + end[i] * l->u[0], y = l->p[1] + end[i] * l->u[1];
+        out = rm_and(out, r_lt(x * x + y * y, hole * hole));
+    }
+    out = rm_or(rm_and(out, r_lt(r_set(0), hole)), r_lt(end[1], end[0]));
+    return rm_andnot(rm_from_bits((1u << VR) - 1), out);
+}
+
 /// Of rays from f on along e, where the torus is the unit one.
 static R(torus_line) R(along_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start)
 {
@@ -107,9 +123,9 @@ static R(torus_line) R(along_torus)(const glint_solid *solid, const vr f[3], con
     R(torus_line) l;
     l.tube = tube;
     l.tube2 = tube * tube;
-    const vr first = -DOT(f, e) / ee;
+    const vr shrink = one / ee, first = -DOT(f, e) * shrink;
     const vr q[3] = { f[0] + e[0] * first, f[1] + e[1] * first, f[2] + e[2] * first };
-    const vr again = -DOT(q, e) / ee, around = r_set(1.0001) * (one + tube);
+    const vr again = -DOT(q, e) * shrink, around = r_set(1.0001) * (one + tube);
     for (int c = 0; c < 3; c++)
         l.p[c] = q[c] + e[c] * again;
     const vr away2 = DOT(l.p, l.p), left = around * around - away2;
@@ -118,16 +134,30 @@ static R(torus_line) R(along_torus)(const glint_solid *solid, const vr f[3], con
         return l;
     l.from = first + again;
     l.length = r_sqrt(ee);
-    l.per = one / l.length;
+    l.per = l.length * shrink;
     l.begin = -l.from * l.length;
     for (int c = 0; c < 3; c++)
         l.u[c] = e[c] * l.per;
     l.reach = r_sqrt(r_max(left, zero));
+    l.near = rm_and(l.near, rm_or(start.leaves, R(passes_tube)(&l, r_set(2 * GLINT_ON_FACE) * r_set(solid->places))));
+    if (!rm_bits(l.near))
+        return l;
     l.bend = ((away2 + one) - l.tube2) - two * (l.u[0] * l.u[0] + l.u[1] * l.u[1]);
     l.lean = -two * (l.p[2] * l.u[2]);
     R(find_turns)(&l);
     R(begin_on_torus)(&l, solid, f, e, start);
     return l;
+}
+
+/// Rays that leave the torus, do not go in, and surely never meet it again.
+static inline rm R(leaves_torus)(const vr f[3], const vr e[3], R(torus_start) start)
+{
+    const rm outward = rm_andnot(start.leaves, start.inward);
+    if (!rm_bits(outward))
+        return outward;
+    const vr one = r_set(1), round = r_sqrt(f[0] * f[0] + f[1] * f[1]);
+    const vr rise = ((round - one) / round) * (f[0] * e[0] + f[1] * e[1]) + f[2] * e[2];
+    return rm_and(outward, rm_and(r_le(one, round), r_le(r_set(0), rise)));
 }
 
 /// Lines that have a root in a stretch.
@@ -197,10 +227,13 @@ static vr R(torus_root)(const R(torus_line) * l, const R(torus_stretch) * at, un
             rm_or(rm_and(inside, at->rising), rm_andnot(rm_from_bits((1u << VR) - 1), rm_or(inside, at->rising)));
         low = r_select(ahead, s, low);
         high = r_select(ahead, high, s);
-        const vr slope = four * ((s * s + l->bend) * s - l->lean);
-        vr next = s - gap * beyond / slope;
+        const vr value = gap * beyond, slope = four * ((s * s + l->bend) * s - l->lean);
+        const vr turn = r_set(6) * (s * s), size = turn + r_set(2) * R(abs)(l->bend);
+        const vr bound = size + (r_set(2) + R(abs)(slope));
+        vr next = s - value * slope / (slope * slope - value * (turn + r_set(2) * l->bend));
         next = r_select(rm_and(r_le(low, next), r_le(next, high)), next, half * low + half * high);
-        const rm near = r_le(R(abs)(next - s), r_set(GLINT_ON_FACE));
+        const vr moved = R(abs)(next - s), on = r_set(GLINT_ON_FACE);
+        const rm near = rm_or(r_le(moved * moved * moved * (bound * bound), on * (slope * slope)), r_le(moved, on));
         s = r_select(rm_from_bits(wanted), next, s);
         wanted &= ~rm_bits(near);
     }
@@ -211,15 +244,18 @@ static vr R(torus_root)(const R(torus_line) * l, const R(torus_stretch) * at, un
 /// Where rays meet the torus first. Those that leave it and go in meet it surely.
 static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
 {
+    const rm gone = R(leaves_torus)(f, e, start);
+    *t = r_set(GLINT_LEAST_WAY);
+    if (rm_bits(gone) == (1u << VR) - 1)
+        return rm_from_bits(0);
     const R(torus_line) l = R(along_torus)(solid, f, e, start);
     const rm surely = rm_and(start.leaves, start.inward);
     rm hit = rm_from_bits(0);
-    *t = r_set(GLINT_LEAST_WAY);
     if (!rm_bits(l.near))
         return surely;
     R(torus_stretch) at = { 0 };
     for (int stretch = 0; stretch < 4; stretch++) {
-        const rm here = rm_andnot(rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch)), hit);
+        const rm here = rm_andnot(rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch)), rm_or(hit, gone));
         if (!rm_bits(here))
             continue;
         const R(torus_stretch) found = R(stretch_at)(&l, stretch);
@@ -272,11 +308,14 @@ static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
     g[2] = up;
 }
 
-/// Which segments from f on cross the surface before they end at t = end, inside or not.
+/// Which segments from f on cross the surface before they end at t = end, inside or not; of others than `wanted` anything.
 static rm R(torus_parts)(const glint_solid *solid, const vr f[3], const vr e[3], vr end, rm end_inside,
-                         R(torus_start) start)
+                         R(torus_start) start, unsigned wanted)
 {
     const vr zero = r_set(0);
+    const rm gone = R(leaves_torus)(f, e, start);
+    if (!(wanted & ~rm_bits(gone)))
+        return end_inside;
     const R(torus_line) l = R(along_torus)(solid, f, e, start);
     vr beyond;
     const rm within = r_lt(R(torus_gap)(f, l.tube2, &beyond), zero);
@@ -294,5 +333,5 @@ static rm R(torus_parts)(const glint_solid *solid, const vr f[3], const vr e[3],
         const rm differs = rm_or(rm_andnot(inside, inner), rm_andnot(inner, inside));
         parted = rm_or(parted, rm_andnot(rm_and(passes, differs), l.past[i]));
     }
-    return parted;
+    return rm_or(rm_andnot(parted, gone), rm_and(gone, end_inside));
 }

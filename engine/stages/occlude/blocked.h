@@ -230,7 +230,7 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
         R(directions_to)(args, position, at, i, d);
         const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
         const rm hit = torus ? R(torus_blocks)(solid, prim, p, d, args->scale, args->directional, ~outside >> i,
-                                               own >> i, back >> i)
+                                               own >> i, back >> i, lanes)
                              : R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine);
         blocked |= (rm_bits(hit) & lanes) << i;
     }

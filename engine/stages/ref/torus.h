@@ -30,7 +30,7 @@ typedef struct NAME(torus_line) {
 static REAL NAME(last_turn)(REAL bend, REAL lean)
 {
     REAL r = NAME(square_root)(NAME(max)(-bend, 0));
-    REAL x = r + NAME(min)(lean / (bend < 0 ? -2 * bend : bend), (2 + lean) / 3);
+    REAL x = r + NAME(min)(lean / (bend < 0 ? -2 * bend : bend), (2 + lean) * (REAL)0.34);
     for (int n = 0; n < GLINT_TURN_STEPS; n++) {
         REAL value = (x * x + bend) * x - lean, slope = 3 * (x * x) + bend;
         REAL step = value * slope / (slope * slope - value * (3 * x));
@@ -85,13 +85,13 @@ static NAME(torus_line)
     NAME(along_torus)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
 {
     NAME(torus_line) l = { .tube = (REAL)solid->tube };
-    REAL ee = NAME(length2)(e), first = -NAME(dot)(f, e) / ee;
+    REAL ee = NAME(length2)(e), shrink = 1 / ee, first = -NAME(dot)(f, e) * shrink;
     NAME(vec3) q = NAME(add)(f, NAME(times)(e, first));
-    REAL again = -NAME(dot)(q, e) / ee, around = (REAL)1.0001 * (1 + l.tube);
+    REAL again = -NAME(dot)(q, e) * shrink, around = (REAL)1.0001 * (1 + l.tube);
     l.p = NAME(add)(q, NAME(times)(e, again));
     l.from = first + again;
     l.length = NAME(square_root)(ee);
-    l.per = 1 / l.length;
+    l.per = l.length * shrink;
     l.begin = -l.from * l.length;
     l.u = NAME(times)(e, l.per);
     REAL away2 = NAME(length2)(l.p), left = around * around - away2;
@@ -104,6 +104,14 @@ static NAME(torus_line)
     NAME(find_turns)(&l);
     NAME(begin_on_torus)(&l, solid, f, e, leaves, inward);
     return l;
+}
+
+/// Whether a ray that leaves the torus at f, and does not go in, surely never meets it again: of the outer half of the tube the
+/// tangent planes have all of the torus on one side.
+static bool NAME(leaves_torus)(NAME(vec3) f, NAME(vec3) e)
+{
+    REAL round = NAME(square_root)(f.x * f.x + f.y * f.y);
+    return round >= 1 && ((round - 1) / round) * (f.x * e.x + f.y * e.y) + f.z * e.z >= 0;
 }
 
 /// Whether there is a root in a stretch.
@@ -145,13 +153,15 @@ static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
             low = s;
         else
             high = s;
-        REAL slope = 4 * ((s * s + l->bend) * s - l->lean), next = s - gap * beyond / slope;
+        REAL value = gap * beyond, slope = 4 * ((s * s + l->bend) * s - l->lean);
+        REAL half = 6 * (s * s) + 2 * l->bend, bound = (6 * (s * s) + 2 * NAME(abs)(l->bend)) + (2 + NAME(abs)(slope));
+        REAL next = s - value * slope / (slope * slope - value * half);
         if (!(low <= next && next <= high))
             next = (REAL)0.5 * low + (REAL)0.5 * high;
         REAL moved = NAME(abs)(next - s);
         s = next;
-        if (moved <= NAME(ON_FACE))
-            break;
+        if (moved * moved * moved * (bound * bound) <= NAME(ON_FACE) * (slope * slope) || moved <= NAME(ON_FACE))
+            break; // what is left is as a cube
     }
     REAL t = l->from + s * l->per;
     return t > 0 ? t : (REAL)GLINT_LEAST_WAY;
@@ -160,6 +170,8 @@ static REAL NAME(torus_root)(const NAME(torus_line) * l, int stretch)
 /// The distance at which a ray meets a torus; 0 stands for a miss. leaves: the ray begins on it, and goes in or not.
 static REAL NAME(torus_t)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
 {
+    if (leaves && !inward && NAME(leaves_torus)(f, e))
+        return 0;
     NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
     for (int stretch = 0; stretch < 4; stretch++)
         if (NAME(torus_crosses)(&l, stretch) && NAME(torus_ahead)(&l, stretch))
@@ -196,6 +208,8 @@ static NAME(vec3) NAME(onto_torus)(REAL tube, NAME(vec3) * k)
 static bool NAME(torus_parts)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, REAL end, bool end_inside,
                               bool leaves, bool inward)
 {
+    if (leaves && !inward && NAME(leaves_torus)(f, e))
+        return end_inside;
     NAME(torus_line) l = NAME(along_torus)(solid, f, e, leaves, inward);
     REAL beyond;
     if (!l.near)
