@@ -249,9 +249,12 @@ INNER R(span) R(span_along)(const glint_solid *solid, const R(solid_start) * sta
 static rm R(meet_solid)(const glint_solid *solid, const R(solid_start) * start, const vr d[3], vr *t)
 {
     if (solid->form == GLINT_FORM_TORUS) {
-        vr e[3];
-        R(to_unit)(solid, d, e);
-        return R(meet_torus)(solid, start->f, e, R(torus_afresh)(), t);
+        const R(torus_start) afresh = R(torus_afresh)();
+        vr e[1][3];
+        rm hit;
+        R(to_unit)(solid, d, e[0]);
+        R(meet_torus)(1, solid, &start->f, (const vr(*)[3])e, &afresh, t, &hit);
+        return hit;
     }
     const R(span) span = R(span_along)(solid, start, d, false);
     *t = r_select(r_lt(r_set(0), span.t[0]), span.t[0], span.t[1]);
@@ -359,17 +362,4 @@ static rm R(solid_blocks)(const glint_solid *solid, const glint_prim *prim, cons
     const rm first = rm_andnot(rm_and(r_lt(zero, span.t[0]), r_lt(span.t[0] * unit, end)), own);
     const rm second = rm_and(r_lt(zero, span.t[1]), r_lt(span.t[1] * unit, end));
     return rm_and(span.hit, rm_or(first, rm_andnot(second, rm_andnot(own, span.second))));
-}
-
-/// The same of a torus. inside: lanes whose light is; own: whose segment begins on it, of these `back`: and goes in.
-static rm R(torus_blocks)(const glint_solid *solid, const glint_prim *prim, const vr point[3], const vr d[3],
-                          double scale, bool directional, unsigned inside, unsigned own, unsigned back,
-                          unsigned wanted)
-{
-    vr f[3], e[3];
-    R(unit_offset)(solid, prim, point, f);
-    R(to_unit)(solid, d, e);
-    const vr end = r_set(directional ? HUGE_VAL : 1 / scale);
-    const R(torus_start) start = { rm_from_bits(own), rm_from_bits(own & back) };
-    return R(torus_parts)(solid, f, e, end, rm_from_bits(inside), start, wanted);
 }

@@ -1,5 +1,10 @@
 // torus: what cast, surface and occlude need of an image of the unit torus, which is no convex solid: a ray meets it up to four
 // times, and may meet again what it leaves. What is found along a line, and why so: ref/torus.h. Contract: stages.h.
+//
+// Lines are followed a few vectors at a time: each step to a turn or a root waits for the one before it, and while one vector
+// waits the next goes on.
+
+#define TORUS_LINES (GLINT_GROUP / VR) ///< vectors at a time, at most
 
 /// Where places are to the torus: below 0 inside. *beyond: what the quartic has besides as a factor, above 0.
 INNER vr R(torus_gap)(const vr k[3], vr tube2, vr *beyond)
@@ -35,25 +40,33 @@ static inline R(torus_start) R(torus_afresh)(void)
     return (R(torus_start)) { none, none };
 }
 
-/// The largest x with x^3 + bend x = lean; lean >= 0. Lanes that are not wanted hold anything.
-INNER vr R(last_turn)(vr bend, vr lean, unsigned wanted)
+/// Of each line the largest x with x^3 + bend x = |lean|.
+INNER void R(last_turns)(int count, const R(torus_line) l[], vr x[])
 {
-    const vr three = r_set(3), zero = r_set(0), r = r_sqrt(r_max(-bend, zero));
-    const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
-    vr x = r + r_min(lean / by, (r_set(2) + lean) * r_set(0.34));
-    for (int n = 0; n < GLINT_TURN_STEPS && wanted; n++) {
-        const vr value = (x * x + bend) * x - lean, slope = three * (x * x) + bend;
-        const vr step = value * slope / (slope * slope - value * (three * x));
-        x = r_select(rm_from_bits(wanted), x - step, x);
-        wanted &= ~rm_bits(r_le(R(abs)(step), r_set(GLINT_TURN_NEAR)));
+    const vr three = r_set(3), zero = r_set(0);
+    unsigned wanted[TORUS_LINES], any = 0;
+    for (int i = 0; i < count; i++) {
+        const vr bend = l[i].bend, lean = R(abs)(l[i].lean), r = r_sqrt(r_max(-bend, zero));
+        const vr by = r_select(r_lt(bend, zero), r_set(-2) * bend, bend);
+        x[i] = r + r_min(lean / by, (r_set(2) + lean) * r_set(0.34));
+        any |= wanted[i] = rm_bits(l[i].near);
     }
-    return x;
+    for (int n = 0; n < GLINT_TURN_STEPS && any; n++) {
+        any = 0;
+        for (int i = 0; i < count; i++) {
+            const vr bend = l[i].bend, lean = R(abs)(l[i].lean);
+            const vr value = (x[i] * x[i] + bend) * x[i] - lean, slope = three * (x[i] * x[i]) + bend;
+            const vr step = value * slope / (slope * slope - value * (three * x[i]));
+            x[i] = r_select(rm_from_bits(wanted[i]), x[i] - step, x[i]);
+            any |= wanted[i] &= ~rm_bits(r_le(R(abs)(step), r_set(GLINT_TURN_NEAR)));
+        }
+    }
 }
 
-static inline void R(find_turns)(R(torus_line) * l)
+/// last: of last_turns.
+static inline void R(find_turns)(R(torus_line) * l, vr last)
 {
     const vr zero = r_set(0), never = r_set(HUGE_VAL);
-    const vr last = R(last_turn)(l->bend, R(abs)(l->lean), rm_bits(l->near));
     const vr rest = -l->bend - r_set(0.75) * (last * last), root = r_sqrt(r_max(rest, zero));
     const vr low = r_set(-0.5) * last - root, high = r_set(-0.5) * last + root;
     const rm three = r_le(zero, rest), turned = r_lt(l->lean, zero);
@@ -116,37 +129,51 @@ INNER rm R(passes_tube)(const R(torus_line) * l, vr within)
     return rm_andnot(rm_from_bits((1u << VR) - 1), out);
 }
 
-/// Of rays from f on along e, where the torus is the unit one.
-static R(torus_line) R(along_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start)
+/// Of rays from f on along e, where the torus is the unit one: all up to `near`.
+static inline void R(aim_at_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start,
+                                   R(torus_line) * l)
 {
     const vr zero = r_set(0), one = r_set(1), two = r_set(2), tube = r_set(solid->tube), ee = DOT(e, e);
-    R(torus_line) l;
-    l.tube = tube;
-    l.tube2 = tube * tube;
-    const vr shrink = one / ee, first = -DOT(f, e) * shrink;
+    l->tube = tube;
+    l->tube2 = tube * tube;
+    const vr first = -DOT(f, e) / ee;
     const vr q[3] = { f[0] + e[0] * first, f[1] + e[1] * first, f[2] + e[2] * first };
-    const vr again = -DOT(q, e) * shrink, around = r_set(1.0001) * (one + tube);
+    const vr again = -DOT(q, e) / ee, around = r_set(1.0001) * (one + tube);
     for (int c = 0; c < 3; c++)
-        l.p[c] = q[c] + e[c] * again;
-    const vr away2 = DOT(l.p, l.p), left = around * around - away2;
-    l.near = r_lt(zero, left);
-    if (!rm_bits(l.near))
-        return l;
-    l.from = first + again;
-    l.length = r_sqrt(ee);
-    l.per = l.length * shrink;
-    l.begin = -l.from * l.length;
+        l->p[c] = q[c] + e[c] * again;
+    const vr away2 = DOT(l->p, l->p), left = around * around - away2;
+    l->near = r_lt(zero, left);
+    if (!rm_bits(l->near))
+        return;
+    l->from = first + again;
+    l->length = r_sqrt(ee);
+    l->per = one / l->length;
+    l->begin = -l->from * l->length;
     for (int c = 0; c < 3; c++)
-        l.u[c] = e[c] * l.per;
-    l.reach = r_sqrt(r_max(left, zero));
-    l.near = rm_and(l.near, rm_or(start.leaves, R(passes_tube)(&l, r_set(2 * GLINT_ON_FACE) * r_set(solid->places))));
-    if (!rm_bits(l.near))
-        return l;
-    l.bend = ((away2 + one) - l.tube2) - two * (l.u[0] * l.u[0] + l.u[1] * l.u[1]);
-    l.lean = -two * (l.p[2] * l.u[2]);
-    R(find_turns)(&l);
-    R(begin_on_torus)(&l, solid, f, e, start);
-    return l;
+        l->u[c] = e[c] * l->per;
+    l->reach = r_sqrt(r_max(left, zero));
+    l->near = rm_and(l->near, rm_or(start.leaves, R(passes_tube)(l, r_set(2 * GLINT_ON_FACE) * r_set(solid->places))));
+    l->bend = ((away2 + one) - l->tube2) - two * (l->u[0] * l->u[0] + l->u[1] * l->u[1]);
+    l->lean = -two * (l->p[2] * l->u[2]);
+}
+
+static void R(along_torus)(int count, const glint_solid *solid, const vr (*f)[3], const vr (*e)[3],
+                           const R(torus_start) start[], R(torus_line) l[])
+{
+    vr last[TORUS_LINES];
+    unsigned any = 0;
+    for (int i = 0; i < count; i++) {
+        R(aim_at_torus)(solid, f[i], e[i], start[i], &l[i]);
+        any |= rm_bits(l[i].near);
+    }
+    if (!any)
+        return;
+    R(last_turns)(count, l, last);
+    for (int i = 0; i < count; i++)
+        if (rm_bits(l[i].near)) {
+            R(find_turns)(&l[i], last[i]);
+            R(begin_on_torus)(&l[i], solid, f[i], e[i], start[i]);
+        }
 }
 
 /// Rays that leave the torus, do not go in, and surely never meet it again.
@@ -209,81 +236,110 @@ static inline R(torus_stretch) R(stretch_at)(const R(torus_line) * l, int stretc
     return out;
 }
 
-/// t of the root of each line's stretch, in the lanes that have one.
-static vr R(torus_root)(const R(torus_line) * l, const R(torus_stretch) * at, unsigned wanted)
+/// One step nearer to the roots at s; wanted: lanes that are not there yet.
+INNER void R(step_to_root)(const R(torus_line) * l, R(torus_stretch) * at, vr *s, unsigned *wanted)
 {
-    const vr zero = r_set(0), half = r_set(0.5), four = r_set(4);
-    vr low = at->low, high = at->high;
-    const vr curve = r_set(12) * (at->middle * at->middle) + four * l->bend;
-    const vr off = r_sqrt(r_max(r_set(-2) * at->gap / curve, zero));
-    vr s = r_select(at->rising, at->middle + off, at->middle - off);
-    s = r_select(rm_and(r_le(low, s), r_le(s, high)), s, half * low + half * high);
-    for (int n = 0; n < GLINT_ROOT_STEPS && wanted; n++) {
-        const vr k[3] = { l->p[0] + l->u[0] * s, l->p[1] + l->u[1] * s, l->p[2] + l->u[2] * s };
-        vr beyond;
-        const vr gap = R(torus_gap)(k, l->tube2, &beyond);
-        const rm inside = r_le(gap, zero);
-        const rm ahead =
-            rm_or(rm_and(inside, at->rising), rm_andnot(rm_from_bits((1u << VR) - 1), rm_or(inside, at->rising)));
-        low = r_select(ahead, s, low);
-        high = r_select(ahead, high, s);
-        const vr value = gap * beyond, slope = four * ((s * s + l->bend) * s - l->lean);
-        const vr turn = r_set(6) * (s * s), size = turn + r_set(2) * R(abs)(l->bend);
-        const vr bound = size + (r_set(2) + R(abs)(slope));
-        vr next = s - value * slope / (slope * slope - value * (turn + r_set(2) * l->bend));
-        next = r_select(rm_and(r_le(low, next), r_le(next, high)), next, half * low + half * high);
-        const vr moved = R(abs)(next - s), on = r_set(GLINT_ON_FACE);
-        const rm near = rm_or(r_le(moved * moved * moved * (bound * bound), on * (slope * slope)), r_le(moved, on));
-        s = r_select(rm_from_bits(wanted), next, s);
-        wanted &= ~rm_bits(near);
+    const vr zero = r_set(0), half = r_set(0.5), x = *s;
+    const vr k[3] = { l->p[0] + l->u[0] * x, l->p[1] + l->u[1] * x, l->p[2] + l->u[2] * x };
+    vr beyond;
+    const vr gap = R(torus_gap)(k, l->tube2, &beyond);
+    const rm inside = r_le(gap, zero), all = rm_from_bits((1u << VR) - 1);
+    const rm ahead = rm_or(rm_and(inside, at->rising), rm_andnot(all, rm_or(inside, at->rising)));
+    at->low = r_select(ahead, x, at->low);
+    at->high = r_select(ahead, at->high, x);
+    const vr value = gap * beyond, slope = r_set(4) * ((x * x + l->bend) * x - l->lean);
+    const vr turn = r_set(6) * (x * x), size = turn + r_set(2) * R(abs)(l->bend);
+    const vr bound = size + (r_set(2) + R(abs)(slope));
+    vr next = x - value * slope / (slope * slope - value * (turn + r_set(2) * l->bend));
+    next = r_select(rm_and(r_le(at->low, next), r_le(next, at->high)), next, half * at->low + half * at->high);
+    const vr moved = R(abs)(next - x), on = r_set(GLINT_ON_FACE);
+    const rm there = rm_or(r_le(moved * moved * moved * (bound * bound), on * (slope * slope)), r_le(moved, on));
+    *s = r_select(rm_from_bits(*wanted), next, x);
+    *wanted &= ~rm_bits(there);
+}
+
+/// t of the root of each line's stretch, in the lanes that have one: `hit`.
+static void R(torus_roots)(int count, const R(torus_line) l[], R(torus_stretch) at[], const rm hit[], vr t[])
+{
+    const vr zero = r_set(0), half = r_set(0.5);
+    vr s[TORUS_LINES];
+    unsigned wanted[TORUS_LINES], any = 0;
+    for (int i = 0; i < count; i++) {
+        any |= wanted[i] = rm_bits(hit[i]);
+        const vr curve = r_set(12) * (at[i].middle * at[i].middle) + r_set(4) * l[i].bend;
+        const vr off = r_sqrt(r_max(r_set(-2) * at[i].gap / curve, zero));
+        const vr guess = r_select(at[i].rising, at[i].middle + off, at[i].middle - off);
+        const rm within = rm_and(r_le(at[i].low, guess), r_le(guess, at[i].high));
+        s[i] = r_select(within, guess, half * at[i].low + half * at[i].high);
     }
-    const vr t = l->from + s * l->per;
-    return r_select(r_lt(zero, t), t, r_set(GLINT_LEAST_WAY));
+    for (int n = 0; n < GLINT_ROOT_STEPS && any; n++) {
+        any = 0;
+        for (int i = 0; i < count; i++) {
+            R(step_to_root)(&l[i], &at[i], &s[i], &wanted[i]);
+            any |= wanted[i];
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        const vr found = l[i].from + s[i] * l[i].per;
+        t[i] = r_select(rm_and(hit[i], r_lt(zero, found)), found, r_set(GLINT_LEAST_WAY));
+    }
+}
+
+/// The stretch of each line on which the first root ahead is. Returns the lanes that have one.
+static rm R(first_ahead)(const R(torus_line) * l, R(torus_stretch) * at)
+{
+    rm hit = rm_from_bits(0);
+    *at = (R(torus_stretch)) { .rising = hit };
+    for (int stretch = 0; stretch < 4 && rm_bits(l->near); stretch++) {
+        const rm here = rm_andnot(rm_and(R(torus_crosses)(l, stretch), R(torus_ahead)(l, stretch)), hit);
+        if (!rm_bits(here))
+            continue;
+        const R(torus_stretch) found = R(stretch_at)(l, stretch);
+        at->low = r_select(here, found.low, at->low);
+        at->high = r_select(here, found.high, at->high);
+        at->middle = r_select(here, found.middle, at->middle);
+        at->gap = r_select(here, found.gap, at->gap);
+        at->rising = rm_or(at->rising, rm_and(here, found.rising));
+        hit = rm_or(hit, here);
+    }
+    return hit;
 }
 
 /// Where rays meet the torus first. Those that leave it and go in meet it surely.
-static rm R(meet_torus)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr *t)
+static void R(meet_torus)(int count, const glint_solid *solid, const vr (*f)[3], const vr (*e)[3],
+                          const R(torus_start) start[], vr t[], rm hit[])
 {
-    const rm gone = R(leaves_torus)(f, e, start);
-    *t = r_set(GLINT_LEAST_WAY);
-    if (rm_bits(gone) == (1u << VR) - 1)
-        return rm_from_bits(0);
-    const R(torus_line) l = R(along_torus)(solid, f, e, start);
-    const rm surely = rm_and(start.leaves, start.inward);
-    rm hit = rm_from_bits(0);
-    if (!rm_bits(l.near))
-        return surely;
-    R(torus_stretch) at = { 0 };
-    for (int stretch = 0; stretch < 4; stretch++) {
-        const rm here = rm_andnot(rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch)), rm_or(hit, gone));
-        if (!rm_bits(here))
-            continue;
-        const R(torus_stretch) found = R(stretch_at)(&l, stretch);
-        at.low = r_select(here, found.low, at.low);
-        at.high = r_select(here, found.high, at.high);
-        at.middle = r_select(here, found.middle, at.middle);
-        at.gap = r_select(here, found.gap, at.gap);
-        at.rising = rm_or(at.rising, rm_and(here, found.rising));
-        hit = rm_or(hit, here);
+    R(torus_line) l[TORUS_LINES];
+    R(torus_stretch) at[TORUS_LINES];
+    unsigned any = 0;
+    R(along_torus)(count, solid, f, e, start, l);
+    for (int i = 0; i < count; i++) {
+        hit[i] = rm_andnot(R(first_ahead)(&l[i], &at[i]), R(leaves_torus)(f[i], e[i], start[i]));
+        any |= rm_bits(hit[i]);
+        t[i] = r_set(GLINT_LEAST_WAY);
     }
-    if (rm_bits(hit))
-        *t = r_select(hit, R(torus_root)(&l, &at, rm_bits(hit)), *t);
-    return rm_or(hit, surely);
+    if (any)
+        R(torus_roots)(count, l, at, hit, t);
+    for (int i = 0; i < TORUS_LINES && i < count; i++)
+        hit[i] = rm_or(hit[i], rm_and(start[i].leaves, start[i].inward));
 }
 
 /// Where rays are inside: from ends[0] to ends[1], and from ends[2] to ends[3] or, where they do not come out between, from the
 /// first root to the last; an end of -inf: there is no such stretch, or the ray begins in it.
 static void R(torus_ends)(const glint_solid *solid, const vr f[3], const vr e[3], R(torus_start) start, vr ends[4])
 {
-    const R(torus_line) l = R(along_torus)(solid, f, e, start);
+    R(torus_line) l;
+    R(along_torus)(1, solid, (const vr(*)[3])f, (const vr(*)[3])e, &start, &l);
     const vr zero = r_set(0), none = r_set(-HUGE_VAL);
     for (int stretch = 0; stretch < 4; stretch++) {
         const rm here = rm_and(R(torus_crosses)(&l, stretch), R(torus_ahead)(&l, stretch));
         ends[stretch] = none;
         if (!rm_bits(here))
             continue;
-        const R(torus_stretch) at = R(stretch_at)(&l, stretch);
-        ends[stretch] = r_select(here, R(torus_root)(&l, &at, rm_bits(here)), none);
+        R(torus_stretch) at = R(stretch_at)(&l, stretch);
+        vr t;
+        R(torus_roots)(1, &l, &at, &here, &t);
+        ends[stretch] = r_select(here, t, none);
     }
     ends[2] = r_select(rm_and(l.near, r_lt(zero, l.gap[1])), ends[2], ends[0]);
     const rm out = rm_or(r_lt(zero, ends[1]), r_lt(zero, ends[3]));
@@ -308,30 +364,25 @@ static inline void R(onto_torus)(double radius, vr k[3], vr g[3])
     g[2] = up;
 }
 
-/// Which segments from f on cross the surface before they end at t = end, inside or not; of others than `wanted` anything.
-static rm R(torus_parts)(const glint_solid *solid, const vr f[3], const vr e[3], vr end, rm end_inside,
-                         R(torus_start) start, unsigned wanted)
+/// Which segments from f on cross the surface before they end at t = end, inside or not. l: the line of along_torus.
+static rm R(torus_parts)(const R(torus_line) * l, const vr f[3], const vr e[3], vr end, rm end_inside,
+                         R(torus_start) start)
 {
     const vr zero = r_set(0);
-    const rm gone = R(leaves_torus)(f, e, start);
-    if (!(wanted & ~rm_bits(gone)))
-        return end_inside;
-    const R(torus_line) l = R(along_torus)(solid, f, e, start);
     vr beyond;
-    const rm within = r_lt(R(torus_gap)(f, l.tube2, &beyond), zero);
-    const rm left_inside = rm_and(start.leaves, start.inward);
-    const rm afar = rm_or(left_inside, rm_andnot(within, start.leaves));
-    if (!rm_bits(l.near))
+    const rm gone = R(leaves_torus)(f, e, start), within = r_lt(R(torus_gap)(f, l->tube2, &beyond), zero);
+    const rm afar = rm_or(rm_and(start.leaves, start.inward), rm_andnot(within, start.leaves));
+    if (!rm_bits(l->near))
         return rm_or(rm_andnot(afar, end_inside), rm_andnot(end_inside, afar));
-    const rm inside =
-        rm_or(rm_and(l.near, rm_or(rm_and(l.on, l.inward), rm_andnot(within, l.on))), rm_andnot(afar, l.near));
-    const vr last = (end - l.from) * l.length;
-    rm parted = rm_or(rm_andnot(inside, end_inside), rm_andnot(end_inside, inside)), passes = l.near;
+    const rm own = rm_or(rm_and(l->on, l->inward), rm_andnot(within, l->on));
+    const rm inside = rm_or(rm_and(l->near, own), rm_andnot(afar, l->near));
+    const vr last = (end - l->from) * l->length;
+    rm parted = rm_or(rm_andnot(inside, end_inside), rm_andnot(end_inside, inside)), passes = l->near;
     for (int i = 0; i < 3; i++) {
-        const rm inner = r_le(l.gap[i], zero);
-        passes = rm_and(passes, rm_or(l.past[i], r_le(l.turn[i], last)));
+        const rm inner = r_le(l->gap[i], zero);
+        passes = rm_and(passes, rm_or(l->past[i], r_le(l->turn[i], last)));
         const rm differs = rm_or(rm_andnot(inside, inner), rm_andnot(inner, inside));
-        parted = rm_or(parted, rm_andnot(rm_and(passes, differs), l.past[i]));
+        parted = rm_or(parted, rm_andnot(rm_and(passes, differs), l->past[i]));
     }
     return rm_or(rm_andnot(parted, gone), rm_and(gone, end_inside));
 }

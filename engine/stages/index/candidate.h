@@ -303,10 +303,46 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
     return R(unless_begun_on)(table, candidate->prim, NULL, o, hit, *t);
 }
 
+/// The same as below of a torus, all vectors of the group at once.
+static bool R(decide_torus)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
+{
+    const glint_cast_args *args = tile->args;
+    const glint_solid *solid = &args->geometry->solids[candidate->prim->item];
+    const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
+    const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);
+    vr f[TORUS_LINES][3], e[TORUS_LINES][3], t[TORUS_LINES];
+    R(torus_start) start[TORUS_LINES];
+    rm hit[TORUS_LINES];
+    int count = 0, from[TORUS_LINES];
+    bool any = false;
+    count_tests(args->tests, near);
+    for (int n = 0; n < TORUS_LINES; n++)
+        start[n] = R(torus_afresh)();
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        vr d[3];
+        if (!(near >> i & ((1u << VR) - 1)))
+            continue;
+        R(load_direction)(directions, args->direction, 0, i, d);
+        R(to_unit)(solid, d, e[count]);
+        for (int c = 0; c < 3; c++)
+            f[count][c] = r_set(candidate->f[c]);
+        from[count++] = i;
+    }
+    R(meet_torus)(count, solid, (const vr(*)[3])f, (const vr(*)[3])e, start, t, hit);
+    for (int n = 0; n < count; n++)
+        if (rm_bits(hit[n])) {
+            R(keep_nearest)(args, at + (size_t)from[n], candidate->id, hit[n], t[n]);
+            any = true;
+        }
+    return any;
+}
+
 /// Decides one candidate for the lanes of group (x, y) in `near`. Returns whether any hit was kept.
 INNER bool R(decide_pixels)(const R(tile_cast) * tile, const R(candidate) * candidate, int x, int y, unsigned near)
 {
     const glint_cast_args *args = tile->args;
+    if (args->geometry->tori && is_torus(args->geometry, candidate->prim))
+        return R(decide_torus)(tile, candidate, x, y, near);
     const size_t at = (size_t)(y * tile->across + x) * GLINT_GROUP;
     const vr f[3] = { r_set(candidate->f[0]), r_set(candidate->f[1]), r_set(candidate->f[2]) };
     const R(group_directions) directions = R(directions_of)(args->camera, (uint32_t)x, (uint32_t)y);

@@ -210,15 +210,56 @@ static unsigned R(blocked_by_triangle)(const glint_occlude_args *args, const gli
     return blocked;
 }
 
+/// The lanes of `wanted` that a torus blocks, its own points among them. outside: where the light is.
+static unsigned R(blocked_by_torus)(const glint_occlude_args *args, const glint_prim *prim,
+                                    const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
+                                    unsigned outside)
+{
+    const glint_solid *solid = &args->geometry->solids[prim->item];
+    const unsigned back = own & args->back[at / GLINT_GROUP], all = (1u << VR) - 1;
+    const vr end = r_set(args->directional ? HUGE_VAL : 1 / args->scale);
+    vr f[TORUS_LINES][3], e[TORUS_LINES][3];
+    R(torus_start) start[TORUS_LINES];
+    R(torus_line) l[TORUS_LINES];
+    unsigned blocked = 0;
+    int count = 0, from[TORUS_LINES];
+    count_tests(args->tests, wanted);
+    for (int i = 0; i < GLINT_GROUP; i += VR) {
+        const unsigned lanes = wanted >> i & all, inside = ~outside >> i & all;
+        vr p[3], d[3];
+        if (!lanes)
+            continue;
+        R(load3)(args->point, at + i, p);
+        R(directions_to)(args, position, at, i, d);
+        R(unit_offset)(solid, prim, p, f[count]);
+        R(to_unit)(solid, d, e[count]);
+        start[count] = (R(torus_start)) { rm_from_bits(own >> i & all), rm_from_bits(back >> i & all) };
+        const unsigned gone = rm_bits(R(leaves_torus)((const vr *)f[count], (const vr *)e[count], start[count]));
+        blocked |= (gone & inside & lanes) << i;
+        from[count] = i;
+        count += (lanes & ~gone) != 0;
+    }
+    if (!count)
+        return blocked;
+    R(along_torus)(count, solid, (const vr(*)[3])f, (const vr(*)[3])e, start, l);
+    for (int n = 0; n < count; n++) {
+        const rm inside = rm_from_bits(~outside >> from[n] & all);
+        const rm parted = R(torus_parts)(&l[n], (const vr *)f[n], (const vr *)e[n], end, inside, start[n]);
+        blocked |= (rm_bits(parted) & wanted >> from[n] & all) << from[n];
+    }
+    return blocked;
+}
+
 /// The lanes of `wanted` that a solid blocks; of these, `own` are its own points. outside: where the light is.
 static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_prim *prim,
                                     const real position[3][GLINT_GROUP], size_t at, unsigned own, unsigned wanted,
                                     unsigned outside)
 {
     const glint_solid *solid = &args->geometry->solids[prim->item];
-    const bool torus = solid->form == GLINT_FORM_TORUS;
-    const unsigned back = own & args->back[at / GLINT_GROUP], within = torus ? own : is_open(solid) ? back : 0;
-    unsigned blocked = torus || solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
+    if (solid->form == GLINT_FORM_TORUS)
+        return R(blocked_by_torus)(args, prim, position, at, own, wanted, outside);
+    const unsigned back = own & args->back[at / GLINT_GROUP], within = is_open(solid) ? back : 0;
+    unsigned blocked = solid->form == GLINT_FORM_DISK || is_open(solid) ? 0 : back & outside;
     wanted &= ~(own & ~within);
     count_tests(args->tests, wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -229,10 +270,7 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
         const rm mine = rm_from_bits(within >> i & ((1u << VR) - 1));
-        const rm hit = torus ? R(torus_blocks)(solid, prim, p, d, args->scale, args->directional, ~outside >> i,
-                                               own >> i, back >> i, lanes)
-                             : R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine);
-        blocked |= (rm_bits(hit) & lanes) << i;
+        blocked |= (rm_bits(R(solid_blocks)(solid, prim, p, d, args->scale, args->directional, mine)) & lanes) << i;
     }
     return blocked;
 }

@@ -85,13 +85,13 @@ static NAME(torus_line)
     NAME(along_torus)(const glint_solid *solid, NAME(vec3) f, NAME(vec3) e, bool leaves, bool inward)
 {
     NAME(torus_line) l = { .tube = (REAL)solid->tube };
-    REAL ee = NAME(length2)(e), shrink = 1 / ee, first = -NAME(dot)(f, e) * shrink;
+    REAL ee = NAME(length2)(e), first = -NAME(dot)(f, e) / ee;
     NAME(vec3) q = NAME(add)(f, NAME(times)(e, first));
-    REAL again = -NAME(dot)(q, e) * shrink, around = (REAL)1.0001 * (1 + l.tube);
+    REAL again = -NAME(dot)(q, e) / ee, around = (REAL)1.0001 * (1 + l.tube);
     l.p = NAME(add)(q, NAME(times)(e, again));
     l.from = first + again;
     l.length = NAME(square_root)(ee);
-    l.per = l.length * shrink;
+    l.per = 1 / l.length;
     l.begin = -l.from * l.length;
     l.u = NAME(times)(e, l.per);
     REAL away2 = NAME(length2)(l.p), left = around * around - away2;
