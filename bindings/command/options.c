@@ -155,12 +155,16 @@ static bool read_set(cli_options *options, const cli_option *option, char *text,
 {
     (void)option;
     char *equals = strchr(text, '=');
-    if (equals && equals > text && cli_add_set(&options->request, text, equals + 1)) {
-        *equals = '\0'; // the name ends there
-        return true;
+    if (!equals || equals == text) {
+        snprintf(message, MESSAGE, "name=value expected, got '%.200s'", text);
+        return false;
     }
-    snprintf(message, MESSAGE, "name=value expected, got '%.200s'", text);
-    return false;
+    if (!cli_add_set(&options->request, text, equals + 1)) {
+        snprintf(message, MESSAGE, "out of memory");
+        return false;
+    }
+    *equals = '\0'; // the name ends there
+    return true;
 }
 
 static bool read_sweep(cli_options *options, const cli_option *option, char *text, char *message)

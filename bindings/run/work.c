@@ -145,12 +145,13 @@ static void warn_of_caps(glintL_run *run, const glint_plan *plan)
                             effects[i].caller);
 }
 
-// A sample goes through one point of the lens. A preview has one sample for its speed.
+// A sample goes through one point of the lens. A preview has one sample for its speed, a command line because it says so.
 static void warn_of_lens(glintL_run *run, const glint_plan *plan)
 {
     const glint_effect *effects;
     const size_t count = glint_plan_effects(plan, &effects);
-    for (size_t i = 0; i < count && run->preview_side == 0 && glint_plan_render_desc(plan)->samples == 1; i++)
+    const bool is_meant = run->preview_side > 0 || run->request.render_text[glintL_render_find("samples")];
+    for (size_t i = 0; i < count && !is_meant && glint_plan_render_desc(plan)->samples == 1; i++)
         if (strcmp(effects[i].effect, "lens") == 0)
             glintL_run_warn(run, "one sample a pixel shows the blur of a lens as a pattern of dots; set samples = 16, or "
                                  "more, beside width, or give --samples 16");

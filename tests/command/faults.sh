@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every allocation of twelve commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
+# Every allocation of fifteen commands fails in its turn, and every write: a run succeeds with the same bytes, or says why
 # it did not and leaves nothing half done (tests/faults/every.c). Each seventh here, STEP=1 takes all (make soak). Prints TAP.
 set -u
 root=$PWD
@@ -55,6 +55,22 @@ local glint, S = require "glint", require "helper"
 return glint.sweep { scene = S.scene, over = { { S.gold, "shininess", { 1, 20 } }, { S.lamp, "x", { 0, 3 } } },
   size = { 16, 12 }, sheet = { label = true } }
 LUA
+cat >open.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+local P = glint.params { moves = "lamp", glow = 1 }
+local camera = S.scene.camera
+camera.shutter, camera.shutter_times, camera.aperture = 0.5, 2, P.moves == "lamp" and 0 or 0.1
+S.scene:add(glint.difference { glint.box { min = { 2, -1, 1 }, max = { 3, 0, 2 } }, glint.torus { center = { 2, 0, 1 }, major = 0.5, minor = 0.1 } })
+return glint.animation { scene = S.scene, frames = 1, width = 16, height = 12, frame = function(t)
+  S.lamp.position, S.gold.specular = { 3, 8, 4 - t }, P.moves == "lamp" and 0.4 or t
+end }
+LUA
+cat >slope.lua <<'LUA'
+local glint, S = require "glint", require "helper"
+local P = glint.params { glow = 1.5 }
+S.lamp.intensity, S.lamp.position = P.glow, { P.glow, 8, 4 }
+return S.scene
+LUA
 "$glint" film.lua -o 'f_%d.png' -t 1 -q && "$glint" film.lua -o 'g_%d.png' -D tall=9 -t 1 -q || exit 1
 
 # each KIND NAME ARGUMENT...
@@ -73,6 +89,9 @@ for kind in alloc write; do
     each $kind "a still" still.lua -o out/w.png -t 1 -q
     each $kind "frames and passes" film.lua -o 'out/f_%d.png' --passes diffuse,depth -t 1 -q
     each $kind "a sweep with its sheet" sweep.lua -o 'out/s_%d.png' -t 1 -q
+    each $kind "a shutter, a torus out of a box" open.lua -o out/o.png -t 1 -q
+    each $kind "a shutter and a lens" open.lua -D moves=all -o out/o.png -t 1 -q --passes depth
+    each $kind "a derivative" slope.lua -o out/d.png -t 1 -q --passes d:glow
     each $kind "a film" film.lua -o out/film.apng -t 1 -q
     each $kind "a sheet" sheet f_1.png f_2.png f_3.png -o out/sheet.png -q
     each $kind "a page" sheet f_1.png f_2.png f_3.png -o out/sheet.html -q

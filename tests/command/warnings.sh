@@ -85,6 +85,7 @@ scene "objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1 } }" 'functio
 sed -i 's/^local view/view/' scene.lua
 warns "a lens and one sample" 'one sample a pixel shows the blur of a lens as a pattern of dots; set samples = 16'
 silent "a lens and several" --samples 2
+silent "a lens and one sample, by the command line" --samples 1
 scene "objects = { glint.sphere { center = { 0, 0, 0 }, radius = 1 } }" 'function frame() view.focus = 8 end'
 sed -i 's/^local view/view/' scene.lua
 warns "a focus without an aperture" 'camera.focus and camera.blades change nothing while its aperture is 0'
