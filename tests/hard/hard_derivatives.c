@@ -266,8 +266,8 @@ static glint_scene *make_scene(const world *w, glint_material *material, glint_l
     glint_scene_desc d = *glint_scene_get(scene);
     put(d.ambient, w->scene_ambient, 3);
     must(glint_scene_set(scene, &d, &error), &error);
-    shapes[0] = scene_sphere(scene, &sphere, glint_material_retain(material));
-    shapes[1] = scene_plane(scene, &floor, glint_material_retain(material));
+    shapes[0] = scene_sphere(scene, &sphere, material);
+    shapes[1] = scene_plane(scene, &floor, material);
     must(glint_scene_add_light(scene, light, &error), &error);
     return scene;
 }
