@@ -1,11 +1,9 @@
 /// Derivatives of pictures against central differences of the formulas in 113 bits: every field that has one, of every model and
 /// kind of light.
 #include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/quad.h"
 
-#include <math.h>
 #include <string.h>
-
-__extension__ typedef _Float128 quad;
 
 #define WIDTH 48
 #define HEIGHT 36
