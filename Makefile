@@ -29,7 +29,7 @@ WARN += -Wshadow
 WARN += -Wstrict-prototypes
 STRICT := -std=c11 -D_GNU_SOURCE $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
 
-# What linkers call by other names: ELF's here, Apple's there (not tried on a machine: say how it went).
+# What linkers call by other names: ELF's here, Apple's there (these were never tried).
 TARGET := $(shell $(CC) -dumpmachine)
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
