@@ -48,7 +48,7 @@ typedef struct cli_sweep { ///< --sweep name=from:to:count
     char text[32]; ///< the value of the point that runs
 } cli_sweep;
 
-#define CLI_DIALECT_OPTIONS 4 ///< --gr-order and the like
+#define CLI_DIALECT_OPTIONS 6 ///< --gr-order and the like
 
 typedef struct cli_options {
     cli_command command;
@@ -103,7 +103,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 61
+#define CLI_OPTION_COUNT 63
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.

@@ -15,6 +15,9 @@ static const unsigned char FILES[] = {
 static const unsigned char GENERATION[] = {
 #include "scripts/lib/gr/generation.lua.h"
 };
+static const unsigned char LAMP[] = {
+#include "scripts/lib/gr/lamp.lua.h"
+};
 static const unsigned char LUA5[] = {
 #include "scripts/lib/gr/lua5.lua.h"
 };
@@ -44,6 +47,7 @@ static const struct carried {
     { "gr.check", "@gr/check.lua", CHECK, sizeof CHECK },
     { "gr.files", "@gr/files.lua", FILES, sizeof FILES },
     { "gr.generation", "@gr/generation.lua", GENERATION, sizeof GENERATION },
+    { "gr.lamp", "@gr/lamp.lua", LAMP, sizeof LAMP },
     { "gr.lua5", "@gr/lua5.lua", LUA5, sizeof LUA5 },
     { "gr.mesh", "@gr/mesh.lua", MESH, sizeof MESH },
     { "gr.obj", "@gr/obj.lua", OBJ, sizeof OBJ },
@@ -140,7 +144,8 @@ void cli_open_dialect(lua_State *L, const cli_options *options)
 
 // ---- The options ----
 
-const char *const cli_dialect_options[CLI_DIALECT_OPTIONS] = { "order", "pixel", "specular", "background" };
+const char *const cli_dialect_options[CLI_DIALECT_OPTIONS] = { "order", "pixel", "specular", "background", "plane",
+                                                                "axis" };
 
 bool cli_check_dialect(const cli_options *options, char message[GLINTL_MESSAGE_SIZE])
 {

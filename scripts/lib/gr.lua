@@ -8,8 +8,10 @@
 --   gr.nh_box(name, {corner}, edge)                     the corner of the smallest coordinates
 --   gr.mesh(name, {vertices}, {faces})                  faces are lists of numbers from 0
 --   gr.mesh(name, "model.obj")
---   gr.cylinder(name)                                   radius 1 around the z axis, from z = 0 to z = 1, closed
---   gr.cone(name)                                       base of radius 1 at z = 0, apex at z = 1, closed
+--   gr.cylinder(name)                                   radius 1 around gr.options.axis, from 0 to 1 along it, closed
+--   gr.cone(name)                                       base of radius 1 at 0, apex at 1 of that axis, closed
+--   gr.plane(name)                                      the square that gr.options.plane says; lit on both sides
+--   gr.plane(name, {corner}, {u}, {v}, width, height)   gr.plane(name, {middle}, {u}, {v}, edge)
 --   gr.torus(name, tube, ring)                          around the z axis; radii; the ring's is 1 when left out
 --   gr.union(name, a, b)  gr.intersection  gr.difference one solid of two or more; csg_union ...; name optional
 --   gr.csg(name, a, "+"|"*"|"-", b)                    the same
@@ -20,7 +22,11 @@
 --   gr.texture(file, u, v)  gr.texture(file, {ks}, shininess)  gr.texture_material(...)  gr.texture_map(file)
 --   gr.bump(file, height)  gr.bumpmap  gr.bump_map      gr.bump(material, file)
 --   gr.light({position}, {colour}, {c0, c1, c2})        falls off by 1/(c0 + c1 r + c2 r^2); {1, 0, 0} when left out
---   gr.render(root, file, width, height, {eye}, {view}, {up}, fov, {ambient}, {lights})
+--   gr.area_light({position}, {colour}, {c0, c1, c2}, radius, samples)                a ball; arealight, sphericallight
+--   gr.area_light({middle}, {colour}, {c0, c1, c2}, {normal}, {up}, edge, samples)    a square
+--   gr.area_light({corner}, {edge}, n, {edge}, m, {colour}, {c0, c1, c2})             n * m samples of a parallelogram
+--   gr.rect_light({middle}, width, depth, {colour}, {c0, c1, c2}, samples)            along x and z
+--   gr.render(root, file, width, height, {eye}, {view}, {up}, fov, {ambient}, {lights}, {lights} ...)
 --   material:set_texture(t)  :set_bump(b)  :set_bumpmap(b)  :set_reflect(r)  :reflection(r)  :set_refract(n)
 --   :set_ri(n)
 --   node:set_texture(t)  :set_texture_map(t)  :set_bump(b)  :set_bumpmap(b)  :set_bump_map(b)
@@ -28,7 +34,7 @@
 --
 -- `gr` is the nodes' metatable: gr.scale(n, ...) is n:scale(...), and functions a scene adds to it are methods.
 -- gr.options has what the course left open (scripts/lib/gr/options.lua); cylinder and cone stand as OpenGL's
--- gluCylinder does, a torus as glutSolidTorus. A shape of radius or edge 0 and one that a
+-- gluCylinder does, where it says nothing else, a torus as glutSolidTorus. A shape of radius or edge 0 and one that a
 -- scale of 0 flattens have nothing to hit and do not show.
 local check = require "gr.check"
 check.own_source()
@@ -36,13 +42,14 @@ require "gr.lua5"()
 local files = require "gr.files"
 files.install()
 local glint = require "glint"
+local lamp = require "gr.lamp"
 local mesh = require "gr.mesh"
 local options = require "gr.options"
 local picture = require "gr.picture"
 local surface = require "gr.surface"
 
 local abs, lower, max, min, setmetatable, type = math.abs, string.lower, math.max, math.min, setmetatable, type
-local pairs = pairs
+local pairs, select = pairs, select
 
 local gr = { options = options }
 gr.__index = gr
@@ -81,9 +88,9 @@ function gr.sphere(name) return new_node("sphere", name, { kind = "sphere", cent
 
 function gr.cube(name) return new_node("cube", name, { kind = "box", min = { 0, 0, 0 }, max = { 1, 1, 1 } }) end
 
-function gr.cylinder(name) return new_node("cylinder", name, { kind = "cylinder" }) end
+function gr.cylinder(name) return new_node("cylinder", name, { kind = "cylinder", axis = options.axis }) end
 
-function gr.cone(name) return new_node("cone", name, { kind = "cone" }) end
+function gr.cone(name) return new_node("cone", name, { kind = "cone", axis = options.axis }) end
 
 function gr.torus(name, tube, ring)
   local node = { kind = "torus", tube = check.number("torus", "tube", tube), ring = 1 }
@@ -122,6 +129,52 @@ function gr.mesh(name, vertices, faces)
     check.refuse("mesh", "vertices", "table, or the name of an .obj file,", vertices)
   end
   return new_node("mesh", name, { kind = "mesh", model = model })
+end
+
+-- Squares without numbers, by options.plane: the corner and the edges, from left to right and upwards in a picture.
+local PLANES = {
+  ["xz"] = { { -0.5, 0, 0.5 }, { 1, 0, 0 }, { 0, 0, -1 } },
+  ["xz-2"] = { { -1, 0, 1 }, { 2, 0, 0 }, { 0, 0, -2 } },
+  ["xz-corner"] = { { 0, 0, 1 }, { 1, 0, 0 }, { 0, 0, -1 } },
+  ["xy"] = { { -0.5, -0.5, 0 }, { 1, 0, 0 }, { 0, 1, 0 } },
+  ["xy-2"] = { { -1, -1, 0 }, { 2, 0, 0 }, { 0, 2, 0 } },
+  ["xy-corner"] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } },
+}
+
+local function plain_plane()
+  if not options.plane then
+    check.tell("plane", "gr.plane: variants have other squares; this is of edge 1, in xz, its middle at the origin. "
+      .. "--gr-plane says which: xz, xz-2, xz-corner, xy, xy-2, xy-corner")
+  end
+  local square = PLANES[options.plane or "xz"]
+  return square[1], square[2], square[3]
+end
+
+-- From a corner with two lengths, or around a middle with one.
+local function placed_plane(place, u, v, width, height)
+  local name = height == nil and "middle" or "corner"
+  local corner = check.vector("plane", name, place, 3)
+  u, v = check.direction("plane", "u", u), check.direction("plane", "v", v)
+  width = check.above("plane", height == nil and "edge" or "width", width, 0)
+  height = height == nil and width or check.above("plane", "height", height, 0)
+  for i = 1, 3 do
+    u[i], v[i] = width * u[i], height * v[i]
+    if name == "middle" then corner[i] = corner[i] - (u[i] + v[i]) / 2 end
+  end
+  return corner, u, v
+end
+
+function gr.plane(name, place, ...)
+  local corner, u, v
+  if type(place) == "table" then
+    corner, u, v = placed_plane(place, ...)
+  else
+    check.left_out("plane", place, ...)
+    corner, u, v = plain_plane()
+  end
+  local model = mesh.square(corner, u, v)
+  if not model then check.raise "gr.plane: v: another direction than that of u expected" end
+  return new_node("plane", name, { kind = "mesh", model = model })
 end
 
 -- ---- Combined solids ----
@@ -339,18 +392,19 @@ local function bump(call)
 end
 gr.bump, gr.bumpmap, gr.bump_map, gr.load_bumpmap = bump "bump", bump "bumpmap", bump "bump_map", bump "load_bumpmap"
 
-local function new_light(fields)
-  local light = { shine = glint.point_light(fields) }
+-- kind: the glint function that makes it.
+local function new_light(kind, fields)
+  local record = { shine = glint[kind](fields) }
   local more = {} -- for lists that have it several times
-  function light.again(n)
-    more[n] = more[n] or glint.point_light(fields)
+  function record.again(n)
+    more[n] = more[n] or glint[kind](fields)
     return more[n]
   end
+  local light = setmetatable({}, LIGHT)
+  lights[light] = record
+  check.name_object(light, "light")
   return light
 end
-
--- A fall-off of 0 everywhere divides by 0 in the course; this is as good as that once cut to codes.
-local NO_FALLOFF = { 1e-30, 0, 0 }
 
 function gr.light(position, colour, falloff, extra)
   if type(position) ~= "table" or type(extra) == "table" then
@@ -358,22 +412,34 @@ function gr.light(position, colour, falloff, extra)
       .. "variant of the dialect", check.spelling(position), check.spelling(extra))
   end
   local fields = { position = check.vector("light", "position", position, 3) }
-  fields.color = check.vector("light", "colour", colour, 3, 0)
-  if falloff ~= nil then
-    fields.attenuation = check.vector("light", "fall-off", falloff, 3, 0)
-    if max(fields.attenuation[1], fields.attenuation[2], fields.attenuation[3]) == 0 then
-      fields.attenuation = NO_FALLOFF
-    end
-  end
-  local light = setmetatable({}, LIGHT)
-  lights[light] = new_light(fields)
-  check.name_object(light, "light")
-  return light
+  lamp.shine("light", fields, colour, falloff)
+  return new_light("point_light", fields)
 end
+
+for _, call in pairs { "area_light", "arealight", "sphericallight" } do
+  gr[call] = function(...) return new_light(lamp.area(call, ...)) end
+end
+
+function gr.rect_light(...) return new_light(lamp.rectangle("rect_light", ...)) end
 
 local function to_light(value) return lights[value] end
 
 function gr.render(root, ...) picture.render(node_of("render", "root", root), to_light, ...) end
+
+-- ---- What is too much ----
+
+-- How many arguments each call reads.
+local READ = {
+  node = 1, joint = 3, sphere = 1, cube = 1, cylinder = 1, cone = 1, torus = 3, nh_sphere = 3, nh_box = 3, mesh = 3,
+  light = 3, add_child = 2, set_material = 2, translate = 4, scale = 4, rotate = 3,
+}
+for call, count in pairs(READ) do
+  local made = gr[call]
+  gr[call] = function(...)
+    if select("#", ...) > count then check.left_out(call, select(count + 1, ...)) end
+    return made(...)
+  end
+end
 
 -- ---- What is not there ----
 

@@ -64,6 +64,7 @@ picture flight --frames 30
 picture earth --frames 1
 picture focus --frames 16
 picture furnace
+picture gr_room --dialect gr --samples 4
 picture gr_scene --dialect gr
 picture indirect --set samples=32 --frames 3 --samples 4
 picture labels --frames 13

@@ -71,4 +71,5 @@ picture focus_orthographic_0016 scripts/focus.lua -f 16 --set blades=0 --set pro
 picture shutter_0001 scripts/shutter.lua -f 1
 picture shutter_lamp_0001 scripts/shutter.lua -f 1 --set moves=lamp
 picture gr_scene scripts/gr_scene.lua --dialect gr
+picture gr_room scripts/gr_room.lua --dialect gr
 exit $bad

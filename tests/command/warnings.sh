@@ -314,7 +314,7 @@ warns "faces without an area" "m.stl: 1 of 2 faces are left out: they have no ar
 run "$root/scripts/sphereflake.lua" --size 8x8 --set size=1 --set nff=balls.nff # the file that nff.lua reads
 for script in "$root"/scripts/*.lua; do
     name=$(basename "$script") dialect='' size=64x36
-    [ "$name" != gr_scene.lua ] || dialect=--dialect=gr
+    [[ $name != gr_* ]] || dialect=--dialect=gr
     [ "$name" != lobes.lua ] || size=64x25 # a wide picture, whose ends a narrower one cuts off
     run "$script" --size $size --samples 1 --warnings=error $dialect
     result $? "$name"

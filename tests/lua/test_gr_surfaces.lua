@@ -253,6 +253,111 @@ function tests.noise_mixes_two_colours()
   check(most - least > 60, "it varies: %d .. %d", least, most)
 end
 
+local PAINT <const> = PLAIN .. "m:set_texture('four.png') "
+
+-- Squares of every form, looked at from the side of their normal, and from behind, show the picture as a cube's face does.
+function tests.planes_are_squares()
+  same {
+    CUBE .. PAINT,
+    PAINT .. "gr.options.plane = 'xy' s = gr.plane('s')",
+    PAINT .. "gr.options.plane = 'xy-2' s = gr.plane('s') s:scale(0.5, 0.5, 0.5)",
+    PAINT .. "gr.options.plane = 'xy-corner' s = gr.plane('s') s:translate(-0.5, -0.5, 0)",
+    PAINT .. "s = gr.plane('s') s:rotate('x', 90)",
+    PAINT .. "gr.options.plane = 'xz-2' s = gr.plane('s', nil) s:rotate('x', 90) s:scale(0.5, 0.5, 0.5)",
+    PAINT .. "gr.options.plane = 'xz-corner' s = gr.plane('s') s:rotate('x', 90) s:translate(-0.5, 0.5, 0)",
+    PAINT .. "s = gr.plane('s', {-0.5, -0.5, 0}, {1, 0, 0}, {0, 2, 0}, 1, 1)",
+    PAINT .. "s = gr.plane('s', {0, 0, 0}, {3, 0, 0}, {0, 1, 0}, 1)",
+    PAINT .. "s = gr.plane('s', {0, 0, 0}, {-1, 0, 0}, {0, 1, 0}, 1) s:rotate('y', 180)",
+  }
+  local pixel = same { PAINT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5, 0.5)", PAINT
+    .. "gr.options.plane = 'xy-corner' s = gr.plane('s') s:scale(0.5, 0.5, 0.5)" }
+  is(pixel, 4, 4, "0,0,0", "a corner at the origin: nothing to the left") is(pixel, 9, 2, "255,0,0", "above and right of it")
+  -- Lit from the eye's side, whichever way it looks.
+  local LIT <const> = PLAIN .. "lights = { gr.light({0, 0, 9}, {0.5, 0.4, 0.3}, {1, 0, 0}) } "
+  same { LIT .. "s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1)", LIT .. "s = gr.plane('s', {0, 0, 0}, {0, 1, 0}, {1, 0, 0}, 1)" }
+end
+
+function tests.an_unsaid_plane_is_told_of_once()
+  local TEXT <const> = "for i = 1, 2 do gr.plane('p' .. i) end gr.render(gr.node('n'), 'out', 4, 4, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {})"
+  local said, code = run(TEXT)
+  local _, count = said:gsub("variants have other squares", "")
+  check(code == 0 and count == 1 and said:find "%-%-gr%-plane says which: xz, xz%-2, xz%-corner, xy", "%s", said)
+  said, code = run(TEXT, "--gr-plane xz")
+  check(code == 0 and said == " exit 0\n", "an option that says it is enough: %s", said)
+  said, code = run(TEXT, "--gr-plane yz")
+  check(code == 2 and said:find('--gr-plane: "xz", "xz-2", "xz-corner", "xy", "xy-2" or "xy-corner" expected, got "yz"', 1, true), "%s", said)
+end
+
+-- About another axis a solid is as if it were turned.
+function tests.round_solids_have_an_axis()
+  for _, shape in ipairs { "cylinder", "cone" } do
+    local TURNED <const> = PLAIN .. "lights = { gr.light({5, 9, 9}, {0.5, 0.4, 0.3}, {1, 0, 0}) } "
+    local SMALL <const> = " s:scale(0.4, 0.4, 0.4)"
+    local function by(axis, turn) return TURNED .. ("gr.options.axis = '%s' s = gr.%s('s') "):format(axis, shape) .. turn .. SMALL end
+    same { by("z", "s:rotate('x', -90)"), by("y", "") }
+    same { by("z", "s:rotate('y', 90)"), by("x", "") }
+    local said, code = run("gr.options.axis = 'w'")
+    check(code == 2 and said:find('gr.options.axis: "x", "y" or "z" expected, got "w"', 1, true), "%s", said)
+  end
+end
+
+-- A floor under a ball and a lamp over it.
+local FLOOR <const> = "m = gr.material({0.4, 0.4, 0.4}, {0, 0, 0}, 0) s = gr.plane('s', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1) "
+  .. "b = gr.nh_sphere('b', {-0.2, 0, 0.2}, 0.1) b:set_material(m) s:add_child(b) lights = { %s }"
+
+function tests.lamps_have_a_surface()
+  local point = FLOOR:format "gr.light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0})"
+  same {
+    point, FLOOR:format "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0)",
+    FLOOR:format "gr.arealight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0, 40)", FLOOR:format "gr.sphericallight({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, 0)",
+  }
+  local _, sharp = look(point)
+  for _, form in ipairs { -- small ones are points, large ones have soft shadows
+    "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, %g / 2, 20)",
+    "gr.area_light({0.3, 0, 1}, {1, 0.8, 0.6}, {1, 0.1, 0}, {0, 0, -1}, {0, 1, 0}, %g, 30)",
+    "gr.area_light({0.3 - %g / 2, -%g / 2, 1}, {%g, 0, 0}, 5, {0, %g, 0}, 8, {1, 0.8, 0.6}, {1, 0.1, 0})",
+    "gr.rect_light({0.3, 0, 1}, %g, %g, {1, 0.8, 0.6}, {1, 0.1, 0}, 5)",
+  } do
+    local _, small = look(FLOOR:format(form:gsub("%%g", "1e-7")))
+    local _, large = look(FLOOR:format(form:gsub("%%g", "0.4")))
+    local apart, soft = 0, 0
+    for i = 1, #sharp do
+      apart = math.max(apart, math.abs(small:byte(i) - sharp:byte(i)))
+      soft = math.max(soft, math.abs(large:byte(i) - sharp:byte(i)))
+    end
+    check(apart <= 1 and soft > 20, "%s: %d codes from a point's, %d when large", form, apart, soft)
+  end
+end
+
+-- What the forms say in other words is the same lamp; a further list of lights is part of the first.
+function tests.lamps_of_several_forms_are_one()
+  same {
+    FLOOR:format "gr.rect_light({0.3, 0, 1}, 0.4, 0.2, {0.5, 0.4, 0.3}, {1, 0, 0}, 40)",
+    FLOOR:format "gr.area_light({0.1, 0, 0.9}, {0.4, 0, 0}, 5, {0, 0, 0.2}, 8, {0.5, 0.4, 0.3}, {1, 0, 0})",
+  }
+  local END <const> = " s:set_material(m) gr.render(s, 'out', 16, 16, {0, 0, 100}, {0, 0, -1}, {0, 1, 0}, 0.5, {1, 1, 1}, %s) os.exit()"
+  local BOTH <const> = FLOOR:format "" .. "a, b = gr.light({0.3, 0, 1}, {0.1, 0, 0}), gr.area_light({0, 0, 1}, {0.1, 0, 0.1}, {1, 0, 0}, 0.1)" .. END
+  same { BOTH:format "{a, b}", BOTH:format "{a}, {b}" }
+end
+
+function tests.what_is_too_much_is_told_of_once()
+  local END <const> = " gr.render(gr.node('n'), 'out', 4, 4, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, 30, {1, 1, 1}, {}%s)"
+  for text, message in pairs {
+    ["gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1.5)"] = "gr.light: left out: 1.5",
+    ["gr.cylinder('c', 0.25)"] = "gr.cylinder: left out: 0.25",
+    ["gr.plane('p', 10)"] = "gr.plane: left out: 10",
+    ["gr.node('n'):scale(1, 1, 1, {1})"] = "gr.scale: left out: table of 1",
+    ["gr.area_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1, 4, 'soft')"] = 'gr.area_light: left out: "soft"',
+  } do
+    local said, code = run(("for i = 1, 3 do %s end"):format(text) .. END:format "", "--gr-plane xz")
+    check(code == 0 and said == "glint: warning: scene.lua:1: " .. message .. "\n exit 0\n", "%s: %s", text, said)
+  end
+  local said, code = run(END:format ", 16, 0, {}, nil, 'x'")
+  check(code == 0 and said:find('gr.render: left out: 16, 0, table of 0, nil, "x"', 1, true), "%s", said)
+  said, code = run("gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 0, 0) gr.cylinder('c', nil)" .. END:format ", 0")
+  check(code == 0 and said == " exit 0\n", "what says nothing: %s", said)
+end
+
 function tests.errors_name_the_call()
   write("text.png", "no picture")
   local function refuses(text, message)
@@ -275,6 +380,19 @@ function tests.errors_name_the_call()
   refuses("m:set_ri(0)", "gr.set_ri: index: number > 0 expected, got 0")
   refuses("gr.refractive()", "gr.refractive: index: number expected, got nil")
   refuses("gr.reflective_material({1, 1, 1}, {0, 0, 0}, 1)", "gr.reflective_material: reflectivity: number expected, got nil")
+  refuses("gr.plane('p', {0, 0}, {1, 0, 0}, {0, 1, 0}, 1)", "gr.plane: middle: table of 3 numbers expected, got table of 2")
+  refuses("gr.plane('p', {0, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1)", "gr.plane: u: a direction other than {0, 0, 0} expected")
+  refuses("gr.plane('p', {0, 0, 0}, {1, 0, 0}, {0, 1, 0})", "gr.plane: edge: number expected, got nil")
+  refuses("gr.plane('p', {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 0)", "gr.plane: height: number above 0 expected, got 0")
+  refuses("gr.plane('p', {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, 1)", "gr.plane: v: another direction than that of u expected")
+  refuses("gr.area_light(0.45, {0, 0, 0}, {1, 1, 1}, {1, 0, 0})", "gr.area_light: {position}, {colour}, {fall-off}, radius expected, got 0.45 first")
+  refuses("gr.area_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0})", "gr.area_light: radius: number expected, got nil")
+  refuses("gr.area_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, -1)", "gr.area_light: radius: number >= 0 expected, got -1")
+  refuses("gr.arealight({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, 1, 0.5)", "gr.arealight: samples: number >= 1 expected, got 0.5")
+  refuses("gr.area_light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 2, 0}, 1)", "gr.area_light: up: another direction than that of the normal")
+  refuses("gr.area_light({0, 0, 0}, {1, 0, 0}, 4, {2, 0, 0}, 4, {1, 1, 1})", "gr.area_light: edge: two edges of different directions expected")
+  refuses("gr.rect_light({0, 0, 0}, 0, 1, {1, 1, 1})", "gr.rect_light: width: number above 0 expected, got 0")
+  refuses("gr.rect_light({0, 0, 0}, 1, 1, {1, -1, 1})", "gr.rect_light: colour[2]: number >= 0 expected, got -1")
   refuses("gr.normal_map('four.png', 1)", "gr.normal_map: this function is not part of the dialect")
   refuses("gr.bump('four.png'):remap(1)", "bump:remap: this method is not part of the dialect")
 end

@@ -6,6 +6,7 @@ local check = {}
 
 local error, pairs, rawget, rawlen, tonumber, tostring, type = error, pairs, rawget, rawlen, tonumber, tostring, type
 local format, getinfo, huge, mathtype = string.format, debug.getinfo, math.huge, math.type
+local abs, concat, max, select = math.abs, table.concat, math.max, select
 
 local own = {} -- sources of the dialect's modules: errors are not theirs
 
@@ -36,6 +37,17 @@ function check.tell(key, text, ...)
   if told[key] then return end
   told[key] = true
   glint._warn(placed(text, ...))
+end
+
+--- Tells once of arguments beyond those that a call reads; what says nothing (0, false, "") is passed over in silence.
+function check.left_out(call, ...)
+  local texts, says = {}, false
+  for i = 1, select("#", ...) do
+    local value = select(i, ...)
+    texts[i] = check.spelling(value)
+    says = says or value and value ~= 0 and value ~= ""
+  end
+  if says then check.tell(call .. " left out", "gr.%s: left out: %s", call, concat(texts, ", ")) end
 end
 
 --- The file whose code calls the dialect, or nil where it is no file.
@@ -88,6 +100,13 @@ function check.at_least(call, argument, value, least)
   return number
 end
 
+--- A number above `limit`.
+function check.above(call, argument, value, limit)
+  local number = check.number(call, argument, value)
+  if number <= limit then check.refuse(call, argument, "number above " .. limit, value) end
+  return number
+end
+
 --- A table that is nothing of the dialect's.
 function check.list(call, argument, value)
   if type(value) ~= "table" or spelt[value] then check.refuse(call, argument, "table", value) end
@@ -105,6 +124,16 @@ function check.vector(call, argument, value, n, least)
     out[i] = least and check.at_least(call, entry, number, least) or check.number(call, entry, number)
   end
   return out
+end
+
+--- A new table of 3 numbers, of length 1 along those of the value.
+function check.direction(call, argument, value)
+  local out = check.vector(call, argument, value, 3)
+  local most = max(abs(out[1]), abs(out[2]), abs(out[3]))
+  if most == 0 then check.raise("gr.%s: %s: a direction other than {0, 0, 0} expected", call, argument) end
+  local x, y, z = out[1] / most, out[2] / most, out[3] / most
+  local length = (x * x + y * y + z * z) ^ 0.5
+  return { x / length, y / length, z / length }
 end
 
 --- A string; a number counts as one.

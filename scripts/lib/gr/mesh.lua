@@ -90,6 +90,21 @@ local function read_face(face, i, count)
   return out
 end
 
+--- A parallelogram with a picture's coordinates, lit on both sides; nil where it has no area. It says nothing about the
+--- scene's generation.
+function mesh.square(corner, u, v)
+  local numbers = {}
+  for i = 1, 3 do
+    local a, b, c = corner[i], u[i], v[i]
+    numbers[i], numbers[3 + i], numbers[6 + i], numbers[9 + i] = a, a + b, a + b + c, a + c
+  end
+  local lower = { 0, 1, 2, uv = { { 0, 0 }, { 1, 0 }, { 1, 1 } } }
+  local upper = { 0, 2, 3, uv = { { 0, 0 }, { 1, 1 }, { 0, 1 } } }
+  local model = new_model(numbers, { lower, upper })
+  model.two_sided = true
+  return #model.faces == 6 and model or nil
+end
+
 --- A model of tables, the first generation's.
 function mesh.of_tables(vertices, faces)
   check.list("mesh", "vertices", vertices)
@@ -116,9 +131,9 @@ function mesh.of_file(path)
   return loaded[path]
 end
 
-local function try(vertices, faces, name, uv)
+local function try(vertices, faces, name, uv, two_sided)
   return pcall(glint.mesh,
-    { vertices = vertices, faces = faces, uv = uv, shading = "faceted", two_sided = false, name = name })
+    { vertices = vertices, faces = faces, uv = uv, shading = "faceted", two_sided = two_sided or false, name = name })
 end
 
 local function add_fan(faces, corners, numbers)
@@ -180,7 +195,7 @@ function mesh.shape(model, name)
   local flat = #model.polygons == 0
   local faces = flat and model.faces or all_faces(model, false)
   if #faces == 0 then return nil end
-  local good, shape = try(model.vertices, faces, name, coordinates_of(model, faces))
+  local good, shape = try(model.vertices, faces, name, coordinates_of(model, faces), model.two_sided)
   if not good and not flat and shape:find "cross itself" then
     faces = all_faces(model, true)
     good, shape = try(model.vertices, faces, name, coordinates_of(model, faces))

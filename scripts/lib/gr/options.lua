@@ -3,12 +3,18 @@
 --   order       "pre" or "post": how transforms are multiplied; nil, the default: as the scene's generation does
 --   pixel       where in its pixel a ray passes, 0 (the corner) or 0.5
 --   specular    "phong" or "blinn"
+--   plane       the square of gr.plane(name): "xz" or "xy" of edge 1 around the origin, "xz-2" or "xy-2" of edge 2,
+--               "xz-corner" or "xy-corner" of edge 1 from the origin on; nil, the default: "xz", and told of
+--   axis        "x", "y" or "z": of gr.cylinder and gr.cone
 --   background  {r, g, b} from 0 on, "r,g,b", or "#rrggbb", the codes of the picture
 local check = require "gr.check"
 check.own_source()
 
 local pairs, tonumber, type = pairs, tonumber, type
-local values = { pixel = 0.5, specular = "phong", background = { 0, 0, 0 } }
+local values = { pixel = 0.5, specular = "phong", axis = "z", background = { 0, 0, 0 } }
+
+local PLANES = { "xz", "xz-2", "xz-corner", "xy", "xy-2", "xy-corner",
+  text = '"xz", "xz-2", "xz-corner", "xy", "xy-2" or "xy-corner"' }
 
 local function read_background(value)
   if type(value) == "table" then return check.vector("options.background", "colour", value, 3, 0) end
@@ -32,6 +38,8 @@ local readers = {
   specular = function(value)
     return check.choice("specular", { "phong", "blinn", text = '"phong" or "blinn"' }, value)
   end,
+  plane = function(value) return value and check.choice("plane", PLANES, value) end,
+  axis = function(value) return check.choice("axis", { "x", "y", "z", text = '"x", "y" or "z"' }, value) end,
   background = read_background,
 }
 

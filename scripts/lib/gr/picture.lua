@@ -12,8 +12,8 @@ local surface = require "gr.surface"
 check.own_source()
 local picture = {}
 
-local error, ipairs, pairs, pcall, type, utf8 = error, ipairs, pairs, pcall, type, utf8
-local floor = math.floor
+local error, ipairs, pairs, pcall, select, type, utf8 = error, ipairs, pairs, pcall, select, type, utf8
+local floor, unpack = math.floor, table.unpack
 
 local MOST_SHAPES = 1 << 22
 
@@ -60,7 +60,7 @@ end
 local function generation_of_meshes(count)
   local found
   for node in pairs(count) do
-    if node.kind == "mesh" then
+    if node.kind == "mesh" and node.model.generation then
       if found and found ~= node.model.generation then return nil end
       found = node.model.generation
     end
@@ -93,6 +93,8 @@ local function cut_name(name)
   return (name:gsub("%c", " "))
 end
 
+local AXES = { x = { 1, 0, 0 }, y = { 0, 1, 0 }, z = { 0, 0, 1 } }
+
 -- Shapes that are a glint shape under a transform of its own.
 local makers = {
   sphere = function(fields, node)
@@ -103,12 +105,12 @@ local makers = {
     fields.min, fields.max = node.min, node.max
     return glint.box(fields)
   end,
-  cylinder = function(fields)
-    fields.base, fields.top, fields.radius = { 0, 0, 0 }, { 0, 0, 1 }, 1
+  cylinder = function(fields, node)
+    fields.base, fields.top, fields.radius = { 0, 0, 0 }, AXES[node.axis], 1
     return glint.cylinder(fields)
   end,
-  cone = function(fields)
-    fields.base, fields.top, fields.radius = { 0, 0, 0 }, { 0, 0, 1 }, 1
+  cone = function(fields, node)
+    fields.base, fields.top, fields.radius = { 0, 0, 0 }, AXES[node.axis], 1
     return glint.cone(fields)
   end,
   torus = function(fields, node)
@@ -198,7 +200,8 @@ local function part_of(node, order, count, map, dressed)
   if node.kind == "combined" then return combine(node, order, count, map, dressed) end
   if node.is_nothing then return nil end
   if node.kind == "mesh" then
-    check.raise("gr.render: mesh '%s' is a part of a combined solid, which is made of other shapes only", node.name)
+    check.raise("gr.render: %s '%s' is a part of a combined solid, which is made of other shapes only", node.call,
+      node.name)
   end
   if not dressed then need_material(node) end
   local plain = not node.material and not node.picture
@@ -296,18 +299,33 @@ local function read_file(value)
   return (name:gsub("%%", "%%%%"):gsub("#", "%%#"))
 end
 
-local function read_lights(value, to_light)
+-- Adds a list of lights to `lights`.
+local function read_lights(lights, value, to_light)
   check.list("render", "lights", value)
-  local lights = {}
   for i = 1, #value do
-    lights[i] = to_light(value[i])
-    if not lights[i] then check.refuse("render", "lights[" .. i .. "]", "light", value[i]) end
+    local light = to_light(value[i])
+    if not light then check.refuse("render", "lights[" .. i .. "]", "light", value[i]) end
+    lights[#lights + 1] = light
   end
-  return lights
+end
+
+-- Variants have their area lights in a list of their own, and numbers that are theirs.
+local function read_more(lights, to_light, ...)
+  local others, count = {}, 0
+  for i = 1, select("#", ...) do
+    local value = select(i, ...)
+    if type(value) == "table" and to_light(value[1]) then
+      read_lights(lights, value, to_light)
+    else
+      count = count + 1
+      others[count] = value
+    end
+  end
+  check.left_out("render", unpack(others, 1, count))
 end
 
 --- gr.render. to_light: what was made by gr.light, of a value, or nil.
-function picture.render(root, to_light, file, width, height, eye, view, up, fov, ambient, lights)
+function picture.render(root, to_light, file, width, height, eye, view, up, fov, ambient, lights, ...)
   local options_of_picture = { transfer = "none", rounding = "truncate" }
   options_of_picture.output = read_file(file)
   options_of_picture.width = read_side("width", width)
@@ -318,7 +336,10 @@ function picture.render(root, to_light, file, width, height, eye, view, up, fov,
   camera.up = read_direction("up", up)
   camera.fov = read_fov(fov)
   ambient = check.vector("render", "ambient", ambient, 3, 0)
-  local scene = scene_of(root, read_lights(lights, to_light))
+  local shining = {}
+  read_lights(shining, lights, to_light)
+  read_more(shining, to_light, ...)
+  local scene = scene_of(root, shining)
   scene.camera = engine(glint.camera, camera)
   scene.ambient = ambient
   scene.background = options.background
