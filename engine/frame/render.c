@@ -10,6 +10,7 @@
 #include "engine/frame/render.h"
 #include "engine/reuse/reuse.h"
 #include "engine/tile/tile.h"
+#include "engine/plan/tints.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -32,6 +33,7 @@ struct glint_renderer {
     glint_reuse reuse;
     glint_shading_points_cached shading_points;
     glint_raster raster;
+    glint_tints tints; ///< of frames where what transmits tints shadows
     glint_grids own_grids, *grids; ///< a renderer of bases has that of its frames
     glint_image *last; ///< the last frame, given again when nothing it reads changed
     /// Pictures given before, whose memory is used again once no other reference holds them.
@@ -254,6 +256,10 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
                               : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
     if (status)
         return status;
+    if (plan->tints) {
+        glint_tints_find(&renderer->tints, plan, &shared->geometry);
+        shared->tints = &renderer->tints;
+    }
     if (shared->base) { // other pixels in every frame
         glint_reuse_clear(&renderer->reuse);
     } else {

@@ -236,9 +236,8 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
         for (uint32_t i = 0; i < count;)
             i += shine(tile, frame, from, i, count);
         glint_tile_shade(tile, frame, from, count);
-        for (uint32_t i = 0; i < count && plan->tints; i++)
-            if (plan->lights[from + i].shadows && glint_tile_is_shadowed(tile, plan, i))
-                glint_tile_transparent_shadow(tile, frame, from + i, i);
+        if (plan->tints && glint_tile_is_shadowed(tile, plan, from, count))
+            glint_tile_transparent_shadows(tile, frame, from, count);
         from += count;
     } while (from < lights);
 }

@@ -86,9 +86,8 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
     uint16_t whole[GLINT_LIGHT_CHUNK][GLINT_TILE_GROUPS], unlit[GLINT_TILE_GROUPS];
     glint_shade_planes planes;
     glint_shade_args args = glint_tile_shade_args(tile, frame, from, count, lights, &planes);
-    if (plan->dims && count > 0)
-        glint_tile_find_dim(tile, frame);
-    for (uint32_t i = 0; i < count && plan->dims; i++) { // no light is summed
+    const bool dims = plan->dims && count > 0 && glint_tile_find_dim(tile, frame);
+    for (uint32_t i = 0; i < count && dims; i++) { // no light is summed
         if (!plan->lights[from + i].shadows)
             continue;
         for (uint32_t g = 0; g < tile->group_count; g++)

@@ -49,6 +49,7 @@ typedef struct glint_tile_frame {
     bool time_stages, count_work;
     glint_shading_points_cached *shading_points; ///< for the stage vertex
     const glint_raster *raster; ///< NULL: everything is cast
+    const struct glint_tints *tints; ///< where what transmits is, in frames where that tints shadows; else NULL
 } glint_tile_frame;
 
 /// One light's results for one sample of each pixel, when they are not kept.
@@ -338,8 +339,9 @@ void glint_tile_indirect(glint_tile *tile, const glint_tile_frame *frame, const 
 /// tile/transparent_shadow.c: light through transparent objects.
 struct glint_transparent_shadow *glint_transparent_shadow_create(void);
 void glint_transparent_shadow_destroy(struct glint_transparent_shadow *transparent_shadow);
-/// Finds the points whose light goes through what absorbs from its first step on. The points are found.
-void glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
+/// Finds the points whose light goes through what absorbs from its first step on, and returns whether there are any. The points
+/// are found.
+bool glint_tile_find_dim(const glint_tile *tile, const glint_tile_frame *frame);
 /// After that: those lanes of group `g` that are open to a light are not lit by it as by others, but by its tint.
 uint16_t glint_tile_dim_lanes(const glint_tile *tile, uint32_t g);
 /// Where sample i sees a light sample. `scale`: see glint_light_args. The point is found, and for GLINT_EMIT_CONE the normal.
@@ -348,11 +350,13 @@ void glint_tile_sample_place(const glint_tile *tile, glint_precision precision, 
 /// Where sample i's ray to a light goes, from its point: directional: the way there.
 void glint_tile_light_target(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
                              uint32_t i, double out[3]);
-/// Whether the light in `slot` is kept from any point, or dimmed on its way to one.
-bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t slot);
-/// Adds to the sums what light number `light` of the plan, in `slot`, gives to points that it does not reach freely, or not
+/// Whether one of `count` lights of the plan, from number `first` on, is kept from any point, or dimmed on its way to one.
+bool glint_tile_is_shadowed(const glint_tile *tile, const glint_plan *plan, uint32_t first, uint32_t count);
+/// Whether light on its way to one of the tile's points may go through something. The points are found.
+bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light);
+/// Adds to the sums what `count` lights of the plan, from number `first` on, give to points that they do not reach freely, or not
 /// whole. The points are found.
-void glint_tile_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, uint32_t light, uint32_t slot);
+void glint_tile_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, uint32_t first, uint32_t count);
 
 /// Whether each ray has its origin and direction in the arrays: those of an orthographic camera, of one with a lens, and
 /// of batches.

@@ -246,14 +246,14 @@ static void find_lights(glint_tile *tile, const glint_tile_frame *frame, walk *w
     }
 }
 
-/// What a light gives through transparent objects.
-static void find_transparent_shadow(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t index,
-                                    uint32_t slot)
+/// What a chunk of lights gives through transparent objects.
+static void find_transparent_shadows(glint_tile *tile, const glint_tile_frame *frame, walk *w, uint32_t first,
+                                     uint32_t count)
 {
-    if (!frame->plan->lights[index].shadows || !glint_tile_is_shadowed(tile, frame->plan, slot))
+    if (!glint_tile_is_shadowed(tile, frame->plan, first, count))
         return;
     need_points(tile, frame, w);
-    glint_tile_transparent_shadow(tile, frame, index, slot);
+    glint_tile_transparent_shadows(tile, frame, first, count);
 }
 
 /// What other surfaces and the background light.
@@ -340,8 +340,8 @@ static void sample(glint_tile *tile, const glint_tile_frame *frame, uint32_t k)
             glint_tile_shade(tile, frame, from, count);
         if (frame->plan->derivatives)
             derive(tile, frame, &w, any, from, count);
-        for (uint32_t i = 0; i < count && frame->plan->tints; i++)
-            find_transparent_shadow(tile, frame, &w, from + i, i);
+        if (frame->plan->tints)
+            find_transparent_shadows(tile, frame, &w, from, count);
         from += count;
     } while (from < lights && !glint_tile_cancelled(frame));
     if (shading_points)

@@ -1,0 +1,39 @@
+/// Where a ray to a light may meet something transparent: by bounds alone, so that other rays are not followed. Internal.
+#ifndef GLINT_TINTS_H
+#define GLINT_TINTS_H
+
+#include "engine/plan/plan.h"
+
+#define GLINT_TINTS_MAX 64
+
+typedef struct glint_ball {
+    double center[3], radius;
+} glint_ball;
+
+/// Balls around all that transmits light in a frame.
+typedef struct glint_tints {
+    uint32_t count;
+    bool everywhere; ///< some of it has no end: the balls mean nothing
+    double extent; ///< of the geometry
+    glint_ball of[GLINT_TINTS_MAX];
+} glint_tints;
+
+/// Of a plan with `tints`: one ball for each primitive, or for neighbours in the order of the table where there are more.
+void glint_tints_find(glint_tints *tints, const glint_plan *plan, const glint_geometry_table *table);
+
+/// Where a point's rays to one light go.
+typedef struct glint_tint_light {
+    bool directional;
+    double place[3]; ///< directional: the direction
+    double radius; ///< around the place, of an area light's samples
+} glint_tint_light;
+
+/// Those of a group's lanes whose rays to a light may meet one of `count` balls that `chosen` lists. point: sixteen of each
+/// coordinate.
+uint16_t glint_tints_lanes(const glint_tints *tints, const uint16_t *chosen, uint32_t count,
+                           const double point[3][GLINT_GROUP], uint16_t lanes, const glint_tint_light *light);
+/// Fills `chosen` with the balls that a ray from any point of a ball to the light may meet. Returns how many.
+uint32_t glint_tints_choose(const glint_tints *tints, const glint_ball *points, const glint_tint_light *light,
+                            uint16_t chosen[GLINT_TINTS_MAX]);
+
+#endif
