@@ -678,7 +678,7 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
 /// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces; colours are passed over.
 /// else  Wavefront .obj: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative), and where
 ///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd,
-///       map_Ks and map_d (.png; of the last, where red is below one half there is a hole). What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
+///       map_Ks, map_d (where red is below one half there is a hole) and map_Bump (grey, with its -bm as height); .png. What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points
 ///       are passed over.
 ///
 /// Of .stl and .ply, faces without an area are left out.

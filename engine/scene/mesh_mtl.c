@@ -1,15 +1,16 @@
-/// Materials of .obj files: Kd, Ks, Ns, d, map_Kd, map_Ks and map_d of the .mtl files that they name.
+/// Materials of .obj files: Kd, Ks, Ns, d, map_Kd, map_Ks, map_d and map_Bump of the .mtl files that they name.
 #include "engine/scene/mesh_mtl.h"
 
 #include "engine/base/status.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define NO_FACE 0xffffffffu
 
 /// Pictures that a material may have.
-typedef enum map_kind { MAP_KD, MAP_KS, MAP_D, MAP_COUNT } map_kind;
+typedef enum map_kind { MAP_KD, MAP_KS, MAP_D, MAP_BUMP, MAP_COUNT } map_kind;
 
 /// A material as a file has it. Sets find these by their key.
 typedef struct entry {
@@ -20,6 +21,7 @@ typedef struct entry {
     bool lacks_uv; ///< a face has it and a corner without coordinates
     char *map[MAP_COUNT]; ///< NULL: none
     glint_mesh_map place[MAP_COUNT]; ///< of each
+    double height; ///< -bm of the relief, world units; 0: the file does not say it
 } entry;
 
 typedef struct picture {
@@ -36,6 +38,8 @@ struct glint_mesh_library {
     char *file; ///< the first that was named; NULL: none
     size_t missing; ///< materials of faces that no file has
     char first_missing[GLINT_NAME_SIZE];
+    size_t flat; ///< materials whose relief has no height
+    char first_flat[GLINT_NAME_SIZE];
     bool told; ///< a file could not be read, which was a warning
 };
 
@@ -190,12 +194,14 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, map_ki
 {
     glint_mesh_map *place = &to->place[kind];
     at = glint_skip_blanks(at);
+    to->height = kind == MAP_BUMP ? 0 : to->height;
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
         at = skip_option(text, at, words,
-                         glint_mesh_is_word(at, "-o")   ? place->offset
-                         : glint_mesh_is_word(at, "-s") ? place->scale
-                                                        : NULL);
+                         glint_mesh_is_word(at, "-o")                        ? place->offset
+                         : glint_mesh_is_word(at, "-s")                      ? place->scale
+                         : kind == MAP_BUMP && glint_mesh_is_word(at, "-bm") ? &to->height
+                                                                             : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
             place->clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
     }
@@ -206,7 +212,10 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, map_ki
     return to->map[kind] ? GLINT_OK : glint_fail_nomem(text->error);
 }
 
-static const char *const map_words[MAP_COUNT] = { "map_Kd", "map_Ks", "map_d" };
+static const char *const map_words[MAP_COUNT] = { "map_Kd", "map_Ks", "map_d", "map_Bump" };
+/// What a material has where its picture cannot be read.
+static const char *const map_instead[MAP_COUNT] = { "its Kd", "its Ks", "its d", "no relief" };
+static const char *const bump_words[] = { "map_bump", "bump" }; ///< other spellings of map_Bump
 
 static glint_status read_field(const glint_mesh_text *text, const char *at, entry *to)
 {
@@ -232,6 +241,9 @@ static glint_status read_field(const glint_mesh_text *text, const char *at, entr
     for (int kind = 0; kind < MAP_COUNT; kind++)
         if (glint_mesh_is_word(at, map_words[kind]))
             status = read_map(text, at + strlen(map_words[kind]), (map_kind)kind, to);
+    for (size_t i = 0; i < sizeof bump_words / sizeof *bump_words; i++)
+        if (glint_mesh_is_word(at, bump_words[i]))
+            status = read_map(text, at + strlen(bump_words[i]), MAP_BUMP, to);
     return status;
 }
 
@@ -324,7 +336,7 @@ glint_status glint_mesh_library_read(glint_mesh_library *library, const glint_me
 static glint_status find_picture(glint_mesh_library *library, const glint_mesh_reader *reader, const entry *e,
                                  map_kind kind, glint_texture **out)
 {
-    const bool how[2] = { e->place[kind].clamp, kind == MAP_D };
+    const bool how[2] = { e->place[kind].clamp, kind >= MAP_D };
     uint32_t number;
     glint_texture_desc desc = glint_texture_desc_default();
     glint_error inner;
@@ -338,7 +350,7 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
     picture *found = (picture *)library->pictures.items + number;
     if (library->pictures.count > before) {
         desc.path = e->map[kind];
-        desc.linear = kind == MAP_D; // a number, not a colour
+        desc.linear = kind >= MAP_D; // numbers, not colours
         desc.wrap = e->place[kind].clamp ? GLINT_WRAP_CLAMP : GLINT_WRAP_REPEAT;
         if (reader->desc->reads)
             reader->desc->reads(reader->desc->context, e->map[kind]);
@@ -346,8 +358,8 @@ static glint_status find_picture(glint_mesh_library *library, const glint_mesh_r
         if (status == GLINT_ERR_NOMEM)
             return glint_fail_nomem(reader->error);
         if (status)
-            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has its %s in place of its %s: %.200s",
-                            e->desc.name, map_words[kind] + 4, map_words[kind], inner.message);
+            glint_mesh_warn(reader->desc, reader->text.path, "material '%s' has %s in place of its %s: %.200s",
+                            e->desc.name, map_instead[kind], map_words[kind], inner.message);
     }
     *out = found->texture;
     return GLINT_OK;
@@ -367,23 +379,58 @@ static void dissolve(entry *e)
         e->desc.ior = 1;
 }
 
+/// Whether a picture's red, green and blue are alike in the mean: heights are grey, directions of normals are bluish.
+static glint_status find_grey(const glint_texture *texture, bool *grey, glint_error *error)
+{
+    static const double one[3] = { 1, 1, 1 }, inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // all of it
+    const glint_mesh_map whole = { .scale = { 1, 1 } };
+    double mean[3] = { 0 };
+    glint_program *program = NULL;
+    glint_status status = glint_mesh_paint(texture, &whole, one, 3, &program, error);
+    if (!status)
+        status = glint_program_evaluate(program, inputs, mean, error);
+    glint_program_release(program);
+    *grey = fabs(mean[0] - mean[1]) < 0.02 && fabs(mean[0] - mean[2]) < 0.02;
+    return status;
+}
+
+/// Whether the relief of a material has a height. Those without are counted.
+static bool has_height(glint_mesh_library *library, const entry *e)
+{
+    if (e->height == 0 && library->flat++ == 0)
+        memcpy(library->first_flat, e->desc.name, sizeof library->first_flat);
+    return e->height != 0;
+}
+
 /// The pattern of one of its pictures, times what the file says beside it.
 static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *reader, const entry *e, map_kind kind,
                           glint_program **out)
 {
     static const double one[3] = { 1, 1, 1 };
     const double *const ks = e->desc.has_specular || e->dull ? e->desc.specular : one;
-    const double *const factor[MAP_COUNT] = { e->desc.diffuse, ks, one };
+    const double height[3] = { e->height };
+    const double *const factor[MAP_COUNT] = { e->desc.diffuse, ks, one, height };
     glint_texture *texture = NULL;
     glint_status status = GLINT_OK;
-    if (e->map[kind] && e->lacks_uv)
+    if (!e->map[kind] || (kind == MAP_BUMP && !has_height(library, e)))
+        return GLINT_OK;
+    if (e->lacks_uv)
         glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s' has its %s in place of its %s: faces of it have no coordinates (vt)", e->desc.name,
-                        map_words[kind] + 4, map_words[kind]);
-    else if (e->map[kind])
+                        "material '%s' has %s in place of its %s: faces of it have no coordinates (vt)", e->desc.name,
+                        map_instead[kind], map_words[kind]);
+    else
         status = find_picture(library, reader, e, kind, &texture);
+    bool grey = true;
+    if (!status && texture && kind == MAP_BUMP)
+        status = find_grey(texture, &grey, reader->error);
+    if (!status && !grey) {
+        glint_mesh_warn(reader->desc, reader->text.path,
+                        "material '%s' has no relief in place of its map_Bump: heights in grey expected, and the picture "
+                        "has colours, as pictures of normals do", e->desc.name);
+        return status;
+    }
     if (!status && texture)
-        status = glint_mesh_paint(texture, &e->place[kind], factor[kind], kind == MAP_D ? 1 : 3, out, reader->error);
+        status = glint_mesh_paint(texture, &e->place[kind], factor[kind], kind >= MAP_D ? 1 : 3, out, reader->error);
     return status;
 }
 
@@ -399,6 +446,7 @@ static glint_status make_material(glint_mesh_library *library, const glint_mesh_
     e.desc.program.diffuse = made[MAP_KD];
     e.desc.program.specular = made[MAP_KS];
     e.desc.program.opacity = made[MAP_D];
+    e.desc.program.bump = made[MAP_BUMP];
     e.desc.has_specular = e.desc.has_specular || made[MAP_KS];
     if (!status)
         status = glint_material_create(&e.desc, &material, reader->error);
@@ -444,6 +492,18 @@ static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader
     return GLINT_OK;
 }
 
+/// Once.
+static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
+{
+    char more[32] = "";
+    if (library->flat > 1)
+        snprintf(more, sizeof more, " and %zu more", library->flat - 1);
+    if (library->flat)
+        glint_mesh_warn(reader->desc, reader->text.path,
+                        "material '%s'%s: no relief: map_Bump has no -bm, which says how high it is, in world units",
+                        library->first_flat, more);
+}
+
 /// Once, and not where a file that was not read is the reason.
 static void tell_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
@@ -465,8 +525,10 @@ glint_status glint_mesh_library_make(glint_mesh_library *library, const glint_me
         if (!status)
             status = make_material(library, reader, i);
     }
-    if (!status)
+    if (!status) {
         tell_missing(library, reader);
+        tell_flat(library, reader);
+    }
     return status;
 }
 

@@ -1,4 +1,4 @@
-/// The pattern of a material's picture: map_Kd, map_Ks and map_d of .mtl files.
+/// The pattern of a material's picture: map_Kd, map_Ks, map_d and map_Bump of .mtl files.
 #include "engine/scene/mesh_mtl.h"
 #include "engine/base/maker.h"
 

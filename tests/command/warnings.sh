@@ -282,8 +282,20 @@ mesh() {
     printf "$2" >m.mtl
 }
 scene 'objects = { glint.mesh { file = "m.obj" } }'
-mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nmap_Bump b.png\nanything else\n'
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
 silent "materials that are there"
+mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl a\nbump b.png\nnewmtl b\nmap_bump -bm 0.1 b.png\nmap_Bump -bm none b.png\n'
+warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which says how high it is, in world units$"
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nbump -bm 0.1 b.png\n'
+warns "a relief without coordinates" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
+printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n' >m.obj
+warns "a relief that is not there" "m.obj: material 'a' has no relief in place of its map_Bump: .*b.png: No such file or directory$"
+cat >normals.lua <<'END'
+local glint = require "glint"
+glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, background = { 0.5, 0.5, 1 } }:render { width = 8, height = 8, output = "b.png" }
+END
+"$glint" normals.lua --quiet 2>/dev/null
+warns "a picture of normals" "m.obj: material 'a' has no relief in place of its map_Bump: heights in grey expected, and the picture has colours"
 mesh 'usemtl a\n' ''
 warns "no file of materials" "m.obj: material 'a': the mesh names no file of materials (mtllib)$"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl c\n'

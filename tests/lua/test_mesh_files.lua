@@ -245,6 +245,36 @@ function tests.pictures_of_highlights_and_holes()
   check(image:pixel(36, 21, "specular") == 0, "illum 1 has no highlight")
 end
 
+-- A relief is the bump pattern that a script would write, whatever its spelling, as high as -bm says.
+function tests.reliefs()
+  os.execute("mkdir -p " .. folder .. "/sub")
+  glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1,
+    glint.sphere { center = { 0, 0, 0 }, radius = 2, material = glint.material {
+      diffuse = glint.pattern(function(p) return 0.5 + 0.2 * p.x end) } } }
+    :render { width = 16, height = 16, transfer = "linear" }:save(folder .. "/sub/hill.png", { transfer = "linear" })
+  local photo = glint.texture { file = folder .. "/sub/hill.png", transfer = "linear" }
+  local function render(statement, own)
+    write("some file.mtl", "newmtl left of it\nKd 1 1 1\nnewmtl right\nKd 0.5 0.5 0.5\n" .. statement .. "\n")
+    local mesh = load("plates.obj", PLATES)
+    if own then mesh.materials[2].bump = own end
+    local image = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
+      glint.directional_light { direction = { -1, -0.5, -1 } }, mesh }:render { width = 64, height = 36 }
+    local light = {}
+    for x = 0, 63 do light[#light + 1] = ("%a"):format((image:pixel(x, 14))) end
+    return table.concat(light, " ")
+  end
+  local flat = render ""
+  local function height(of) return glint.pattern(function(_, s) return of * photo(s.uv, s.uv_footprint).r end) end
+  local high, low = render("", height(0.3)), render("", height(0.1))
+  check(high ~= flat and high ~= low, "a relief shows")
+  for _, word in ipairs { "map_Bump", "map_bump", "bump" } do
+    check(render(word .. " -bm 0.3 sub/hill.png") == high, "%s", word)
+  end
+  check(render "bump -bm 0.1 -s 1 1 1 sub/hill.png" == low, "-bm is the height")
+  check(render "bump -bm 0.1 sub/hill.png\nmap_Bump -bm 0.3 sub/hill.png" == high, "the last counts")
+  check(render "bump sub/hill.png" == flat and render "bump -bm 0 sub/hill.png" == flat, "no height, no relief")
+end
+
 function tests.a_material_of_the_script_comes_first()
   write("some file.mtl", MATERIALS)
   local own = glint.material { diffuse = 0.5 }
