@@ -1337,6 +1337,8 @@ typedef struct glint_picture glint_picture;
 /// Reads `path`; what is not a whole file is GLINT_ERR_FORMAT. Without `pixels` only the size and the texts: then the
 /// deflated data are not looked at, the CRCs are. Messages name the file.
 glint_status glint_picture_read(const char *path, bool pixels, glint_picture **out, glint_error *error);
+/// The same of the bytes of a .png, with its pixels; they may be freed after the call.
+glint_status glint_picture_from_bytes(const void *data, size_t size, glint_picture **out, glint_error *error);
 /// Frees the picture with its texts. NULL: nothing.
 void glint_picture_destroy(glint_picture *picture);
 /// Size in pixels.

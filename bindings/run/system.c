@@ -92,24 +92,7 @@ void glintL_wake_clear(const glintL_wake *wake)
         ;
 }
 
-// ---- Pipes and sockets ----
-
-bool glintL_pipe(int ends[2])
-{
-#if HAS_LINUX
-    return pipe2(ends, O_CLOEXEC) == 0;
-#else
-    if (pipe(ends) != 0)
-        return false;
-    if (make_private(ends[0], true) && make_private(ends[1], true))
-        return true;
-    const int why = errno;
-    close(ends[0]);
-    close(ends[1]);
-    errno = why;
-    return false;
-#endif
-}
+// ---- Sockets ----
 
 int glintL_socket(int domain, int type)
 {
@@ -147,8 +130,6 @@ bool glintL_socket_pair(int ends[2])
     return true;
 #endif
 }
-
-void glintL_end_path(int end, char out[32]) { snprintf(out, 32, HAS_LINUX ? "/proc/self/fd/%d" : "/dev/fd/%d", end); }
 
 // ---- The machine ----
 

@@ -25,8 +25,6 @@ void glintL_wake_close(glintL_wake *wake); ///< does nothing unless open
 void glintL_wake_call(const glintL_wake *wake); ///< from any thread, any number of times
 void glintL_wake_clear(const glintL_wake *wake); ///< after poll: calls up to now are taken
 
-/// A pipe whose ends no other program inherits. False: errno says why.
-bool glintL_pipe(int ends[2]);
 /// Sockets that no other program inherits and that never raise SIGPIPE; neither end blocks. -1: errno says why.
 int glintL_socket(int domain, int type);
 int glintL_accept(int listener);
@@ -47,9 +45,6 @@ bool glintL_random(void *bytes, size_t size);
 /// What a path leads to that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
 /// is one, or nothing is there. Does not wait for the other end of a pipe, which opening it would.
 const char *glintL_other_kind(const char *path);
-
-/// A name for the end of a pipe, for what opens files by name.
-void glintL_end_path(int end, char out[32]);
 
 /// The most memory that this process has had at a time, bytes.
 long long glintL_peak_bytes(void);

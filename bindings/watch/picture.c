@@ -1,88 +1,27 @@
 // Pictures of glint watch: as PNG bytes, and made small for a terminal.
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "bindings/watch/watch.h"
 
-// ---- PNG in memory: the engine writes into a pipe, read here ----
-
-typedef struct encoding {
-    const glint_image *image;
-    glint_write_desc desc;
-    int end; // of the pipe, for writing
-    glint_status status;
-    glint_error error;
-} encoding;
-
-static void *encode(void *argument)
-{
-    encoding *e = argument;
-    e->status = glint_image_write(e->image, &e->desc, &e->error);
-    close(e->end);
-    return NULL;
-}
-
-// Reads to the end. False: out of memory; the rest is read all the same, so that the writer can end.
-static bool read_all(int from, watch_picture *picture)
-{
-    size_t room = 0;
-    bool good = true;
-    char spilled[4096];
-    for (;;) {
-        if (good && picture->size == room) {
-            size_t more = room ? 2 * room : 1 << 18;
-            unsigned char *grown = realloc(picture->bytes, more);
-            good = grown != NULL;
-            picture->bytes = grown ? grown : picture->bytes;
-            room = grown ? more : room;
-        }
-        ssize_t got = good ? read(from, picture->bytes + picture->size, room - picture->size)
-                           : read(from, spilled, sizeof spilled);
-        if (got == 0)
-            return good;
-        if (got > 0 && good)
-            picture->size += (size_t)got;
-        if (got < 0 && errno != EINTR)
-            return false;
-    }
-}
+// ---- PNG in memory ----
 
 watch_picture *watch_picture_create(const glint_image *image, const glintL_render *render, glint_error *error)
 {
-    char path[32];
-    int ends[2] = { -1, -1 };
-    pthread_t thread;
     watch_picture *picture = calloc(1, sizeof *picture);
-    if (!picture || !glintL_pipe(ends))
-        goto fail;
+    glint_write_desc desc = { .path = "watch.png", .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone, .dpi = render->dpi };
+    desc.tone.bits = 8; // a screen shows no more
+    if (!picture) {
+        *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
+        return NULL;
+    }
     atomic_init(&picture->references, 1);
-    glintL_end_path(ends[1], path);
-    encoding e = { .image = image, .end = ends[1] };
-    e.desc = (glint_write_desc) { .path = path, .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone };
-    e.desc.tone.bits = 8; // a screen shows no more
-    if (pthread_create(&thread, NULL, encode, &e) != 0)
-        goto fail;
-    bool good = read_all(ends[0], picture);
-    close(ends[0]);
-    pthread_join(thread, NULL);
-    if (good && e.status == GLINT_OK)
+    picture->width = glint_image_width(image);
+    picture->height = glint_image_height(image);
+    if (glint_image_to_bytes(image, &desc, &picture->bytes, &picture->size, error) == GLINT_OK)
         return picture;
-    *error = e.error;
-    if (e.status == GLINT_OK)
-        snprintf(error->message, sizeof error->message, "out of memory");
     watch_picture_release(picture);
-    return NULL;
-fail:
-    snprintf(error->message, sizeof error->message, "picture: %s", strerror(errno));
-    error->status = GLINT_ERR_IO;
-    for (int i = 0; i < 2; i++)
-        if (ends[i] >= 0)
-            close(ends[i]);
-    free(picture);
     return NULL;
 }
 
@@ -105,23 +44,14 @@ void watch_picture_release(watch_picture *picture)
 // sRGB transfer function, IEC 61966-2-1:1999. For a terminal only: files have the engine's, the same on every machine.
 static unsigned char code_of(double linear)
 {
-    double x = linear > 0 ? fmin(linear, 1) : 0; // NaN becomes 0
-    double v = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+    double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
     return (unsigned char)(v * 255 + 0.5);
 }
 
-static void average(const glint_image *image, int x0, int x1, int y0, int y1, unsigned char out[3])
+static double light_of(int code)
 {
-    glint_error error;
-    double sum[3] = { 0 };
-    float pixel[3];
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++)
-            if (glint_image_pixel(image, GLINT_PASS_BEAUTY, x, y, pixel, &error) == GLINT_OK)
-                for (int c = 0; c < 3; c++)
-                    sum[c] += fmin(pixel[c], 1);
-    for (int c = 0; c < 3; c++)
-        out[c] = code_of(sum[c] / ((double)(x1 - x0) * (y1 - y0)));
+    double v = code / 255.0;
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
 // The pixels from *from up to *to belong to place `i` of `places`; at least one.
@@ -133,15 +63,49 @@ static void span(int i, int places, int pixels, int *from, int *to)
         *to = *from + 1;
 }
 
-bool watch_small_create(const glint_image *image, int width, int height, watch_small *out)
+typedef struct shrinking {
+    const glint_picture *from;
+    watch_small *to;
+    double light[256], *sums; // of a code; of a row
+    unsigned char *row; // of the picture
+} shrinking;
+
+// Row y of the small picture: means.
+static void shrink_row(shrinking *s, int y)
 {
-    *out = (watch_small) { width, height, malloc((size_t)width * (size_t)height * 3) };
-    for (int y = 0; y < height && out->rgb; y++)
+    const int width = s->to->width;
+    int x0, x1, y0, y1;
+    span(y, s->to->height, glint_picture_height(s->from), &y0, &y1);
+    memset(s->sums, 0, (size_t)width * 3 * sizeof *s->sums);
+    for (int from = y0; from < y1; from++) {
+        glint_picture_row(s->from, from, 0, s->row);
         for (int x = 0; x < width; x++) {
-            int x0, x1, y0, y1;
-            span(x, width, glint_image_width(image), &x0, &x1);
-            span(y, height, glint_image_height(image), &y0, &y1);
-            average(image, x0, x1, y0, y1, out->rgb + ((size_t)y * (size_t)width + (size_t)x) * 3);
+            span(x, width, glint_picture_width(s->from), &x0, &x1);
+            for (int i = 3 * x0; i < 3 * x1; i++)
+                s->sums[3 * x + i % 3] += s->light[s->row[i]] / (x1 - x0);
         }
-    return out->rgb != NULL;
+    }
+    for (int i = 0; i < 3 * width; i++)
+        s->to->rgb[(size_t)y * (size_t)width * 3 + (size_t)i] = code_of(s->sums[i] / (y1 - y0));
+}
+
+bool watch_small_create(const watch_picture *from, int width, int height, watch_small *out)
+{
+    glint_picture *picture = NULL;
+    glint_error error;
+    *out = (watch_small) { width, height, malloc((size_t)width * (size_t)height * 3) };
+    shrinking s = { .to = out, .sums = malloc((size_t)width * 3 * sizeof(double)), .row = malloc((size_t)from->width * 3) };
+    const bool good = out->rgb && s.sums && s.row &&
+                      glint_picture_from_bytes(from->bytes, from->size, &picture, &error) == GLINT_OK;
+    s.from = picture;
+    for (int code = 0; code < 256; code++)
+        s.light[code] = light_of(code);
+    for (int y = 0; y < height && good; y++)
+        shrink_row(&s, y);
+    glint_picture_destroy(picture);
+    free(s.row);
+    free(s.sums);
+    if (!good)
+        free(out->rgb);
+    return good;
 }

@@ -113,9 +113,9 @@ static place find_place(void)
 }
 
 // The largest size of the picture's shape within the limits, and not above its own.
-static void fit(const glint_image *image, int max_width, int max_height, int *width, int *height)
+static void fit(const watch_picture *picture, int max_width, int max_height, int *width, int *height)
 {
-    double w = glint_image_width(image), h = glint_image_height(image);
+    double w = picture->width, h = picture->height;
     double scale = max_width / w < max_height / h ? max_width / w : max_height / h;
     scale = scale < 1 ? scale : 1;
     *width = w * scale >= 1 ? (int)(w * scale) : 1;
@@ -137,14 +137,14 @@ static void put_color(const watch_terminal *terminal, int layer, const unsigned 
         fprintf(stderr, "\033[%d;5;%dm", layer, cube_color(rgb));
 }
 
-static void draw_blocks(const watch_terminal *terminal, const glint_image *image)
+static void draw_blocks(const watch_terminal *terminal, const watch_picture *picture)
 {
     place p = find_place();
     watch_small small;
     int width, height;
-    fit(image, p.columns, 2 * p.rows, &width, &height);
+    fit(picture, p.columns, 2 * p.rows, &width, &height);
     height += height % 2;
-    if (!watch_small_create(image, width, height, &small))
+    if (!watch_small_create(picture, width, height, &small))
         return;
     for (int y = 0; y < height; y += 2) {
         const unsigned char *upper = small.rgb + (size_t)y * (size_t)width * 3, *lower = upper + (size_t)width * 3;
@@ -160,13 +160,13 @@ static void draw_blocks(const watch_terminal *terminal, const glint_image *image
 
 // ---- Sixels ----
 
-static void draw_sixels(const glint_image *image)
+static void draw_sixels(const watch_picture *picture)
 {
     place p = find_place();
     watch_small small;
     int width, height;
-    fit(image, p.width ? p.width : 640, p.height ? p.height : 360, &width, &height);
-    if (!watch_small_create(image, width, height, &small))
+    fit(picture, p.width ? p.width : 640, p.height ? p.height : 360, &width, &height);
+    if (!watch_small_create(picture, width, height, &small))
         return;
     watch_sixels_put(&small);
     free(small.rgb);
@@ -187,7 +187,7 @@ static void put_base64(const unsigned char *bytes, size_t size)
     }
 }
 
-static void draw_kitty(const glint_image *image, const watch_picture *picture)
+static void draw_kitty(const watch_picture *picture)
 {
     const size_t chunk = 3072; // 4096 digits, the most the protocol takes at once
     place p = find_place();
@@ -195,7 +195,7 @@ static void draw_kitty(const glint_image *image, const watch_picture *picture)
     int width, height;
     cell_width = cell_width > 0 ? cell_width : 8;
     cell_height = cell_height > 0 ? cell_height : 16;
-    fit(image, p.columns * cell_width, p.rows * cell_height, &width, &height);
+    fit(picture, p.columns * cell_width, p.rows * cell_height, &width, &height);
     int columns = width / cell_width, rows = height / cell_height;
     fputs("\033_Ga=d,d=A,q=2\033\\", stderr); // the picture before goes
     for (size_t at = 0; at < picture->size; at += chunk) {
@@ -219,19 +219,18 @@ static void begin(watch_terminal *terminal)
     terminal->is_fresh = false;
 }
 
-void watch_terminal_draw(watch_terminal *terminal, const glint_image *image, const watch_picture *picture,
-                         const char *line)
+void watch_terminal_draw(watch_terminal *terminal, const watch_picture *picture, const char *line)
 {
     static char buffer[1 << 16]; // a picture goes out in few writes
     if (terminal->graphics != WATCH_TEXT) {
         setvbuf(stderr, buffer, _IOFBF, sizeof buffer);
         begin(terminal);
         if (terminal->graphics == WATCH_KITTY)
-            draw_kitty(image, picture);
+            draw_kitty(picture);
         else if (terminal->graphics == WATCH_SIXEL)
-            draw_sixels(image);
+            draw_sixels(picture);
         else
-            draw_blocks(terminal, image);
+            draw_blocks(terminal, picture);
         fprintf(stderr, "\033[0m%s\033[J", line);
         fflush(stderr);
         setvbuf(stderr, NULL, _IONBF, 0);

@@ -149,7 +149,7 @@ static void show(void *context, const glintL_run *run, const glintL_work *work)
              w->frame, of, w->width, w->height, w->is_preview ? ", preview" : "", w->ms,
              w->has_begun ? "change" : "start", *w->warnings ? "\n" : "", w->warnings);
     if (!w->output->quiet && !(w->is_preview && w->terminal.graphics == WATCH_TEXT))
-        watch_terminal_draw(&w->terminal, work->image, picture, line);
+        watch_terminal_draw(&w->terminal, picture, line);
     watch_picture_release(picture);
 }
 

@@ -22,6 +22,7 @@
 
 typedef struct watch_picture { ///< a PNG file in memory; immutable, of any thread
     atomic_int references;
+    int width, height; ///< pixels
     size_t size;
     unsigned char *bytes;
 } watch_picture;
@@ -37,7 +38,7 @@ typedef struct watch_small { ///< a picture of sRGB bytes
 } watch_small;
 
 /// Scales a picture to `width` x `height` by means over its linear light. False: out of memory.
-bool watch_small_create(const glint_image *image, int width, int height, watch_small *out);
+bool watch_small_create(const watch_picture *picture, int width, int height, watch_small *out);
 /// Writes it to stderr as sixels.
 void watch_sixels_put(const watch_small *small);
 
@@ -90,9 +91,8 @@ typedef struct watch_terminal {
 /// What stderr's terminal says of itself; `name` as in --terminal, NULL: query it.
 void watch_terminal_open(watch_terminal *terminal, const char *name, bool color);
 void watch_terminal_close(watch_terminal *terminal);
-/// Draws a picture with a line below it. `picture` is the same one as PNG.
-void watch_terminal_draw(watch_terminal *terminal, const glint_image *image, const watch_picture *picture,
-                         const char *line);
+/// Draws a picture with a line below it.
+void watch_terminal_draw(watch_terminal *terminal, const watch_picture *picture, const char *line);
 void watch_terminal_error(watch_terminal *terminal, const char *message);
 
 // ---- watch/requests.c ----

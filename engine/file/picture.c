@@ -138,6 +138,18 @@ glint_status glint_picture_read(const char *path, bool pixels, glint_picture **o
     return status;
 }
 
+glint_status glint_picture_from_bytes(const void *data, size_t size, glint_picture **out, glint_error *error)
+{
+    const glint_bytes bytes = { .data = (uint8_t *)(uintptr_t)data, .size = size };
+    glint_picture *picture = calloc(1, sizeof *picture);
+    glint_status status = picture ? read_png(picture, &bytes, true, error) : glint_fail_nomem(error);
+    if (status)
+        glint_picture_destroy(picture);
+    else
+        *out = picture;
+    return status;
+}
+
 void glint_picture_destroy(glint_picture *picture)
 {
     if (!picture)

@@ -311,6 +311,16 @@ check "half blocks, two pixels each, within 80 columns" test "$(grep -oa '▀' d
 check "navy is navy" grep -qa $'\033\[38;2;0;0;128m' drawn.blocks
 check "sixel" draws sixel
 check "its size, and its end" grep -qaP '\x1bP[0-9;]*q"1;1;96;54#' drawn.sixel
+# Labels are on what is written, so on what is shown: a red one on a navy picture.
+sed 's/^return scene/scene:add(glint.label { text = "M", at = "top left", color = "red", size = 40 })\nreturn scene/' still.lua >labelled.lua
+for terminal in blocks sixel; do
+    COLORTERM=truecolor timeout 60 "$glint" watch labelled.lua --size 96x54 --terminal "$terminal" >/dev/null 2>"labelled.$terminal" </dev/null &
+    watchers+=($!)
+    check "labels in $terminal" await 'labelled.lua, frame 1 of 1: 96 x 54' 1 "labelled.$terminal"
+done
+check "a label in half blocks" grep -qa $'\033\[38;2;255;0;0m' labelled.blocks
+check "and none without one" eval '! grep -qa $'"'\\033\\[38;2;255;0;0m'"' drawn.blocks'
+check "a label in sixels" eval 'red="#[0-9]+;2;(9[0-9]|100);0;0"; grep -qaE "$red" labelled.sixel && ! grep -qaE "$red" drawn.sixel'
 check "on a real terminal, which does not answer" eval '
     command -v script >/dev/null || { echo "# skip: no script command"; exit 0; }
     (TERM=xterm COLORTERM=truecolor timeout 3 script -qec "timeout 2 $glint watch still.lua --size 96x54" typescript >/dev/null </dev/null)

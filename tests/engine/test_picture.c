@@ -220,6 +220,38 @@ static void test_alpha_opaque(void **state)
     free_world(&w);
 }
 
+/// The bytes of a picture, read back, are its codes; what is cut off is no picture, wherever.
+static void test_bytes_again(void **state)
+{
+    (void)state;
+    world w;
+    make_world(&w, 0);
+    glint_render_desc desc = small_frame(4, 1u << GLINT_PASS_BEAUTY);
+    glint_image *image = render(&w, &desc);
+    const glint_png png = decode(image, &desc);
+    glint_write_desc how = describe("x.png");
+    how.tone = desc.tone;
+    glint_picture *picture = NULL;
+    glint_error error;
+    uint8_t *data, row[3 * WIDTH];
+    size_t size;
+    assert_int_equal(glint_image_to_bytes(image, &how, &data, &size, NULL), GLINT_OK);
+    assert_int_equal(glint_picture_from_bytes(data, size, &picture, &error), GLINT_OK);
+    assert_int_equal(glint_picture_width(picture), WIDTH);
+    assert_int_equal(glint_picture_height(picture), HEIGHT);
+    for (int y = 0; y < HEIGHT; y++) {
+        glint_picture_row(picture, y, 0, row);
+        assert_memory_equal(row, (uint8_t *)png.codes + sizeof row * (size_t)y, sizeof row);
+    }
+    glint_picture_destroy(picture);
+    for (size_t cut = 0; cut < size; cut += size / 50)
+        assert_int_equal(glint_picture_from_bytes(data, cut, &picture, &error), GLINT_ERR_FORMAT);
+    free(data);
+    free(png.codes);
+    glint_image_release(image);
+    free_world(&w);
+}
+
 // ---- Outline --------------------------------------------------------------------------------------------------------
 
 /// A pixel's own line by what it and its neighbours hit: only true where shapes are smooth and hide nothing of their own.
@@ -399,6 +431,7 @@ int main(void)
         cmocka_unit_test(test_alpha_mirror),
         cmocka_unit_test(test_alpha_codes),
         cmocka_unit_test(test_alpha_opaque),
+        cmocka_unit_test(test_bytes_again),
         cmocka_unit_test(test_outline_objects),
         cmocka_unit_test(test_outline_edges),
         cmocka_unit_test(test_outline_drawn),
