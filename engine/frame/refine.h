@@ -24,15 +24,16 @@ typedef struct glint_refine {
     uint8_t *chosen; ///< a byte a pixel: whether it gets all samples
     uint8_t *below; ///< likewise: chosen for the sake of the row before
     size_t capacity; ///< of each
-    float *rows; ///< codes of two rows for each thread
+    float *rows; ///< codes of two rows, or their estimates, for each thread
     size_t row_capacity; ///< of these
     uint64_t count; ///< pixels chosen
 } glint_refine;
 
-/// Chooses among the pixels of `extent`. `base` was rendered as glint_plan_base describes, with or without a lens. Any number
-/// of threads gives the same.
+/// Chooses among the pixels of `extent`. `base` was rendered as glint_plan_base describes, which is `desc`, with or without a lens. Any
+/// number of threads gives the same.
 glint_status glint_refine_choose(glint_refine *refine, const glint_image *base, const glint_extent *extent,
-                                 double threshold, bool lens, glint_pool *pool, glint_error *error);
+                                 const glint_render_desc *desc, double threshold, bool lens, glint_pool *pool,
+                                 glint_error *error);
 void glint_refine_clear(glint_refine *refine);
 
 #endif

@@ -518,8 +518,8 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
         return status;
     const double start = now_ms();
     const glint_extent extent = glint_plan_extent(&plan->desc);
-    status = glint_refine_choose(&renderer->refine, base, &extent, plan->desc.adaptive, plan->lens != NULL, renderer->pool,
-                                 error);
+    status = glint_refine_choose(&renderer->refine, base, &extent, &plan->base->desc, plan->desc.adaptive, plan->lens != NULL,
+                                 renderer->pool, error);
     const double choose_ms = now_ms() - start;
     if (!status)
         status = run(renderer, plan, image, base, table, stats, error);

@@ -69,16 +69,33 @@ static void store_depth(const glint_tile *tile, const glint_tile_frame *frame)
     glint_tile_store_pass(tile, frame, GLINT_PASS_DEPTH, depth);
 }
 
-static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
+/// The normals of a group some of whose rays hit nothing.
+static void part_normals(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g, float *const normal[3])
 {
-    float normal[3][GLINT_TILE_SAMPLES];
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
+    for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++) {
         const bool hit = glint_has_lane(tile->at.hits, i);
         double n[3] = { 0 };
         if (!hit && sees_light(tile, frame->plan, i))
             glint_tile_visible_light_normal(tile, frame, i, n);
         for (int c = 0; c < 3; c++)
             normal[c][i] = (float)(hit ? glint_real_at(tile->surface.normal[c], frame->plan->desc.precision, i) : n[c]);
+    }
+}
+
+static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
+{
+    float normal[3][GLINT_TILE_SAMPLES];
+    double group[GLINT_GROUP];
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        if (tile->at.hits[g] != 0xffff) {
+            part_normals(tile, frame, g, (float *const[3]) { normal[0], normal[1], normal[2] });
+            continue;
+        }
+        for (int c = 0; c < 3; c++) {
+            glint_reals_of(tile->surface.normal[c], frame->plan->desc.precision, g, group);
+            for (uint32_t lane = 0; lane < GLINT_GROUP; lane++)
+                normal[c][g * GLINT_GROUP + lane] = (float)group[lane];
+        }
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_NORMAL, normal[0]);
 }
@@ -87,13 +104,19 @@ static void store_object_id(const glint_tile *tile, const glint_tile_frame *fram
 {
     float id[GLINT_TILE_SAMPLES], object = 0;
     uint32_t last = GLINT_MISS;
-    for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++) {
-        const bool hit = glint_has_lane(tile->at.hits, i);
-        if (hit && tile->at.prim[i] != last) {
-            last = tile->at.prim[i];
-            object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[last].id) + 1);
+    for (uint32_t g = 0; g < tile->group_count; g++) {
+        const uint32_t *prim = tile->at.prim + (size_t)g * GLINT_GROUP;
+        const bool known = !tile->at.hits[g] || (tile->at.hits[g] == 0xffff && last != GLINT_MISS && glint_all_are(prim, last));
+        for (uint32_t lane = 0; known && lane < GLINT_GROUP; lane++)
+            id[g * GLINT_GROUP + lane] = tile->at.hits[g] ? object : 0;
+        for (uint32_t lane = 0; !known && lane < GLINT_GROUP; lane++) {
+            const bool hit = tile->at.hits[g] >> lane & 1;
+            if (hit && prim[lane] != last) {
+                last = prim[lane];
+                object = (float)(glint_geometry_object(frame->plan->geometry, frame->geometry.prims[last].id) + 1);
+            }
+            id[g * GLINT_GROUP + lane] = hit ? object : 0;
         }
-        id[i] = hit ? object : 0;
     }
     glint_tile_store_pass(tile, frame, GLINT_PASS_OBJECT_ID, id);
 }
