@@ -1,7 +1,7 @@
 /// Derivatives of a frame: from slopes of described fields to those of what shading reads.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
-#include "engine/plan/plan.h"
+#include "engine/plan/derivative_slopes.h"
 #include "engine/scene/area_light.h"
 
 #include <stdio.h>
@@ -9,175 +9,6 @@
 #include <string.h>
 
 #define PI 0x1.921fb54442d18p+1
-
-// ---- Fields -------------------------------------------------------------------------------------------------------
-
-typedef struct slope_field {
-    const char *name;
-    size_t offset;
-    int count; ///< components
-    unsigned kinds; ///< of lights that have it, a bit each
-} slope_field;
-
-#define MATERIAL(name, count) { #name, offsetof(glint_material_desc, name), count, 0 }
-#define LIGHT(name, count, kinds) { #name, offsetof(glint_light_desc, name), count, kinds }
-#define SCENE(name) { #name, offsetof(glint_scene_desc, name), 3, 0 }
-#define KIND(name) (1u << GLINT_LIGHT_##name)
-#define AREA (KIND(DISK) | KIND(POLYGON) | KIND(SPHERE))
-#define ALL (KIND(POINT) | KIND(DIRECTIONAL) | KIND(SPOT) | AREA)
-
-static const slope_field material_fields[] = {
-    MATERIAL(diffuse, 3),   MATERIAL(ambient, 3), MATERIAL(specular, 3), MATERIAL(shininess, 1),
-    MATERIAL(roughness, 1), MATERIAL(f0, 3),      { NULL, 0, 0, 0 },
-};
-static const slope_field light_fields[] = {
-    LIGHT(color, 3, ALL),
-    LIGHT(intensity, 1, ALL),
-    LIGHT(ambient, 3, ALL),
-    LIGHT(diffuse, 3, ALL),
-    LIGHT(specular, 3, ALL),
-    LIGHT(attenuation, 3, ALL & ~KIND(DIRECTIONAL)),
-    LIGHT(position, 3, ALL & ~(KIND(DIRECTIONAL) | KIND(POLYGON))),
-    LIGHT(direction, 3, KIND(DIRECTIONAL) | KIND(SPOT)),
-    LIGHT(inner_rad, 1, KIND(SPOT)),
-    LIGHT(outer_rad, 1, KIND(SPOT)),
-    LIGHT(exponent, 1, KIND(SPOT)),
-    LIGHT(radiance, 1, AREA),
-    { NULL, 0, 0, 0 },
-};
-#define SHAPE(name, count, kind) { #name, offsetof(glint_shape_desc, name), count, 1u << GLINT_SHAPE_##kind }
-#define CAMERA(name, count) { #name, offsetof(glint_camera_desc, name), count, 0 }
-static const slope_field shape_fields[] = {
-    SHAPE(center, 3, SPHERE), SHAPE(radius, 1, SPHERE), SHAPE(point, 3, PLANE), SHAPE(normal, 3, PLANE),
-    { NULL, 0, 0, 0 },
-};
-static const slope_field camera_fields[] = {
-    CAMERA(eye, 3), CAMERA(at, 3), CAMERA(direction, 3), CAMERA(up, 3), CAMERA(fov_y_rad, 1), { NULL, 0, 0, 0 },
-};
-static const slope_field scene_fields[] = { SCENE(ambient), SCENE(background), { NULL, 0, 0, 0 } };
-
-/// kinds: of what has the field, a bit each; 0: all are alike.
-static const slope_field *find_field(const slope_field *fields, const char *name, unsigned kinds)
-{
-    for (; name && fields->name; fields++)
-        if (strcmp(fields->name, name) == 0 && (fields->kinds & kinds) == kinds)
-            return fields;
-    return NULL;
-}
-
-static glint_status refuse_field(const glint_derivative *d, const char *object, const char *field,
-                                 const slope_field *offered, unsigned kinds, glint_error *error)
-{
-    char list[256] = "";
-    size_t used = 0;
-    for (; offered->name; offered++)
-        if (offered->kinds == kinds || offered->kinds & kinds)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", offered->name);
-    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s.%s: no derivative goes through this field; of %s: %s",
-                      d->name, object, field ? field : "(null)", object, used ? list : "none");
-}
-
-/// The slopes of a derivative, in the descriptions' own form: a number is how fast that of the description changes.
-typedef struct scene_slopes {
-    glint_material_desc *materials; ///< in the geometry's order
-    glint_light_desc *lights; ///< in the scene's
-    glint_shape_desc *shapes; ///< of the geometry's parts
-    glint_camera_desc camera;
-    glint_scene_desc scene;
-} scene_slopes;
-
-static void add(void *desc, const slope_field *field, const double slope[3])
-{
-    double *to = (double *)((char *)desc + field->offset);
-    for (int c = 0; c < field->count; c++)
-        to[c] += slope[c];
-}
-
-static glint_status add_material(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
-                                 scene_slopes *out, glint_error *error)
-{
-    const glint_list *list = &plan->geometry->materials;
-    const slope_field *field = find_field(material_fields, s->field, 0);
-    if (!field)
-        return refuse_field(d, "material", s->field, material_fields, 0, error);
-    for (size_t i = 0; i < list->count; i++)
-        if (list->items[i] == s->material)
-            add(&out->materials[i], field, s->slope);
-    return GLINT_OK;
-}
-
-static glint_status add_light(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
-                              scene_slopes *out, glint_error *error)
-{
-    const unsigned kind = 1u << s->light->desc.kind;
-    const slope_field *field = find_field(light_fields, s->field, kind);
-    char name[2 * GLINT_NAME_SIZE];
-    if (!field) {
-        glint_describe_light(&s->light->desc, 0, name, sizeof name);
-        name[strcspn(name, " ")] = '\0';
-        return refuse_field(d, name, s->field, light_fields, kind, error);
-    }
-    for (size_t i = 0; i < scene->lights.count; i++)
-        if (scene->lights.items[i] == s->light)
-            add(&out->lights[i], field, s->slope);
-    return GLINT_OK;
-}
-
-static glint_status add_shape(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
-                              scene_slopes *out, glint_error *error)
-{
-    const unsigned kind = 1u << s->shape->desc.kind;
-    const slope_field *field = find_field(shape_fields, s->field, kind);
-    const bool known = kind & (1u << GLINT_SHAPE_SPHERE | 1u << GLINT_SHAPE_PLANE);
-    if (!field)
-        return refuse_field(d, kind == 1u << GLINT_SHAPE_SPHERE ? "sphere" : known ? "plane" : "shape", s->field,
-                            shape_fields, known ? kind : 1u << 31, error);
-    for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
-        const glint_part *part = &plan->geometry->parts[i];
-        if (part->shape != s->shape)
-            continue;
-        if (part->map || part->whole)
-            return glint_fail(error, GLINT_ERR_INVALID,
-                              "derivative '%s': %s: a shape under a transform or in a combined solid has no derivative; by "
-                              "itself it has",
-                              d->name, s->field);
-        add(&out->shapes[i], field, s->slope);
-    }
-    return GLINT_OK;
-}
-
-static glint_status add_camera(const glint_scene *scene, const glint_derivative *d, const glint_slope *s,
-                               scene_slopes *out, glint_error *error)
-{
-    const slope_field *field = find_field(camera_fields, s->field, 0);
-    if (!field)
-        return refuse_field(d, "camera", s->field, camera_fields, 0, error);
-    if (scene->desc.camera == s->camera)
-        add(&out->camera, field, s->slope);
-    return GLINT_OK;
-}
-
-static glint_status add_slope(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
-                              const glint_slope *s, scene_slopes *out, glint_error *error)
-{
-    for (int c = 0; c < 3; c++)
-        if (!isfinite(s->slope[c]))
-            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: finite slopes expected, got %g", d->name,
-                              s->field ? s->field : "(null)", s->slope[c]);
-    if (s->material)
-        return add_material(plan, d, s, out, error);
-    if (s->light)
-        return add_light(scene, d, s, out, error);
-    if (s->shape)
-        return add_shape(plan, d, s, out, error);
-    if (s->camera)
-        return add_camera(scene, d, s, out, error);
-    const slope_field *field = find_field(scene_fields, s->field, 0);
-    if (!field)
-        return refuse_field(d, "scene", s->field, scene_fields, 0, error);
-    add(&out->scene, field, s->slope);
-    return GLINT_OK;
-}
 
 // ---- Materials ----------------------------------------------------------------------------------------------------
 
@@ -220,14 +51,6 @@ static void facet_material(glint_derivative_material *out, const glint_material_
     }
 }
 
-static bool has_slope(const glint_dual *list, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        if (list[i].slope != 0)
-            return true;
-    return false;
-}
-
 static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
                           const glint_material_desc *slope, const glint_dual light[3])
 {
@@ -241,7 +64,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
     for (int c = 0; c < 3; c++)
         out->ambient[c] = dual_mul(out->ambient[c], light[c]);
     out->shininess = dual(d.shininess, slope->shininess);
-    bool shiny = has_slope(out->specular, 3);
+    bool shiny = glint_has_slope(out->specular, 3);
     for (int c = 0; c < 3; c++)
         shiny = shiny || d.specular[c] != 0;
     shiny = shiny && d.model != GLINT_MODEL_LAMBERT;
@@ -253,8 +76,8 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
         out->shininess = out->specular[0] = out->specular[1] = out->specular[2] = dual(0, 0);
     if (out->highlight == GLINT_HIGHLIGHT_FACETS)
         out->shininess = dual(0, 0);
-    out->varies = has_slope(out->diffuse, 3) || has_slope(out->specular, 3) || has_slope(out->grazing, 3) ||
-                  has_slope(out->ambient, 3) || has_slope(&out->shininess, 1) || has_slope(&out->alpha, 1);
+    out->varies = glint_has_slope(out->diffuse, 3) || glint_has_slope(out->specular, 3) || glint_has_slope(out->grazing, 3) ||
+                  glint_has_slope(out->ambient, 3) || glint_has_slope(&out->shininess, 1) || glint_has_slope(&out->alpha, 1);
 }
 
 // ---- Lights -------------------------------------------------------------------------------------------------------
@@ -310,16 +133,14 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
     if (desc->kind == GLINT_LIGHT_SPOT)
         fill_spot(out, desc, slope);
     out->attenuated = is_cap ? false : out->coefficients[0].value != 1 || out->coefficients[1].value != 0 ||
-                      out->coefficients[2].value != 0 || has_slope(out->coefficients, 3); // caps: what is seen has it
-    out->moves = has_slope(out->position, 3);
-    out->varies = out->moves || has_slope(out->diffuse, 3) || has_slope(out->specular, 3) ||
-                  has_slope(out->coefficients, 3) || has_slope(out->axis, 3) || out->outer.slope != 0 ||
+                      out->coefficients[2].value != 0 || glint_has_slope(out->coefficients, 3); // caps: what is seen has it
+    out->moves = glint_has_slope(out->position, 3);
+    out->varies = out->moves || glint_has_slope(out->diffuse, 3) || glint_has_slope(out->specular, 3) ||
+                  glint_has_slope(out->coefficients, 3) || glint_has_slope(out->axis, 3) || out->outer.slope != 0 ||
                   out->inverse.slope != 0 || out->exponent.slope != 0;
 }
 
 // ---- Surfaces and the eye -----------------------------------------------------------------------------------------
-
-static bool any_slope(const double v[3]) { return v[0] != 0 || v[1] != 0 || v[2] != 0; }
 
 static void fill_part(glint_derivative_part *out, const glint_shape_desc *desc, const glint_shape_desc *slope)
 {
@@ -334,7 +155,7 @@ static void fill_part(glint_derivative_part *out, const glint_shape_desc *desc, 
         for (int c = 0; c < 3; c++)
             out->normal[c] = normal[c].slope;
     }
-    out->moves = any_slope(out->place) || out->radius != 0 || any_slope(out->normal);
+    out->moves = glint_any_slope(out->place) || out->radius != 0 || glint_any_slope(out->normal);
 }
 
 static void dual_cross(glint_dual out[3], const glint_dual a[3], const glint_dual b[3])
@@ -368,13 +189,13 @@ static void fill_view(glint_derivative_view *out, const glint_plan *plan, const 
         out->right[c] = dual_mul(right[c], size).slope;
         out->up[c] = dual_mul(up[c], size).slope;
     }
-    out->moves = any_slope(out->eye) || any_slope(out->forward) || any_slope(out->right) || any_slope(out->up);
+    out->moves = glint_any_slope(out->eye) || glint_any_slope(out->forward) || glint_any_slope(out->right) || glint_any_slope(out->up);
 }
 
 // ---- A derivative ---------------------------------------------------------------------------------------------------
 
 /// Ia, of the scene and all lights.
-static void total_ambient(const glint_scene *scene, const scene_slopes *slopes, glint_dual out[3])
+static void total_ambient(const glint_scene *scene, const glint_scene_slopes *slopes, glint_dual out[3])
 {
     duals(out, scene->desc.ambient, slopes->scene.ambient);
     for (size_t i = 0; i < scene->lights.count; i++) {
@@ -385,7 +206,7 @@ static void total_ambient(const glint_scene *scene, const scene_slopes *slopes, 
     }
 }
 
-static void fill(const glint_plan *plan, const glint_scene *scene, const scene_slopes *slopes,
+static void fill(const glint_plan *plan, const glint_scene *scene, const glint_scene_slopes *slopes,
                  glint_plan_derivative *out)
 {
     const glint_list *list = &plan->geometry->materials;
@@ -418,21 +239,11 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const scene_s
         out->everywhere = out->everywhere || out->background[c] != 0;
     }
     for (size_t i = 0; i < list->count; i++)
-        out->everywhere = out->everywhere || has_slope(out->materials[i].ambient, 3);
-}
-
-static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
-{
-    bool any = d->bends || any_slope(d->background);
-    for (size_t i = 0; i < plan->geometry->materials.count; i++)
-        any = any || d->materials[i].varies;
-    for (size_t i = 0; i < all->light_count; i++)
-        any = any || d->lights[i].varies;
-    return any;
+        out->everywhere = out->everywhere || glint_has_slope(out->materials[i].ambient, 3);
 }
 
 static glint_status make_one(const glint_plan *plan, const glint_scene *scene, const glint_derivative *d,
-                             scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
+                             glint_scene_slopes *slopes, glint_plan_derivative *out, glint_error *error)
 {
     const size_t materials = plan->geometry->materials.count, lights = scene->lights.count;
     const size_t parts = plan->geometry->part_count;
@@ -443,7 +254,7 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
     memset(&slopes->camera, 0, sizeof slopes->camera);
     memset(&slopes->scene, 0, sizeof slopes->scene);
     for (size_t i = 0; i < d->slope_count && !status; i++)
-        status = add_slope(plan, scene, d, &d->slopes[i], slopes, error);
+        status = glint_derivative_add(plan, scene, d, &d->slopes[i], slopes, error);
     if (status)
         return status;
     snprintf(out->name, sizeof out->name, "%s", d->name);
@@ -477,7 +288,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
                              glint_error *error)
 {
     glint_plan_derivatives *all = plan->derivatives;
-    scene_slopes slopes = { .materials = malloc((plan->geometry->materials.count + 1) * sizeof *slopes.materials),
+    glint_scene_slopes slopes = { .materials = malloc((plan->geometry->materials.count + 1) * sizeof *slopes.materials),
                             .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights),
                             .shapes = malloc((plan->geometry->part_count + 1) * sizeof *slopes.shapes) };
     glint_status status = slopes.materials && slopes.lights && slopes.shapes ? GLINT_OK : glint_fail_nomem(error);
@@ -513,89 +324,6 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
         free(derivatives->of[i].parts);
     }
     free(derivatives);
-}
-
-// ---- What has none ------------------------------------------------------------------------------------------------
-
-/// What of the frame no derivative goes through, or NULL.
-static const char *find_obstacle(const glint_plan *plan)
-{
-    if (plan->runs[GLINT_STAGE_INDIRECT])
-        return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
-    if (plan->runs[GLINT_STAGE_BOUNCE])
-        return "mirror, transmission: what mirrors and glass show has no derivative; max_depth = 0 leaves them out";
-    if (plan->tints)
-        return "transmission: shadows of what lets light through have no derivative; lights with shadows = false have";
-    if (plan->runs[GLINT_STAGE_VERTEX])
-        return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
-    if (plan->patterns)
-        return "material: patterns, shaders and bumps have no derivative; materials of plain numbers have";
-    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
-        return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
-    if (plan->shutter_times > 0)
-        return "camera.shutter: an open shutter has no derivative; shutter = 0 has";
-    if (plan->runs[GLINT_STAGE_REFINE])
-        return "adaptive: every pixel of a derivative has all samples; leave `adaptive` out";
-    return NULL;
-}
-
-/// What of it no moving eye's derivative goes through, or NULL.
-static const char *find_view_obstacle(const glint_plan *plan)
-{
-    const glint_geometry_table *table = &plan->geometry->table;
-    if (plan->camera.orthographic)
-        return "camera: an orthographic one has no derivative; a perspective one has";
-    if (plan->lens)
-        return "camera: one with a lens has no derivative; aperture = 0 has";
-    if (table->solids || table->corner_normals)
-        return "camera: it has derivatives where it sees spheres, planes and faceted triangles alone";
-    return NULL;
-}
-
-static glint_status check_light(const glint_plan *plan, const glint_plan_derivative *d, const glint_scene *scene,
-                                size_t index, glint_error *error)
-{
-    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
-    char name[2 * GLINT_NAME_SIZE];
-    double shown[3];
-    const char *why = NULL;
-    if (d->lights[index].varies && desc->visible && glint_light_shows(desc, shown))
-        why = "visible: what a light itself looks like has no derivative; visible = false has";
-    for (uint32_t k = 0; k < plan->light_count; k++) {
-        const glint_plan_light *row = &plan->lights[k];
-        const bool moves = d->lights[index].moves || d->bends;
-        if (row->source != index)
-            continue;
-        if (row->cap && (moves || has_slope(d->lights[index].coefficients, 3)))
-            why = "position, attenuation: with caps nothing that moves has a derivative; shadow = \"rays\" has";
-        else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
-            why = "position: of a sphere light by radiance nothing that moves has a derivative; one by intensity has";
-    }
-    if (!why)
-        return GLINT_OK;
-    glint_describe_light(desc, index + 1, name, sizeof name);
-    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: %s", d->name, name, why);
-}
-
-glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error)
-{
-    const glint_plan_derivatives *all = plan->derivatives;
-    const char *why = all ? find_obstacle(plan) : NULL;
-    glint_status status = GLINT_OK;
-    if (why)
-        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
-    for (size_t i = 0; all && i < all->count; i++) {
-        const glint_plan_derivative *d = &all->of[i];
-        if (d->view.moves && (why = find_view_obstacle(plan)))
-            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
-        if (!varies(plan, all, d))
-            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
-        for (size_t k = 0; k < all->light_count && !status; k++)
-            status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;
-        if (status)
-            return status;
-    }
-    return status;
 }
 
 glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key key)

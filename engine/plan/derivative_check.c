@@ -1,0 +1,94 @@
+/// What of a frame no derivative goes through.
+#include "engine/base/status.h"
+#include "engine/plan/derivative_slopes.h"
+
+static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
+{
+    bool any = d->bends || glint_any_slope(d->background);
+    for (size_t i = 0; i < plan->geometry->materials.count; i++)
+        any = any || d->materials[i].varies;
+    for (size_t i = 0; i < all->light_count; i++)
+        any = any || d->lights[i].varies;
+    return any;
+}
+
+/// What of the frame no derivative goes through, or NULL.
+static const char *find_obstacle(const glint_plan *plan)
+{
+    if (plan->runs[GLINT_STAGE_INDIRECT])
+        return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
+    if (plan->runs[GLINT_STAGE_BOUNCE])
+        return "mirror, transmission: what mirrors and glass show has no derivative; max_depth = 0 leaves them out";
+    if (plan->tints)
+        return "transmission: shadows of what lets light through have no derivative; lights with shadows = false have";
+    if (plan->runs[GLINT_STAGE_VERTEX])
+        return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
+    if (plan->patterns)
+        return "material: patterns, shaders and bumps have no derivative; materials of plain numbers have";
+    if (plan->runs[GLINT_STAGE_DEPTH_CUE])
+        return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
+    if (plan->shutter_times > 0)
+        return "camera.shutter: an open shutter has no derivative; shutter = 0 has";
+    if (plan->runs[GLINT_STAGE_REFINE])
+        return "adaptive: every pixel of a derivative has all samples; leave `adaptive` out";
+    return NULL;
+}
+
+/// What of it no moving eye's derivative goes through, or NULL.
+static const char *find_view_obstacle(const glint_plan *plan)
+{
+    const glint_geometry_table *table = &plan->geometry->table;
+    if (plan->camera.orthographic)
+        return "camera: an orthographic one has no derivative; a perspective one has";
+    if (plan->lens)
+        return "camera: one with a lens has no derivative; aperture = 0 has";
+    if (table->solids || table->corner_normals)
+        return "camera: it has derivatives where it sees spheres, planes and faceted triangles alone";
+    return NULL;
+}
+
+static glint_status check_light(const glint_plan *plan, const glint_plan_derivative *d, const glint_scene *scene,
+                                size_t index, glint_error *error)
+{
+    const glint_light_desc *desc = &glint_scene_light(scene, index)->desc;
+    char name[2 * GLINT_NAME_SIZE];
+    double shown[3];
+    const char *why = NULL;
+    if (d->lights[index].varies && desc->visible && glint_light_shows(desc, shown))
+        why = "visible: what a light itself looks like has no derivative; visible = false has";
+    for (uint32_t k = 0; k < plan->light_count; k++) {
+        const glint_plan_light *row = &plan->lights[k];
+        const bool moves = d->lights[index].moves || d->bends;
+        if (row->source != index)
+            continue;
+        if (row->cap && (moves || glint_has_slope(d->lights[index].coefficients, 3)))
+            why = "position, attenuation: with caps nothing that moves has a derivative; shadow = \"rays\" has";
+        else if (moves && row->light_samples && row->light_samples->emission == GLINT_EMIT_CONE)
+            why = "position: of a sphere light by radiance nothing that moves has a derivative; one by intensity has";
+    }
+    if (!why)
+        return GLINT_OK;
+    glint_describe_light(desc, index + 1, name, sizeof name);
+    return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: %s", d->name, name, why);
+}
+
+glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_scene *scene, glint_error *error)
+{
+    const glint_plan_derivatives *all = plan->derivatives;
+    const char *why = all ? find_obstacle(plan) : NULL;
+    glint_status status = GLINT_OK;
+    if (why)
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", all->of[0].name, why);
+    for (size_t i = 0; all && i < all->count; i++) {
+        const glint_plan_derivative *d = &all->of[i];
+        if (d->view.moves && (why = find_view_obstacle(plan)))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
+        if (!varies(plan, all, d))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);
+        for (size_t k = 0; k < all->light_count && !status; k++)
+            status = d->lights[k].varies || d->bends ? check_light(plan, d, scene, k, error) : GLINT_OK;
+        if (status)
+            return status;
+    }
+    return status;
+}
