@@ -958,16 +958,15 @@ typedef struct glint_slope {
 } glint_slope;
 
 /// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
-/// lights are seen where they were, a point of a surface moving with what sees it. Slopes of what the scene does not have count
-/// as nothing.
+/// lights are seen where they were, a point of a surface moving with what sees it, by the eye, in mirrors and through glass. Rays too
+/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of what the scene does not have count as nothing.
 ///
-///   material  diffuse, ambient, specular, shininess, roughness, f0
+///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
 ///   scene     ambient, background
-///   shape     spheres: center, radius; planes: point, normal; both by themselves, without transforms
-///   camera    eye, at, direction, up, fov_y_rad, of perspective cameras without a lens that see spheres, planes and faceted
-///             triangles alone
+///   shape     spheres: center, radius; planes: point, normal
+///   camera    eye, at, direction, up, fov_y_rad, of perspective cameras without a lens
 typedef struct glint_derivative {
     const char *name; ///< 1 .. 31 bytes; "lamp_x"
     const glint_slope *slopes; ///< those of one field add up

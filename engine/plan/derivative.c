@@ -1,6 +1,8 @@
 /// Derivatives of a frame: from slopes of described fields to those of what shading reads.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/base/vec.h"
+#include "engine/geometry/prims.h"
 #include "engine/plan/derivative_slopes.h"
 #include "engine/scene/area_light.h"
 
@@ -80,6 +82,18 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
                   glint_has_slope(out->ambient, 3) || glint_has_slope(&out->shininess, 1) || glint_has_slope(&out->alpha, 1);
 }
 
+/// What nothing reads has no slope.
+static void fill_bounce(glint_derivative_bounce *out, const glint_material_desc *desc, const glint_material_desc *slope)
+{
+    const bool transmits = glint_material_transmits(desc);
+    if (desc->has_mirror)
+        memcpy(out->mirror, slope->mirror, sizeof out->mirror);
+    memcpy(out->transmission, slope->transmission, sizeof out->transmission);
+    for (int c = 0; c < 3 && transmits; c++)
+        out->absorption[c] = slope->absorption[c];
+    out->ior = transmits || (desc->fresnel && glint_material_mirrors(desc)) ? slope->ior : 0;
+}
+
 // ---- Lights -------------------------------------------------------------------------------------------------------
 
 static void fill_spot(glint_derivative_light *out, const glint_light_desc *desc, const glint_light_desc *slope)
@@ -142,20 +156,45 @@ static void fill_light(glint_derivative_light *out, const glint_plan_light *rows
 
 // ---- Surfaces and the eye -----------------------------------------------------------------------------------------
 
-static void fill_part(glint_derivative_part *out, const glint_shape_desc *desc, const glint_shape_desc *slope)
+/// The slope of a plane's unit normal in the world.
+static void turn_normal(const glint_transform *map, const double normal[3], const double slope[3], double out[3])
 {
-    glint_dual normal[3];
-    if (desc->kind == GLINT_SHAPE_SPHERE) {
-        memcpy(out->place, slope->center, sizeof out->place);
-        out->radius = slope->radius;
-    } else if (desc->kind == GLINT_SHAPE_PLANE) {
-        memcpy(out->place, slope->point, sizeof out->place);
-        duals(normal, desc->normal, slope->normal);
-        dual_normalize(normal);
-        for (int c = 0; c < 3; c++)
-            out->normal[c] = normal[c].slope;
+    glint_dual own[3], turned[3];
+    double linear[3][3], cofactors[3][3];
+    duals(own, normal, slope);
+    duals(turned, normal, slope);
+    if (map) {
+        glint_transform_linear(map, linear);
+        glint_linear_scale(linear);
+        const double side = glint_linear_cofactors(linear, cofactors) < 0 ? -1 : 1;
+        for (int c = 0; c < 3; c++) {
+            turned[c] = dual(0, 0);
+            for (int i = 0; i < 3; i++)
+                turned[c] = dual_add(turned[c], dual_scale(own[i], side * cofactors[c][i]));
+        }
     }
-    out->moves = glint_any_slope(out->place) || out->radius != 0 || glint_any_slope(out->normal);
+    dual_normalize(turned);
+    for (int c = 0; c < 3; c++)
+        out[c] = turned[c].slope;
+}
+
+static void fill_part(glint_derivative_part *out, const glint_part *part, const glint_shape_desc *slope)
+{
+    const glint_shape_desc *desc = &part->shape->desc;
+    const bool sphere = desc->kind == GLINT_SHAPE_SPHERE;
+    const double *at = sphere ? desc->center : desc->point, *moved = sphere ? slope->center : slope->point;
+    if (!sphere && desc->kind != GLINT_SHAPE_PLANE)
+        return;
+    for (int c = 0; c < 3; c++) {
+        const double *row = part->map ? part->map->m[c] : NULL;
+        out->place[c] = row ? vec_dot(row, moved) : moved[c];
+        out->pivot[c] = row ? vec_dot(row, at) + row[3] : at[c];
+    }
+    if (sphere)
+        out->growth = slope->radius / desc->radius;
+    else
+        turn_normal(part->map, desc->normal, slope->normal, out->normal);
+    out->moves = glint_any_slope(out->place) || out->growth != 0 || glint_any_slope(out->normal);
 }
 
 static void dual_cross(glint_dual out[3], const glint_dual a[3], const glint_dual b[3])
@@ -212,9 +251,15 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
     const glint_list *list = &plan->geometry->materials;
     glint_dual ambient[3];
     total_ambient(scene, slopes, ambient);
-    for (size_t i = 0; i < list->count; i++)
-        fill_material(&out->materials[i], &((const glint_material *)list->items[i])->desc, &slopes->materials[i],
-                      ambient);
+    for (size_t i = 0; i < list->count; i++) {
+        const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
+        const glint_derivative_bounce *bounce = &out->bounces[i];
+        fill_material(&out->materials[i], desc, &slopes->materials[i], ambient);
+        fill_bounce(&out->bounces[i], desc, &slopes->materials[i]);
+        out->bends = out->bends || bounce->ior != 0;
+        out->weighs = out->weighs || bounce->ior != 0 || glint_any_slope(bounce->mirror) ||
+                      glint_any_slope(bounce->transmission) || glint_any_slope(bounce->absorption);
+    }
     for (size_t i = 0; i < scene->lights.count; i++) {
         const glint_light_desc *desc = &glint_scene_light(scene, i)->desc;
         const glint_plan_light *rows = NULL;
@@ -228,7 +273,7 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
         out->moves = out->moves || out->lights[i].moves;
     }
     for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
-        fill_part(&out->parts[i], &plan->geometry->parts[i].shape->desc, &slopes->shapes[i]);
+        fill_part(&out->parts[i], &plan->geometry->parts[i], &slopes->shapes[i]);
         out->bends = out->bends || out->parts[i].moves;
     }
     fill_view(&out->view, plan, glint_camera_get(scene->desc.camera), &slopes->camera);
@@ -259,9 +304,10 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
         return status;
     snprintf(out->name, sizeof out->name, "%s", d->name);
     out->materials = calloc(materials + 1, sizeof *out->materials);
+    out->bounces = calloc(materials + 1, sizeof *out->bounces);
     out->lights = calloc(lights + 1, sizeof *out->lights);
     out->parts = calloc(parts + 1, sizeof *out->parts);
-    if (!out->materials || !out->lights || !out->parts)
+    if (!out->materials || !out->bounces || !out->lights || !out->parts)
         return glint_fail_nomem(error);
     fill(plan, scene, slopes, out);
     return GLINT_OK;
@@ -289,8 +335,8 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
 {
     glint_plan_derivatives *all = plan->derivatives;
     glint_scene_slopes slopes = { .materials = malloc((plan->geometry->materials.count + 1) * sizeof *slopes.materials),
-                            .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights),
-                            .shapes = malloc((plan->geometry->part_count + 1) * sizeof *slopes.shapes) };
+                                  .lights = malloc((scene->lights.count + 1) * sizeof *slopes.lights),
+                                  .shapes = malloc((plan->geometry->part_count + 1) * sizeof *slopes.shapes) };
     glint_status status = slopes.materials && slopes.lights && slopes.shapes ? GLINT_OK : glint_fail_nomem(error);
     all->light_count = scene->lights.count;
     for (size_t i = 0; i < desc->derivative_count && !status; i++) {
@@ -298,6 +344,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
         status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
         all->moves = all->moves || d->moves;
         all->bends = all->bends || d->bends;
+        all->weighs = all->weighs || d->weighs;
         all->everywhere = all->everywhere || d->everywhere;
     }
     free(slopes.materials);
@@ -320,6 +367,7 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
 {
     for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
         free(derivatives->of[i].materials);
+        free(derivatives->of[i].bounces);
         free(derivatives->of[i].lights);
         free(derivatives->of[i].parts);
     }
@@ -331,6 +379,7 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     const glint_plan_derivative *d = &plan->derivatives->of[index];
     key = glint_key_add_string(key, d->name);
     key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);
+    key = glint_key_add(key, d->bounces, plan->geometry->materials.count * sizeof *d->bounces);
     key = glint_key_add(key, d->lights, plan->derivatives->light_count * sizeof *d->lights);
     key = glint_key_add(key, d->parts, plan->geometry->part_count * sizeof *d->parts);
     key = glint_key_add(key, &d->view, sizeof d->view);

@@ -14,6 +14,11 @@ typedef struct glint_derivative_material {
     glint_dual diffuse[3], specular[3], grazing[3], ambient[3], shininess, alpha;
 } glint_derivative_material;
 
+/// What a material sends on; slopes.
+typedef struct glint_derivative_bounce {
+    double mirror[3], transmission[3], absorption[3], ior; ///< of a number that nothing reads 0
+} glint_derivative_bounce;
+
 /// A light of the scene, or what its samples have in common.
 typedef struct glint_derivative_light {
     uint32_t varies;
@@ -26,13 +31,14 @@ typedef struct glint_derivative_light {
     glint_dual axis[3], outer, inverse, exponent; ///< of a spot, see glint_spot
 } glint_derivative_light;
 
-/// A surface that moves; slopes.
+/// A surface that moves; slopes, in the world.
 typedef struct glint_derivative_part {
     uint32_t moves;
     uint32_t unused; ///< 0: no padding
     double place[3]; ///< of a sphere's centre or a plane's point
-    double radius; ///< of a sphere
+    double growth; ///< of a sphere's radius, in shares of it
     double normal[3]; ///< of a plane's unit normal
+    double pivot[3]; ///< around which a plane turns: no slope
 } glint_derivative_part;
 
 /// The eye of a perspective camera; slopes.
@@ -45,18 +51,20 @@ typedef struct glint_derivative_view {
 typedef struct glint_plan_derivative {
     char name[GLINT_DERIVATIVE_NAME_SIZE];
     glint_derivative_material *materials; ///< beside the plan's
+    glint_derivative_bounce *bounces; ///< likewise
     glint_derivative_light *lights; ///< in the scene's order
     glint_derivative_part *parts; ///< beside the geometry's
     glint_derivative_view view;
     double background[3]; ///< slopes
     bool moves; ///< some shadow does
-    bool bends; ///< some surface moves, or the eye
+    bool bends; ///< some surface moves, or the eye, or an index of refraction turns rays
+    bool weighs; ///< some material sends on another share
     bool everywhere; ///< something has a slope that no light brings
 } glint_plan_derivative;
 
 typedef struct glint_plan_derivatives {
     size_t count, light_count;
-    bool moves, bends, everywhere;
+    bool moves, bends, weighs, everywhere;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
 } glint_plan_derivatives;
 

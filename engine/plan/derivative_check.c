@@ -2,11 +2,20 @@
 #include "engine/base/status.h"
 #include "engine/plan/derivative_slopes.h"
 
+/// Whether a surface moves, or the eye.
+static bool moves(const glint_plan *plan, const glint_plan_derivative *d)
+{
+    bool any = d->view.moves;
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++)
+        any = any || d->parts[i].moves;
+    return any;
+}
+
 static bool varies(const glint_plan *plan, const glint_plan_derivatives *all, const glint_plan_derivative *d)
 {
-    bool any = d->bends || glint_any_slope(d->background);
+    bool any = moves(plan, d) || glint_any_slope(d->background) || (d->weighs && plan->runs[GLINT_STAGE_BOUNCE]);
     for (size_t i = 0; i < plan->geometry->materials.count; i++)
-        any = any || d->materials[i].varies;
+        any = any || d->materials[i].varies || (plan->tints && glint_any_slope(d->bounces[i].transmission));
     for (size_t i = 0; i < all->light_count; i++)
         any = any || d->lights[i].varies;
     return any;
@@ -17,10 +26,6 @@ static const char *find_obstacle(const glint_plan *plan)
 {
     if (plan->runs[GLINT_STAGE_INDIRECT])
         return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
-    if (plan->runs[GLINT_STAGE_BOUNCE])
-        return "mirror, transmission: what mirrors and glass show has no derivative; max_depth = 0 leaves them out";
-    if (plan->tints)
-        return "transmission: shadows of what lets light through have no derivative; lights with shadows = false have";
     if (plan->runs[GLINT_STAGE_VERTEX])
         return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
     if (plan->patterns)
@@ -37,13 +42,36 @@ static const char *find_obstacle(const glint_plan *plan)
 /// What of it no moving eye's derivative goes through, or NULL.
 static const char *find_view_obstacle(const glint_plan *plan)
 {
-    const glint_geometry_table *table = &plan->geometry->table;
     if (plan->camera.orthographic)
         return "camera: an orthographic one has no derivative; a perspective one has";
     if (plan->lens)
         return "camera: one with a lens has no derivative; aperture = 0 has";
-    if (table->solids || table->corner_normals)
-        return "camera: it has derivatives where it sees spheres, planes and faceted triangles alone";
+    if (plan->environment)
+        return "background: before one that a program gives a camera has no derivative; before a colour it has";
+    return NULL;
+}
+
+/// What beyond the first surface a derivative does not go through, or NULL.
+static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan_derivative *d)
+{
+    bool absorbs = false;
+    for (size_t i = 0; i < plan->geometry->materials.count; i++) {
+        const glint_material_desc *desc = &((const glint_material *)plan->geometry->materials.items[i])->desc;
+        if (glint_any_slope(d->bounces[i].mirror) && !glint_material_mirrors(desc))
+            return "material.mirror: 0 sends no ray on, and has no derivative; above 0 it has";
+        if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
+            return "material.transmission: 0 sends no ray on, and has no derivative; above 0 it has";
+        absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
+    }
+    if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])
+        return "background: what moves or bends has no derivative before one that a program gives, where mirrors or glass may "
+               "show it; before a colour it has";
+    if (plan->dims && (absorbs || d->moves))
+        return "absorption: light through what absorbs has no derivative by it, nor by what moves; lights with shadows = false "
+               "have";
+    if (plan->absorbs && plan->visible_light_count && d->bends)
+        return "absorption: what moves has no derivative where visible lights may be seen through what absorbs; visible = "
+               "false has";
     return NULL;
 }
 
@@ -82,6 +110,8 @@ glint_status glint_plan_check_derivatives(const glint_plan *plan, const glint_sc
     for (size_t i = 0; all && i < all->count; i++) {
         const glint_plan_derivative *d = &all->of[i];
         if (d->view.moves && (why = find_view_obstacle(plan)))
+            return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
+        if ((why = find_bounce_obstacle(plan, d)))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s", d->name, why);
         if (!varies(plan, all, d))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': nothing in the scene depends on it", d->name);

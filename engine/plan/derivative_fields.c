@@ -21,7 +21,8 @@ typedef struct slope_field {
 
 static const slope_field material_fields[] = {
     MATERIAL(diffuse, 3),   MATERIAL(ambient, 3), MATERIAL(specular, 3), MATERIAL(shininess, 1),
-    MATERIAL(roughness, 1), MATERIAL(f0, 3),      { NULL, 0, 0, 0 },
+    MATERIAL(roughness, 1), MATERIAL(f0, 3),      MATERIAL(mirror, 3),   MATERIAL(transmission, 3),
+    MATERIAL(ior, 1),       MATERIAL(absorption, 3), { NULL, 0, 0, 0 },
 };
 static const slope_field light_fields[] = {
     LIGHT(color, 3, ALL),
@@ -116,17 +117,9 @@ static glint_status add_shape(const glint_plan *plan, const glint_derivative *d,
     if (!field)
         return refuse_field(d, kind == 1u << GLINT_SHAPE_SPHERE ? "sphere" : known ? "plane" : "shape", s->field,
                             shape_fields, known ? kind : 1u << 31, error);
-    for (uint32_t i = 0; i < plan->geometry->part_count; i++) {
-        const glint_part *part = &plan->geometry->parts[i];
-        if (part->shape != s->shape)
-            continue;
-        if (part->map || part->whole)
-            return glint_fail(error, GLINT_ERR_INVALID,
-                              "derivative '%s': %s: a shape under a transform or in a combined solid has no derivative; by "
-                              "itself it has",
-                              d->name, s->field);
-        add(&out->shapes[i], field, s->slope);
-    }
+    for (uint32_t i = 0; i < plan->geometry->part_count; i++)
+        if (plan->geometry->parts[i].shape == s->shape)
+            add(&out->shapes[i], field, s->slope);
     return GLINT_OK;
 }
 

@@ -148,23 +148,29 @@ static uint32_t medium_of(const glint_tile *tile, const glint_tile_frame *frame,
     return frame->geometry.prims[tile->at.prim[i]].medium;
 }
 
+uint32_t glint_batch_crossed(const glint_batch *batch, const glint_tile_frame *frame, uint32_t ray)
+{
+    const glint_tile *tile = &batch->tile;
+    const glint_media *media = &batch->rays->media[ray];
+    const uint32_t at = batch->sample[ray];
+    const bool hit = glint_batch_has_sample(batch, ray) && glint_has_lane(tile->at.hits, at);
+    return hit && frame->plan->bouncing[tile->surface.material[at]].transmits
+               ? glint_media_before(media, medium_of(tile, frame, at), glint_has_lane(tile->hit.back, at))
+               : glint_media_top(media);
+}
+
 /// Weakens the rays by what they went through since their last surface.
 static void absorb(glint_batch *batch, const glint_tile_frame *frame)
 {
     const glint_tile *tile = &batch->tile;
     glint_rays *rays = batch->rays;
     for (uint32_t i = 0; i < rays->group_count * GLINT_GROUP; i++) {
-        if (!glint_has_lane(rays->active, i))
-            continue;
-        const uint32_t at = batch->sample[i];
-        const bool sampled = glint_batch_has_sample(batch, i), hit = sampled && glint_has_lane(tile->at.hits, at);
-        const uint32_t medium =
-            hit && frame->plan->bouncing[tile->surface.material[at]].transmits
-                ? glint_media_before(&rays->media[i], medium_of(tile, frame, at), glint_has_lane(tile->hit.back, at))
-                : glint_media_top(&rays->media[i]);
+        const uint32_t medium = glint_has_lane(rays->active, i) ? glint_batch_crossed(batch, frame, i) : GLINT_NO_MEDIUM;
         if (medium == GLINT_NO_MEDIUM)
             continue;
-        const double way = sampled ? glint_real_at(tile->at.t, frame->plan->desc.precision, at) : HUGE_VAL; // directions are unit
+        const double way = glint_batch_has_sample(batch, i)
+                               ? glint_real_at(tile->at.t, frame->plan->desc.precision, batch->sample[i])
+                               : HUGE_VAL; // directions are unit
         for (int c = 0; c < 3; c++)
             rays->weight[c][i] *= glint_plan_left(frame->plan->bouncing[medium].absorption[c], way);
     }
@@ -236,6 +242,8 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
         for (uint32_t i = 0; i < count;)
             i += shine(tile, frame, from, i, count);
         glint_tile_shade(tile, frame, from, count);
+        if (plan->derivatives)
+            glint_tile_derive(tile, frame, from, count);
         if (plan->tints && glint_tile_is_shadowed(tile, plan, from, count))
             glint_tile_transparent_shadows(tile, frame, from, count);
         from += count;
@@ -254,22 +262,27 @@ static double index_of(const glint_plan *plan, uint32_t medium)
     return medium == GLINT_NO_MEDIUM ? 1 : plan->bouncing[medium].ior;
 }
 
-/// The refractive index on the ray's side of a surface over that beyond it. What lets nothing through is solid: its
-/// index is beyond, from whichever side it is seen. medium: what is inside.
-static double index_ratio(const glint_plan *plan, const glint_media *media, uint32_t material, uint32_t medium, bool back)
-{
-    const glint_bounce_material *m = &plan->bouncing[material];
-    glint_media beyond = *media;
-    if (!m->transmits)
-        return index_of(plan, glint_media_top(media)) / m->ior;
-    glint_media_cross(&beyond, medium, back);
-    return index_of(plan, glint_media_before(media, medium, back)) / index_of(plan, glint_media_top(&beyond));
-}
-
 static const glint_media *media_of(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame,
                                    uint32_t i)
 {
     return tile == &batch->tile && frame->plan->transmits ? glint_batch_media(batch, i) : &frame->plan->eye_media;
+}
+
+/// What lets nothing through is solid: its index is beyond, from whichever side it is seen.
+void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       uint32_t sides[2])
+{
+    const glint_media *media = media_of(batch, tile, frame, i);
+    const uint32_t material = tile->surface.material[i], medium = medium_of(tile, frame, i);
+    const bool back = glint_has_lane(tile->hit.back, i);
+    glint_media beyond = *media;
+    sides[0] = glint_media_top(media);
+    sides[1] = material;
+    if (!frame->plan->bouncing[material].transmits)
+        return;
+    glint_media_cross(&beyond, medium, back);
+    sides[0] = glint_media_before(media, medium, back);
+    sides[1] = glint_media_top(&beyond);
 }
 
 void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame)
@@ -290,9 +303,9 @@ void glint_batch_find_ways(glint_batch *batch, const glint_tile *tile, const gli
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned left = batch->wanted[g]; left; left &= left - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            const double ratio = index_ratio(frame->plan, media_of(batch, tile, frame, i), tile->surface.material[i],
-                                             medium_of(tile, frame, i), glint_has_lane(tile->hit.back, i));
-            glint_real_put(batch->ratio, precision, i, ratio);
+            uint32_t sides[2];
+            glint_batch_sides(batch, tile, frame, i, sides);
+            glint_real_put(batch->ratio, precision, i, index_of(frame->plan, sides[0]) / index_of(frame->plan, sides[1]));
         }
     if (glint_plan_bumps(frame->plan))
         glint_tile_bounce_normals(tile, frame->plan, batch->wanted, batch->ratio, args.normal);

@@ -69,6 +69,11 @@ glint_ray glint_batch_start_ray(const glint_batch *batch, const glint_tile *tile
 /// go the same way.
 void glint_batch_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                        glint_ray *mirror, glint_ray *through);
+/// The medium that a ray of the batch, which is cast, went through since its last surface.
+uint32_t glint_batch_crossed(const glint_batch *batch, const glint_tile_frame *frame, uint32_t ray);
+/// The media of sample `i` of the tile on the ray's side of its surface, and beyond: materials, GLINT_NO_MEDIUM.
+void glint_batch_sides(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                       uint32_t sides[2]);
 /// Adds the work of the batches to the tile they were made for.
 void glint_batch_end(const glint_batch *batch, glint_tile *to);
 

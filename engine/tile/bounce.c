@@ -14,7 +14,7 @@
 /// the plan's bound of what any ray can bring. That is 1/318 of the smallest step between two 8-bit sRGB codes.
 #include "engine/base/alloc.h"
 #include "engine/base/vec.h"
-#include "engine/tile/batch.h"
+#include "engine/tile/derivative_work.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +25,7 @@ struct glint_bounce {
     glint_rays *levels[GLINT_BOUNCE_LEVELS]; ///< each in some room, or the batch's own: what is taken changes places with it
     uint32_t counts[GLINT_BOUNCE_LEVELS];
     double budget[GLINT_TILE_SAMPLES]; ///< light that each sample may still lose
+    glint_ray_slope *slopes; ///< what those of all levels and of the batch's own rays are in; NULL until a frame has derivatives
 };
 
 /// Its pages are the system's until a level is used.
@@ -36,7 +37,28 @@ struct glint_bounce *glint_bounce_create(void)
     return bounce;
 }
 
-void glint_bounce_destroy(struct glint_bounce *bounce) { free(bounce); }
+void glint_bounce_destroy(struct glint_bounce *bounce)
+{
+    if (!bounce)
+        return;
+    glint_derivative_destroy(bounce->batch.tile.derivative);
+    free(bounce->slopes);
+    free(bounce);
+}
+
+bool glint_bounce_derives(struct glint_bounce *bounce)
+{
+    const size_t each = (size_t)GLINT_TILE_SAMPLES * GLINT_DERIVATIVES_MAX;
+    if (!bounce->batch.tile.derivative)
+        bounce->batch.tile.derivative = glint_derivative_create();
+    if (!bounce->slopes)
+        bounce->slopes = malloc((GLINT_BOUNCE_LEVELS + 1) * each * sizeof *bounce->slopes); // pages are the system's until used
+    for (size_t i = 0; bounce->slopes && i < GLINT_BOUNCE_LEVELS; i++)
+        bounce->room[i].slopes = bounce->slopes + i * each;
+    if (bounce->slopes)
+        bounce->batch.own.slopes = bounce->slopes + GLINT_BOUNCE_LEVELS * each;
+    return bounce->slopes && bounce->batch.tile.derivative;
+}
 
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)
 {
@@ -85,7 +107,9 @@ static bool matters(struct glint_bounce *bounce, const glint_plan *plan, const g
     return false;
 }
 
-static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t level, const glint_ray *ray)
+/// slopes: of the ray; of frames without derivatives not read.
+static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t level, const glint_ray *ray,
+                 const glint_ray_slope *slopes)
 {
     if (level >= GLINT_BOUNCE_LEVELS)
         return;
@@ -93,6 +117,9 @@ static void push(struct glint_bounce *bounce, const glint_plan *plan, uint32_t l
     if (count % GLINT_GROUP == 0)
         bounce->levels[level]->active[count / GLINT_GROUP] = bounce->levels[level]->inward[count / GLINT_GROUP] = 0;
     glint_rays_put(bounce->levels[level], plan, count, ray);
+    if (plan->derivatives)
+        memcpy(bounce->levels[level]->slopes + count * plan->derivatives->count, slopes,
+               plan->derivatives->count * sizeof *slopes);
 }
 
 /// A number in 0 .. 1 that is the ray's own: made of its direction's bits (the finish of splitmix64).
@@ -109,39 +136,52 @@ static double lot_of(const glint_ray *ray)
     return (double)(z >> 11) * 0x1p-53;
 }
 
-/// One of two rays, by lot as they weigh, gets the weight of both, the other none.
-static void stand_for_both(glint_ray *a, glint_ray *b)
+/// Gives a ray the weight of another, which then has none.
+static void take_weight(const glint_plan *plan, glint_ray *one, glint_ray *other, glint_ray_slope *slopes,
+                        const glint_ray_slope *more)
 {
-    const bool first = lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a);
-    glint_ray *one = first ? a : b, *other = first ? b : a;
     for (int c = 0; c < 3; c++) {
         one->weight[c] = glint_weight(one->weight[c] + other->weight[c]);
         other->weight[c] = 0;
+        for (size_t k = 0; plan->derivatives && k < plan->derivatives->count; k++)
+            slopes[k].weight[c] += more[k].weight[c];
     }
+}
+
+/// One of two rays, by lot as they weigh, gets the weight of both, the other none.
+static void stand_for_both(const glint_plan *plan, glint_ray *a, glint_ray *b, glint_ray_slope *a_slopes,
+                           glint_ray_slope *b_slopes)
+{
+    if (lot_of(a) * (total_weight(a) + total_weight(b)) < total_weight(a))
+        take_weight(plan, a, b, a_slopes, b_slopes);
+    else
+        take_weight(plan, b, a, b_slopes, a_slopes);
 }
 
 /// The mirrored and the refracted ray of one sample, the stronger one staying in `level`.
 static void send_on(struct glint_bounce *bounce, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
                     uint32_t level)
 {
+    const glint_plan *plan = frame->plan;
     glint_ray mirror, through;
+    glint_ray_slope slopes[2][GLINT_DERIVATIVES_MAX];
     glint_batch_split(&bounce->batch, tile, frame, i, &mirror, &through);
+    if (plan->derivatives)
+        glint_derive_split(&bounce->batch, tile, frame, i, slopes[0], slopes[1]);
     if (tile != &bounce->batch.tile) {
         mirror.term = GLINT_TERM_MIRROR;
         through.term = GLINT_TERM_TRANSMISSION;
     } else if (glint_has_lane(bounce->batch.total, i)) { // both go the same way
-        for (int c = 0; c < 3; c++)
-            mirror.weight[c] = glint_weight(mirror.weight[c] + through.weight[c]);
-        through.weight[0] = through.weight[1] = through.weight[2] = 0;
+        take_weight(plan, &mirror, &through, slopes[0], slopes[1]);
     } else if (mirror.depth > GLINT_BOUNCE_SPLITS) {
-        stand_for_both(&mirror, &through);
+        stand_for_both(plan, &mirror, &through, slopes[0], slopes[1]);
     }
-    const bool mirrors = matters(bounce, frame->plan, &mirror), transmits = matters(bounce, frame->plan, &through);
+    const bool mirrors = matters(bounce, plan, &mirror), transmits = matters(bounce, plan, &through);
     const bool weaker_mirror = mirrors && transmits && total_weight(&mirror) < total_weight(&through);
     if (mirrors)
-        push(bounce, frame->plan, level + weaker_mirror, &mirror);
+        push(bounce, plan, level + weaker_mirror, &mirror, slopes[0]);
     if (transmits)
-        push(bounce, frame->plan, level + (mirrors && !weaker_mirror), &through);
+        push(bounce, plan, level + (mirrors && !weaker_mirror), &through, slopes[1]);
 }
 
 /// Sends on what the eye's samples have hit, to level 0.
@@ -204,6 +244,11 @@ static void run_batch(struct glint_bounce *bounce, glint_tile *to, const glint_t
     const bool any = glint_batch_cast(&bounce->batch, frame);
     if (any || bounce->batch.whole)
         glint_batch_light(&bounce->batch, frame, any);
+    if (frame->plan->derivatives) {
+        if (frame->plan->absorbs)
+            glint_derive_absorption(&bounce->batch, frame);
+        glint_derive_collect(&bounce->batch, frame->plan, to);
+    }
     collect(&bounce->batch, frame->plan, to);
     if (any && frame->plan->runs[GLINT_STAGE_INDIRECT])
         glint_tile_indirect(to, frame, &bounce->batch.tile, &bounce->batch);

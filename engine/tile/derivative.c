@@ -1,28 +1,13 @@
 /// The stage derivative: how fast the light of each sample changes with parameters, hits and shadows held as they are.
-#include "engine/tile/derivative_light.h"
+#include "engine/tile/derivative_work.h"
 
 #include "engine/base/alloc.h"
 #include "engine/stages/light/cone_sample.h"
-#include "engine/tile/tile.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define MIXER 0x9e3779b1u
 #define NO_SHADOWS 0x811c9dc5u ///< where nothing is kept from a sample
-
-typedef struct glint_derivative_work {
-    _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
-    _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
-    _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
-    _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
-    float plane[3][GLINT_TILE_SAMPLES];
-    uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
-    uint32_t first[GLINT_TILE_SAMPLES];
-    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that samples of the current light do not reach, do
-    uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches in part
-} glint_derivative_work;
 
 struct glint_derivative_work *glint_derivative_create(void) { return glint_alloc(1, sizeof(glint_derivative_work)); }
 
@@ -33,15 +18,14 @@ void glint_derivative_destroy(struct glint_derivative_work *work) { free(work); 
 /// The group's rays, by the tables that glint_tile_direction reads lane by lane.
 static void gather_directions(const glint_tile *tile, glint_precision precision, uint32_t g, double out[3][GLINT_GROUP])
 {
-    const uint32_t x = g % tile->groups_across, y = g / tile->groups_across;
     for (uint32_t c = 0; c < 3; c++) {
         double down[GLINT_GROUP];
         if (glint_tile_has_arrays(tile)) {
             glint_reals_of(tile->rays.direction[c], precision, g, out[c]);
             continue;
         }
-        glint_reals_of(tile->rays.across, precision, 3 * x + c, out[c]);
-        glint_reals_of(tile->rays.down, precision, 3 * y + c, down);
+        glint_reals_of(tile->rays.across, precision, 3 * (g % tile->groups_across) + c, out[c]);
+        glint_reals_of(tile->rays.down, precision, 3 * (g / tile->groups_across) + c, down);
         for (int i = 0; i < GLINT_GROUP; i++)
             out[c][i] = precision == GLINT_FLOAT ? (double)(float)(out[c][i] + down[i]) : out[c][i] + down[i];
     }
@@ -61,7 +45,7 @@ static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint3
     }
 }
 
-static glint_derivative_points points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     const glint_derivative_work *work = tile->derivative;
     const bool is_float = frame->plan->desc.precision == GLINT_FLOAT;
@@ -128,15 +112,17 @@ static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, u
     return lanes;
 }
 
-/// `reached`: lanes that the light reaches.
+/// `reached`: lanes that the light reaches; `tinted`: through something, which leaves its tint.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
-                         glint_derivative_source source, uint32_t g, unsigned reached)
+                         glint_derivative_source source, uint32_t g, unsigned reached,
+                         bool tinted)
 {
     glint_derivative_work *work = tile->derivative;
     const glint_plan_derivatives *all = frame->plan->derivatives;
     const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
-    const glint_derivative_points points = points_of(tile, frame, g);
+    const glint_derivative_points points = glint_derivative_points_of(tile, frame, g);
     const size_t at = (size_t)g * GLINT_GROUP;
+    const bool weighs = tile->batch && glint_derivatives_weigh(all);
     glint_derivative_points bent_points = points;
     for (int i = 0; i < 9; i++)
         bent_points.slope[i / 3][i % 3] = work->bend[i / 3][i % 3];
@@ -153,11 +139,16 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
             double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
+            for (int c = 0; c < 3 && tinted; c++) {
+                source.tint[c] = work->tint[c] + at;
+                source.tint_slope[c] = work->tint_slope[k][c] + at;
+            }
+            double *const whole[3] = { weighs && k == 0 ? work->light[0] + at : NULL, work->light[1] + at, work->light[2] + at };
             const unsigned bent = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
             if (bent)
-                glint_derive_light(l, m, &bent_points, &source, bent, sum);
-            if (lanes & ~bent && (l->varies || m->varies))
-                glint_derive_light(l, m, &points, &source, lanes & ~bent, sum);
+                glint_derive_light(l, m, &bent_points, &source, bent, sum, whole);
+            if (lanes & ~bent && (tinted || whole[0] || l->varies || m->varies))
+                glint_derive_light(l, m, &points, &source, lanes & ~bent, sum, whole);
         }
     }
 }
@@ -184,7 +175,7 @@ static void note_shadows(glint_tile *tile, const glint_plan_light *light, uint32
     work->mixed[g] |= work->kept[g] & work->given[g];
     for (unsigned rest = fresh; rest; rest &= rest - 1) {
         uint32_t *hash = &shadows[__builtin_ctz(rest)];
-        *hash = (*hash ^ (light->source + 1)) * MIXER;
+        *hash = (*hash ^ (light->source + 1)) * GLINT_SHADOW_MIXER;
     }
 }
 
@@ -198,11 +189,48 @@ static void derive_light(glint_tile *tile, const glint_tile_frame *frame, uint32
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const unsigned hits = tile->at.hits[g] & tile->active[g], above = hits ? lit[g] & hits : 0;
         const unsigned reached = above ? open[g] & above : 0;
+        const unsigned dimmed = reached && light->shadows && frame->plan->dims ? glint_tile_dim_lanes(tile, g) : 0;
         if (shift)
             note_shadows(tile, light, g, above, reached);
-        if (reached)
-            derive_group(tile, frame, light, slot, source, g, reached);
+        if (reached & ~dimmed)
+            derive_group(tile, frame, light, slot, source, g, reached & ~dimmed, false);
     }
+}
+
+// ---- Light through transparent objects ----------------------------------------------------------------------------
+
+void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan)
+{
+    memset(tile->derivative->ray_tint, 0, plan->derivatives->count * sizeof *tile->derivative->ray_tint);
+}
+
+void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
+                            double color, double transmission, double left)
+{
+    for (size_t k = 0; k < plan->derivatives->count; k++) {
+        double *slope = &tile->derivative->ray_tint[k][c][ray];
+        *slope = (*slope * transmission + color * plan->derivatives->of[k].bounces[material].transmission[c]) * left;
+    }
+}
+
+void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_t i, uint32_t ray,
+                         const double (*color)[GLINT_TILE_SAMPLES])
+{
+    glint_derivative_work *work = tile->derivative;
+    for (int c = 0; c < 3; c++) {
+        work->tint[c][i] = color[c][ray];
+        for (size_t k = 0; k < plan->derivatives->count; k++)
+            work->tint_slope[k][c][i] = work->ray_tint[k][c][ray];
+    }
+}
+
+void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
+                              const uint16_t *reached)
+{
+    const glint_derivative_source source = source_of(tile, light);
+    for (uint32_t g = 0; g < tile->group_count; g++)
+        if (reached[g] & tile->active[g])
+            derive_group(tile, frame, light, slot, source, g, reached[g] & tile->active[g], true);
 }
 
 // ---- A sample -----------------------------------------------------------------------------------------------------
@@ -225,6 +253,16 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
     }
 }
 
+/// What hits of a batch give without lights.
+static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
+{
+    for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
+        for (int c = 0; c < 3; c++)
+            tile->derivative->light[c][i] = glint_has_lane(tile->at.hits, i)
+                                                ? frame->plan->materials[tile->surface.material[i]].ambient[c]
+                                                : 0;
+}
+
 /// Between samples: which lanes have not kept from them what the first had.
 static void turn_sample(glint_tile *tile, bool is_first)
 {
@@ -242,7 +280,7 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
 {
     glint_derivative_work *work = tile->derivative;
     const size_t count = tile->group_count * (size_t)GLINT_GROUP;
-    if (tile->sample == 0) {
+    if (tile->sample == 0 || tile->batch) {
         memset(work->mixed, 0, sizeof work->mixed);
         for (size_t k = 0; k < frame->plan->derivatives->count; k++)
             for (int c = 0; c < 3; c++)
@@ -257,9 +295,11 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
             begin_group(tile, frame, g);
         if (tile->at.hits[g])
             gather_points(tile, frame, g);
+        if (tile->batch && glint_derivatives_weigh(frame->plan->derivatives))
+            begin_light(tile, frame, g);
         for (unsigned rest = frame->plan->derivatives->bends ? tile->at.hits[g] : 0; rest; rest &= rest - 1) {
             const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(rest);
-            work->shadows[i] = (NO_SHADOWS ^ (frame->geometry.prims[tile->at.prim[i]].id + 1)) * MIXER;
+            work->shadows[i] = (NO_SHADOWS ^ (frame->geometry.prims[tile->at.prim[i]].id + 1)) * GLINT_SHADOW_MIXER;
         }
     }
 }

@@ -1,8 +1,6 @@
-/// How fast a hit moves on its surface, held to its ray, where the surface or the eye does.
-#include "engine/tile/derivative_light.h"
-
+/// How fast a hit moves on its surface, held to its ray, where the surface does or what sees it.
 #include "engine/base/vec.h"
-#include "engine/tile/tile.h"
+#include "engine/tile/derivative_work.h"
 
 /// What of a way from the eye changes as the view turns: as far along it as the hit is.
 static void turn_way(const glint_plan *plan, const glint_derivative_view *view, const double way[3], double out[3])
@@ -16,61 +14,216 @@ static void turn_way(const glint_plan *plan, const glint_derivative_view *view, 
 
 /// A hit: where it is, and what moves it.
 typedef struct bent_hit {
-    double point[3], normal[3], way[3]; ///< the last: from the eye
-    double turned[3]; ///< slope of the way
-    double carried[3]; ///< slope of the point if it stayed as far from the eye
+    double point[3], normal[3], way[3]; ///< the last: along the ray, of any length
+    double carried[3]; ///< slope of the point if it stayed as far from where the ray starts
 } bent_hit;
 
-/// The slopes of point and normal. The surface is place . gradient = constant.
-static void hold(const bent_hit *hit, const glint_prim *prim, const glint_derivative_part *part, double point[3],
-                 double normal[3])
+// ---- Normals of curved surfaces -------------------------------------------------------------------------------------
+
+/// The slope of a unit vector that is `length` long and changes by `change` before it is made unit.
+static void turn_unit(const double unit[3], double length, const double change[3], double out[3])
 {
-    double gradient[3], off[3], rest = 0;
-    for (int c = 0; c < 3; c++) {
-        off[c] = prim->kind == GLINT_PRIM_TRIANGLE ? 0 : hit->point[c] - prim->center[c];
-        gradient[c] = prim->kind == GLINT_PRIM_SPHERE ? off[c] : prim->kind == GLINT_PRIM_PLANE ? prim->normal[c] : hit->normal[c];
-        rest += gradient[c] * (part->place[c] - hit->carried[c]) - part->normal[c] * off[c];
+    const double along = vec_dot(unit, change);
+    for (int c = 0; c < 3; c++)
+        out[c] = (change[c] - along * unit[c]) / length;
+}
+
+/// Of the unit shape, where its surface is curved: half the gradient of what is 0 on it, and how that changes along `way`.
+/// False: the face is flat. `turn`: along the normal, where the shape is the unit one.
+static bool find_gradient(const glint_solid *solid, const double k[3], const double turn[3], const double way[3],
+                          double gradient[3], double change[3])
+{
+    const double across = turn[0] * turn[0] + turn[1] * turn[1], along = turn[2] * turn[2];
+    const bool cone = solid->form == GLINT_FORM_CONE || solid->form == GLINT_FORM_FUNNEL;
+    const bool tube = solid->form == GLINT_FORM_CYLINDER || solid->form == GLINT_FORM_TUBE;
+    const double z = cone ? -1 : tube ? 0 : 1;
+    if (solid->form == GLINT_FORM_BOX || solid->form == GLINT_FORM_DISK || ((cone || tube) && 2 * across < along))
+        return false;
+    double share = 1, share_slope = 0;
+    if (solid->form == GLINT_FORM_TORUS) {
+        const double round = sqrt(k[0] * k[0] + k[1] * k[1]);
+        share = 1 - 1 / round;
+        share_slope = (k[0] * way[0] + k[1] * way[1]) / (round * round * round);
     }
-    rest += prim->kind == GLINT_PRIM_SPHERE ? prim->radius * part->radius : 0;
+    for (int c = 0; c < 3; c++) {
+        gradient[c] = c < 2 ? share * k[c] : z * k[c];
+        change[c] = c < 2 ? share * way[c] + share_slope * k[c] : z * way[c];
+    }
+    return true;
+}
+
+/// `moved`: the slope of the point. A part that moves is a ball.
+static void curve_solid(const glint_solid *solid, const glint_prim *prim, const glint_derivative_part *part,
+                        const bent_hit *hit, const double moved[3], double out[3])
+{
+    double k[3], turn[3], way[3], gradient[3], change[3], normal[3] = { 0 }, turned[3] = { 0 }, from[3], within[3];
+    vec_sub(from, hit->point, prim->center);
+    for (int c = 0; c < 3; c++) // as the ball would see it that stays where it is
+        within[c] = (moved[c] - part->place[c]) - from[c] * part->growth;
+    for (int c = 0; c < 3; c++) {
+        const double column[3] = { solid->forward[0][c], solid->forward[1][c], solid->forward[2][c] };
+        k[c] = vec_dot(solid->inverse[c], from);
+        way[c] = vec_dot(solid->inverse[c], within);
+        turn[c] = vec_dot(column, hit->normal);
+    }
+    if (!find_gradient(solid, k, turn, way, gradient, change))
+        return;
+    for (int c = 0; c < 9; c++) {
+        normal[c % 3] += solid->inverse[c / 3][c % 3] * gradient[c / 3];
+        turned[c % 3] += solid->inverse[c / 3][c % 3] * change[c / 3];
+    }
+    turn_unit(hit->normal, vec_dot(normal, hit->normal), turned, out);
+}
+
+/// The slopes of the shares of a triangle's corners, and the shares, where they are wanted.
+static void find_shares(const glint_prim *prim, const double gradient[3], const double at[3], double out[3])
+{
+    const double size = vec_dot(gradient, gradient);
+    double f[3], g[3], x[3];
+    vec_sub(f, prim->corner[1], prim->corner[0]);
+    vec_sub(g, prim->corner[2], prim->corner[0]);
+    vec_cross(x, at, g);
+    out[1] = vec_dot(x, gradient) / size;
+    vec_cross(x, f, at);
+    out[2] = vec_dot(x, gradient) / size;
+    out[0] = -(out[1] + out[2]);
+}
+
+/// Of a triangle whose normals are those between its corners.
+static void curve_triangle(const glint_corner_normals *corners, const glint_prim *prim, const double gradient[3],
+                           const bent_hit *hit, const double moved[3], double out[3])
+{
+    double from[3], share[3], change[3], normal[3] = { 0 }, turned[3] = { 0 };
+    vec_sub(from, hit->point, prim->corner[0]);
+    find_shares(prim, gradient, from, share);
+    find_shares(prim, gradient, moved, change);
+    share[0] += 1;
+    for (int j = 0; j < 9; j++) {
+        normal[j % 3] += share[j / 3] * corners->normal[j / 3][j % 3];
+        turned[j % 3] += change[j / 3] * corners->normal[j / 3][j % 3];
+    }
+    const double length = vec_dot(normal, hit->normal);
+    if (length != 0) // else it is the face's own
+        turn_unit(hit->normal, length, turned, out);
+}
+
+// ---- A hit ------------------------------------------------------------------------------------------------------------
+
+/// Across the surface, of any length.
+static void find_across(const bent_hit *hit, const glint_prim *prim, double out[3])
+{
+    double f[3], g[3];
+    if (prim->kind == GLINT_PRIM_SPHERE) {
+        vec_sub(out, hit->point, prim->center);
+    } else if (prim->kind == GLINT_PRIM_PLANE) {
+        vec_copy(out, prim->normal);
+    } else if (prim->kind == GLINT_PRIM_TRIANGLE) {
+        vec_sub(f, prim->corner[1], prim->corner[0]);
+        vec_sub(g, prim->corner[2], prim->corner[0]);
+        vec_cross(out, f, g);
+    } else {
+        vec_copy(out, hit->normal);
+    }
+}
+
+/// The slopes of point and normal: the point stays on the tangent plane, which moves as the surface does there.
+static void hold(const bent_hit *hit, const glint_geometry_table *table, const glint_prim *prim,
+                 const glint_derivative_part *part, glint_bend *out)
+{
+    const bool has_center = prim->kind != GLINT_PRIM_TRIANGLE;
+    double gradient[3], off[3], rest = 0;
+    find_across(hit, prim, gradient);
+    for (int c = 0; c < 3; c++) {
+        off[c] = has_center ? hit->point[c] - prim->center[c] : 0;
+        rest += gradient[c] * ((part->place[c] - hit->carried[c]) + part->growth * off[c]);
+        rest -= part->normal[c] * (hit->point[c] - part->pivot[c]);
+    }
     const double further = rest / vec_dot(gradient, hit->way), side = vec_dot(gradient, hit->normal) < 0 ? -1 : 1;
     for (int c = 0; c < 3; c++) {
-        point[c] = hit->carried[c] + further * hit->way[c];
-        normal[c] = side * part->normal[c];
+        out->point[c] = hit->carried[c] + further * hit->way[c];
+        out->normal[c] = side * part->normal[c];
     }
     for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_SPHERE; c++)
-        normal[c] = side * ((point[c] - part->place[c]) - off[c] * (part->radius / prim->radius)) / prim->radius;
+        out->normal[c] = side * ((out->point[c] - part->place[c]) - off[c] * part->growth) / prim->radius;
+    if (prim->kind == GLINT_PRIM_SOLID)
+        curve_solid(&table->solids[prim->item], prim, part, hit, out->point, out->normal);
+    else if (prim->kind == GLINT_PRIM_TRIANGLE && table->corner_normals && prim->item != GLINT_MISS)
+        curve_triangle(&table->corner_normals[prim->item], prim, gradient, hit, out->point, out->normal);
+}
+
+/// Seen by the eye.
+static void bend_view(const glint_plan *plan, const glint_derivative_view *view, const double eye[3], bent_hit *hit,
+                      glint_bend *out)
+{
+    double turned[3];
+    for (int c = 0; c < 3; c++)
+        hit->way[c] = view->moves ? hit->point[c] - plan->camera.eye[c] : -eye[c];
+    turn_way(plan, view, hit->way, turned);
+    const double length = sqrt(vec_dot(hit->way, hit->way)), away = vec_dot(turned, eye);
+    for (int c = 0; c < 3; c++) {
+        hit->carried[c] = view->eye[c] + turned[c];
+        out->eye[c] = (away * eye[c] - turned[c]) / length;
+    }
+}
+
+/// Seen by a ray that left a surface. False: that does not move it.
+static bool bend_ray(const glint_batch *batch, const glint_plan *plan, size_t index, uint32_t i, const double eye[3],
+                     bent_hit *hit, glint_bend *out)
+{
+    const uint32_t ray = batch->ray_of[i];
+    const glint_ray_slope *slope = &batch->rays->slopes[ray * plan->derivatives->count + index];
+    bool moves = false;
+    double far = 0;
+    for (int c = 0; c < 3; c++) {
+        far -= (hit->point[c] - glint_real_at(batch->rays->origin[c], plan->desc.precision, ray)) * eye[c];
+        moves = moves || slope->origin[c] != 0 || slope->direction[c] != 0;
+    }
+    for (int c = 0; c < 3; c++) {
+        hit->way[c] = -eye[c];
+        hit->carried[c] = slope->origin[c] + far * slope->direction[c];
+        out->eye[c] = -slope->direction[c];
+    }
+    return moves;
+}
+
+bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
+                       const glint_derivative_points *points, glint_bend *out)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_plan_derivative *d = &plan->derivatives->of[index];
+    const glint_prim *prim = &frame->geometry.prims[tile->at.prim[i]];
+    const glint_derivative_part *part = &d->parts[plan->geometry->prim_part[prim->id]];
+    bent_hit hit;
+    double eye[3];
+    if (!tile->batch && !part->moves && !d->view.moves)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        hit.point[c] = points->point[c][i % GLINT_GROUP];
+        hit.normal[c] = points->normal[c][i % GLINT_GROUP];
+        eye[c] = points->eye[c][i % GLINT_GROUP];
+    }
+    if (!tile->batch)
+        bend_view(plan, &d->view, eye, &hit, out);
+    else if (!bend_ray(tile->batch, plan, index, i, eye, &hit, out) && !part->moves)
+        return false;
+    hold(&hit, &frame->geometry, prim, part, out);
+    return true;
 }
 
 unsigned glint_bend_points(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t g,
                            unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP])
 {
-    const glint_plan *plan = frame->plan;
-    const glint_plan_derivative *d = &plan->derivatives->of[index];
     unsigned bent = 0;
     for (unsigned rest = lanes; rest; rest &= rest - 1) {
         const unsigned i = (unsigned)__builtin_ctz(rest);
-        const glint_prim *prim = &frame->geometry.prims[tile->at.prim[(size_t)g * GLINT_GROUP + i]];
-        const glint_derivative_part *part = &d->parts[plan->geometry->prim_part[prim->id]];
-        bent_hit hit;
-        double point[3], normal[3], eye[3];
-        if (!part->moves && !d->view.moves)
+        glint_bend own;
+        if (!glint_bend_sample(tile, frame, index, g * GLINT_GROUP + i, points, &own))
             continue;
         bent |= 1u << i;
         for (int c = 0; c < 3; c++) {
-            hit.point[c] = points->point[c][i];
-            hit.normal[c] = points->normal[c][i];
-            eye[c] = points->eye[c][i];
-            hit.way[c] = d->view.moves ? hit.point[c] - plan->camera.eye[c] : -eye[c];
-        }
-        turn_way(plan, &d->view, hit.way, hit.turned);
-        for (int c = 0; c < 3; c++)
-            hit.carried[c] = d->view.eye[c] + hit.turned[c];
-        hold(&hit, prim, part, point, normal);
-        const double length = sqrt(vec_dot(hit.way, hit.way)), away = vec_dot(hit.turned, eye);
-        for (int c = 0; c < 3; c++) {
-            bend[0][c][i] = point[c];
-            bend[1][c][i] = normal[c];
-            bend[2][c][i] = (away * eye[c] - hit.turned[c]) / length;
+            bend[0][c][i] = own.point[c];
+            bend[1][c][i] = own.normal[c];
+            bend[2][c][i] = own.eye[c];
         }
     }
     return bent;

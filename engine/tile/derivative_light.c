@@ -229,7 +229,7 @@ void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3])
 /// `bends` is a constant.
 INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const glint_derivative_material *material,
                          const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
-                         double *const sum[3])
+                         double *const sum[3], double *const whole[3])
 {
     const vd zero = d_set(0);
     lanes kd[3], ks[3], kg[3];
@@ -255,17 +255,21 @@ INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const 
             lanes light_left = mul(kd[c], s.cosine);
             light_left = add(light_left, mul(ks[c], specular));
             light_left = mul(add(light_left, mul(kg[c], grazing)), s.weight);
+            if (source->tint[0])
+                light_left = mul(light_left, make(d_load(source->tint[c] + i), d_load(source->tint_slope[c] + i)));
             d_store(sum[c] + i, d_load(sum[c] + i) + d_select(reached, light_left.d, zero));
+            if (whole[0])
+                d_store(whole[c] + i, d_load(whole[c] + i) + d_select(reached, light_left.v, zero));
         }
     }
 }
 
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
                         const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
-                        double *const sum[3])
+                        double *const sum[3], double *const whole[3])
 {
     if (points->slope[0][0])
-        derive_lanes(true, light, material, points, source, which, sum);
+        derive_lanes(true, light, material, points, source, which, sum, whole);
     else
-        derive_lanes(false, light, material, points, source, which, sum);
+        derive_lanes(false, light, material, points, source, which, sum, whole);
 }

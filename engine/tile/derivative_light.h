@@ -17,6 +17,7 @@ typedef struct glint_derivative_source {
     const double *position[3]; ///< directional: the unit vector towards it
     const double *normal[3]; ///< of its surface; read of radiant ones
     const double *weight; ///< share of it that reaches the point; NULL: 1
+    const double *tint[3], *tint_slope[3]; ///< what is left of its colours on the way; tint[0] NULL: all
     bool radiant; ///< with cos' / distance^2
     bool both; ///< radiant: to both sides
 } glint_derivative_source;
@@ -29,9 +30,10 @@ unsigned glint_bend_points(const struct glint_tile *tile, const struct glint_til
                            unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
 /// Unit vectors against the directions of rays.
 void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3]);
-/// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`.
+/// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`, and that itself to `whole`. whole[0]
+/// NULL: nothing.
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
                         const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
-                        double *const sum[3]);
+                        double *const sum[3], double *const whole[3]);
 
 #endif

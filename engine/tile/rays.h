@@ -19,6 +19,8 @@ typedef struct glint_ray {
     glint_media media; ///< in frames with transparent materials
 } glint_ray;
 
+struct glint_ray_slope;
+
 typedef struct glint_rays {
     _Alignas(64) double origin[3][GLINT_TILE_SAMPLES], direction[3][GLINT_TILE_SAMPLES]; ///< real
     _Alignas(64) double weight[3][GLINT_TILE_SAMPLES];
@@ -30,6 +32,7 @@ typedef struct glint_rays {
     uint32_t group_count;
     uint16_t active[GLINT_TILE_GROUPS], inward[GLINT_TILE_GROUPS]; ///< lanes without a ray hold anything
     glint_media media[GLINT_TILE_SAMPLES];
+    struct glint_ray_slope *slopes; ///< in frames with derivatives: of each ray, one a derivative; else NULL or anything
 } glint_rays;
 
 /// Makes `rays` an empty set of groups.

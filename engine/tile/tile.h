@@ -283,6 +283,8 @@ void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, ui
 /// tile/bounce.c: follows what materials send on, and adds it to the sums of the current sample, whose points are found.
 struct glint_bounce *glint_bounce_create(void);
 void glint_bounce_destroy(struct glint_bounce *bounce);
+/// Makes room for the slopes of rays; false: no memory.
+bool glint_bounce_derives(struct glint_bounce *bounce);
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
@@ -444,6 +446,15 @@ void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: no
 /// What is there without lights, at the first call of a sample, and what `count` lights of the plan from `from` on add, of which
 /// it is known where they reach. The points are found.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);
+/// Of light through transparent objects: before the first step of its rays; ray `ray` crosses a surface, at which `transmission` and
+/// `left` are what its colour in channel c is multiplied by; it arrives, at sample i; a light in `slot` shines on samples so.
+void glint_tile_begin_tints(const glint_tile *tile, const glint_plan *plan);
+void glint_tile_derive_tint(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t ray, int c,
+                            double color, double transmission, double left);
+void glint_tile_put_tint(const glint_tile *tile, const glint_plan *plan, uint32_t i, uint32_t ray,
+                         const double (*color)[GLINT_TILE_SAMPLES]);
+void glint_tile_derive_tinted(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
+                              const uint16_t *reached);
 /// After the last sample: into the image.
 void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *frame);
 

@@ -175,7 +175,7 @@ bool glint_tile_may_be_tinted(const glint_tile *tile, const glint_tile_frame *fr
 static bool is_black(const glint_plan *plan, uint32_t material)
 {
     const glint_shade_material *m = &plan->materials[material];
-    return !plan->patterns && m->highlight == GLINT_HIGHLIGHT_NONE && vec_max_abs(m->diffuse) == 0;
+    return !plan->patterns && !plan->derivatives && m->highlight == GLINT_HIGHLIGHT_NONE && vec_max_abs(m->diffuse) == 0;
 }
 
 /// Those whose rays to the light are followed: from points that show light, and that some row does not reach freely.
@@ -253,7 +253,8 @@ static void arrive(struct glint_transparent_shadow *transparent_shadow, const gl
 }
 
 /// Takes the colour of one surface, and of the distance up to it, with the ray in place i. Returns whether any light is left.
-static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile_frame *frame, uint32_t i)
+static bool cross(struct glint_transparent_shadow *transparent_shadow, const glint_tile *tile,
+                  const glint_tile_frame *frame, uint32_t i)
 {
     const glint_plan *plan = frame->plan;
     const uint32_t material = transparent_shadow->material[i], ray = transparent_shadow->ray_of[i],
@@ -272,6 +273,8 @@ static bool cross(struct glint_transparent_shadow *transparent_shadow, const gli
         glint_media_cross(&transparent_shadow->media[ray], inside, back);
     }
     for (int c = 0; c < 3; c++) {
+        if (plan->derivatives)
+            glint_tile_derive_tint(tile, plan, material, ray, c, transparent_shadow->color[c][ray], transmission[c], left[c]);
         transparent_shadow->color[c][ray] *= transmission[c] * left[c];
         any = any || transparent_shadow->color[c][ray] > 0;
     }
@@ -422,7 +425,7 @@ static void step(struct glint_transparent_shadow *transparent_shadow, glint_tile
                     arrive(transparent_shadow, frame->plan, light, i);
             } else if ((transparent_shadow->holes[g] & bit) ||
                        (frame->plan->bouncing[transparent_shadow->material[i]].transmits &&
-                        cross(transparent_shadow, frame, i))) {
+                        cross(transparent_shadow, tile, frame, i))) {
                 aim(transparent_shadow, precision, light->directional,
                     (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->point, i, transparent_shadow->prim[i],
                     !(transparent_shadow->back[g] & bit), ray, next++);
@@ -488,10 +491,14 @@ static void add_row(struct glint_transparent_shadow *transparent_shadow, glint_t
             transparent_shadow->attenuation[c][i] =
                 (float)fmin(a * transparent_shadow->color[c][ray], GLINT_ATTENUATION_MAX);
         transparent_shadow->reached[i / GLINT_GROUP] |= (uint16_t)(1u << i % GLINT_GROUP);
+        if (frame->plan->derivatives)
+            glint_tile_put_tint(tile, frame->plan, i, ray, (const double(*)[GLINT_TILE_SAMPLES])transparent_shadow->color);
         any = true;
     }
     if (any)
         shade(transparent_shadow, tile, frame, light, slot);
+    if (any && frame->plan->derivatives)
+        glint_tile_derive_tinted(tile, frame, light, slot, transparent_shadow->reached);
 }
 
 /// The rays of groups `from` to `end`, which fit. False: cancelled.
@@ -501,6 +508,8 @@ static bool follow(glint_tile *tile, const glint_tile_frame *frame, uint32_t ind
     struct glint_transparent_shadow *transparent_shadow = tile->transparent_shadow;
     const glint_plan_light *lights = &frame->plan->lights[index];
     begin(transparent_shadow, tile, frame, index, slot, count, from, end);
+    if (frame->plan->derivatives)
+        glint_tile_begin_tints(tile, frame->plan);
     memset(transparent_shadow->holes, 0, sizeof transparent_shadow->holes);
     for (int k = 0; k < CROSSINGS_MAX && transparent_shadow->group_count; k++) {
         if (glint_tile_cancelled(frame))

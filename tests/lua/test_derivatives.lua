@@ -163,6 +163,49 @@ function tests.what_moves_against_differences()
       glint.point_light { position = { 0.2, 0.4, 0 } }, glint.sphere { center = { x, 0, 0 }, radius = 2 + x,
         material = glint.material { specular = 0.5, shininess = 10 } } }
   end, 0.1)
+  local function mirror(x) return glint.material { diffuse = 0.3, specular = 0.3, shininess = 10, mirror = x } end
+  local glass = glint.material { diffuse = 0.05, transmission = 0.9, ior = 1.5, fresnel = true }
+  local function with(x, ...)
+    local scene = scene_of(lamp, { material = mirror(0.5), background = { 0.2, 0.3, 0.4 } })
+    for _, shape in ipairs { ... } do scene:add(shape) end
+    scene.camera.eye = { x, 2, 8 }
+    return scene
+  end
+  compare("solids", function(x)
+    return with(x, glint.box { min = { -3, -1, -2 }, max = { -1.7, 1, 0 }, material = mirror(0.3) },
+      glint.cylinder { base = { -1, -1, 2 }, top = { -1.2, 0, 2.1 }, radius = 0.4, material = mirror(0.2) },
+      glint.cone { base = { 1.2, -1, 2 }, top = { 1.2, 0.4, 2 }, radius = 0.5, material = mirror(0.2) },
+      glint.torus { center = { 0, -0.6, 3 }, axis = { 0, 1, 0.2 }, major = 0.6, minor = 0.2, material = glass })
+  end, 0.3)
+  compare("a smooth mesh that mirrors", function(x)
+    return with(x, glint.mesh { vertices = { { -2, -1, 1.5 }, { 2, -1, 1.8 }, { 0, 2, 1 } }, faces = { { 1, 2, 3 } }, shading = "phong",
+      normals = { { -0.5, 0.1, 1 }, { 0.6, 0, 1 }, { 0, 0.7, 1 } }, material = mirror(0.6) })
+  end, 0.3)
+  compare("shapes under a map that keeps no angles", function(x)
+    return with(0, glint.group { transform = glint.translate(-1, 0.5, 2.5) * glint.rotate("z", 30) * glint.scale(0.5, 0.4, -0.7),
+      glint.sphere { center = { x, 0, 0 }, radius = 1 + x, material = mirror(0.3) }, glint.plane { point = { 0, -2, 0 }, normal = { x, 1, 0 } } })
+  end, 0.1)
+  compare("a ball that is cut and the ball that cuts it", function(x)
+    return with(0, glint.difference { glint.sphere { center = { -1 + x, 1, 2.5 }, radius = 0.7, material = mirror(0.3) },
+      glint.sphere { center = { -1, 1 + x, 3.2 }, radius = 0.5, material = mirror(0.2) } })
+  end, 0.1)
+  compare("a plane that turns around its point", function(x)
+    return with(0, glint.plane { point = { -3, 0, -4 }, normal = { x, 0, 1 } })
+  end, 0)
+  compare("a mirror under a lens", function(x)
+    local scene = with(0.1, glint.sphere { center = { x, 0.5, 3 }, radius = 0.5, material = glass })
+    scene.camera.aperture = 0.05
+    return scene
+  end, 0.2, { samples = 4 })
+  compare("an area light in mirrors", function(x)
+    local scene = with(0.1, glint.sphere { center = { x, 0.5, 3 }, radius = 0.5, material = mirror(0.8) })
+    scene:add(glint.sphere_light { position = { -2, 4, 3 }, radius = 0.4, samples = 4, shadows = false, intensity = 0.3 })
+    return scene
+  end, 0.2)
+  compare("microfacets that mirror", function(x)
+    return with(0, glint.sphere { center = { x, 0.5, 3 }, radius = 0.5,
+      material = glint.material { diffuse = 0.3, model = "cook_torrance", roughness = 0.4, mirror = 0.3 } })
+  end, 0.2)
   compare("a ball and a floor under a lens", function(x)
     local camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 }, aperture = 0.05 }
     return glint.scene { camera = camera, lamp, glint.sphere { center = { 0, x, 0 }, radius = 1.5 },
@@ -201,27 +244,32 @@ function tests.errors_are_told()
   raises("camera.height: no derivative goes through here", glint.camera, { eye = { 3, 0, 0 }, at = { 0, 0, 0 }, height = x })
   local moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
   local ball = glint.sphere { center = { x, 0, 0 }, radius = 0.2 }
-  moved:add(glint.group { ball, transform = glint.translate { 0, 1, 0 } })
-  raises("derivative 'x': center: a shape under a transform", render, moved, "d:x")
-  moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
-  moved:add(glint.difference { glint.sphere { center = { 0, 0, 0 }, radius = 2 },
-    glint.sphere { center = { 0, x, 2 }, radius = 1 } })
-  raises("derivative 'x': center: a shape under a transform or in a combined solid", render, moved, "d:x")
-  moved = scene_of(glint.point_light { position = { 2, 4, 3 } })
-  moved:add(glint.cylinder { base = { 0, 0, 0 }, top = { 0, 1, 0 }, radius = 0.2 })
+  moved:add(ball)
+  moved.background = glint.pattern(function(d) return d.y end)
   moved.camera.eye = { x, 2, 8 }
-  raises("derivative 'x': camera: it has derivatives where", render, moved, "d:x")
+  raises("derivative 'x': background: before one that a program gives a camera has no derivative", render, moved, "d:x")
+  moved.camera.eye = { 3, 2, 8 }
+  moved:add(glint.sphere { center = { 0, 0, 4 }, radius = 0.2, material = glint.material { mirror = 0.5 } })
+  raises("derivative 'x': background: what moves or bends", render, moved, "d:x")
   moved = scene_of(glint.sphere_light { position = { 2, 4, 3 }, radius = 1, radiance = 1 })
   moved.camera.fov = 10 * x
   raises("sphere_light #1: position", render, moved, "d:x")
-  raises("material.ior: no derivative goes through here", glint.material, { ior = x })
+  raises("material.opacity: no derivative goes through here", glint.material, { opacity = x })
   raises("no derivative goes through here", glint.translate, { x, 0, 0 })
   raises("variable.name: string", glint.variable, 3, 3)
   raises("variable.value: number", glint.variable, "x", "y")
   raises("variable.name: name of 1 to 31 bytes", glint.variable, "a,b", 1)
-  local glass = scene_of(lamp, { material = glint.material { mirror = 0.5 } })
-  raises("derivative 'x': mirror, transmission", render, glass, "d:x")
-  render(glass, "d:x", { max_depth = 0 })
+  local none = glint.variable("none", 0)
+  local dull = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = none } })
+  raises("derivative 'none': material.mirror: 0 sends no ray on", render, dull, "d:none")
+  dull = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { transmission = none } })
+  raises("derivative 'none': material.transmission: 0 sends no ray on", render, dull, "d:none")
+  local bent = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = 0.5, ior = x } })
+  raises("derivative 'x': nothing in the scene depends on it", render, bent, "d:x")
+  bent = scene_of(lamp, { material = glint.material { transmission = 0.5, absorption = 0.1 } })
+  raises("derivative 'x': absorption: light through what absorbs", render, bent, "d:x")
+  bent = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material { mirror = 0.5 * x / 3 } })
+  raises("derivative 'x': nothing in the scene depends on it", render, bent, "d:x", { max_depth = 0 })
   local lit = scene_of(lamp)
   lit.indirect = { samples = 4 }
   raises("derivative 'x': scene.indirect", render, lit, "d:x")
@@ -235,6 +283,28 @@ function tests.errors_are_told()
   local names = {}
   for i = 1, 9 do names[i] = "d:v" .. i end
   raises("of at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
+end
+
+-- What else is kept of a frame is the same with derivatives and without.
+function tests.beauty_is_as_without()
+  local x, passes = glint.variable("x", 0.3), "beauty,diffuse,mirror,transmission"
+  local function compare(absorption, shadows, samples)
+    local glass = glint.material { diffuse = 0.05, transmission = 0.9, mirror = x, ior = 1.4 + x, fresnel = true, absorption = absorption }
+    local lamp = glint.point_light { position = { 2, 4, 3 }, shadows = shadows, intensity = x }
+    local scene = scene_of(lamp, { material = glass, background = { 0.2, 0.3, 0.4 } })
+    scene:add(glint.disk_light { position = { -2, 4, 3 }, normal = { 2, -4, -3 }, radius = 0.5, samples = 4, intensity = 0.5, shadows = shadows })
+    scene:add(glint.sphere { center = { 1.5, 0, -1 }, radius = 0.8, material = glint.material { mirror = 0.5, specular = 0.5 } })
+    local with = render(scene, passes .. ",d:x", { samples = samples })
+    local without = render(scene, passes, { samples = samples })
+    for pass in passes:gmatch "%a+" do
+      local differ = 0
+      each(with, pass, without, pass, function(p, q) differ = differ + (p ~= q and 1 or 0) end)
+      check(differ == 0, "%s with %d samples: %d numbers differ", pass, samples, differ)
+    end
+  end
+  compare(0.2, false, 1)
+  compare(0, true, 1)
+  compare(0, true, 4)
 end
 
 -- The same script by the command: threads, instruction sets, reuse and further passes change no byte.
@@ -251,8 +321,9 @@ local lamp = glint.point_light { position = { P.x, 4, 3 } }
 local soft = glint.disk_light { position = { -3, 5, 2 }, normal = { 3, -5, -2 }, radius = 0.5, intensity = 0.3 }
 local shiny = glint.material { diffuse = { 0.7, 0.2, 0.1 }, specular = 0.5, shininess = P.s }
 local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 8 }, at = { 0, 0, 0 } }, ambient = 0.1, lamp, soft,
-  glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } },
-  glint.sphere { center = { 0, 0, 0 }, radius = 1, material = shiny } }
+  glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 }, material = glint.material { diffuse = 0.5, mirror = 0.1 } },
+  glint.sphere { center = { 0, 0, 0 }, radius = 1, material = shiny },
+  glint.sphere { center = { 2, P.s / 100, 0 }, radius = 0.5, material = glint.material { diffuse = 0, transmission = 0.9, fresnel = true } } }
 return glint.animation { scene = scene, frames = 9, width = 100, height = 60, frame = function(_, n)
   lamp.position = { P.x + (n > 5 and 1 or 0), 4, 3 }
   shiny.shininess = P.s * (n > 7 and 2 or 1)

@@ -1,0 +1,58 @@
+/// What the parts of tile/derivative*.c share. Internal to engine/tile.
+#ifndef GLINT_DERIVATIVE_WORK_H
+#define GLINT_DERIVATIVE_WORK_H
+
+#include "engine/tile/batch.h"
+#include "engine/tile/derivative_light.h"
+
+#define GLINT_SHADOW_MIXER 0x9e3779b1u
+
+/// Of a ray that left a surface, by one derivative.
+typedef struct glint_ray_slope {
+    double origin[3], direction[3], weight[3];
+} glint_ray_slope;
+
+typedef struct glint_derivative_work {
+    _Alignas(64) double sum[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double light[3][GLINT_TILE_SAMPLES]; ///< of a batch that has slopes of weights: what hits themselves give, in double
+    _Alignas(64) double eye[3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double point[3][GLINT_TILE_SAMPLES], normal[3][GLINT_TILE_SAMPLES]; ///< where the tile's are of float
+    _Alignas(64) double position[3][GLINT_GROUP], weight[GLINT_GROUP]; ///< of the current light
+    _Alignas(64) double bend[3][3][GLINT_GROUP]; ///< slopes of a group's points, normals and eyes
+    _Alignas(64) double tint[3][GLINT_TILE_SAMPLES]; ///< what is left of a light's colours, and its slopes, for samples and for rays
+    _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    float plane[3][GLINT_TILE_SAMPLES];
+    uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
+    uint32_t first[GLINT_TILE_SAMPLES];
+    uint16_t kept[GLINT_TILE_GROUPS], given[GLINT_TILE_GROUPS]; ///< lanes that samples of the current light do not reach, do
+    uint16_t mixed[GLINT_TILE_GROUPS]; ///< lanes that a light reaches in part
+} glint_derivative_work;
+
+/// The slopes of where a sample is: of its point, of its normal, of the unit vector to where it is seen from.
+typedef struct glint_bend {
+    double point[3], normal[3], eye[3];
+} glint_bend;
+
+/// Whether rays that left surfaces have slopes of their weights.
+static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
+{
+    return all->bends || all->weighs;
+}
+
+/// tile/derivative.c: the group that sample i is in, after glint_tile_derive.
+glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
+
+/// tile/derivative_bounce.c: beside glint_batch_split, the slopes of both rays by all derivatives.
+void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,
+                        glint_ray_slope *mirror, glint_ray_slope *through);
+/// After glint_batch_light: the slopes of the rays' weights by what the rays went through.
+void glint_derive_absorption(const glint_batch *batch, const glint_tile_frame *frame);
+/// Adds the slopes of what the rays found to those of their pixels.
+void glint_derive_collect(const glint_batch *batch, const glint_plan *plan, glint_tile *to);
+
+/// tile/derivative_bend.c: by derivative number `index`. False: nothing moves it.
+bool glint_bend_sample(const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
+                       const glint_derivative_points *points, glint_bend *out);
+
+#endif
