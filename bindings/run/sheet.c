@@ -33,7 +33,7 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
     else if (sheet->gain > 0 && !sheet->difference)
         snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
     else if (sheet->columns && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has sliders instead");
+        snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has those of its first axis instead");
     else if ((sheet->size > 0 || sheet->transparent) && ends_in(sheet->path, ".html"))
         snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it means nothing to a page", sheet->transparent ? "transparent" : "size");
     else

@@ -26,5 +26,6 @@ function the.sheet(sheet)
   local title = html(sheet.title or "Contact sheet")
   return (sheet.page:gsub("@(%u+)@", { VERSION = sheet.version, TITLE = title,
     HEADING = sheet.title and "<h1>" .. title .. "</h1>\n" or "", DIFFERENCE = ("%d"):format(sheet.difference),
-    GAIN = ("%g"):format(sheet.gain), AXES = table.concat(axes), LABELS = table.concat(labels), PICTURES = "\0" }))
+    GAIN = ("%g"):format(sheet.gain), GRID = sheet.axes and "true" or "false", AXES = table.concat(axes),
+    LABELS = table.concat(labels), PICTURES = "\0" }))
 end

@@ -145,7 +145,7 @@ says "is the script's" 'no label today'
 for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: whole number' '{ gain = -1 }:gain: number' \
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
     '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: it means nothing without' \
-    '{ output = "x.html", columns = 2 }:columns: a page has sliders' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
+    '{ output = "x.html", columns = 2 }:columns: a page has those of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
     '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it means' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"

@@ -130,6 +130,46 @@ JS
     dump moved.html
 }
 
+# Presses the picture of the grid that has this place, and reads the grid and what the page shows.
+press() { # PAGE PLACE
+    sed 's|</html>||' "$1" >pressed.html
+    cat >>pressed.html <<JS
+<pre id="result"></pre>
+<script>
+const grid = document.getElementById('grid'), buttons = Array.from(grid.querySelectorAll('button'));
+buttons[$2].click();
+const table = grid.querySelector('table');
+const texts = list => Array.from(list, element => element.textContent.replaceAll('\n', ' and ')).join('|');
+document.getElementById('result').textContent = [
+  buttons.length, table ? texts(table.tHead.rows[0].cells) + ': ' + texts(table.tHead.rows[1].cells) : 'no table',
+  table ? texts(table.querySelectorAll('tbody th')) : '', buttons[$2].textContent,
+  buttons.every(b => b.querySelector('img').complete && b.querySelector('img').naturalWidth === 80),
+  buttons.findIndex(b => b.getAttribute('aria-current')), document.querySelectorAll('[aria-current]').length,
+  sheet.pictures.indexOf(document.getElementById('picture').src),
+  Array.from(document.querySelectorAll('input[type=range]'), input => input.value).join(' '),
+].join('; ');
+</script>
+JS
+    dump pressed.html
+}
+
+# Whether the page shows differences from the chosen picture, before and after its box is ticked: of the picture and of the grid.
+differ() { # PAGE
+    sed 's|</html>||' "$1" >differing.html
+    cat >>differing.html <<'JS'
+<pre id="result"></pre>
+<script>
+const shown = () => Array.from(document.querySelectorAll('.pair img + img'), i => getComputedStyle(i).display).join(' ') + ' ' +
+  getComputedStyle(document.querySelector('#grid .pair')).filter;
+const notes = [shown()];
+document.getElementById('difference').click();
+notes.push(shown());
+document.getElementById('result').textContent = notes.join('; ');
+</script>
+JS
+    dump differing.html
+}
+
 browser() {
     local frames
     frames=(frame_000[1-6].png)
@@ -141,6 +181,11 @@ browser() {
     check "of a sweep" "$GLINT" sheet 's_%04d.png' -o page.html
     same "its first picture" "$(move page.html '[]')" "1, 80x60, specular = 0.25  shininess = 3"
     same "another place on both axes" "$(move page.html '[[0, 2], [1, 1]]')" "6, 80x60, specular = 0.75  shininess = 9"
+    same "the grid with its axes, and a picture of it that is pressed" "$(press page.html 5)" \
+        "9; |specular: |0.25|0.5|0.75; shininess = 3|shininess = 9|shininess = 200; specular = 0.75  shininess = 9; true; 5; 1; 5; 2 1"
+    check "a page of chosen pictures" "$GLINT" sheet s_0002.png s_0004.png -o two.html --difference 1
+    same "in a row, with one slider" "$(press two.html 1)" "2; no table; ; specular = 0.25  shininess = 9; true; 1; 1; 1; 1"
+    same "differences, in the grid as well" "$(differ two.html)" "none none none none; block block block brightness(8)"
 }
 if command -v chromium >/dev/null; then browser; else skip "chromium is not installed"; fi
 
