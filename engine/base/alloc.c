@@ -39,3 +39,30 @@ void *glint_alloc_large(size_t count, size_t size)
 #endif
     return memory;
 }
+
+#define PAGED_FROM ((size_t)256 << 10) ///< bytes; what the C library has of its heap it keeps
+
+void *glint_scratch_resize(void *memory, size_t from, size_t to)
+{
+    if (to < PAGED_FROM)
+        return from < PAGED_FROM ? realloc(memory, to ? to : 1) : memory;
+    void *pages = mmap(NULL, to, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED)
+        return NULL;
+#ifdef MADV_HUGEPAGE
+    if (to >= 2 * LARGE_PAGE)
+        madvise(pages, to, MADV_HUGEPAGE);
+#endif
+    if (memory)
+        memcpy(pages, memory, from < to ? from : to);
+    glint_scratch_free(memory, from);
+    return pages;
+}
+
+void glint_scratch_free(void *memory, size_t bytes)
+{
+    if (bytes < PAGED_FROM)
+        free(memory);
+    else if (memory)
+        munmap(memory, bytes);
+}

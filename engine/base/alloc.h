@@ -9,6 +9,12 @@ void *glint_alloc(size_t count, size_t size);
 /// The same but not zeroed, and of large pages where the system has them: for megabytes that are written at once.
 void *glint_alloc_large(size_t count, size_t size);
 
+/// Memory for what is thrown away soon, not zeroed, aligned for anything of 16 bytes; the system has it back at once where it is much, so
+/// that what is made next does not come on top of it. Changes its size, from 0: there is none yet. NULL: no memory, and what there is stays.
+void *glint_scratch_resize(void *memory, size_t from, size_t to);
+/// bytes: as resized to last.
+void glint_scratch_free(void *memory, size_t bytes);
+
 /// Prefetches memory that is soon read or written, into the second level of the caches: the first is full of what is worked on.
 static inline void glint_prefetch(const void *memory, size_t bytes)
 {

@@ -253,7 +253,7 @@ static glint_status prepare(glint_renderer *renderer, const glint_plan *plan, gl
     glint_geometry *geometry = plan->geometry;
     glint_status status = plan->needs_index
                               ? glint_geometry_index(geometry, renderer->pool, &shared->geometry, error)
-                              : glint_geometry_arrange(geometry, renderer->pool, &shared->geometry, error);
+                              : glint_geometry_arrange(geometry, &shared->geometry, error);
     if (status)
         return status;
     if (plan->tints) {

@@ -51,12 +51,18 @@ typedef struct node_slots {
     uint32_t count;
 } node_slots;
 
+static void nodes_free(node_list *list)
+{
+    glint_scratch_free(list->nodes, list->capacity * sizeof *list->nodes);
+    *list = (node_list) { .count = list->count };
+}
+
 /// Makes room for `count` more nodes; UINT32_MAX: out of memory, else the index of the first.
 static uint32_t nodes_add(node_list *list, uint32_t count)
 {
     if (count > list->capacity - list->count) {
         const uint32_t capacity = list->capacity + list->capacity / 2 + 16;
-        glint_node *nodes = realloc(list->nodes, (size_t)capacity * sizeof *nodes);
+        glint_node *nodes = glint_scratch_resize(list->nodes, list->capacity * sizeof *nodes, (size_t)capacity * sizeof *nodes);
         if (!nodes)
             return UINT32_MAX;
         list->nodes = nodes;
@@ -186,11 +192,11 @@ static void rank_slots(const node_slots *slots, int axis, uint32_t ranks[GLINT_N
     }
 }
 
-static uint32_t record_index(const glint_record *record)
+static uint32_t record_item(const glint_record *record)
 {
-    uint32_t index;
-    memcpy(&index, (const char *)&record->lower + 3 * sizeof(float), sizeof index);
-    return index;
+    uint32_t item;
+    memcpy(&item, (const char *)&record->lower + 3 * sizeof(float), sizeof item);
+    return item;
 }
 
 static void fill_node(glint_node *node, const node_slots *slots, int axis, uint32_t child)
@@ -203,7 +209,7 @@ static void fill_node(glint_node *node, const node_slots *slots, int axis, uint3
             node->lower[k][ranks[i]] = box->lower[k];
             node->upper[k][ranks[i]] = box->upper[k];
         }
-        node->child[ranks[i]] = slots->sets[i] ? child++ : GLINT_NODE_PRIM | record_index(box);
+        node->child[ranks[i]] = slots->sets[i] ? child++ : GLINT_NODE_PRIM | record_item(box);
     }
     for (uint32_t i = slots->count; i < GLINT_NODE_WIDTH; i++) {
         for (int k = 0; k < 3; k++) {
@@ -275,8 +281,7 @@ static void join_task(void *context, size_t index, int worker)
             if (node->child[k] && !(node->child[k] & GLINT_NODE_PRIM))
                 node->child[k] += t->base - 1;
     }
-    free(t->list.nodes);
-    t->list.nodes = NULL;
+    nodes_free(&t->list);
 }
 
 static bool build_lists(builder *b, const glint_record_set *root)
@@ -290,10 +295,11 @@ static bool build_lists(builder *b, const glint_record_set *root)
     return true;
 }
 
-/// The top, then the rest of each task in order.
+/// The top, then the rest of each task in order. Nodes are all that is needed now.
 static bool join(builder *b, glint_bvh *out)
 {
     uint32_t count = b->top.count;
+    glint_records_free(&b->records);
     for (size_t i = 0; i < b->task_count; i++) {
         b->tasks[i].base = count;
         count += b->tasks[i].list.count - 1;
@@ -311,15 +317,23 @@ static void builder_free(builder *b)
 {
     glint_records_free(&b->records);
     for (size_t i = 0; i < b->task_count; i++)
-        free(b->tasks[i].list.nodes);
+        nodes_free(&b->tasks[i].list);
     free(b->tasks);
-    free(b->top.nodes);
+    nodes_free(&b->top);
 }
 
-glint_status glint_bvh_build(const glint_box *boxes, uint32_t count, glint_pool *pool, glint_bvh *out,
+glint_box *glint_boxes_alloc(uint32_t count)
+{
+    return glint_scratch_resize(NULL, 0, count * sizeof(glint_box));
+}
+
+void glint_boxes_free(glint_box *boxes, uint32_t count) { glint_scratch_free(boxes, count * sizeof *boxes); }
+
+glint_status glint_bvh_build(glint_box *boxes, uint32_t count, glint_pool *pool, glint_bvh *out,
                              glint_error *error)
 {
     if (count == 0) {
+        glint_boxes_free(boxes, count);
         *out = (glint_bvh) { 0 };
         return GLINT_OK;
     }

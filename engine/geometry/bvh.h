@@ -9,7 +9,10 @@
 #include "engine/stages/stages.h"
 
 typedef struct glint_box {
-    float lower[3], upper[3]; ///< lower <= upper, finite
+    _Alignas(16) float lower[3]; ///< lower <= upper, finite
+    uint32_t item; ///< what a leaf slot holds of it, below 2^31
+    float upper[3];
+    float unused;
 } glint_box;
 
 typedef struct glint_bvh {
@@ -17,14 +20,19 @@ typedef struct glint_bvh {
     uint32_t node_count;
 } glint_bvh;
 
-/// Builds the tree over boxes[0 .. count); leaf slots hold the index of the box. Binned SAH, collapsed 16 wide. The
-/// tree is a function of the boxes alone, not of the threads. No path is longer than GLINT_BVH_DEPTH nodes, whatever the
+/// Memory for boxes; NULL: there is none.
+glint_box *glint_boxes_alloc(uint32_t count);
+void glint_boxes_free(glint_box *boxes, uint32_t count);
+
+/// Builds the tree over boxes[0 .. count); leaf slots hold the item of the box. Binned SAH, collapsed 16 wide. The
+/// tree is a function of the boxes and their order alone, not of the threads. No path is longer than GLINT_BVH_DEPTH nodes, whatever the
 /// boxes: a million at one place are halved by number. A node fills its slots from the first on, in the order of their
 /// centres along its widest axis; the child of an empty one is 0.
 ///
-/// boxes  any finite boxes, degenerate ones too; count below 2^31.
+/// boxes  of glint_boxes_alloc(count), any finite ones, degenerate too; count below 2^31. They are sorted where they are and freed here,
+///        whatever the result: before the finished tree stands beside its parts.
 /// pool   subtrees are built on its workers; NULL: on the calling thread.
-glint_status glint_bvh_build(const glint_box *boxes, uint32_t count, glint_pool *pool, glint_bvh *out,
+glint_status glint_bvh_build(glint_box *boxes, uint32_t count, glint_pool *pool, glint_bvh *out,
                              glint_error *error);
 void glint_bvh_free(glint_bvh *bvh);
 

@@ -16,7 +16,7 @@
 #define SPLITS_MAX 64
 
 typedef glint_float4 v4;
-typedef int32_t v4i __attribute__((vector_size(16)));
+typedef int32_t v4i __attribute__((vector_size(16), may_alias));
 typedef glint_bounds bounds;
 
 typedef struct bins {
@@ -38,15 +38,24 @@ typedef struct cut {
 typedef struct glint_chunk {
     bins bins;
     bounds box; ///< loading: of the boxes
-    bounds center[2]; ///< of the lower and the upper part; loading: of all, in the first
+    bounds center; ///< loading: of all
     uint32_t begin, count; ///< in the set
-    uint32_t to[2]; ///< where in the other buffer the parts go
 } chunk;
 
+/// What one worker does of a part whose records are still to come together.
+typedef struct piece {
+    bounds center[2]; ///< of what goes to the lower and to the upper part
+    uint32_t begin, count; ///< in the set
+    uint32_t wrong, wrong_before; ///< how many are in the wrong part, here and in the part's pieces before
+} piece;
+
 typedef struct split_work {
-    const glint_record *from;
-    glint_record *to;
+    glint_record *records; ///< of the set
+    uint32_t *wrong; ///< likewise: numbers in the set
     chunk *chunks;
+    piece pieces[2][CHUNKS_MAX]; ///< of the lower and of the upper part
+    size_t count; ///< of chunks, and of pieces of each part
+    glint_pool *pool; ///< NULL: one thread does all
     grid grid;
     cut cut;
 } split_work;
@@ -124,7 +133,7 @@ static void bin_chunk(void *context, size_t index, int worker)
     (void)worker;
     const split_work *work = context;
     chunk *c = &work->chunks[index];
-    const glint_record *records = work->from + c->begin;
+    const glint_record *records = work->records + c->begin;
     const grid g = work->grid;
     for (int axis = 0; axis < 3; axis++)
         for (int bin = 0; bin < BINS; bin++)
@@ -196,30 +205,51 @@ static cut find_cut(const bins *b, const glint_record_set *set)
     return best;
 }
 
-static void move_chunk(void *context, size_t index, int worker)
+/// Finds what of a piece is in the wrong part.
+static void find_wrong(void *context, size_t index, int worker)
 {
     (void)worker;
-    const split_work *work = context;
-    chunk *c = &work->chunks[index];
-    const glint_record *records = work->from + c->begin;
+    split_work *work = context;
+    const size_t upper_part = index >= work->count;
+    piece *p = &work->pieces[upper_part][index - (upper_part ? work->count : 0)];
     const int axis = work->cut.axis, bin = work->cut.bin;
     const float origin = work->grid.origin[axis], scale = work->grid.scale[axis];
     static const v4i skip[2] = { { 0, 0, 0, 0 }, { -1, -1, -1, -1 } };
     bounds lower = empty, upper = empty;
-    size_t to_lower = c->to[0], to_upper = c->to[1];
-    for (uint32_t i = 0; i < c->count; i++) {
-        const v4 center = box_center(record_box(&records[i]));
-        const float place = (records[i].lower[axis] * 0.25f + records[i].upper[axis] * 0.25f - origin) * scale;
+    uint32_t *wrong = work->wrong + p->begin;
+    size_t count = 0;
+    for (uint32_t i = p->begin; i < p->begin + p->count; i++) {
+        const glint_record *record = &work->records[i];
+        const v4 center = box_center(record_box(record));
+        const float place = (record->lower[axis] * 0.25f + record->upper[axis] * 0.25f - origin) * scale;
         const size_t is_upper = (int)place >= bin;
-        work->to[to_lower ^ ((to_lower ^ to_upper) & -is_upper)] = records[i];
-        to_lower += !is_upper;
-        to_upper += is_upper;
+        wrong[count] = i;
+        count += is_upper != upper_part;
         // all ones are a NaN, which min4 and max4 pass over
         bounds_add_point(&lower, (v4)((v4i)center | skip[is_upper]));
         bounds_add_point(&upper, (v4)((v4i)center | skip[!is_upper]));
     }
-    c->center[0] = lower;
-    c->center[1] = upper;
+    p->center[0] = lower;
+    p->center[1] = upper;
+    p->wrong = (uint32_t)count;
+}
+
+/// Has the wrong records of a piece of the lower part change places with those of the upper part that come at their numbers.
+static void swap_wrong(void *context, size_t index, int worker)
+{
+    (void)worker;
+    split_work *work = context;
+    const piece *p = &work->pieces[0][index], *other = work->pieces[1];
+    uint32_t at = p->wrong_before;
+    for (uint32_t i = 0; i < p->wrong; i++, at++) {
+        while (at >= other->wrong_before + other->wrong)
+            other++;
+        glint_record *a = &work->records[work->wrong[p->begin + i]];
+        glint_record *b = &work->records[work->wrong[other->begin + (at - other->wrong_before)]];
+        const glint_record record = *a;
+        *a = *b;
+        *b = record;
+    }
 }
 
 void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void *context)
@@ -257,7 +287,6 @@ static uint32_t count_below(const bins *b, cut where)
 static void part(const bins *b, cut where, glint_record_set *set, glint_record_set *above)
 {
     *above = *set;
-    above->buffer = set->buffer = !set->buffer;
     above->splits = ++set->splits;
     set->count = count_below(b, where);
     above->begin += set->count;
@@ -283,14 +312,43 @@ static size_t cut_chunks(chunk *chunks, size_t count, uint32_t total)
     return count;
 }
 
+/// Cuts a part of the set into the work's number of pieces.
+static void cut_pieces(split_work *work, int part, uint32_t begin, uint32_t total)
+{
+    for (size_t i = 0; i < work->count; i++) {
+        piece *p = &work->pieces[part][i];
+        const uint32_t from = (uint32_t)((uint64_t)total * i / work->count);
+        *p = (piece) { .begin = begin + from, .count = (uint32_t)((uint64_t)total * (i + 1) / work->count) - from };
+    }
+}
+
+/// Brings the records of the two parts together.
+static void move_records(split_work *work, glint_record_set *set, glint_record_set *above)
+{
+    cut_pieces(work, 0, 0, set->count);
+    cut_pieces(work, 1, set->count, above->count);
+    glint_run_items(work->pool, 2 * work->count, find_wrong, work);
+    for (int part = 0; part < 2; part++)
+        for (size_t i = 0; i < work->count; i++) {
+            piece *p = &work->pieces[part][i];
+            p->wrong_before = i ? p[-1].wrong_before + p[-1].wrong : 0;
+            bounds_add(&set->center, &p->center[0]);
+            bounds_add(&above->center, &p->center[1]);
+        }
+    glint_run_items(work->pool, work->count, swap_wrong, work);
+}
+
 static void split_chunks(const glint_records *records, chunk *chunks, size_t count, glint_record_set *set,
                          glint_record_set *above)
 {
-    split_work work = {
-        glint_records_of(records, set), records->buffers[!set->buffer], chunks, grid_of(set), { -1, 0 }
-    };
-    cut_chunks(chunks, count, set->count);
-    glint_run_items(records->pool, count, bin_chunk, &work);
+    split_work work;
+    work.records = records->all + set->begin;
+    work.wrong = records->wrong + set->begin;
+    work.chunks = chunks;
+    work.pool = count > 1 ? records->pool : NULL; // with one chunk it may be one of the pool's workers that splits
+    work.count = cut_chunks(chunks, count, set->count);
+    work.grid = grid_of(set);
+    glint_run_items(work.pool, count, bin_chunk, &work);
     const bins sum = add_bins(chunks, count);
     work.cut = find_cut(&sum, set);
     if (work.cut.axis < 0) {
@@ -298,19 +356,7 @@ static void split_chunks(const glint_records *records, chunk *chunks, size_t cou
         return;
     }
     part(&sum, work.cut, set, above);
-    uint32_t to_lower = set->begin, to_upper = above->begin;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t below = count_below(&chunks[i].bins, work.cut);
-        chunks[i].to[0] = to_lower;
-        chunks[i].to[1] = to_upper;
-        to_lower += below;
-        to_upper += chunks[i].count - below;
-    }
-    glint_run_items(records->pool, count, move_chunk, &work);
-    for (size_t i = 0; i < count; i++) {
-        bounds_add(&set->center, &chunks[i].center[0]);
-        bounds_add(&above->center, &chunks[i].center[1]);
-    }
+    move_records(&work, set, above);
 }
 
 void glint_records_split(const glint_records *records, glint_record_set *set, glint_record_set *above, bool shared)
@@ -350,8 +396,7 @@ void glint_records_halve(const glint_records *records, glint_record_set *set, gl
 }
 
 typedef struct load_work {
-    const glint_box *boxes;
-    glint_record *to;
+    const glint_record *records;
     chunk *chunks;
 } load_work;
 
@@ -360,38 +405,35 @@ static void load_chunk(void *context, size_t index, int worker)
     (void)worker;
     const load_work *work = context;
     chunk *c = &work->chunks[index];
-    for (uint32_t i = c->begin; i < c->begin + c->count; i++) {
-        const float *l = work->boxes[i].lower, *u = work->boxes[i].upper;
-        glint_record record = { { l[0], l[1], l[2], 0 }, { u[0], u[1], u[2], 0 } };
-        record.lower = (v4)((v4i)record.lower | (v4i) { 0, 0, 0, (int32_t)i });
-        work->to[i] = record;
-    }
-    measure(work->to + c->begin, c->count, &c->box, &c->center[0]);
+    measure(work->records + c->begin, c->count, &c->box, &c->center);
 }
 
-bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t count, glint_pool *pool,
+bool glint_records_init(glint_records *records, glint_box *boxes, uint32_t count, glint_pool *pool,
                         glint_record_set *root)
 {
-    *records = (glint_records) { .pool = pool };
-    for (int i = 0; i < 2; i++)
-        records->buffers[i] = glint_alloc_large(count, sizeof(glint_record));
+    _Static_assert(sizeof(glint_box) == sizeof(glint_record), "a box is a record");
+    *records = (glint_records) { .pool = pool, .all = (glint_record *)(void *)boxes, .count = count };
+    records->wrong = glint_scratch_resize(NULL, 0, count * sizeof *records->wrong);
     records->chunks = glint_alloc(CHUNKS_MAX, sizeof *records->chunks);
-    if (!records->buffers[0] || !records->buffers[1] || !records->chunks)
+    if (!records->wrong || !records->chunks)
         return false;
-    load_work work = { boxes, records->buffers[0], records->chunks };
+    load_work work = { records->all, records->chunks };
     const size_t chunks = cut_chunks(records->chunks, chunk_count(count), count);
     glint_run_items(pool, chunks, load_chunk, &work);
     *root = (glint_record_set) { .box = empty, .center = empty, .count = count };
     for (size_t i = 0; i < chunks; i++) {
         bounds_add(&root->box, &work.chunks[i].box);
-        bounds_add(&root->center, &work.chunks[i].center[0]);
+        bounds_add(&root->center, &work.chunks[i].center);
     }
     return true;
 }
 
 void glint_records_free(glint_records *records)
 {
-    free(records->buffers[0]);
-    free(records->buffers[1]);
+    glint_boxes_free((glint_box *)(void *)records->all, records->count);
+    glint_scratch_free(records->wrong, records->count * sizeof *records->wrong);
     free(records->chunks);
+    records->all = NULL;
+    records->wrong = NULL;
+    records->chunks = NULL;
 }

@@ -5,34 +5,36 @@
 #include "engine/base/pool.h"
 #include "engine/geometry/bvh.h"
 
-typedef float glint_float4 __attribute__((vector_size(16)));
+typedef float glint_float4 __attribute__((vector_size(16), may_alias)); // the four numbers of half a box
 
 typedef struct glint_bounds {
     glint_float4 lower, upper; ///< the fourth lane means nothing
 } glint_bounds;
 
-/// A box on its way into the tree. lower[3] holds the bits of its index.
+/// A box on its way into the tree, a glint_box. lower[3] holds the bits of its item.
 typedef glint_bounds glint_record;
 
 /// Records that lie side by side.
 typedef struct glint_record_set {
     glint_bounds box; ///< of the boxes
     glint_bounds center; ///< of their centres, which are halved so that no difference overflows
-    uint32_t begin, count; ///< in buffers[buffer]
-    uint32_t buffer;
+    uint32_t begin, count;
     uint32_t splits; ///< by place, on the way here from the root
 } glint_record_set;
 
-/// Every record is in one of two buffers: a split reads from one and writes to the other.
+/// A split changes places of records that are in the wrong part: the first such of the lower with the first of the upper, and so on, so
+/// that their order does not depend on how many workers find them.
 typedef struct glint_records {
-    glint_record *buffers[2]; ///< owned
+    glint_record *all; ///< owned
+    uint32_t *wrong; ///< owned; scratch of splits, as long: which records of a piece are in the wrong part
+    uint32_t count;
     struct glint_chunk *chunks; ///< owned; scratch of splits that the pool shares
     glint_pool *pool; ///< borrowed, may be NULL
 } glint_records;
 
-/// Copies boxes[0 .. count), count > 0, into records; `root` becomes the set of all. False: out of memory;
-/// glint_records_free frees what there is.
-bool glint_records_init(glint_records *records, const glint_box *boxes, uint32_t count, glint_pool *pool,
+/// Takes boxes[0 .. count), count > 0, as the records; `root` becomes the set of all. False: out of memory;
+/// glint_records_free frees what there is, the boxes in any case.
+bool glint_records_init(glint_records *records, glint_box *boxes, uint32_t count, glint_pool *pool,
                         glint_record_set *root);
 void glint_records_free(glint_records *records);
 
@@ -48,7 +50,7 @@ void glint_run_items(glint_pool *pool, size_t count, glint_pool_item *item, void
 
 static inline const glint_record *glint_records_of(const glint_records *records, const glint_record_set *set)
 {
-    return records->buffers[set->buffer] + set->begin;
+    return records->all + set->begin;
 }
 
 #endif

@@ -155,11 +155,7 @@ static void add_ball(filler *f, glint_prim *prim, const double center[3], double
 /// What of a primitive is no place.
 static void dress_prim(filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
 {
-    prim->id = f->id_count++;
-    prim->two_sided = two_sided;
-    prim->turned = 0;
-    prim->material = material;
-    prim->medium = medium;
+    *prim = (glint_prim) { .id = f->id_count++, .two_sided = two_sided, .material = material, .medium = medium };
     f->geometry->prim_part[prim->id] = part;
 }
 
@@ -439,7 +435,7 @@ static bool allocate(filler *f)
 {
     glint_geometry *geometry = f->geometry;
     f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
-    geometry->prims = glint_alloc(f->prims, sizeof *geometry->prims);
+    geometry->prims = glint_alloc_large(f->prims + f->members, sizeof *geometry->prims); // members join what is arranged
     geometry->members = f->members ? glint_alloc(f->members, sizeof *geometry->members) : NULL;
     geometry->combined = f->combined ? glint_alloc(f->combined, sizeof *geometry->combined) : NULL;
     geometry->prim_part = glint_alloc(f->prims + f->members, sizeof *geometry->prim_part);

@@ -17,6 +17,8 @@ static float float_up(double x)
 
 static float float_down(double x) { return -float_up(-x); }
 
+#define REPEATED (-1.0F) ///< in `filter_bound`: no ray meets the primitive, since one before it is bit-equal
+
 /// Finds the primitives that are bit-equal to one before them.
 static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
 {
@@ -26,12 +28,10 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
         unlike += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
     while (size < 2 * unlike)
         size *= 2;
-    uint32_t *slots = calloc(size, sizeof *slots); // index + 1
-    geometry->repeats = calloc((size_t)count + 1, sizeof *geometry->repeats);
-    if (!slots || !geometry->repeats) {
-        free(slots);
+    uint32_t *slots = glint_scratch_resize(NULL, 0, size * sizeof *slots); // index + 1
+    if (!slots)
         return glint_fail_nomem(error);
-    }
+    memset(slots, 0, size * sizeof *slots);
     for (uint32_t i = 0; i < count; i++) {
         double place[GLINT_PLACE_MAX], other[GLINT_PLACE_MAX];
         if (geometry->prims[i].kind == GLINT_PRIM_TRIANGLE)
@@ -44,11 +44,11 @@ static glint_status find_repeats(glint_geometry *geometry, glint_error *error)
                 break;
         }
         if (slots[at])
-            geometry->repeats[i] = true;
+            geometry->prims[i].filter_bound = REPEATED;
         else
             slots[at] = i + 1;
     }
-    free(slots);
+    glint_scratch_free(slots, size * sizeof *slots);
     return GLINT_OK;
 }
 
@@ -162,7 +162,7 @@ static double reach_of(const glint_solid *solid)
     return unit * sqrt(most);
 }
 
-/// Its box, and a sphere around it: its own, or that of the box, or a smaller one.
+/// The box of a primitive, and a sphere around it, which becomes the primitive's: its own, or that of the box, or a smaller one.
 static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
 {
     double lower[3], upper[3], center[3], half[3];
@@ -184,34 +184,38 @@ static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, 
     prim->filter_bound = float_up(radius * (1 + 2e-6) + GLINT_FILTER_SLACK * sqrt(vec_dot(center, center)) + FLT_MIN);
 }
 
+/// Whether the index has it.
+static bool is_in_tree(const glint_prim *prim)
+{
+    return prim->filter_bound != REPEATED && glint_prim_bounded(prim);
+}
+
 static glint_status index_create(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t count = geometry->table.prim_count;
     glint_index *index = geometry->index = calloc(1, sizeof *index);
-    geometry->unbounded = glint_alloc(count, sizeof *geometry->unbounded);
+    uint32_t unbounded = 0;
+    for (uint32_t i = 0; i < count; i++)
+        unbounded += !glint_prim_bounded(&geometry->prims[i]);
+    geometry->unbounded = glint_alloc(unbounded, sizeof *geometry->unbounded);
     if (!index || !geometry->unbounded)
         return glint_fail_nomem(error);
     atomic_init(&index->references, 1);
     pthread_mutex_init(&index->lock, NULL);
-    index->boxes = malloc((count + 1) * sizeof *index->boxes);
-    index->bounded = malloc((count + 1) * sizeof *index->bounded);
-    if (!index->boxes || !index->bounded)
-        return glint_fail_nomem(error);
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
-        prim->filter_bound = HUGE_VALF;
-        if (geometry->repeats[i])
+        glint_box box;
+        if (prim->filter_bound == REPEATED)
             continue; // the first of equal ones wins every tie and casts every shadow
+        prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
-            place_in_frame(&geometry->table, prim, &index->boxes[index->box_count]);
-            index->bounded[index->box_count++] = i;
+            place_in_frame(&geometry->table, prim, &box);
+            index->box_count++;
         } else {
             geometry->unbounded[geometry->table.unbounded_count++] = i;
         }
     }
     geometry->table.unbounded = geometry->unbounded;
-    free(geometry->repeats);
-    geometry->repeats = NULL;
     return GLINT_OK;
 }
 
@@ -220,8 +224,6 @@ static void index_release(glint_index *index)
     if (!index || atomic_fetch_sub(&index->references, 1) > 1)
         return;
     glint_bvh_free(&index->bvh);
-    free(index->boxes);
-    free(index->bounded);
     free(index->order);
     pthread_mutex_destroy(&index->lock);
     free(index);
@@ -236,101 +238,131 @@ static void order_by_tree(glint_index *index)
         for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
             if (!(node->lower[0][i] <= node->upper[0][i]) || !(node->child[i] & GLINT_NODE_PRIM))
                 continue;
-            index->order[next] = index->bounded[node->child[i] & ~GLINT_NODE_PRIM];
+            index->order[next] = node->child[i] & ~GLINT_NODE_PRIM;
             node->child[i] = GLINT_NODE_PRIM | next++;
         }
     }
 }
 
-static glint_status make_order(glint_index *index, glint_error *error)
+/// The order of definition.
+static glint_status make_order(const glint_geometry *geometry, glint_error *error)
 {
+    glint_index *index = geometry->index;
+    uint32_t next = 0;
     index->order = malloc((index->box_count + 1) * sizeof *index->order);
     if (!index->order)
         return glint_fail_nomem(error);
-    memcpy(index->order, index->bounded, index->box_count * sizeof *index->order);
+    for (uint32_t i = 0; i < geometry->table.prim_count; i++)
+        if (is_in_tree(&geometry->prims[i]))
+            index->order[next++] = i;
+    index->plain = true;
     return GLINT_OK;
 }
 
-/// The order is the tree's, unless there has been need of one before.
-static glint_status index_build(glint_index *index, glint_pool *pool, glint_error *error)
+/// Boxes of what is in the tree, in the order of `prims`. solids: without triangles. NULL: no memory.
+static glint_box *make_boxes(const glint_geometry *geometry, uint32_t count, bool solids)
 {
-    const bool free_order = !index->order;
-    glint_status status = free_order ? make_order(index, error) : GLINT_OK;
-    if (!status)
-        status = glint_bvh_build(index->boxes, index->box_count, pool, &index->bvh, error);
-    if (status) {
-        if (free_order)
-            free(index->order);
-        index->order = free_order ? NULL : index->order;
-        return status;
+    glint_box *boxes = glint_boxes_alloc(count);
+    uint32_t next = 0;
+    for (uint32_t i = 0; boxes && i < geometry->table.prim_count && next < count; i++) {
+        glint_prim prim = geometry->prims[i]; // other threads may read those of the geometry
+        if (!is_in_tree(&prim) || (solids && prim.kind == GLINT_PRIM_TRIANGLE))
+            continue;
+        boxes[next].item = i;
+        boxes[next].unused = 0;
+        place_in_frame(&geometry->table, &prim, &boxes[next++]);
     }
-    if (free_order)
+    return boxes;
+}
+
+/// The order becomes the tree's, unless there has been need of one before, which the primitives are in then.
+static glint_status index_build(glint_geometry *geometry, glint_pool *pool, glint_error *error)
+{
+    glint_index *index = geometry->index;
+    glint_box *boxes = make_boxes(geometry, index->box_count, false);
+    if (!boxes)
+        return glint_fail_nomem(error);
+    glint_status status = glint_bvh_build(boxes, index->box_count, pool, &index->bvh, error);
+    if (!status && !index->order) {
+        index->order = malloc((index->box_count + 1) * sizeof *index->order);
+        if (!index->order) {
+            glint_bvh_free(&index->bvh);
+            return glint_fail_nomem(error);
+        }
         order_by_tree(index);
-    free(index->boxes);
-    free(index->bounded);
-    index->boxes = NULL;
-    index->bounded = NULL;
-    index->built = true;
-    return GLINT_OK;
+    }
+    index->built = !status;
+    return status;
 }
 
-typedef struct arranging {
-    const glint_index *index;
-    const glint_prim *from;
-    glint_prim *to;
-} arranging;
+/// Which primitive comes to each place: those of the index, then those without an end, then repeats.
+typedef struct arrangement {
+    const glint_geometry *geometry;
+    uint32_t *rest; ///< from the index's last on
+    uint64_t *done; ///< a bit a place
+} arrangement;
 
-#define ARRANGE_CHUNK 16384u
-
-static void arrange_chunk(void *context, size_t chunk, int worker)
+static uint32_t comes_from(const arrangement *a, uint32_t place)
 {
-    const arranging *a = context;
-    const uint32_t from = (uint32_t)chunk * ARRANGE_CHUNK, rest = a->index->box_count - from;
-    (void)worker;
-    for (uint32_t i = from; i < from + (rest < ARRANGE_CHUNK ? rest : ARRANGE_CHUNK); i++)
-        a->to[i] = a->from[a->index->order[i]];
+    const glint_index *index = a->geometry->index;
+    return place < index->box_count ? index->order[place] : a->rest[place - index->box_count];
 }
 
-/// Where each id is among those in the order of the index.
-static bool find_places(glint_geometry *geometry, const glint_prim *arranged, uint32_t count)
+static bool arrangement_init(arrangement *a, const glint_geometry *geometry)
 {
-    geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places);
-    if (!geometry->places)
+    const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
+    uint32_t at = geometry->table.unbounded_count;
+    *a = (arrangement) { geometry, malloc((count - bounded + 1) * sizeof *a->rest),
+                         calloc(count / 64 + 1, sizeof *a->done) };
+    if (!a->rest || !a->done)
         return false;
+    memcpy(a->rest, geometry->unbounded, at * sizeof *a->rest);
     for (uint32_t i = 0; i < count; i++)
-        geometry->places[arranged[i].id] = i;
+        if (geometry->prims[i].filter_bound == REPEATED)
+            a->rest[at++] = i;
     return true;
 }
 
-/// Puts the primitives into the order of the index, those without an end last.
-static glint_status arrange(glint_geometry *geometry, glint_pool *pool, glint_error *error)
+/// Moves the primitives around each cycle of the arrangement: there is no room for all of them twice.
+static void move_prims(arrangement *a, glint_prim *prims, uint32_t count)
 {
-    const uint32_t count = geometry->table.prim_count, bounded = geometry->index->box_count;
-    arranging a = { geometry->index, geometry->prims,
-                    glint_alloc_large((size_t)count + geometry->member_count, sizeof *geometry->prims) };
-    if (!a.to)
-        return glint_fail_nomem(error);
-    const size_t chunks = (bounded + ARRANGE_CHUNK - 1) / ARRANGE_CHUNK;
-    if (pool && chunks > 1)
-        glint_pool_run(pool, chunks, arrange_chunk, &a);
-    else
-        for (size_t i = 0; i < chunks; i++)
-            arrange_chunk(&a, i, 0);
-    if (geometry->shading_points && !find_places(geometry, a.to, bounded)) {
-        free(a.to);
-        return glint_fail_nomem(error);
+    for (uint32_t i = 0; i < count; i++) {
+        if (a->done[i / 64] >> i % 64 & 1)
+            continue;
+        const glint_prim first = prims[i];
+        uint32_t to = i;
+        for (uint32_t from; (from = comes_from(a, to)) != i; to = from) {
+            prims[to] = prims[from];
+            a->done[to / 64] |= UINT64_C(1) << to % 64;
+        }
+        prims[to] = first;
+        a->done[to / 64] |= UINT64_C(1) << to % 64;
     }
-    for (uint32_t i = 0; i < geometry->table.unbounded_count; i++) {
-        a.to[bounded + i] = geometry->prims[geometry->unbounded[i]];
-        geometry->unbounded[i] = bounded + i;
+}
+
+/// Puts the primitives into the order of the index, those without an end last; repeats are gone.
+static glint_status arrange(glint_geometry *geometry, glint_error *error)
+{
+    const uint32_t bounded = geometry->index->box_count;
+    arrangement a;
+    bool room = arrangement_init(&a, geometry);
+    if (geometry->shading_points && !geometry->places)
+        room = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && room;
+    if (room) {
+        move_prims(&a, geometry->prims, geometry->table.prim_count);
+        for (uint32_t i = 0; geometry->places && i < bounded; i++)
+            geometry->places[geometry->prims[i].id] = i;
+        for (uint32_t i = 0; i < geometry->table.unbounded_count; i++)
+            geometry->unbounded[i] = bounded + i;
+        geometry->table.prim_count = bounded + geometry->table.unbounded_count;
+        if (geometry->member_count)
+            memcpy(geometry->prims + geometry->table.prim_count, geometry->members,
+                   geometry->member_count * sizeof *geometry->members);
+        geometry->arranged = true;
     }
-    free(geometry->prims);
-    geometry->table.prims = geometry->prims = a.to;
-    geometry->table.prim_count = bounded + geometry->table.unbounded_count;
-    if (geometry->member_count)
-        memcpy(a.to + geometry->table.prim_count, geometry->members, geometry->member_count * sizeof *a.to);
-    geometry->arranged = true;
-    return GLINT_OK;
+    free(a.rest);
+    free(a.done);
+    return room ? GLINT_OK : glint_fail_nomem(error);
 }
 
 glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
@@ -338,52 +370,42 @@ glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, gl
 {
     glint_index *index = geometry->index;
     pthread_mutex_lock(&index->lock);
-    glint_status status = index->built ? GLINT_OK : index_build(index, pool, error);
+    glint_status status = GLINT_OK;
+    if (index->order && !geometry->arranged)
+        status = arrange(geometry, error);
+    if (!status && !index->built)
+        status = index_build(geometry, pool, error);
     if (!status && !geometry->arranged)
-        status = arrange(geometry, pool, error);
+        status = arrange(geometry, error);
     *table = geometry->table;
     table->nodes = index->bvh.nodes;
     pthread_mutex_unlock(&index->lock);
     return status;
 }
 
-glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
-                                    glint_error *error)
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_geometry_table *table, glint_error *error)
 {
     glint_index *index = geometry->index;
     pthread_mutex_lock(&index->lock);
     glint_status status = GLINT_OK;
-    if (!index->order) {
-        status = make_order(index, error);
-        index->plain = !status;
-    }
+    if (!index->order)
+        status = make_order(geometry, error);
     if (!status && !geometry->arranged)
-        status = arrange(geometry, pool, error);
+        status = arrange(geometry, error);
     *table = geometry->table;
     table->nodes = index->bvh.nodes;
     pthread_mutex_unlock(&index->lock);
     return status;
 }
 
-/// A tree of what is neither triangle nor plane. `list`, `boxes`: room for all of it.
-static glint_status build_others(glint_geometry *geometry, uint32_t *list, glint_box *boxes, glint_pool *pool,
-                                 glint_error *error)
+/// A tree of what is neither triangle nor plane.
+static glint_status build_others(glint_geometry *geometry, glint_pool *pool, glint_error *error)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < geometry->index->box_count; i++) {
-        glint_prim prim = geometry->prims[i];
-        if (prim.kind == GLINT_PRIM_TRIANGLE)
-            continue;
-        place_in_frame(&geometry->table, &prim, &boxes[count]);
-        list[count++] = i;
-    }
-    glint_status status = count ? glint_bvh_build(boxes, count, pool, &geometry->others, error) : GLINT_OK;
-    for (uint32_t n = 0; n < geometry->others.node_count && !status; n++)
-        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
-            glint_node *node = &geometry->others.nodes[n];
-            if (node->lower[0][i] <= node->upper[0][i] && node->child[i] & GLINT_NODE_PRIM)
-                node->child[i] = GLINT_NODE_PRIM | list[node->child[i] & ~GLINT_NODE_PRIM];
-        }
+    for (uint32_t i = 0; i < geometry->index->box_count; i++)
+        count += geometry->prims[i].kind != GLINT_PRIM_TRIANGLE;
+    glint_box *boxes = make_boxes(geometry, count, true);
+    glint_status status = boxes ? glint_bvh_build(boxes, count, pool, &geometry->others, error) : glint_fail_nomem(error);
     geometry->has_others = !status;
     return status;
 }
@@ -392,15 +414,7 @@ glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, g
                                    glint_error *error)
 {
     pthread_mutex_lock(&geometry->index->lock);
-    glint_status status = GLINT_OK;
-    if (!geometry->has_others) {
-        const uint32_t most = geometry->table.prim_count - geometry->triangle_count;
-        uint32_t *list = malloc((most + 1) * sizeof *list);
-        glint_box *boxes = malloc((most + 1) * sizeof *boxes);
-        status = list && boxes ? build_others(geometry, list, boxes, pool, error) : glint_fail_nomem(error);
-        free(list);
-        free(boxes);
-    }
+    glint_status status = geometry->has_others ? GLINT_OK : build_others(geometry, pool, error);
     *table = geometry->table;
     table->nodes = geometry->others.nodes;
     *any = table->nodes || table->unbounded_count > 0;
@@ -425,7 +439,6 @@ void glint_geometry_release(glint_geometry *geometry)
     glint_list_free(&geometry->materials);
     free(geometry->prims);
     free(geometry->prim_part);
-    free(geometry->repeats);
     free(geometry->parts);
     free(geometry->maps);
     free(geometry->normals);

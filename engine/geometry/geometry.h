@@ -16,9 +16,7 @@ typedef struct glint_index {
     atomic_size_t references;
     pthread_mutex_t lock; ///< over the building
     bool built;
-    glint_box *boxes; ///< of the bounded primitives, until the index is built
-    uint32_t *bounded; ///< the primitive of each box, likewise
-    uint32_t box_count;
+    uint32_t box_count; ///< of the primitives that have a box in it
     uint32_t *order; ///< the primitive in each place, once arranged: the tree's order
     bool plain; ///< that of definition: the tree was not there yet
     atomic_uint frames_without; ///< that were scanned while there was no tree
@@ -40,7 +38,6 @@ struct glint_geometry {
     glint_prim *prims; ///< in order of definition, and in that of the index once it is built
     bool arranged; ///< the latter
     uint32_t *prim_part; ///< which part each is of, by id
-    bool *repeats; ///< which are bit-equal to one before, by id; until the index is made
     glint_part *parts; ///< in order of definition; parts of combined solids after all else
     glint_transform *maps; ///< of those that have one
     uint32_t part_count, whole_count; ///< whole_count: of those that are no part of a combined solid
@@ -74,8 +71,7 @@ glint_status glint_geometry_index(glint_geometry *geometry, glint_pool *pool, gl
                                   glint_error *error);
 /// The same for callers that do not walk the index: it is not built, and *table is without it unless it is there. The order of the
 /// primitives is that of the first of these two calls, and stays.
-glint_status glint_geometry_arrange(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table,
-                                    glint_error *error);
+glint_status glint_geometry_arrange(glint_geometry *geometry, glint_geometry_table *table, glint_error *error);
 /// An arranged geometry without its triangles: *table, with an index of the rest alone. *any: there is something.
 glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, glint_geometry_table *table, bool *any,
                                    glint_error *error);

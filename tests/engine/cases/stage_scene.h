@@ -300,7 +300,7 @@ static inline void choose_frame(const scene_plan *plan, test_scene *scene)
 
 static inline glint_box place_sphere(const glint_geometry_table *table, glint_prim *prim)
 {
-    glint_box box;
+    glint_box box = { .unused = 0 };
     const long double radius = (long double)prim->radius * table->scale;
     double away[3];
     for (int c = 0; c < 3; c++) {
@@ -319,7 +319,7 @@ static inline glint_box place_sphere(const glint_geometry_table *table, glint_pr
 static inline glint_box place_corners_of(const test_scene *scene, glint_prim *prim)
 {
     const glint_geometry_table *table = &scene->table;
-    glint_box box;
+    glint_box box = { .unused = 0 };
     long double lower[3], upper[3], radius2 = 0;
     double away[3];
     ends_of(scene, prim, lower, upper);
@@ -339,14 +339,15 @@ static inline glint_box place_corners_of(const test_scene *scene, glint_prim *pr
     return box;
 }
 
-/// Leaves of the tree hold the numbers of boxes; those of the kernels hold primitives.
 static inline void build_index(test_scene *scene)
 {
-    static glint_box boxes[MOST_PRIMS];
-    static uint32_t bounded[MOST_PRIMS];
-    uint32_t count = 0;
     glint_geometry_table *table = &scene->table;
+    uint32_t count = 0, next = 0;
     table->unbounded_count = 0;
+    for (uint32_t i = 0; i < table->prim_count; i++)
+        count += scene->prims[i].kind != GLINT_PRIM_PLANE;
+    glint_box *boxes = glint_boxes_alloc(count);
+    assert_non_null(boxes);
     for (uint32_t i = 0; i < table->prim_count; i++) {
         glint_prim *prim = &scene->prims[i];
         prim->filter_bound = INFINITY;
@@ -354,17 +355,11 @@ static inline void build_index(test_scene *scene)
             scene->unbounded[table->unbounded_count++] = i;
             continue;
         }
-        boxes[count] = prim->kind == GLINT_PRIM_SPHERE ? place_sphere(table, prim) : place_corners_of(scene, prim);
-        bounded[count++] = i;
+        boxes[next] = prim->kind == GLINT_PRIM_SPHERE ? place_sphere(table, prim) : place_corners_of(scene, prim);
+        boxes[next++].item = i;
     }
     glint_error error;
     assert_int_equal(glint_bvh_build(boxes, count, NULL, &scene->bvh, &error), GLINT_OK);
-    for (uint32_t n = 0; n < scene->bvh.node_count; n++) {
-        glint_node *node = &scene->bvh.nodes[n];
-        for (int k = 0; k < GLINT_NODE_WIDTH; k++)
-            if (node->lower[0][k] <= node->upper[0][k] && node->child[k] & GLINT_NODE_PRIM)
-                node->child[k] = GLINT_NODE_PRIM | bounded[node->child[k] & ~GLINT_NODE_PRIM];
-    }
     table->nodes = scene->bvh.nodes;
     table->unbounded = scene->unbounded;
     table->prims = scene->prims;
