@@ -959,7 +959,7 @@ typedef struct glint_slope {
 
 /// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
 /// lights are seen where they were, a point of a surface moving with what sees it, by the eye, in mirrors and through glass. Rays too
-/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of what the scene does not have count as nothing.
+/// weak to be seen (2^-20 of linear light, a sample) are not followed. Patterns have no slopes of their own. Slopes of what the scene does not have count as nothing.
 ///
 ///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,

@@ -20,15 +20,15 @@ static void duals(glint_dual out[3], const double value[3], const double slope[3
         out[c] = dual(value[c], slope[c]);
 }
 
-/// Phong and Blinn-Phong; see power_init in plan/shading.c.
-static void power_material(glint_derivative_material *out, const glint_material_desc *desc)
+/// Phong and Blinn-Phong; see power_init in plan/shading.c. `even`: what makes them so is in no plane.
+static void power_material(glint_derivative_material *out, const glint_material_desc *desc, bool even)
 {
     const bool blinn = desc->model == GLINT_MODEL_BLINN_PHONG;
     const glint_dual s = out->shininess = blinn && desc->matched ? dual_scale(out->shininess, 4) : out->shininess;
     const glint_dual two = dual(2, 0), four = dual(4, 0);
     out->highlight = blinn ? GLINT_HIGHLIGHT_BLINN : GLINT_HIGHLIGHT_PHONG;
     out->lobe = desc->normalized ? GLINT_LOBE_POWER_COSINE : GLINT_LOBE_POWER;
-    if (!desc->normalized)
+    if (!desc->normalized || !even)
         return;
     glint_dual norm = dual_scale(dual_add(s, two), 0.5);
     if (blinn)
@@ -53,15 +53,42 @@ static void facet_material(glint_derivative_material *out, const glint_material_
     }
 }
 
-static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
-                          const glint_material_desc *slope, const glint_dual light[3])
+static void set_constant(double value[3], double slope[3])
 {
-    glint_material_desc d = *desc;
+    for (int c = 0; c < 3; c++) {
+        value[c] = 1;
+        slope[c] = 0;
+    }
+}
+
+/// Of what programs give: 1 for what it is multiplied by.
+static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_desc *slope)
+{
+    if (planes & (GLINT_PLANE_AMBIENT | GLINT_PLANE_AMBIENT_IS_DIFFUSE))
+        set_constant(d->ambient, slope->ambient);
+    if (planes & GLINT_PLANE_DIFFUSE)
+        set_constant(d->diffuse, slope->diffuse);
+    if (planes & GLINT_PLANE_SPECULAR)
+        set_constant(d->specular, slope->specular);
+    if (planes & GLINT_PLANE_SHININESS)
+        slope->shininess = 0;
+    if (planes & GLINT_PLANE_ALPHA)
+        slope->roughness = 0;
+}
+
+/// planes: of glint_shade_material.
+static void fill_material(glint_derivative_material *out, const glint_material_desc *desc,
+                          const glint_material_desc *slopes, uint32_t planes, const glint_dual light[3])
+{
+    glint_material_desc d = *desc, changes = *slopes, *slope = &changes;
     glint_dual f0[3];
     glint_material_desc_resolve(&d);
+    if (!desc->has_ambient)
+        memcpy(slope->ambient, slope->diffuse, sizeof slope->ambient);
+    take_planes(planes, &d, slope);
     duals(out->diffuse, d.diffuse, slope->diffuse);
     duals(out->specular, d.specular, slope->specular);
-    duals(out->ambient, d.ambient, desc->has_ambient ? slope->ambient : slope->diffuse);
+    duals(out->ambient, d.ambient, slope->ambient);
     duals(f0, d.f0, slope->f0);
     for (int c = 0; c < 3; c++)
         out->ambient[c] = dual_mul(out->ambient[c], light[c]);
@@ -73,7 +100,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
     if (shiny && d.model == GLINT_MODEL_COOK_TORRANCE)
         facet_material(out, &d, f0, dual(d.roughness, slope->roughness));
     else if (shiny)
-        power_material(out, &d);
+        power_material(out, &d, !(planes & GLINT_PLANE_SHININESS));
     if (out->highlight == GLINT_HIGHLIGHT_NONE) // what nothing reads makes nothing vary
         out->shininess = out->specular[0] = out->specular[1] = out->specular[2] = dual(0, 0);
     if (out->highlight == GLINT_HIGHLIGHT_FACETS)
@@ -86,9 +113,10 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
 static void fill_bounce(glint_derivative_bounce *out, const glint_material_desc *desc, const glint_material_desc *slope)
 {
     const bool transmits = glint_material_transmits(desc);
-    if (desc->has_mirror)
+    if (desc->has_mirror && !desc->program.mirror)
         memcpy(out->mirror, slope->mirror, sizeof out->mirror);
-    memcpy(out->transmission, slope->transmission, sizeof out->transmission);
+    if (!desc->program.transmission)
+        memcpy(out->transmission, slope->transmission, sizeof out->transmission);
     for (int c = 0; c < 3 && transmits; c++)
         out->absorption[c] = slope->absorption[c];
     out->ior = transmits || (desc->fresnel && glint_material_mirrors(desc)) ? slope->ior : 0;
@@ -254,7 +282,7 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
     for (size_t i = 0; i < list->count; i++) {
         const glint_material_desc *desc = &((const glint_material *)list->items[i])->desc;
         const glint_derivative_bounce *bounce = &out->bounces[i];
-        fill_material(&out->materials[i], desc, &slopes->materials[i], ambient);
+        fill_material(&out->materials[i], desc, &slopes->materials[i], plan->materials[i].planes, ambient);
         fill_bounce(&out->bounces[i], desc, &slopes->materials[i]);
         out->bends = out->bends || bounce->ior != 0;
         out->weighs = out->weighs || bounce->ior != 0 || glint_any_slope(bounce->mirror) ||

@@ -28,8 +28,8 @@ static const char *find_obstacle(const glint_plan *plan)
         return "scene.indirect: indirect light and ambient occlusion have no derivative; leave them out";
     if (plan->runs[GLINT_STAGE_VERTEX])
         return "shading: flat and gouraud meshes have no derivative; \"faceted\" and \"phong\" ones have";
-    if (plan->patterns)
-        return "material: patterns, shaders and bumps have no derivative; materials of plain numbers have";
+    if (plan->runs[GLINT_STAGE_SHADER])
+        return "material.model: a shader has no derivative; the built-in models have";
     if (plan->runs[GLINT_STAGE_DEPTH_CUE])
         return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
     if (plan->shutter_times > 0)
@@ -63,6 +63,12 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
             return "material.transmission: 0 sends no ray on, and has no derivative; above 0 it has";
         absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
     }
+    if (plan->patterns && d->bends)
+        return "material: what moves or bends has no derivative where materials have patterns or bumps; where all have plain "
+               "numbers it has";
+    if (plan->tints && plan->patterns && plan->patterns->plane[GLINT_FIELD_TRANSMISSION] >= 0 && d->moves)
+        return "material.transmission: light through what a pattern colours has no derivative by what moves; lights with shadows "
+               "= false have";
     if (plan->environment && d->bends && plan->runs[GLINT_STAGE_BOUNCE])
         return "background: what moves or bends has no derivative before one that a program gives, where mirrors or glass may "
                "show it; before a colour it has";

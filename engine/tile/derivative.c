@@ -112,6 +112,48 @@ static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, u
     return lanes;
 }
 
+// ---- What programs give -------------------------------------------------------------------------------------------
+
+static void take_field(const glint_tile *tile, const glint_plan *plan, int field, int which, uint32_t g,
+                       glint_derivative_planes *out)
+{
+    glint_derivative_work *work = tile->derivative;
+    for (int c = 0; c < glint_field_channels(field); c++) {
+        glint_reals_of(glint_plane_of(tile->at.planes, plan, field, c), GLINT_FLOAT, g, work->planes[which + c]);
+        out->value[which + c] = work->planes[which + c];
+    }
+}
+
+/// Of a material, in group g. NULL: it has numbers alone.
+static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t g,
+                                                glint_derivative_planes *room)
+{
+    const uint32_t planes = plan->materials[material].planes;
+    if (!planes)
+        return NULL;
+    *room = (glint_derivative_planes) { .value = { NULL } };
+    if (planes & GLINT_PLANE_DIFFUSE)
+        take_field(tile, plan, GLINT_FIELD_DIFFUSE, GLINT_DERIVED_DIFFUSE, g, room);
+    if (planes & GLINT_PLANE_SPECULAR)
+        take_field(tile, plan, GLINT_FIELD_SPECULAR, GLINT_DERIVED_SPECULAR, g, room);
+    if (planes & GLINT_PLANE_SHININESS)
+        take_field(tile, plan, GLINT_FIELD_SHININESS, GLINT_DERIVED_SHININESS, g, room);
+    if (planes & GLINT_PLANE_ALPHA)
+        take_field(tile, plan, GLINT_FIELD_ROUGHNESS, GLINT_DERIVED_ALPHA, g, room);
+    return room;
+}
+
+/// What a program gives of sample i's ambient reflectance in channel c; 1: the material's number is all of it.
+static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint32_t i, int c)
+{
+    const uint32_t planes = plan->materials[tile->surface.material[i]].planes;
+    if (planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE)
+        return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, c)[i];
+    return planes & GLINT_PLANE_AMBIENT ? (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c)[i] : 1;
+}
+
+// ---- One light ----------------------------------------------------------------------------------------------------
+
 /// `reached`: lanes that the light reaches; `tinted`: through something, which leaves its tint.
 static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light, uint32_t slot,
                          glint_derivative_source source, uint32_t g, unsigned reached,
@@ -135,6 +177,8 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     for (unsigned left = reached, lanes; left; left &= ~lanes) {
         uint32_t material;
         lanes = lanes_alike(tile, g, left, &material);
+        glint_derivative_planes room;
+        const glint_derivative_planes *planes = planes_of(tile, frame->plan, material, g, &room);
         for (size_t k = 0; k < all->count; k++) {
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
@@ -146,9 +190,9 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
             double *const whole[3] = { weighs && k == 0 ? work->light[0] + at : NULL, work->light[1] + at, work->light[2] + at };
             const unsigned bent = all->of[k].bends ? glint_bend_points(tile, frame, k, g, lanes, &points, work->bend) : 0;
             if (bent)
-                glint_derive_light(l, m, &bent_points, &source, bent, sum, whole);
+                glint_derive_light(l, m, planes, &bent_points, &source, bent, sum, whole);
             if (lanes & ~bent && (tinted || whole[0] || l->varies || m->varies))
-                glint_derive_light(l, m, &points, &source, lanes & ~bent, sum, whole);
+                glint_derive_light(l, m, planes, &points, &source, lanes & ~bent, sum, whole);
         }
     }
 }
@@ -248,7 +292,8 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
                          !(frame->plan->visible_light_count && glint_tile_sees_light(tile, i));
         for (size_t k = 0; k < all->count && (hit || sky); k++)
             for (int c = 0; c < 3; c++)
-                work->sum[k][c][i] += hit ? all->of[k].materials[tile->surface.material[i]].ambient[c].slope
+                work->sum[k][c][i] += hit ? all->of[k].materials[tile->surface.material[i]].ambient[c].slope *
+                                                ambient_plane(tile, frame->plan, i, c)
                                           : all->of[k].background[c];
     }
 }
@@ -258,9 +303,11 @@ static void begin_light(glint_tile *tile, const glint_tile_frame *frame, uint32_
 {
     for (uint32_t i = g * GLINT_GROUP; i < (g + 1) * GLINT_GROUP; i++)
         for (int c = 0; c < 3; c++)
-            tile->derivative->light[c][i] = glint_has_lane(tile->at.hits, i)
-                                                ? frame->plan->materials[tile->surface.material[i]].ambient[c]
-                                                : 0;
+            tile->derivative->light[c][i] =
+                glint_has_lane(tile->at.hits, i)
+                    ? frame->plan->derivatives->of[0].materials[tile->surface.material[i]].ambient[c].value *
+                          ambient_plane(tile, frame->plan, i, c)
+                    : 0;
 }
 
 /// Between samples: which lanes have not kept from them what the first had.

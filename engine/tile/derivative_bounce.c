@@ -84,14 +84,17 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
                   glint_ray_slope *mirror, glint_ray_slope *through)
 {
     const uint32_t material = tile->surface.material[i];
-    const glint_bounce_material *m = &frame->plan->bouncing[material];
+    glint_bounce_material room;
+    const glint_bounce_material *m = glint_tile_bouncing(tile, frame->plan, i, &room);
     const glint_derivative_bounce *slope = &frame->plan->derivatives->of[index].bounces[material];
     const bool total = glint_has_lane(batch->total, i);
     const turning t = find_turning(batch, tile, frame, index, i);
     const glint_dual one = dual(1, 0), twice = dual_scale(t.cosine, 2);
     glint_dual beyond = one, reflectance = one, mirrored[3], sent[3];
-    if (!total)
+    if (!total) {
         refract(&t, &beyond, &reflectance);
+        reflectance.value = glint_real_at(batch->reflectance, frame->plan->desc.precision, i);
+    }
     for (int c = 0; c < 3; c++) {
         mirrored[c] = dual(m->mirror[c], slope->mirror[c]);
         sent[c] = dual(m->transmission[c], slope->transmission[c]);

@@ -141,9 +141,17 @@ INLINE shine find_shine(bool bends, const glint_derivative_light *light, const g
     return s;
 }
 
+/// What a program gives of number `which`, or `own`.
+INLINE lanes take_plane(const glint_derivative_planes *planes, int which, int i, lanes own)
+{
+    if (!planes || !planes->value[which])
+        return own;
+    return make(d_load(planes->value[which] + i), d_set(0));
+}
+
 /// S of Phong and Blinn-Phong.
-INLINE lanes find_power(bool bends, const glint_derivative_material *material, const shine *s, const lanes normal[3],
-                        const lanes eye[3])
+INLINE lanes find_power(bool bends, const glint_derivative_material *material, lanes shininess, const shine *s,
+                        const lanes normal[3], const lanes eye[3])
 {
     lanes x;
     if (material->highlight == GLINT_HIGHLIGHT_PHONG) {
@@ -155,7 +163,7 @@ INLINE lanes find_power(bool bends, const glint_derivative_material *material, c
             h[c] = add(s->way[c], eye[c]);
         x = divide(dot_bent(bends, h, normal), root(dot(h, h)));
     }
-    const lanes strength = power(x, of(material->shininess));
+    const lanes strength = power(x, shininess);
     return material->lobe == GLINT_LOBE_POWER_COSINE ? mul(strength, s->cosine) : strength;
 }
 
@@ -170,9 +178,9 @@ INLINE lanes beckmann_mask(lanes alpha, lanes x)
 }
 
 /// D G / (4 n.v) of pi D F G / (4 n.v) n.l, as stages/ref/shade.h has it; `sine2` is between n and h.
-INLINE lanes find_facets(const glint_derivative_material *material, lanes sine2, lanes l, lanes v)
+INLINE lanes find_facets(const glint_derivative_material *material, lanes alpha, lanes sine2, lanes l, lanes v)
 {
-    const lanes one = number(1), alpha = of(material->alpha), aa = mul(alpha, alpha);
+    const lanes one = number(1), aa = mul(alpha, alpha);
     const lanes floor = number(0x1p-126), cosine2 = sub(one, sine2);
     if (material->lobe == GLINT_LOBE_GGX) {
         const lanes b = sub(one, aa), u = divide(alpha, add(sine2, mul(aa, cosine2)));
@@ -189,8 +197,8 @@ INLINE lanes find_facets(const glint_derivative_material *material, lanes sine2,
 }
 
 /// S of microfacets, and that times Schlick's (1 - v.h)^5.
-INLINE void find_lobe(bool bends, const glint_derivative_material *material, const shine *s, const lanes normal[3],
-                      const lanes eye[3], lanes *specular, lanes *grazing)
+INLINE void find_lobe(bool bends, const glint_derivative_material *material, lanes alpha, const shine *s,
+                      const lanes normal[3], const lanes eye[3], lanes *specular, lanes *grazing)
 {
     const lanes zero = number(0), one = number(1);
     lanes h[3], across[3];
@@ -205,7 +213,7 @@ INLINE void find_lobe(bool bends, const glint_derivative_material *material, con
     sine2 = where(d_lt(sine2.v, one.v), sine2, one);
     const lanes facing = dot_bent(bends, normal, eye);
     const lanes l = where(d_lt(s->cosine.v, one.v), s->cosine, one), v = where(d_lt(facing.v, one.v), facing, one);
-    *specular = find_facets(material, sine2, l, v);
+    *specular = find_facets(material, alpha, sine2, l, v);
     lanes z = times(add(one, dot_bent(bends, s->way, eye)), d_set(0.5));
     z = where(d_lt(z.v, one.v), z, one);
     const lanes m = sub(one, root(where(d_lt(zero.v, z.v), z, zero))), mm = mul(m, m);
@@ -228,7 +236,7 @@ void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3])
 
 /// `bends` is a constant.
 INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const glint_derivative_material *material,
-                         const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
+                         const glint_derivative_planes *planes, const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
                          double *const sum[3], double *const whole[3])
 {
     const vd zero = d_set(0);
@@ -248,13 +256,20 @@ INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const 
         load_dual(bends, points, 1, i, normal);
         load_dual(bends, points, 2, i, eye);
         if (material->highlight == GLINT_HIGHLIGHT_FACETS)
-            find_lobe(bends, material, &s, normal, eye, &specular, &grazing);
+            find_lobe(bends, material, take_plane(planes, GLINT_DERIVED_ALPHA, i, of(material->alpha)), &s, normal, eye,
+                      &specular, &grazing);
         else if (material->highlight != GLINT_HIGHLIGHT_NONE)
-            specular = find_power(bends, material, &s, normal, eye);
+            specular = find_power(bends, material, take_plane(planes, GLINT_DERIVED_SHININESS, i, of(material->shininess)),
+                                  &s, normal, eye);
         for (int c = 0; c < 3; c++) {
-            lanes light_left = mul(kd[c], s.cosine);
-            light_left = add(light_left, mul(ks[c], specular));
-            light_left = mul(add(light_left, mul(kg[c], grazing)), s.weight);
+            const lanes one = number(1), diffuse = mul(kd[c], s.cosine);
+            lanes shiny = add(mul(ks[c], specular), mul(kg[c], grazing));
+            lanes light_left = add(diffuse, shiny);
+            if (planes) {
+                shiny = mul(shiny, take_plane(planes, GLINT_DERIVED_SPECULAR + c, i, one));
+                light_left = add(mul(diffuse, take_plane(planes, GLINT_DERIVED_DIFFUSE + c, i, one)), shiny);
+            }
+            light_left = mul(light_left, s.weight);
             if (source->tint[0])
                 light_left = mul(light_left, make(d_load(source->tint[c] + i), d_load(source->tint_slope[c] + i)));
             d_store(sum[c] + i, d_load(sum[c] + i) + d_select(reached, light_left.d, zero));
@@ -265,11 +280,11 @@ INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const 
 }
 
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
-                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
+                        const glint_derivative_planes *planes, const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
                         double *const sum[3], double *const whole[3])
 {
     if (points->slope[0][0])
-        derive_lanes(true, light, material, points, source, which, sum, whole);
+        derive_lanes(true, light, material, planes, points, source, which, sum, whole);
     else
-        derive_lanes(false, light, material, points, source, which, sum, whole);
+        derive_lanes(false, light, material, planes, points, source, which, sum, whole);
 }

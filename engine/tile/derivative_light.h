@@ -12,6 +12,19 @@ typedef struct glint_derivative_points {
     const double *slope[3][3]; ///< of the three; slope[0][0] NULL: all are 0
 } glint_derivative_points;
 
+/// What of a material programs give, for a group: numbers beside those of glint_derivative_material.
+enum {
+    GLINT_DERIVED_DIFFUSE, ///< three, by which the material's are multiplied; and so of the next
+    GLINT_DERIVED_SPECULAR = 3,
+    GLINT_DERIVED_SHININESS = 6, ///< in the place of the material's, and so the next
+    GLINT_DERIVED_ALPHA,
+    GLINT_DERIVED_COUNT
+};
+
+typedef struct glint_derivative_planes {
+    const double *value[GLINT_DERIVED_COUNT]; ///< sixteen each; NULL: the material's own
+} glint_derivative_planes;
+
 /// A light as a group sees it, or one sample of it.
 typedef struct glint_derivative_source {
     const double *position[3]; ///< directional: the unit vector towards it
@@ -30,10 +43,12 @@ unsigned glint_bend_points(const struct glint_tile *tile, const struct glint_til
                            unsigned lanes, const glint_derivative_points *points, double (*bend)[3][GLINT_GROUP]);
 /// Unit vectors against the directions of rays.
 void glint_derive_eyes(double direction[3][GLINT_GROUP], double *const eye[3]);
+/// planes: of what programs give; NULL: they give nothing.
+///
 /// Adds the slope of what a light leaves on lanes, a bit each, of one material to `sum`, and that itself to `whole`. whole[0]
 /// NULL: nothing.
 void glint_derive_light(const glint_derivative_light *light, const glint_derivative_material *material,
-                        const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
+                        const glint_derivative_planes *planes, const glint_derivative_points *points, const glint_derivative_source *source, unsigned which,
                         double *const sum[3], double *const whole[3]);
 
 #endif

@@ -22,6 +22,7 @@ typedef struct glint_derivative_work {
     _Alignas(64) double tint[3][GLINT_TILE_SAMPLES]; ///< what is left of a light's colours, and its slopes, for samples and for rays
     _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
+    _Alignas(64) double planes[GLINT_DERIVED_COUNT][GLINT_GROUP]; ///< what programs give of the current material
     float plane[3][GLINT_TILE_SAMPLES];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
     uint32_t first[GLINT_TILE_SAMPLES];

@@ -134,6 +134,46 @@ function tests.area_lights_against_differences()
   end, 10, 1e-1)
 end
 
+-- What programs give, which nothing of the derivative moves.
+function tests.beside_patterns_against_differences()
+  local function compare(name, make)
+    local at, h = 2, 1e-2
+    local image = render(make(glint.variable("p", at)), "d:p")
+    local high, low = render(make(at + h), "beauty"), render(make(at - h), "beauty")
+    local list, most, distances = {}, 0, {}
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    each(image, "d:p", image, "d:p", function(d)
+      distances[#distances + 1] = math.abs(d - list[#distances + 1])
+      most = math.max(most, math.abs(d))
+    end)
+    table.sort(distances) -- the last of fifty: shadows have edges
+    local worst = distances[#distances * 49 // 50]
+    check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+  end
+  local wave = glint.pattern(function(p) return 0.4 + 0.3 * glint.sin(5 * p.y) end)
+  local exponent = glint.pattern(function(p) return 20 + 10 * glint.sin(5 * p.y) end)
+  local color = glint.pattern(function(p) return { 0.4 + 0.3 * glint.sin(3 * p.x), 0.3, 0.5 } end)
+  local function with(x, fields, floor)
+    fields.diffuse = color
+    local scene = scene_of(glint.point_light { position = { x, 4, 3 }, attenuation = { 1, 0, 0.02 }, ambient = 0.1 * x },
+      { material = glint.material(fields), ambient = 0.1, background = 0.2 })
+    scene:add(glint.plane { point = { 0, 0, -3 }, normal = { 0, 0, 1 }, material = glint.material(floor or { diffuse = color, ambient = wave }) })
+    return scene
+  end
+  compare("colours", function(x) return with(x, { specular = wave, shininess = 2 * x }) end)
+  compare("exponents", function(x) return with(x, { specular = 0.5, shininess = exponent }) end)
+  compare("even highlights", function(x)
+    return with(x, { specular = 0.5, shininess = exponent, model = "blinn_phong", normalized = true, matched = true })
+  end)
+  compare("even highlights by a colour", function(x) return with(x, { specular = wave, shininess = 5 * x, normalized = true }) end)
+  compare("microfacets", function(x)
+    return with(x, { model = "cook_torrance", f0 = x / 4, specular = wave, roughness = wave })
+  end)
+  compare("mirrors", function(x) return with(x, { mirror = wave }, { diffuse = color, mirror = x / 4 }) end)
+  compare("bumps", function(x) return with(x, { mirror = x / 5, fresnel = true, bump = wave }) end)
+  compare("holes", function(x) return with(x, { mirror = x / 5, opacity = wave }) end)
+end
+
 -- The eye over faces, within a ball, and a ball that moves under a lens: nineteen pixels of twenty, which are no edges.
 function tests.what_moves_against_differences()
   local h = 1e-3
@@ -273,8 +313,13 @@ function tests.errors_are_told()
   local lit = scene_of(lamp)
   lit.indirect = { samples = 4 }
   raises("derivative 'x': scene.indirect", render, lit, "d:x")
-  local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end) }
-  raises("derivative 'x': material: patterns", render, scene_of(lamp, { material = bricks }), "d:x")
+  local shaded = glint.material { model = glint.shader(function(q) return q.light end) }
+  raises("derivative 'x': material.model: a shader", render, scene_of(lamp, { material = shaded }), "d:x")
+  local bricks = glint.material { diffuse = glint.pattern(function(p) return p.x end), transmission = glint.pattern(function(p) return p.y end) }
+  raises("derivative 'x': material.transmission: light through what a pattern colours", render, scene_of(lamp, { material = bricks }), "d:x")
+  moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })
+  moved.camera.eye = { x, 2, 8 }
+  raises("derivative 'x': material: what moves or bends", render, moved, "d:x")
   raises("derivative 'x': adaptive", render, scene_of(lamp), "d:x", { samples = 4, adaptive = 0.1 })
   local seen = glint.sphere_light { position = { x, 4, 3 }, radius = 1, visible = true }
   raises("sphere_light #1: visible", render, scene_of(seen), "d:x")
