@@ -23,6 +23,12 @@ own() { # the module that the command finds lies beside it: PREFIX, whether or n
 check "the command finds its own modules" own "$prefix"
 cp -r "$prefix" "$work/else where"
 check "from any place" own "$work/else where"
+# Another version beside the first, whose engine and modules are of no use to it: each has its own.
+cp -r "$prefix" "$work/second"
+echo 'error "a module of the second"' | tee "$work/second/share/lua/5.4/glint/"{particles,xyz}.lua >/dev/null
+echo 'the engine of the second' >"$work/second/lib/lua/5.4/glint.so"
+check "a second glint is no problem" eval '(export PATH=$work/second/bin:$PATH LUA_CPATH="$work/second/lib/lua/5.4/?.so;;"; own "$prefix")'
+check "and has modules of its own" eval 'env -C "$work" -u LUA_PATH "$work/second/bin/glint" own.lua 2>&1 | grep -q "a module of the second"'
 check "LUA_PATH comes first" eval '(cd "$work" && mkdir -p mine/glint && echo "return { new = true }" >mine/glint/particles.lua &&
     LUA_PATH="$work/mine/?.lua;;" "$prefix/bin/glint" own.lua 2>&1 | head -n 1 | grep -q mine/glint)'
 check "an example, with its data" env -C "$work" "$prefix/bin/glint" "$prefix/share/glint/examples/molecule.lua" --size 32x24 -q
