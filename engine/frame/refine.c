@@ -112,13 +112,13 @@ enum { DIFFER = 1, MAY_DIFFER = 2 };
 static inline int differ(const chooser *c, const row_view *a, size_t p, const row_view *b, size_t q, size_t count,
                          int *restrict out)
 {
-    float sum[RUN] = { 0 };
+    float sum[RUN];
     int any = 0;
-    for (size_t k = 0; k < a->channels; k++) {
-        const float *x = a->code[k] + p, *y = b->code[k] + q;
-        for (size_t i = 0; i < count; i++)
-            sum[i] += fabsf(x[i] - y[i]);
-    }
+    for (size_t i = 0; i < count; i++)
+        sum[i] = (fabsf(a->code[0][p + i] - b->code[0][q + i]) + fabsf(a->code[1][p + i] - b->code[1][q + i])) +
+                 fabsf(a->code[2][p + i] - b->code[2][q + i]);
+    for (size_t i = 0; a->channels > 3 && i < count; i++)
+        sum[i] += fabsf(a->code[3][p + i] - b->code[3][q + i]);
     for (size_t i = 0; i < count; i++) {
         const float cosine = (a->normal[0][p + i] * b->normal[0][q + i] + a->normal[1][p + i] * b->normal[1][q + i]) +
                              a->normal[2][p + i] * b->normal[2][q + i];

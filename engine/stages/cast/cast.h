@@ -123,11 +123,31 @@ static inline uint64_t R(whole_groups)(const R(tile_cast) * tile, uint64_t group
     return whole;
 }
 
+/// Groups that have a ray.
+static inline uint64_t R(live_groups)(const R(tile_cast) * tile)
+{
+    uint64_t live = 0;
+    for (int y = 0; y < tile->down; y++) {
+        const uint16_t *row = tile->args->active + y * tile->across;
+        uint64_t whole[2] = { 0 };
+        if (tile->across == COVER_ACROSS)
+            memcpy(whole, row, sizeof whole);
+        if ((whole[0] & whole[1]) == UINT64_MAX)
+            live |= (uint64_t)0xff << y * COVER_ACROSS;
+        for (int x = 0; (whole[0] & whole[1]) != UINT64_MAX && x < tile->across; x++)
+            live |= (uint64_t)(row[x] != 0) << (y * COVER_ACROSS + x);
+    }
+    return live;
+}
+
 /// Every group and the first candidates.
 static void R(cast_first)(R(tile_cast) * tile, const R(candidate) *const *candidates, int count, uint64_t may[])
 {
     const uint64_t all = R(all_groups)(tile);
+    const uint64_t live = R(live_groups)(tile);
     uint64_t sure[GLINT_FIRST_CANDIDATES], any = 0, several = 0, filled = 0;
+    for (int k = 0; k < count && live != all; k++)
+        may[k] &= live;
     R(cover_tile)(tile, candidates, count, may, sure);
     for (int k = 0; k < count; k++) {
         several |= any & may[k];
