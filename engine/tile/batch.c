@@ -54,7 +54,7 @@ void glint_batch_end(const glint_batch *batch, glint_tile *to)
 /// Whether stages between cast and surface need all rays where they were, those that meet nothing as well.
 static bool needs_all(const glint_plan *plan)
 {
-    return glint_plan_cuts(plan) || plan->runs[GLINT_STAGE_VISIBLE_LIGHT] || plan->environment;
+    return glint_plan_cuts(plan) || plan->runs[GLINT_STAGE_VISIBLE_LIGHT];
 }
 
 static void cast(glint_batch *batch, const glint_tile_frame *frame)
@@ -176,6 +176,20 @@ static void absorb(glint_batch *batch, const glint_tile_frame *frame)
     }
 }
 
+void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS])
+{
+    for (uint32_t g = 0; g < batch->rays->group_count; g++)
+        missed[g] = batch->rays->active[g] & (uint16_t) ~(batch->whole ? batch->tile.at.hits[g] : batch->met[g]);
+}
+
+/// What a program shows rays that have no sample.
+static void see_environment(glint_batch *batch, const glint_tile_frame *frame)
+{
+    uint16_t missed[GLINT_TILE_GROUPS];
+    glint_batch_find_missed(batch, missed);
+    glint_tile_environment_of(&batch->tile, frame, batch->rays, missed, batch->shown);
+}
+
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
 {
     glint_tile *tile = &batch->tile;
@@ -192,6 +206,8 @@ bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame)
         glint_tile_find_surfaces(tile, frame);
     if (frame->plan->absorbs)
         absorb(batch, frame);
+    if (frame->plan->environment && !batch->whole)
+        see_environment(batch, frame);
     return any;
 }
 
@@ -252,7 +268,9 @@ void glint_batch_shine(glint_batch *batch, const glint_tile_frame *frame, bool a
 
 double glint_batch_light_of(const glint_batch *batch, const glint_plan *plan, int c, uint32_t ray)
 {
-    return glint_batch_has_sample(batch, ray) ? glint_batch_found(batch, c, batch->sample[ray]) : plan->background[c];
+    if (glint_batch_has_sample(batch, ray))
+        return glint_batch_found(batch, c, batch->sample[ray]);
+    return plan->environment ? batch->shown[c][ray] : plan->background[c];
 }
 
 // ---- From a surface on ----

@@ -22,6 +22,7 @@ typedef struct glint_batch {
     uint16_t met[GLINT_TILE_GROUPS]; ///< else: the rays that have one
     uint16_t sample[GLINT_TILE_SAMPLES]; ///< of each ray that has one
     uint16_t ray_of[GLINT_TILE_SAMPLES]; ///< the other way
+    double shown[3][GLINT_TILE_SAMPLES]; ///< where a program gives the background, what rays without a sample see of it
     // where the wanted samples of a tile go on, by glint_batch_find_ways
     uint16_t wanted[GLINT_TILE_GROUPS], total[GLINT_TILE_GROUPS];
     _Alignas(64) double ratio[GLINT_TILE_SAMPLES];
@@ -44,6 +45,8 @@ static inline const glint_media *glint_batch_media(const glint_batch *batch, uin
 void glint_batch_begin(glint_batch *batch, const glint_tile *to, const glint_tile_frame *frame, glint_walk walk);
 /// Finds what batch->rays hit, and weakens them by what they went through. Returns whether anything is hit.
 bool glint_batch_cast(glint_batch *batch, const glint_tile_frame *frame);
+/// The rays that have met nothing, after that.
+void glint_batch_find_missed(const glint_batch *batch, uint16_t missed[GLINT_TILE_GROUPS]);
 /// Makes the sums of the batch's tile: what surfaces, and of a whole batch the background, themselves send back along the rays.
 void glint_batch_light(glint_batch *batch, const glint_tile_frame *frame, bool any);
 /// The same of those hits whose light is worked out for themselves.

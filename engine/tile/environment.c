@@ -6,6 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/program/program.h"
 #include "engine/tile/pattern_inputs.h"
+#include "engine/tile/rays.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -86,14 +87,13 @@ static void load_directions(const glint_tile *tile, glint_precision precision, u
     }
 }
 
-/// Group g of the tile, into group `to` of the rows.
-static void gather_group(struct glint_environment *environment, const glint_tile *tile, const glint_plan *plan,
-                         uint32_t g, uint32_t to)
+/// The directions of sixteen rays, into group `to` of the rows.
+static void put_directions(struct glint_environment *environment, const glint_plan *plan, const double d[3][GLINT_GROUP],
+                           uint32_t to)
 {
-    double d[3][GLINT_GROUP], length[GLINT_GROUP];
+    double length[GLINT_GROUP];
     const uint32_t at = to * GLINT_GROUP;
     double(*row)[GLINT_PROGRAM_LANES] = environment->inputs.row;
-    load_directions(tile, plan->desc.precision, g, d);
     for (uint32_t i = 0; i < GLINT_GROUP; i++)
         length[i] = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
     for (int c = 0; c < 3; c++) {
@@ -138,9 +138,9 @@ static void note_odd(glint_tile *tile, const struct glint_environment *environme
     }
 }
 
-/// Adds group `from` of the rows to group g of the tile. channels: how many the program gives; one stands for all.
-static void add_group(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t g,
-                      uint32_t from, unsigned lanes)
+/// The light of group `from` of the rows, 0 in lanes that are not wanted. channels: how many the program gives; one stands for all.
+static void light_of(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t from,
+                     unsigned lanes, double light[3][GLINT_GROUP])
 {
     double wanted[GLINT_GROUP], odd[GLINT_GROUP] = { 0 };
     bool any = false;
@@ -148,15 +148,14 @@ static void add_group(glint_tile *tile, const struct glint_environment *environm
         wanted[i] = lanes >> i & 1 ? GLINT_REFLECTANCE_MAX : 0;
     for (uint32_t c = 0; c < 3; c++) {
         const double *shown = environment->shown[c < channels ? c : 0] + from * GLINT_GROUP;
-        double *sum = tile->film.sum[GLINT_TERM_BACKGROUND][c] + g * GLINT_GROUP, light[GLINT_GROUP];
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            light[i] = shown[i] > 0 ? shown[i] : 0;
+            light[c][i] = shown[i] > 0 ? shown[i] : 0;
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            light[i] = light[i] < GLINT_REFLECTANCE_MAX ? light[i] : GLINT_REFLECTANCE_MAX;
+            light[c][i] = light[c][i] < GLINT_REFLECTANCE_MAX ? light[c][i] : GLINT_REFLECTANCE_MAX;
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            odd[i] += light[i] == shown[i] ? 0 : 1;
+            odd[i] += light[c][i] == shown[i] ? 0 : 1;
         for (uint32_t i = 0; i < GLINT_GROUP; i++)
-            sum[i] += light[i] < wanted[i] ? light[i] : wanted[i];
+            light[c][i] = light[c][i] < wanted[i] ? light[c][i] : wanted[i];
     }
     for (uint32_t i = 0; i < GLINT_GROUP; i++)
         any = any || odd[i] > 0;
@@ -164,25 +163,48 @@ static void add_group(glint_tile *tile, const struct glint_environment *environm
         note_odd(tile, environment, channels, from, lanes);
 }
 
-/// Some groups, and their lanes.
-static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
-                       uint32_t count)
+/// Adds group `from` of the rows to group g of the tile.
+static void add_group(glint_tile *tile, const struct glint_environment *environment, uint32_t channels, uint32_t g,
+                      uint32_t from, unsigned lanes)
 {
-    struct glint_environment *environment = tile->environment;
+    double light[3][GLINT_GROUP];
+    light_of(tile, environment, channels, from, lanes, light);
+    for (uint32_t c = 0; c < 3; c++) {
+        double *sum = tile->film.sum[GLINT_TERM_BACKGROUND][c] + g * GLINT_GROUP;
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            sum[i] += light[c][i];
+    }
+}
+
+/// What the lanes of `count` groups of the rows show.
+static void run_rows(struct glint_environment *environment, const glint_tile_frame *frame, const uint16_t *lanes,
+                     uint32_t count)
+{
     const glint_plan_environment *own = frame->plan->environment;
-    const uint32_t channels = own->program->code.output_count;
     glint_program_args args = { .group_count = count, .wanted = lanes };
-    for (uint32_t k = 0; k < count; k++)
-        gather_group(environment, tile, frame->plan, groups[k], k);
     if (own->uv) {
         args.result[0] = environment->inputs.row[GLINT_INPUT_UV_U];
         args.result[1] = environment->inputs.row[GLINT_INPUT_UV_V];
         run(environment, frame, own->uv, &args);
         args.result[1] = NULL;
     }
-    for (uint32_t c = 0; c < channels; c++)
+    for (uint32_t c = 0; c < own->program->code.output_count; c++)
         args.result[c] = environment->shown[c];
     run(environment, frame, own->program, &args);
+}
+
+/// Some groups of a tile, and their lanes.
+static void run_groups(glint_tile *tile, const glint_tile_frame *frame, const uint32_t *groups, const uint16_t *lanes,
+                       uint32_t count)
+{
+    struct glint_environment *environment = tile->environment;
+    const uint32_t channels = frame->plan->environment->program->code.output_count;
+    for (uint32_t k = 0; k < count; k++) {
+        double d[3][GLINT_GROUP];
+        load_directions(tile, frame->plan->desc.precision, groups[k], d);
+        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, k);
+    }
+    run_rows(environment, frame, lanes, count);
     for (uint32_t k = 0; k < count; k++)
         add_group(tile, environment, channels, groups[k], k, lanes[k]);
 }
@@ -203,5 +225,60 @@ void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
             count = 0;
         }
     }
+    glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
+}
+
+// ---- Rays that left surfaces ----
+
+/// The directions of `count` rays, at most a group.
+static void load_rays(const glint_rays *rays, glint_precision precision, const uint16_t *ray, uint32_t count,
+                      double d[3][GLINT_GROUP])
+{
+    for (uint32_t i = 0; i < GLINT_GROUP; i++)
+        for (int c = 0; c < 3; c++)
+            d[c][i] = glint_real_at(rays->direction[c], precision, ray[i < count ? i : 0]);
+}
+
+/// What `count` rays show, as many as a call of the program takes at most.
+static void run_rays(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays, const uint16_t *ray,
+                     uint32_t count, double (*light)[GLINT_TILE_SAMPLES])
+{
+    struct glint_environment *environment = tile->environment;
+    const uint32_t groups = (count + GLINT_GROUP - 1) / GLINT_GROUP;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS] = { 0 };
+    for (uint32_t g = 0; g < groups; g++) {
+        const uint32_t first = g * GLINT_GROUP, here = count - first < GLINT_GROUP ? count - first : GLINT_GROUP;
+        double d[3][GLINT_GROUP];
+        lanes[g] = (uint16_t)((1u << here) - 1);
+        load_rays(rays, frame->plan->desc.precision, ray + first, here, d);
+        put_directions(environment, frame->plan, (const double(*)[GLINT_GROUP])d, g);
+    }
+    run_rows(environment, frame, lanes, groups);
+    for (uint32_t g = 0; g < groups; g++) {
+        double of[3][GLINT_GROUP];
+        light_of(tile, environment, frame->plan->environment->program->code.output_count, g, lanes[g], of);
+        for (uint32_t i = g * GLINT_GROUP; i < count && i < (g + 1) * GLINT_GROUP; i++)
+            for (int c = 0; c < 3; c++)
+                light[c][ray[i]] = of[c][i % GLINT_GROUP];
+    }
+}
+
+void glint_tile_environment_of(glint_tile *tile, const glint_tile_frame *frame, const glint_rays *rays,
+                               const uint16_t *missed, double (*light)[GLINT_TILE_SAMPLES])
+{
+    uint16_t ray[GLINT_PROGRAM_LANES];
+    uint32_t count = 0;
+    for (uint32_t g = 0; g < rays->group_count; g++) {
+        tile->counts.work.environment += (uint64_t)__builtin_popcount(missed[g]);
+        for (unsigned left = missed[g]; left; left &= left - 1) {
+            ray[count++] = (uint16_t)(g * GLINT_GROUP + (uint32_t)__builtin_ctz(left));
+            if (count < GLINT_PROGRAM_LANES)
+                continue;
+            run_rays(tile, frame, rays, ray, count, light);
+            count = 0;
+        }
+    }
+    if (count)
+        run_rays(tile, frame, rays, ray, count, light);
     glint_tile_count_stage(tile, frame, GLINT_STAGE_ENVIRONMENT, false);
 }

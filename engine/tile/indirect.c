@@ -433,6 +433,18 @@ void glint_indirect_collect_missed(const struct glint_indirect *indirect, const 
             to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * background[c];
 }
 
+/// The same of what a program shows them.
+static void collect_shown(const glint_batch *batch, const uint16_t *missed, glint_tile *to)
+{
+    const glint_rays *rays = batch->rays;
+    for (uint32_t g = 0; g < rays->group_count; g++)
+        for (unsigned left = missed[g]; left; left &= left - 1) {
+            const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
+            for (int c = 0; c < 3; c++)
+                to->film.sum[rays->term[i]][c][rays->pixel[i]] += rays->weight[c][i] * batch->shown[c][i];
+        }
+}
+
 /// Adds the light that the rays have found to their pixels: of a whole batch in the order of rays, which may share pixels.
 static void collect(const struct glint_indirect *indirect, const glint_tile_frame *frame, glint_tile *to)
 {
@@ -446,10 +458,12 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
         }
     if (batch->whole)
         return;
-    uint16_t missed[GLINT_TILE_GROUPS] = { 0 };
-    for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        missed[g] = batch->rays->active[g] & (uint16_t)~batch->met[g];
-    glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
+    uint16_t missed[GLINT_TILE_GROUPS];
+    glint_batch_find_missed(batch, missed);
+    if (frame->plan->environment)
+        collect_shown(batch, missed, to);
+    else
+        glint_indirect_collect_missed(indirect, frame, missed, frame->plan->background, to);
 }
 
 static void count_rays(const glint_batch *batch, glint_tile *to)

@@ -50,11 +50,10 @@ bool glint_indirect_open_sky(struct glint_indirect *indirect, const glint_tile_f
 {
     static const double white[3] = { 1, 1, 1 };
     glint_batch *batch = &indirect->batch;
-    uint16_t missed[GLINT_TILE_GROUPS] = { 0 };
+    uint16_t missed[GLINT_TILE_GROUPS];
     if (any && isfinite(frame->plan->indirect.distance))
         open_far(batch, frame->plan);
-    for (uint32_t g = 0; g < batch->rays->group_count; g++)
-        missed[g] = batch->rays->active[g] & (uint16_t)~(batch->whole ? batch->tile.at.hits[g] : batch->met[g]);
+    glint_batch_find_missed(batch, missed);
     glint_indirect_collect_missed(indirect, frame, missed, white, to);
     return any && frame->plan->transmits && go_through(indirect, frame, step);
 }
