@@ -596,15 +596,18 @@ bool glint_shape_bounds(const glint_shape *shape, double lower[3], double upper[
 
 #define GLINT_GROUP_DEPTH 64 ///< groups and combined solids one within the other
 
-// Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces: the side away from the normal is inside), other
-// combined solids, and groups, which stand for the union of what is in them; at most 64 in all, a torus counts twice. The whole is one object; a part shows
+// Combined solids. Parts are spheres, boxes, capped cylinders and cones, tori, planes (half-spaces: the side away from the normal is inside), closed
+// meshes, other combined solids, and groups, which stand for the union of what is in them; at most 64 in all, a torus counts twice, a mesh four
+// times. A mesh is closed where along every edge as many triangles run one way as the other, corners at one place being one; its shading is
+// faceted or phong. A place is inside of it where every way from there goes out through its faces more often than in; where its volume is
+// below 0 its faces are taken the other way round. The whole is one object; a part shows
 // nowhere but where it bounds the whole, with its own material, in its own space. Light that goes in through any part is in one medium: `ior` and
 // `absorption` are those of the whole's material. `two_sided` of parts means nothing. Faces that coincide leave nothing between them: a box
 // less one that ends at the same face is open there; where several parts bound the whole at one place, the first defined shows.
 
 /// The group or combined solid retains the shape, which may be in other groups and scenes as well: it shows in each, under the transforms of
 /// all that it is in, and what is changed in it changes everywhere. Refused: a group within itself, the same shape twice; what has
-/// no inside in a combined solid.
+/// no inside in a combined solid: the message names an edge at which a mesh is open.
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error);
 /// Takes the shape out of the group or combined solid and releases it. GLINT_ERR_INVALID when it is not there.
 glint_status glint_group_remove(glint_shape *group, glint_shape *child, glint_error *error);

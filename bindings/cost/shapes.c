@@ -7,12 +7,13 @@
 
 typedef void visitor(glint_shape *shape, void *data);
 
-// Every shape that is no group, as often as it shows.
+// Every shape that is no group, as often as it shows. Parts of combined solids keep what they are: not every shading is theirs.
 static void visit(glint_shape *shape, visitor *see, void *data)
 {
-    if (glint_shape_get(shape)->kind != GLINT_SHAPE_GROUP)
+    const bool group = glint_shape_get(shape)->kind == GLINT_SHAPE_GROUP;
+    if (!group)
         see(shape, data);
-    for (size_t i = 0; i < glint_group_count(shape); i++)
+    for (size_t i = 0; group && i < glint_group_count(shape); i++)
         visit(glint_group_child(shape, i), see, data);
 }
 

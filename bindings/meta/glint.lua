@@ -520,10 +520,10 @@ function group:close() end
 function glint.group(fields) end
 
 ---@class glint.combined_fields: glint.shape_fields
----@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, combined solids and groups of these
+---@field [integer] glint.shape  its parts: spheres, boxes, capped cylinders and cones, tori, planes, closed meshes, combined solids and groups of these
 
 --- What is in any part.
---- One solid of several: its parts, 1 .. 64 in all, where a torus counts twice. A plane is the half-space behind it, a group what any of it is. A part shows only where
+--- One solid of several: its parts, 1 .. 64 in all, where a torus counts twice and a closed mesh four times. A plane is the half-space behind it, a group what any of it is. A part shows only where
 --- it bounds the whole, with its own material or, without one, the whole's, which is that of its first part that has one where it is not
 --- given; light inside has the `ior` and `absorption` of that. The whole is one object. `two_sided` of parts means nothing.
 ---@class glint.union: glint.combined_fields

@@ -45,6 +45,18 @@ static void cast_lane(const glint_stages *stages, const glint_geometry_table *ge
         stages->geometry[GLINT_DOUBLE].surface(&surface);
 }
 
+/// The number of a part of a combined solid, from 0. whole, id: of the solid; of the part, or of a triangle of one that is a mesh.
+static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32_t id)
+{
+    const uint32_t count = geometry->hull_count ? geometry->hulls[0].first : geometry->member_count; // triangles come after
+    size_t parts = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const glint_prim *member = &geometry->members[i];
+        parts += member->id > whole && member->id <= id && member->face <= 1; // the first of those that are one
+    }
+    return parts - 1;
+}
+
 static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_group *g, double scale, glint_hit *out)
 {
     const glint_part *part = &geometry->parts[geometry->prim_part[id]];
@@ -54,9 +66,7 @@ static void read_hit(const glint_geometry *geometry, uint32_t id, const lane_gro
         if (other->whole)
             continue;
         out->shape = part->whole;
-        out->element = 0;
-        for (uint32_t i = 0; i < geometry->member_count; i++)
-            out->element += geometry->members[i].id > whole && geometry->members[i].id < id && geometry->members[i].face != 1;
+        out->element = part_number(geometry, whole, id);
         break;
     }
     const double turn = g->back & 1 ? -1 : 1;

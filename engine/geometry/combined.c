@@ -87,10 +87,23 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
     }
 }
 
+/// Along any way as good as along another; this one is along no face or edge that is likely.
+static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
+{
+    static const double way[3] = { 0.36, 0.48, 0.8 };
+    const glint_hull *hull = &geometry->hulls[part->item];
+    int exits = 0;
+    for (uint32_t i = 0; i < hull->count; i++)
+        exits += glint_prim_crossing(&geometry->members[hull->first + i], place, way);
+    return part->turned ? exits < 0 : exits > 0;
+}
+
 static bool part_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {
     double e[3];
     vec_sub(e, place, part->center);
+    if (part->kind == GLINT_PRIM_HULL)
+        return part->face == 1 && hull_holds(geometry, part, place);
     if (part->kind == GLINT_PRIM_PLANE)
         return vec_dot(part->normal, e) < 0;
     return glint_solid_holds(&geometry->solids[part->item], part->center, place);

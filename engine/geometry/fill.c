@@ -2,26 +2,10 @@
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
-#include "engine/geometry/prims.h"
+#include "engine/geometry/fill.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-
-typedef struct filler {
-    glint_geometry *geometry;
-    uint32_t *numbers; ///< of the materials of the shape at hand
-    uint32_t object_count, id_count;
-    size_t members, combined; ///< parts of combined solids, and those
-    size_t prims, parts, smooth, shared, shading_points, solids, faces,
-        materials; ///< how many there are; materials: most of any shape
-    size_t maps; ///< of parts, at most
-    size_t visits, map_count;
-    uint32_t normal_count, shared_count, solid_count, face_count, combined_count;
-    int level_axis; ///< of the last triangle of the shape that is square to an axis; 3: none so far
-    double level; ///< where on it
-    glint_error *error;
-} filler;
 
 /// Of a corner that smooth shading interpolates. Where the map keeps no angles, normals keep the lengths it gives them, in
 /// common units: what is between them is then the map of what is between them in the mesh's own space.
@@ -39,8 +23,7 @@ static void place_corner_normal(const glint_placing *place, const double n[3], d
         out[c] = vec_dot(place->cofactors[c], n) * scale;
 }
 
-/// The number of the shape's material in `materials`, which grows as new ones appear.
-static glint_status material_number(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error)
+glint_status glint_fill_material(glint_list *materials, glint_material *material, uint32_t *out, glint_error *error)
 {
     size_t index = glint_list_find(materials, material);
     glint_status status = GLINT_OK;
@@ -85,7 +68,7 @@ static void name_shading_point(glint_geometry *geometry, const glint_prim *prim,
 }
 
 /// A triangle that is square to an axis shares its plane with others, those of its own mesh before all.
-static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
+static void share_face(glint_filler *f, glint_prim *prim, const glint_mesh *mesh, size_t i, const glint_placing *place)
 {
     double lower[3], upper[3], normal[3], own[3] = { 0, 0, 0 };
     const int axis = glint_level_axis(mesh, i);
@@ -107,18 +90,16 @@ static void share_face(filler *f, glint_prim *prim, const glint_mesh *mesh, size
     glint_face_bound(&f->geometry->faces[prim->face - 1], place, lower, upper, own);
 }
 
-/// A mirrored triangle's corners are taken the other way round: its front stays its front.
-static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place)
+void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *shape, size_t i, const glint_placing *place, bool turned)
 {
     const glint_mesh *mesh = shape->mesh;
-    const bool mirrored = place->map && place->determinant < 0;
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
     prim->kind = GLINT_PRIM_TRIANGLE;
     prim->face = 0;
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
     for (int j = 0; j < 3; j++) {
-        const int from = mirrored ? (3 - j) % 3 : j;
+        const int from = turned ? (3 - j) % 3 : j;
         glint_place_point(place, mesh->vertices[at[from]], prim->corner[j]);
         if (prim->item != GLINT_MISS)
             place_corner_normal(place, mesh->normals[normal[from]], f->geometry->normals[prim->item].normal[j]);
@@ -129,7 +110,7 @@ static void add_triangle(filler *f, glint_prim *prim, const glint_shape *shape, 
     share_face(f, prim, mesh, i, place);
 }
 
-static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place)
+void glint_fill_solid(glint_filler *f, glint_prim *prim, const glint_shape_desc *desc, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     prim->item = f->solid_count++;
@@ -139,7 +120,7 @@ static void add_solid(filler *f, glint_prim *prim, const glint_shape_desc *desc,
 }
 
 /// A ball stays a sphere where the map keeps angles.
-static void add_ball(filler *f, glint_prim *prim, const double center[3], double radius, const glint_placing *place)
+static void add_ball(glint_filler *f, glint_prim *prim, const double center[3], double radius, const glint_placing *place)
 {
     double factor = 1, moved[3];
     if (!place->map || glint_transform_similar(place->map, &factor)) {
@@ -149,26 +130,25 @@ static void add_ball(filler *f, glint_prim *prim, const double center[3], double
     }
     glint_shape_desc desc = { .kind = GLINT_SHAPE_SPHERE, .radius = radius };
     vec_copy(desc.center, center);
-    add_solid(f, prim, &desc, place);
+    glint_fill_solid(f, prim, &desc, place);
 }
 
-/// What of a primitive is no place.
-static void dress_prim(filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
+void glint_fill_dress(glint_filler *f, glint_prim *prim, uint32_t part, uint32_t material, uint32_t medium, bool two_sided)
 {
     *prim = (glint_prim) { .id = f->id_count++, .two_sided = two_sided, .material = material, .medium = medium };
     f->geometry->prim_part[prim->id] = part;
 }
 
-static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
+static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32_t part, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     const glint_shape_desc *desc = &shape->desc;
     const uint32_t material = f->numbers[shape->index ? shape->index[i] : 0];
     glint_prim *prim = &geometry->prims[geometry->table.prim_count++];
-    dress_prim(f, prim, part, material, material, desc->two_sided);
+    glint_fill_dress(f, prim, part, material, material, desc->two_sided);
     switch (desc->kind) {
     case GLINT_SHAPE_MESH:
-        add_triangle(f, prim, shape, i, place);
+        glint_fill_triangle(f, prim, shape, i, place, glint_is_mirroring(place));
         break;
     case GLINT_SHAPE_SPHERES:
         add_ball(f, prim, shape->spheres[i], shape->spheres[i][3], place);
@@ -180,12 +160,12 @@ static void add_prim(filler *f, const glint_shape *shape, size_t i, uint32_t par
         glint_plane_init(prim, desc->point, desc->normal, place);
         break;
     default:
-        add_solid(f, prim, desc, place);
+        glint_fill_solid(f, prim, desc, place);
         break;
     }
 }
 
-static void start_part(filler *f, uint32_t part, glint_shape *shape, const glint_placing *place)
+void glint_fill_part(glint_filler *f, uint32_t part, glint_shape *shape, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     geometry->parts[part] =
@@ -197,16 +177,16 @@ static void start_part(filler *f, uint32_t part, glint_shape *shape, const glint
     geometry->part_count++;
 }
 
-static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing *place)
+static glint_status add_prims(glint_filler *f, glint_shape *shape, const glint_placing *place)
 {
     glint_geometry *geometry = f->geometry;
     for (size_t i = 0; i < shape->material_count; i++) {
-        glint_status status = material_number(&geometry->materials, shape->materials[i], &f->numbers[i], f->error);
+        glint_status status = glint_fill_material(&geometry->materials, shape->materials[i], &f->numbers[i], f->error);
         if (status)
             return status;
     }
     const uint32_t part = geometry->whole_count++;
-    start_part(f, part, shape, place);
+    glint_fill_part(f, part, shape, place);
     f->level_axis = 3;
     for (size_t i = 0; i < shape->count; i++)
         add_prim(f, shape, i, part, place);
@@ -217,8 +197,7 @@ static glint_status add_prims(filler *f, glint_shape *shape, const glint_placing
     return GLINT_OK;
 }
 
-/// around: the map of the groups that the shape is in; NULL: the identity. map: room for its own under that.
-static glint_status find_placing(const filler *f, const glint_shape *shape, const glint_transform *around,
+glint_status glint_fill_placing(const glint_filler *f, const glint_shape *shape, const glint_transform *around,
                                  glint_transform *map, glint_placing *place)
 {
     double linear[3][3], factor = 1;
@@ -238,145 +217,16 @@ static glint_status find_placing(const filler *f, const glint_shape *shape, cons
     return GLINT_OK;
 }
 
-// ---- Combined solids ----
-
-/// A combined solid that is being filled.
-typedef struct maker {
-    glint_shape *shape; ///< the whole
-    glint_combined *combined;
-    uint32_t nothings; ///< groups without anything in them
-    uint32_t medium; ///< number of its material
-} maker;
-
-/// What the parts that have no material are dressed as: it has one, or a part of it has.
-static const glint_shape *find_dress(const glint_shape *shape)
-{
-    if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
-        return shape;
-    for (size_t i = 0; i < shape->children.count; i++) {
-        const glint_shape *found = find_dress(shape->children.items[i]);
-        if (found)
-            return found;
-    }
-    return NULL;
-}
-
-static glint_status too_many_parts(const filler *f, const maker *m)
-{
-    char name[2 * GLINT_NAME_SIZE];
-    glint_describe_shape(&m->shape->desc, f->geometry->whole_count, name, sizeof name);
-    return glint_fail(f->error, GLINT_ERR_INVALID, "%s: at most %d parts expected", name, GLINT_PARTS_MAX);
-}
-
-/// A part is a solid or a plane, a ball too; half: see glint_prim.face.
-static glint_status add_member(filler *f, maker *m, glint_shape *shape, const glint_placing *place, const glint_shape *dress,
-                               bool turned, uint32_t half)
-{
-    glint_geometry *geometry = f->geometry;
-    uint32_t material;
-    const char *refusal = glint_part_refusal(shape);
-    char name[2 * GLINT_NAME_SIZE];
-    glint_describe_shape(&m->shape->desc, geometry->whole_count, name, sizeof name);
-    if (refusal)
-        return glint_fail(f->error, GLINT_ERR_INVALID, "%s: parts with an inside expected: %s, got %s", name, refusal,
-                          glint_shape_kind_name(shape->desc.kind));
-    glint_status status = material_number(&geometry->materials, dress->materials[0], &material, f->error);
-    if (status)
-        return status;
-    const uint32_t part = (uint32_t)f->parts + geometry->member_count;
-    glint_prim *prim = &geometry->members[geometry->member_count++];
-    start_part(f, part, shape, place);
-    geometry->parts[part].dress = dress;
-    geometry->parts[part].whole = m->shape;
-    dress_prim(f, prim, part, material, m->medium, m->shape->desc.two_sided);
-    prim->turned = turned;
-    if (shape->desc.kind == GLINT_SHAPE_PLANE)
-        glint_plane_init(prim, shape->desc.point, shape->desc.normal, place);
-    else
-        add_solid(f, prim, &shape->desc, place);
-    prim->face = half;
-    m->combined->program[m->combined->length++] = (uint8_t)m->combined->count++;
-    if (half == 2)
-        m->combined->program[m->combined->length++] = GLINT_COMBINE_UNION;
-    return GLINT_OK;
-}
-
-static uint8_t operation_of(const glint_shape *shape)
-{
-    return shape->desc.kind == GLINT_SHAPE_INTERSECTION ? GLINT_COMBINE_INTERSECTION
-           : shape->desc.kind == GLINT_SHAPE_DIFFERENCE ? GLINT_COMBINE_DIFFERENCE
-                                                        : GLINT_COMBINE_UNION;
-}
-
-/// Adds what a shape is to a whole. dress: of what has no material of its own.
-static glint_status add_to_whole(filler *f, maker *m, glint_shape *shape, const glint_transform *around,
-                                 const glint_shape *dress, bool turned)
-{
-    glint_combined *combined = m->combined;
-    glint_transform map;
-    glint_placing place;
-    glint_status status = find_placing(f, shape, around, &map, &place);
-    if (status)
-        return status;
-    if (shape->dressed && shape->desc.kind != GLINT_SHAPE_GROUP)
-        dress = shape;
-    const bool torus = shape->desc.kind == GLINT_SHAPE_TORUS;
-    if (combined->count + m->nothings + torus >= GLINT_PARTS_MAX)
-        return too_many_parts(f, m);
-    if (torus)
-        status = add_member(f, m, shape, &place, dress, turned, 1);
-    if (!glint_shape_has_children(shape))
-        return status ? status : add_member(f, m, shape, &place, dress, turned, torus ? 2 : 0);
-    if (shape->children.count == 0) {
-        combined->program[combined->length++] = GLINT_COMBINE_NOTHING;
-        m->nothings++;
-    }
-    for (size_t i = 0; i < shape->children.count && !status; i++) {
-        const bool away = i > 0 && shape->desc.kind == GLINT_SHAPE_DIFFERENCE;
-        status = add_to_whole(f, m, shape->children.items[i], place.map, dress, turned != away);
-        if (i > 0)
-            combined->program[combined->length++] = operation_of(shape);
-    }
-    return status;
-}
-
-/// around: as of add_shape.
-static glint_status add_combined(filler *f, glint_shape *shape, const glint_placing *place,
-                                 const glint_transform *around)
-{
-    glint_geometry *geometry = f->geometry;
-    glint_prim *prim = &geometry->prims[geometry->table.prim_count++];
-    const uint32_t part = geometry->whole_count++;
-    const glint_shape *dress = find_dress(shape);
-    maker m = { .shape = shape, .combined = &geometry->combined[f->combined_count] };
-    if (!dress)
-        dress = shape;
-    glint_status status = material_number(&geometry->materials, dress->materials[0], &m.medium, f->error);
-    if (status)
-        return status;
-    start_part(f, part, shape, place);
-    geometry->parts[part].dress = dress;
-    *m.combined = (glint_combined) { .first = geometry->member_count };
-    dress_prim(f, prim, part, m.medium, m.medium, shape->desc.two_sided);
-    prim->kind = GLINT_PRIM_COMBINED;
-    prim->item = f->combined_count++;
-    status = add_to_whole(f, &m, shape, around, dress, false);
-    if (!status)
-        glint_combined_box(geometry, m.combined, prim->corner);
-    f->object_count++;
-    return status;
-}
-
 /// around: the map of the groups that the shape is in; NULL: the identity.
-static glint_status add_shape(filler *f, glint_shape *shape, const glint_transform *around)
+static glint_status add_shape(glint_filler *f, glint_shape *shape, const glint_transform *around)
 {
     glint_transform map;
     glint_placing place;
-    glint_status status = find_placing(f, shape, around, &map, &place);
+    glint_status status = glint_fill_placing(f, shape, around, &map, &place);
     if (status)
         return status;
     if (glint_shape_combines(shape))
-        return add_combined(f, shape, &place, around);
+        return glint_fill_combined(f, shape, &place, around);
     if (shape->desc.kind != GLINT_SHAPE_GROUP)
         return add_prims(f, shape, &place);
     for (size_t i = 0; i < shape->children.count && !status; i++)
@@ -387,7 +237,7 @@ static glint_status add_shape(filler *f, glint_shape *shape, const glint_transfo
 #define VISITS_MAX ((size_t)1 << 28) ///< shapes and groups, each as often as it shows
 
 /// mapped: within a group that has a transform; within: a combined solid.
-static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped, bool within)
+static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool mapped, bool within)
 {
     const bool group = glint_shape_has_children(shape) && (within || !glint_shape_combines(shape));
     glint_status status = GLINT_OK;
@@ -397,12 +247,15 @@ static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped
     for (size_t i = 0; i < shape->children.count && !status; i++)
         status = count_shape(f, shape->children.items[i], mapped, within || glint_shape_combines(shape));
     if (within && !group) {
-        const size_t count = shape->desc.kind == GLINT_SHAPE_TORUS ? 2 : 1;
+        const size_t count = glint_member_parts(shape);
         f->members += count;
-        f->maps += mapped ? count : 0;
-        f->solids += count;
-        f->faces += 6; // at most
-        f->materials = f->materials ? f->materials : 1;
+        f->hulls += shape->mesh != NULL;
+        f->hull_prims += shape->mesh ? shape->count : 0;
+        f->smooth += is_smooth(shape) ? shape->count : 0;
+        f->maps += mapped ? count + 1 : 0;
+        f->solids += shape->mesh ? 0 : count;
+        f->faces += shape->mesh ? glint_count_levels(shape->mesh) : 6; // at most
+        f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
         return status;
     }
     f->combined += !within && glint_shape_combines(shape);
@@ -418,7 +271,7 @@ static glint_status count_shape(filler *f, const glint_shape *shape, bool mapped
     return status;
 }
 
-static bool allocate_shading_points(filler *f)
+static bool allocate_shading_points(glint_filler *f)
 {
     glint_geometry *geometry = f->geometry;
     if (!f->shading_points)
@@ -431,21 +284,24 @@ static bool allocate_shading_points(filler *f)
     return true;
 }
 
-static bool allocate(filler *f)
+static bool allocate(glint_filler *f)
 {
     glint_geometry *geometry = f->geometry;
+    const size_t members = f->members + f->hull_prims;
+    geometry->member_count = (uint32_t)members;
     f->numbers = glint_alloc(f->materials, sizeof *f->numbers);
-    geometry->prims = glint_alloc_large(f->prims + f->members, sizeof *geometry->prims); // members join what is arranged
-    geometry->members = f->members ? glint_alloc(f->members, sizeof *geometry->members) : NULL;
+    geometry->prims = glint_alloc_large(f->prims + members, sizeof *geometry->prims); // members join what is arranged
+    geometry->members = members ? glint_alloc(members, sizeof *geometry->members) : NULL;
+    geometry->hulls = f->hulls ? glint_alloc(f->hulls, sizeof *geometry->hulls) : NULL;
     geometry->combined = f->combined ? glint_alloc(f->combined, sizeof *geometry->combined) : NULL;
-    geometry->prim_part = glint_alloc(f->prims + f->members, sizeof *geometry->prim_part);
-    geometry->parts = glint_alloc(f->parts + f->members, sizeof *geometry->parts);
+    geometry->prim_part = glint_alloc(f->prims + members, sizeof *geometry->prim_part);
+    geometry->parts = glint_alloc(f->parts + f->members + f->hulls, sizeof *geometry->parts);
     geometry->maps = f->maps ? glint_alloc(f->maps, sizeof *geometry->maps) : NULL;
     geometry->normals = f->smooth ? glint_alloc(f->smooth, sizeof *geometry->normals) : NULL;
     f->solids += f->combined > 0; // the kernels look for either where there are solids
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
-    if ((f->members && !geometry->members) || (f->combined && !geometry->combined))
+    if ((f->members && !geometry->members) || (f->combined && !geometry->combined) || (f->hulls && !geometry->hulls))
         return false;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
            (geometry->normals || !f->smooth) && (geometry->solids || !f->solids) && (geometry->faces || !f->faces) &&
@@ -454,13 +310,13 @@ static bool allocate(filler *f)
 
 glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *scene, glint_error *error)
 {
-    filler f = { .geometry = geometry, .error = error };
+    glint_filler f = { .geometry = geometry, .error = error };
     glint_status status = GLINT_OK;
     for (size_t i = 0; i < scene->shapes.count && !status; i++)
         status = count_shape(&f, glint_scene_shape(scene, i), false, false);
-    if (!status && f.prims + f.members >= INT32_MAX)
-        status =
-            glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", f.prims + f.members);
+    const size_t surfaces = f.prims + f.members + f.hull_prims;
+    if (!status && surfaces >= INT32_MAX)
+        status = glint_fail(error, GLINT_ERR_INVALID, "scene: fewer than 2147483647 surfaces expected, got %zu", surfaces);
     if (!status && f.shading_points >= INT32_MAX)
         status = glint_fail(error, GLINT_ERR_INVALID,
                             "scene: fewer than 2147483647 faces and vertices with light of their own expected, got %zu",
@@ -474,6 +330,8 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     geometry->table.corner_normals = geometry->normals;
     geometry->table.solids = geometry->solids;
     geometry->table.combined = geometry->combined;
+    geometry->table.hulls = geometry->hulls;
+    geometry->hull_count = f.hull_count;
     geometry->id_count = f.id_count;
     geometry->table.shading_points = geometry->shading_points;
     geometry->table.faces = geometry->faces;

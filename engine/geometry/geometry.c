@@ -81,6 +81,7 @@ static void make_keys(glint_geometry *geometry)
         const glint_prim *member = &geometry->members[i];
         const uint32_t look[3] = { member->two_sided, member->material, member->medium };
         geometry->look = glint_key_add(geometry->look, look, sizeof look);
+        smooth += member->kind == GLINT_PRIM_TRIANGLE && member->item != GLINT_MISS;
     }
     geometry->look = glint_key_add(geometry->look, geometry->normals, smooth * sizeof *geometry->normals);
     if (shared)
@@ -125,8 +126,12 @@ static void choose_frame(glint_geometry *geometry)
         vec_sub(upper, upper, table->reference);
         largest = fmax(largest, fmax(vec_max_abs(lower), vec_max_abs(upper)));
     }
-    for (uint32_t i = 0; i < geometry->member_count; i++)
-        table->extent = fmax(table->extent, vec_max_abs(geometry->members[i].center));
+    for (uint32_t i = 0; i < geometry->member_count; i++) {
+        const glint_prim *member = &geometry->members[i];
+        const bool hull = member->kind == GLINT_PRIM_HULL; // whose box is that of all its triangles
+        for (int k = hull ? 1 : 0; k < (hull ? 3 : 1); k++)
+            table->extent = fmax(table->extent, vec_max_abs(member->corner[k])); // of others, the centre
+    }
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
 
@@ -445,6 +450,7 @@ void glint_geometry_release(glint_geometry *geometry)
     free(geometry->solids);
     free(geometry->combined);
     free(geometry->members);
+    glint_geometry_release_hulls(geometry);
     free(geometry->faces);
     free(geometry->unbounded);
     free(geometry->shading_points);
@@ -466,6 +472,8 @@ static glint_status fill(glint_geometry *geometry, const glint_scene *scene, gli
     make_keys(geometry);
     choose_frame(geometry);
     status = index_create(geometry, error);
+    if (!status)
+        status = glint_geometry_hull_trees(geometry, last, place_in_frame, error);
     if (!status && last && glint_key_equal(last->where, geometry->where)) {
         index_release(geometry->index);
         geometry->index = last->index;

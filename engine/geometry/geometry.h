@@ -47,7 +47,11 @@ struct glint_geometry {
     uint32_t *places; ///< where the primitive of an id is, once arranged; NULL: there are no sites
     glint_solid *solids;
     glint_combined *combined;
-    glint_prim *members; ///< the parts of combined solids, in order of definition; prims has them, too, once arranged
+    glint_hull *hulls; ///< of combined solids; `first` counts from the members on
+    struct glint_hull_tree **hull_trees; ///< of each
+    uint32_t hull_count;
+    glint_prim *members; ///< the parts of combined solids, in order of definition, and the triangles of their meshes; prims has
+                         ///< them, too, once arranged
     uint32_t member_count;
     glint_face *faces; ///< of solids and triangles
     uint32_t *unbounded;
@@ -103,6 +107,15 @@ static inline bool glint_prim_bounded(const glint_prim *prim)
 {
     return prim->kind == GLINT_PRIM_COMBINED ? prim->corner[1][0] > -HUGE_VAL : prim->kind != GLINT_PRIM_PLANE;
 }
+
+/// geometry/hulls.c: makes the trees of closed meshes that are parts, or takes those of `last` (NULL: none) that are the same.
+/// place: brings a primitive's box into the index's frame.
+glint_status glint_geometry_hull_trees(glint_geometry *geometry, const glint_geometry *last,
+                                       void (*place)(const glint_geometry_table *, glint_prim *, glint_box *), glint_error *error);
+void glint_geometry_release_hulls(glint_geometry *geometry);
+/// How a ray from a place crosses a triangle: 1: it goes out, -1: in, 0: past it, or the triangle is behind. Of a closed mesh the sum of
+/// all is how often the place is inside.
+int glint_prim_crossing(const glint_prim *triangle, const double from[3], const double d[3]);
 
 /// geometry/combined.c: the box of a combined solid whose program and members are there: the middle, the lower and the upper corner; -inf
 /// and inf where it has no end.

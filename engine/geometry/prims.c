@@ -50,6 +50,21 @@ static int combined_place(const glint_geometry *geometry, const glint_combined *
     return 1 + (int)(sizeof key / sizeof *out);
 }
 
+/// A key over the places of a mesh's triangles stands for them.
+static int hull_place(const glint_geometry *geometry, const glint_prim *part, double out[GLINT_PLACE_MAX])
+{
+    const glint_hull *hull = &geometry->hulls[part->item];
+    glint_key key = { 0 };
+    for (uint32_t i = 0; i < hull->count && part->face == 1; i++) {
+        double place[GLINT_PLACE_MAX];
+        const int count = glint_prim_place(geometry, &geometry->members[hull->first + i], place);
+        key = glint_key_add(key, place, (size_t)count * sizeof *place);
+    }
+    out[1] = part->face;
+    memcpy(out + 2, &key, sizeof key);
+    return 2 + (int)(sizeof key / sizeof *out);
+}
+
 int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, double out[GLINT_PLACE_MAX])
 {
     out[0] = prim->kind;
@@ -59,6 +74,8 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
     }
     if (prim->kind == GLINT_PRIM_COMBINED)
         return combined_place(geometry, &geometry->combined[prim->item], out);
+    if (prim->kind == GLINT_PRIM_HULL)
+        return hull_place(geometry, prim, out);
     vec_copy(out + 1, prim->center);
     if (prim->kind == GLINT_PRIM_SOLID) {
         const glint_solid *solid = &geometry->solids[prim->item];
@@ -106,7 +123,7 @@ void glint_prim_bounds(const glint_solid *solids, const glint_prim *prim, double
         solid_bounds(&solids[prim->item], prim->center, lower, upper);
         return;
     }
-    if (prim->kind == GLINT_PRIM_COMBINED) {
+    if (prim->kind == GLINT_PRIM_COMBINED || prim->kind == GLINT_PRIM_HULL) {
         vec_copy(lower, prim->corner[1]);
         vec_copy(upper, prim->corner[2]);
         return;

@@ -38,40 +38,6 @@ static bool holds(const glint_geometry *geometry, const glint_prim *prim, const 
     return sqrt(vec_dot(e, e)) < prim->radius;
 }
 
-/// 1: the ray goes out through the triangle, -1: in, 0: past it. Seen along the ray the edges of all triangles are counted
-/// where they cross one half of one axis, each with the same numbers in both that it belongs to.
-static int crossing(const glint_prim *prim, const double eye[3], const double d[3])
-{
-    int z = fabs(d[1]) > fabs(d[0]);
-    z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
-    const int x = (z + 1) % 3, y = (z + 2) % 3;
-    double seen[3][2], depth[3], weight[3], sum = 0, way = 0;
-    int turns = 0;
-    for (int j = 0; j < 3; j++) {
-        double p[3];
-        vec_sub(p, prim->corner[j], eye);
-        seen[j][0] = p[x] * d[z] - p[z] * d[x];
-        seen[j][1] = p[y] * d[z] - p[z] * d[y];
-        depth[j] = p[z];
-    }
-    for (int j = 0; j < 3; j++) {
-        const double *a = seen[j], *b = seen[(j + 1) % 3];
-        const double side = a[0] * b[1] - a[1] * b[0];
-        turns += a[1] <= 0 && b[1] > 0 && side > 0;
-        turns -= b[1] <= 0 && a[1] > 0 && side < 0;
-        weight[(j + 2) % 3] = side;
-    }
-    if (turns == 0)
-        return 0;
-    for (int j = 0; j < 3; j++) {
-        sum += weight[j];
-        way += weight[j] * depth[j];
-    }
-    if (!(way / (sum * d[z]) > 0))
-        return 0;
-    return d[z] > 0 ? turns : -turns;
-}
-
 static bool is_outside(const struct holder *a, const struct holder *b)
 {
     return a->size > b->size || (a->size == b->size && a->id < b->id);
@@ -122,7 +88,7 @@ static void add_triangle(hull *part, const glint_plan *plan, const glint_prim *p
         part->id = prim->id;
         part->material = prim->material;
     }
-    part->exits += crossing(prim, plan->camera.eye, plan->camera.forward);
+    part->exits += glint_prim_crossing(prim, plan->camera.eye, plan->camera.forward);
 }
 
 /// hulls: of each part, where there are triangles. A renderer may be arranging the primitives meanwhile.

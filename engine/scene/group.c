@@ -44,36 +44,69 @@ static bool holds(glint_shape *shape, const glint_shape *wanted, uint64_t stamp)
     return false;
 }
 
-const char *glint_part_refusal(const glint_shape *child)
+/// Finds out of every mesh within whether it is closed.
+static glint_status find_closures(const glint_shape *part, glint_error *error)
 {
-    switch (child->desc.kind) {
+    glint_status status = part->mesh ? glint_mesh_find_closure(part->mesh, error) : GLINT_OK;
+    for (size_t i = 0; i < part->children.count && !status; i++)
+        status = find_closures(part->children.items[i], error);
+    return status;
+}
+
+/// What is expected in place of something that has no inside, the part or what is in it: `found`; NULL: it has one.
+static const char *refusal_of(const glint_shape *part, const glint_shape **found)
+{
+    *found = part;
+    switch (part->desc.kind) {
     case GLINT_SHAPE_CYLINDER:
     case GLINT_SHAPE_CONE:
-        return child->desc.capped ? NULL : "capped = true";
+        return part->desc.capped ? NULL : "capped = true";
     case GLINT_SHAPE_DISK:
     case GLINT_SHAPE_SPHERES:
+        return "a sphere, box, cylinder, cone, torus, plane, closed mesh, group or combined solid";
     case GLINT_SHAPE_MESH:
-        return "a sphere, box, cylinder, cone, torus, plane, group or combined solid";
+        if (part->desc.shading == GLINT_SHADING_FLAT || part->desc.shading == GLINT_SHADING_GOURAUD)
+            return "shading = \"faceted\" or \"phong\"";
+        return part->mesh->closure.triangles ? "a closed mesh" : NULL;
     default:
         break;
     }
-    for (size_t i = 0; i < child->children.count; i++) {
-        const char *refusal = glint_part_refusal(child->children.items[i]);
+    for (size_t i = 0; i < part->children.count; i++) {
+        const char *refusal = refusal_of(part->children.items[i], found);
         if (refusal)
             return refusal;
     }
     return NULL;
 }
 
-/// What a combined solid has no use for, found in a new part of it.
-static glint_status check_part(const glint_shape *whole, const glint_shape *child, glint_error *error)
+/// Names the edge where a mesh is open.
+static glint_status fail_open(const char *who, const glint_shape *shape, glint_error *error)
 {
-    const char *expected = glint_shape_combines(whole) ? glint_part_refusal(child) : NULL;
+    const glint_closure *open = &shape->mesh->closure;
+    const double *a = open->edge[0], *b = open->edge[1];
+    const char *name = shape->desc.name, *before = name[0] ? " '" : "", *after = name[0] ? "'" : "";
+    return glint_fail(error, GLINT_ERR_INVALID,
+                      "%s: parts with an inside expected: a closed mesh, got mesh%s%s%s: its edge from {%.15g, %.15g, %.15g} to "
+                      "{%.15g, %.15g, %.15g} has %u triangle%s",
+                      who, before, name, after, a[0], a[1], a[2], b[0], b[1], b[2], open->triangles,
+                      open->triangles == 1       ? ""
+                      : open->triangles % 2 == 0 ? "s, not as many along it as against it"
+                                                 : "s");
+}
+
+glint_status glint_check_part(const char *who, const glint_shape *part, glint_error *error)
+{
+    const glint_shape *found;
+    glint_status status = find_closures(part, error);
+    if (status)
+        return status;
+    const char *expected = refusal_of(part, &found);
     if (!expected)
         return GLINT_OK;
-    const char *kind = glint_shape_kind_name(whole->desc.kind);
-    return glint_fail(error, GLINT_ERR_INVALID, "%s: parts with an inside expected: %s, got %s%s", kind, expected,
-                      glint_shape_kind_name(child->desc.kind), child->desc.kind == GLINT_SHAPE_GROUP ? " with others" : "");
+    if (found->mesh && found->mesh->closure.triangles)
+        return fail_open(who, found, error);
+    return glint_fail(error, GLINT_ERR_INVALID, "%s: parts with an inside expected: %s, got %s%s", who, expected,
+                      glint_shape_kind_name(part->desc.kind), part->desc.kind == GLINT_SHAPE_GROUP ? " with others" : "");
 }
 
 glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error *error)
@@ -87,7 +120,7 @@ glint_status glint_group_add(glint_shape *group, glint_shape *child, glint_error
     if (too_deep(child, group->level + 1, ++stamps))
         return glint_fail(error, GLINT_ERR_INVALID, "%s: at most %d groups one within the other expected", kind,
                           GLINT_GROUP_DEPTH);
-    glint_status status = check_part(group, child, error);
+    glint_status status = glint_shape_combines(group) ? glint_check_part(kind, child, error) : GLINT_OK;
     if (!status)
         status = glint_list_find(&group->children, child) < group->children.count
                      ? glint_fail(error, GLINT_ERR_INVALID, "%s: already in the %s", kind, kind)

@@ -445,6 +445,7 @@ static glint_status take_materials(const glint_mesh_desc *desc, glint_shape *sha
         shape->material_count++;
     }
     shape->desc.material = shape->materials[0];
+    shape->dressed = desc->material_count || desc->material;
     return GLINT_OK;
 }
 

@@ -22,6 +22,14 @@ struct glint_camera {
     glint_camera_desc desc;
 };
 
+/// Whether a mesh has an inside.
+typedef struct glint_closure {
+    bool found; ///< the rest is known
+    bool inverted; ///< its triangles run clockwise as seen from outside
+    uint32_t triangles; ///< of an edge along which not as many run one way as the other; 0: there is none, it is closed
+    double edge[2][3]; ///< that edge, in the order in which the first of these runs
+} glint_closure;
+
 /// A mesh's triangles.
 typedef struct glint_mesh {
     double (*vertices)[3];
@@ -40,6 +48,7 @@ typedef struct glint_mesh {
     size_t shading_point_count; ///< 0: not counted yet
     double center[3], radius, segments; ///< of a sphere of triangles; segments 0: it is none
     double bend; ///< see glint_mesh_bend; 0: none, or not looked for yet
+    glint_closure closure; ///< see glint_mesh_find_closure
 } glint_mesh;
 
 struct glint_shape {
@@ -87,8 +96,8 @@ static inline bool glint_shape_is_solid(const glint_shape *shape)
 {
     return shape->desc.kind >= GLINT_SHAPE_BOX && shape->desc.kind <= GLINT_SHAPE_TORUS;
 }
-/// Why it cannot be a part of a combined solid, or have `child` as a part; NULL: it can.
-const char *glint_part_refusal(const glint_shape *child);
+/// Refuses a part of a combined solid that has no inside. who: the solid, for the message.
+glint_status glint_check_part(const char *who, const glint_shape *part, glint_error *error);
 /// "difference", ... of a kind.
 const char *glint_shape_kind_name(glint_shape_kind kind);
 /// Gives a shape a new revision.
@@ -116,6 +125,8 @@ void glint_mesh_free(glint_mesh *mesh);
 /// index: the material of each triangle; NULL: they have one.
 glint_status glint_mesh_prepare(glint_mesh *mesh, const uint32_t *index, glint_shading shading, glint_error *error);
 glint_status glint_check_shading(glint_shading shading, glint_error *error);
+/// Fills `closure`, once.
+glint_status glint_mesh_find_closure(glint_mesh *mesh, glint_error *error);
 
 /// "point_light 'lamp'", or "point_light #2" without a name. `number` counts from 1.
 void glint_describe_light(const glint_light_desc *desc, size_t number, char *out, size_t size);

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "tests/engine/quad.h"
+#include "tests/engine/cases/closed_mesh.h"
 #include "tests/engine/cases/random.h"
 
 static void random_vector(double v[3], double size)
@@ -65,11 +66,15 @@ typedef struct node {
     int children[4], count;
     quad inverse[3][4]; ///< a part's: from the world to the unit shape
     double normal[3], point[3]; ///< of a plane, in the world
+    int mesh; ///< index in meshes
 } node;
 
 static node nodes[MOST_NODES];
 static int node_count, part_count;
 static bool with_tori; ///< parts may be: the sets of points do not know them
+static bool with_meshes; ///< parts may be
+static closed_mesh meshes[MOST_NODES]; ///< in the world
+static int mesh_count;
 
 static void invert(quad m[3][4], quad out[3][4])
 {
@@ -115,10 +120,36 @@ static void note_part(node *n, const glint_shape_desc *d, const glint_transform 
     invert(whole, n->inverse);
 }
 
+static void map_point(const glint_transform *map, const double p[3], double w, double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = ((map->m[i][0] * p[0] + map->m[i][1] * p[1]) + map->m[i][2] * p[2]) + map->m[i][3] * w;
+}
+
+static int random_mesh(glint_shape *whole, const glint_transform *around)
+{
+    closed_mesh *mesh = &meshes[mesh_count];
+    const bool mapped = one_in(2);
+    const glint_transform none = glint_transform_identity(), own = mapped ? random_map(0.5) : none;
+    const glint_transform map = glint_transform_product(around, &own);
+    random_closed_mesh(mesh);
+    put_in(whole, closed_mesh_shape(mesh, one_in(3), one_in(2) ? GLINT_SHADING_PHONG : GLINT_SHADING_FACETED, &own));
+    for (int i = 0; i < 9 * mesh->count; i += 3) {
+        double moved[3];
+        map_point(&map, &mesh->corner[0][0][0] + i, 1, moved);
+        memcpy(&mesh->corner[0][0][0] + i, moved, sizeof moved);
+    }
+    nodes[node_count] = (node) { .kind = GLINT_SHAPE_MESH, .mesh = mesh_count++ };
+    part_count += 4;
+    return node_count++;
+}
+
 /// Planes stand in no map but the identity.
 static int random_part(glint_shape *whole, const glint_transform *around, bool plane)
 {
     static const glint_shape_kind kinds[] = { GLINT_SHAPE_SPHERE, GLINT_SHAPE_BOX, GLINT_SHAPE_CYLINDER, GLINT_SHAPE_CONE };
+    if (with_meshes && !plane && one_in(2))
+        return random_mesh(whole, around);
     node *n = &nodes[node_count];
     glint_shape_desc d = glint_shape_desc_default(plane ? GLINT_SHAPE_PLANE : kinds[below(4)]);
     if (with_tori && !plane && one_in(4)) {
@@ -181,7 +212,7 @@ static glint_shape *random_whole(int depth)
     const glint_transform none = glint_transform_identity();
     glint_shape *whole;
     do {
-        node_count = part_count = 0;
+        node_count = part_count = mesh_count = 0;
         random_set(&whole, &none, (glint_shape_kind)(GLINT_SHAPE_UNION + below(3)), depth);
         if (part_count > 60)
             glint_shape_release(whole);
@@ -191,6 +222,10 @@ static glint_shape *random_whole(int depth)
 
 static bool in_part(const node *n, const quad p[3])
 {
+    if (n->kind == GLINT_SHAPE_MESH) {
+        const int times = times_inside(&meshes[n->mesh], p); // below 0: under a map that mirrors
+        return times != 0;
+    }
     quad k[3], height = 0;
     for (int i = 0; i < 3; i++) {
         height += (quad)n->normal[i] * (p[i] - n->point[i]);
@@ -228,7 +263,8 @@ static bool in_set(int at, const quad p[3])
 
 // ---- Every place where a ray may change sides ----
 
-static quad roots[12 * MOST_NODES];
+static quad roots[(12 + CLOSED_TRIANGLES) * MOST_NODES];
+static bool near_edge; ///< a ray passes an edge closely
 static int root_count;
 
 static void add_root(quad t)
@@ -255,8 +291,24 @@ static void add_roots(quad a, quad b, quad c)
     add_root((-b + square_root(disc)) / a);
 }
 
+static void mesh_roots(closed_mesh *mesh, const double o[3], const double d[3])
+{
+    const quad from[3] = { o[0], o[1], o[2] };
+    bool sure = true;
+    for (int i = 0; i < mesh->count; i++) {
+        quad t;
+        if (quad_crossing(mesh->corner[i], from, d, &t, &sure))
+            add_root(t);
+    }
+    near_edge = near_edge || !sure;
+}
+
 static void roots_of(const node *n, const double o[3], const double d[3])
 {
+    if (n->kind == GLINT_SHAPE_MESH) {
+        mesh_roots(&meshes[n->mesh], o, d);
+        return;
+    }
     quad f[3], e[3], height = 0, rise = 0;
     for (int i = 0; i < 3; i++) {
         height += (quad)n->normal[i] * ((quad)o[i] - n->point[i]);
@@ -300,13 +352,14 @@ static quad first_change(const double o[3], const double d[3], bool *sure)
 {
     quad p[3], close = 1;
     root_count = 0;
+    near_edge = false;
     for (int i = 0; i < node_count; i++)
         if (nodes[i].kind < GLINT_SHAPE_GROUP)
             roots_of(&nodes[i], o, d);
     qsort(roots, (size_t)root_count, sizeof *roots, by_value);
     for (int i = 0; i + 1 < root_count; i++)
         close = roots[i + 1] - roots[i] < close ? roots[i + 1] - roots[i] : close;
-    *sure = close > 1e-7 && (root_count == 0 || roots[0] > 1e-7);
+    *sure = close > 1e-7 && (root_count == 0 || roots[0] > 1e-7) && !near_edge;
     at_way(o, d, root_count ? roots[0] / 2 : 1, p);
     const bool within = in_set(0, p);
     for (int i = 0; i < root_count; i++) {
@@ -334,12 +387,11 @@ static void check_hit(uint64_t seed, const double o[3], const double d[3], const
 }
 
 /// Random wholes against sets of points: the first change of side is the hit, its normal points out of the whole.
-static void wholes_against_sets(void **unused)
+static void against_sets(uint64_t seeds)
 {
     int hits = 0, sure_rays = 0, rays = 0;
-    (void)unused;
     with_tori = false;
-    for (uint64_t seed = 1; seed <= 3000; seed++) {
+    for (uint64_t seed = 1; seed <= seeds; seed++) {
         glint_scene *scene;
         random_state = seed;
         glint_shape *whole = random_whole(3);
@@ -369,6 +421,21 @@ static void wholes_against_sets(void **unused)
         glint_scene_release(scene);
     }
     assert_true(sure_rays > rays * 9 / 10 && hits > rays / 4);
+}
+
+static void wholes_against_sets(void **unused)
+{
+    (void)unused;
+    with_meshes = false;
+    against_sets(3000);
+}
+
+/// A place is in a mesh by counting crossings in 113 bits.
+static void meshes_against_sets(void **unused)
+{
+    (void)unused;
+    with_meshes = true;
+    against_sets(2000);
 }
 
 // ---- Pictures ----
@@ -501,12 +568,11 @@ static int differing(const glint_image *a, const glint_image *b)
     return count;
 }
 
-static void same_on_every_instruction_set(void **unused)
+static void same_on_every_set(uint64_t seeds)
 {
     static const char *const sets[] = { "generic", "sse2", "avx2", "avx512" };
-    (void)unused;
     with_tori = true;
-    for (uint64_t seed = 1; seed <= 60; seed++)
+    for (uint64_t seed = 1; seed <= seeds; seed++)
         for (int precision = 0; precision < 2; precision++) {
             random_state = seed;
             glint_scene *scene = lit_scene(one_in(2), one_in(3));
@@ -525,6 +591,20 @@ static void same_on_every_instruction_set(void **unused)
             glint_image_release(want);
             glint_scene_release(scene);
         }
+}
+
+static void same_on_every_instruction_set(void **unused)
+{
+    (void)unused;
+    with_meshes = false;
+    same_on_every_set(60);
+}
+
+static void meshes_on_every_instruction_set(void **unused)
+{
+    (void)unused;
+    with_meshes = true;
+    same_on_every_set(60);
 }
 
 // ---- Wholes that are one solid ----
@@ -600,6 +680,68 @@ static void wholes_of_one_solid(void **unused)
     }
 }
 
+/// How many pixels differ by more than rounding makes of places and light: 2^-18 of the values. inside: of both, hits.
+static int unlike(const glint_image *a, const glint_image *b, int *hits)
+{
+    static const glint_pass passes[] = { GLINT_PASS_BEAUTY, GLINT_PASS_DEPTH, GLINT_PASS_NORMAL };
+    int count = 0;
+    for (int y = 0; y < glint_image_height(a); y++)
+        for (int x = 0; x < glint_image_width(a); x++) {
+            bool same = true;
+            for (int pass = 0; pass < 3; pass++) {
+                float p[3] = { 0 }, q[3] = { 0 };
+                glint_image_pixel(a, passes[pass], x, y, p, NULL);
+                glint_image_pixel(b, passes[pass], x, y, q, NULL);
+                for (int c = 0; c < 3; c++)
+                    same = same && (p[c] == q[c] || fabsf(p[c] - q[c]) <= 0x1p-18f * (1 + fabsf(p[c])));
+                *hits += pass == 1 && isfinite(p[0]);
+            }
+            count += !same;
+        }
+    return count;
+}
+
+/// A box of triangles less a ball, cut by a block that ends in a face of it: what the box is by itself, in glass, mirrors and shadows.
+static void boxes_of_triangles(void **unused)
+{
+    int hits = 0, off = 0;
+    (void)unused;
+    for (uint64_t seed = 1; seed <= 200; seed++) {
+        glint_image *image[2];
+        for (int i = 0; i < 2; i++) {
+            random_state = seed;
+            glint_scene *scene = lit_scene(seed % 2, seed % 3 == 0);
+            glint_shape_desc d = glint_shape_desc_default((glint_shape_kind)(GLINT_SHAPE_UNION + below(3)));
+            glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX), ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+            d.transform = random_map(0.5);
+            d.material = random_material();
+            random_vector(box.max, 0.5);
+            for (int c = 0; c < 3; c++)
+                box.max[c] += 1;
+            random_vector(ball.center, 1);
+            glint_shape_desc cut = box;
+            cut.min[0] = cut.min[1] = -0.3;
+            closed_mesh mesh = { 0 };
+            make_box(&mesh, box.min, box.max);
+            glint_shape *whole = made(&d);
+            put_in(whole, i ? closed_mesh_shape(&mesh, one_in(2), GLINT_SHADING_FACETED, &box.transform) : made(&box));
+            if (!i)
+                (void)one_in(2);
+            put_in(whole, made(&ball));
+            put_in(whole, made(&cut));
+            add(scene, whole);
+            image[i] = render(scene, NULL, 2, GLINT_DOUBLE);
+            glint_material_release(d.material);
+            glint_scene_release(scene);
+        }
+        off += unlike(image[0], image[1], &hits);
+        glint_image_release(image[0]);
+        glint_image_release(image[1]);
+    }
+    assert_int_equal(off, 0);
+    assert_true(hits > 50000);
+}
+
 // ---- Faces that coincide ----
 
 static glint_shape *block(double x0, double x1, double y0, double y1, double z0, double z1)
@@ -617,12 +759,6 @@ static void turn(glint_shape *shape, bool turned)
     if (turned)
         d.transform = random_map(3);
     assert_int_equal(glint_shape_set(shape, &d, NULL), GLINT_OK);
-}
-
-static void map_point(const glint_transform *map, const double p[3], double w, double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = ((map->m[i][0] * p[0] + map->m[i][1] * p[1]) + map->m[i][2] * p[2]) + map->m[i][3] * w;
 }
 
 /// Casts from above, in the shape's own space, at a place of height 1 within -1 .. 1.
@@ -759,7 +895,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wholes_against_sets), cmocka_unit_test(same_on_every_instruction_set),
-        cmocka_unit_test(wholes_of_one_solid), cmocka_unit_test(flush_cutters),
+        cmocka_unit_test(meshes_against_sets), cmocka_unit_test(meshes_on_every_instruction_set),
+        cmocka_unit_test(wholes_of_one_solid), cmocka_unit_test(boxes_of_triangles), cmocka_unit_test(flush_cutters),
         cmocka_unit_test(halves_are_whole),    cmocka_unit_test(nothing_is_left),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -330,12 +330,19 @@ for _, text in ipairs { "gr.difference('d', box, far)", "gr.csg('d', box, '-', f
   "gr.difference(gr.intersection('i', box, dressed(all, blue)), far)" } do
   check(combined_codes("a = " .. text .. " a:translate(0.5, 0, 0) root:add_child(a)") == alone, "%s is the box", text)
 end
+local crate = "crate = gr.mesh('crate', {{0,0,0}, {1,0,0}, {0,1,0}, {1,1,0}, {0,0,1}, {1,0,1}, {0,1,1}, {1,1,1}}, {{0,2,3,1}, {4,5,7,6}, " ..
+  "{0,1,5,4}, {2,6,7,3}, {0,4,6,2}, {1,3,7,5}}) mark = dressed(gr.mesh('mark', {{0,0,900}, {1,0,900}, {0,1,900}}, {{0,1,2}}), red) " ..
+  "root:add_child(mark) " -- behind the eye: meshes decide the order of transforms
+local cut = combined_codes(crate .. "root:add_child(gr.difference('d', dressed(gr.nh_box('b', {0, 0, 0}, 1), red), post))")
+check(combined_codes(crate .. "root:add_child(gr.difference('d', dressed(crate, red), post))") == cut, "a mesh is a part")
+check(combined_codes(crate .. "d = gr.csg('d', crate, '-', post) d:set_material(red) root:add_child(d)") ~= "", "one without a material")
 check(combined_codes "root:add_child(gr.difference('d', box, box))" == combined_codes "", "a box less itself is nothing")
 check(combined_codes "n = gr.node('n') n:add_child(far) n:add_child(post) root:add_child(gr.difference('d', box, n))" ~= both,
   "a node takes away what is in it")
 for text, message in pairs {
   ["d = gr.difference('d', box, gr.nh_box('bare', {0, 0, 0}, 1))"] = "nh_box 'bare' has no material",
-  ["d = gr.union('d', box, dressed(gr.mesh('m', {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}), red))"] = "mesh 'm' is a part of a combined solid",
+  ["d = gr.union('d', box, dressed(gr.mesh('m', {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}), red))"] =
+    "a closed mesh, got mesh 'm': its edge from {0, 0, 0} to {1, 0, 0} has 1 triangle",
   ["d = gr.union('d', box, post) post:add_child(d)"] = "is within itself",
 } do
   local output = scene("red = gr.material({1, 0, 0}, {0, 0, 0}, 1) local function dressed(s, m) s:set_material(m) return s end"

@@ -6,6 +6,8 @@
 /// Where rays are inside each part, from t[0] to t[1]; t[0] = inf: nowhere.
 typedef struct R(stretches) {
     vr t[2][GLINT_PARTS_MAX];
+    uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< of meshes: by which they come in and go out
+    vr known; ///< up to where all this is told: a mesh may have more
     uint64_t live; ///< parts that have some, and are of the program
     uint32_t length;
     uint8_t program[2 * GLINT_PARTS_MAX]; ///< the whole's for these rays
@@ -112,12 +114,40 @@ static void R(make_program)(const glint_combined *whole, uint64_t live, R(stretc
             s->live |= (uint64_t)1 << s->program[k];
 }
 
-/// on: the primitive that each ray starts on; NULL: on none. inward: lanes that go into it there.
-static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const vr o[3],
-                              const vr d[3], const uint32_t *on, unsigned inward, R(stretches) * s)
+/// A vector of rays before a combined solid.
+typedef struct R(whole_rays) {
+    const vr *o, *d;
+    const uint32_t *on; ///< the primitive that each starts on; NULL: on none
+    unsigned inward, lanes; ///< those that go into it there; those that are wanted
+} R(whole_rays);
+
+/// Of a mesh, which is the parts from j on. from: what is no further has been dealt with; 0: nothing has. Returns which have some.
+static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const glint_prim *part, uint32_t j,
+                                     const R(whole_rays) * w, unsigned lanes, vr from, R(stretches) * s)
 {
-    const uint32_t first = table->prim_count + whole->first;
+    R(hull_rays) rays;
+    rays.table = table;
+    rays.part = part;
+    rays.o = w->o;
+    rays.d = w->d;
+    rays.on = w->on;
+    R(begin_hull_rays)(&rays, from);
+    vr *const t[2] = { s->t[0] + j, s->t[1] + j };
+    uint32_t(*const triangle[2])[VR] = { s->triangle[0] + j, s->triangle[1] + j };
+    const unsigned into = part->turned ? ~w->inward : w->inward;
+    const bool first = rm_bits(r_lt(r_set(0), from)) == 0;
+    return (uint64_t)R(hull_stretches)(&rays, lanes, into, first, t, triangle, &s->known) << j;
+}
+
+/// lanes: those of w->lanes that are not done with; from: see above.
+static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
+                              unsigned lanes, vr from, R(stretches) * s)
+{
+    const uint32_t first = table->prim_count + whole->first, *on = w->on;
+    const vr o[3] = { w->o[0], w->o[1], w->o[2] }, d[3] = { w->d[0], w->d[1], w->d[2] };
+    const unsigned inward = w->inward;
     bool starts = false;
+    s->known = r_set(HUGE_VAL);
     for (int i = 0; on && i < VR; i++)
         starts = starts || on[i] - first < whole->count;
     uint64_t live = 0;
@@ -127,6 +157,11 @@ static void R(find_stretches)(const glint_geometry_table *table, const glint_com
         unsigned own = starts ? R(vector_lanes)(on, first + j) : 0;
         vr t[2] = { r_set(HUGE_VAL), r_set(-HUGE_VAL) };
         bool any;
+        if (part->kind == GLINT_PRIM_HULL) {
+            if (part->face == 1)
+                live |= R(stretches_of_hull)(table, part, j, w, lanes, from, s);
+            continue;
+        }
         if (part->face) {
             own |= starts ? R(vector_lanes)(on, part->face == 1 ? first + j + 1 : first + j - 1) : 0;
             any = R(stretch_of_torus)(table, part, o, d, own, into, t);
@@ -191,14 +226,14 @@ INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
     return stack[0];
 }
 
-/// Where the whole changes first; inf: nowhere.
-static vr R(first_change)(const R(stretches) * s)
+/// Where the whole changes first beyond `from`; inf: nowhere.
+static vr R(first_change)(const R(stretches) * s, vr from)
 {
     vr best = r_set(HUGE_VAL);
     for (uint64_t left = s->live; left; left &= left - 1)
         for (int end = 0; end < 2; end++) {
             const vr t = s->t[end][__builtin_ctzll(left)];
-            const rm ahead = rm_and(r_lt(r_set(0), t), r_lt(t, best));
+            const rm ahead = rm_and(r_lt(from, t), r_lt(t, best));
             if (!rm_bits(ahead))
                 continue;
             const R(change) change = R(change_at)(s, t, false);
@@ -207,28 +242,57 @@ static vr R(first_change)(const R(stretches) * s)
     return best;
 }
 
-/// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. on, inward: see
-/// find_stretches. Returns whether any hit was kept.
-static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim, size_t at, const vr o[3],
-                             const vr d[3], const uint32_t *on, unsigned inward)
+/// Where the whole changes first for the rays of `lanes`, and which of these it does for; `s` is told of there. Call it again for
+/// the others, with the *from that it leaves, as long as there are some: returns those.
+static unsigned R(next_change)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
+                               unsigned lanes, vr *from, R(stretches) * s, vr *t, unsigned *hit)
+{
+    R(find_stretches)(table, whole, w, lanes, *from, s);
+    *t = R(first_change)(s, *from);
+    const unsigned told = rm_bits(rm_or(r_lt(*t, s->known), r_eq(s->known, r_set(HUGE_VAL))));
+    *hit = rm_bits(r_lt(*t, r_set(HUGE_VAL))) & lanes & told;
+    *from = s->known * r_set(GLINT_REAL == 64 ? 1 - 0x1p-53 : 1 - 0x1p-24); // the number before it, normal as it is
+    return lanes & ~told;
+}
+
+/// Keeps hits of part j, of a mesh those of its triangles.
+static void R(keep_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
+                         size_t at, rm mine, vr t)
+{
+    const uint32_t index = args->geometry->prim_count + whole->first + j;
+    if (args->geometry->prims[index].kind != GLINT_PRIM_HULL) {
+        R(keep_nearest)(args, at, index, mine, t);
+        return;
+    }
+    const unsigned in = rm_bits(r_eq(t, s->t[0][j]));
+    for (unsigned left = rm_bits(mine); left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        R(keep_nearest)(args, at, s->triangle[in >> i & 1 ? 0 : 1][j][i], rm_from_bits(left & -left), t);
+    }
+}
+
+/// Decides the whole for a vector of rays, from lane `at` of the call on, and keeps the nearest: a part of it. Returns whether any hit
+/// was kept.
+static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim, size_t at, const R(whole_rays) * w)
 {
     const glint_combined *whole = &args->geometry->combined[prim->item];
     R(stretches) s;
-    R(find_stretches)(args->geometry, whole, o, d, on, inward, &s);
-    if (!s.live)
-        return false;
-    const vr t = R(first_change)(&s);
-    const rm hit = r_lt(t, r_set(HUGE_VAL));
-    if (!rm_bits(hit))
-        return false;
-    const vr part = R(change_at)(&s, t, true).part;
-    for (uint64_t left = s.live; left; left &= left - 1) {
-        const uint32_t j = (uint32_t)__builtin_ctzll(left);
-        const rm mine = rm_and(hit, r_eq(part, r_set(j)));
-        if (rm_bits(mine))
-            R(keep_nearest)(args, at, args->geometry->prim_count + whole->first + j, mine, t);
+    vr from = r_set(0), t;
+    unsigned any = 0, hit;
+    for (unsigned left = w->lanes; left;) {
+        left = R(next_change)(args->geometry, whole, w, left, &from, &s, &t, &hit);
+        any |= hit;
+        if (!hit)
+            continue;
+        const vr part = R(change_at)(&s, t, true).part;
+        for (uint64_t live = s.live; live; live &= live - 1) {
+            const uint32_t j = (uint32_t)__builtin_ctzll(live);
+            const rm mine = rm_and(rm_from_bits(hit), r_eq(part, r_set(j)));
+            if (rm_bits(mine))
+                R(keep_part)(args, whole, &s, j, at, mine, t);
+        }
     }
-    return true;
+    return any != 0;
 }
 
 /// Decides it for the rays of a group in `near`. Returns whether any hit was kept.
@@ -244,7 +308,8 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
         R(load3)(args->origin, at + (size_t)i, o);
         R(load3)(args->direction, at + (size_t)i, d);
         const uint32_t *on = args->leaving ? args->leaving + at + i : NULL;
-        if (R(cast_combined)(args, prim, at + (size_t)i, o, d, on, on ? args->inward[g] >> i : 0))
+        const R(whole_rays) rays = { o, d, on, on ? args->inward[g] >> i : 0, near >> i & ((1u << VR) - 1) };
+        if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
             any = true;
     }
     return any;
@@ -264,7 +329,8 @@ static bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_pri
         if (!(near >> i & ((1u << VR) - 1)))
             continue;
         R(load_direction)(directions, args->direction, 0, i, d);
-        if (R(cast_combined)(args, prim, at + (size_t)i, o, d, NULL, 0))
+        const R(whole_rays) rays = { o, d, NULL, 0, near >> i & ((1u << VR) - 1) };
+        if (R(cast_combined)(args, prim, at + (size_t)i, &rays))
             any = true;
     }
     return any;

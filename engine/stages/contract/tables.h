@@ -27,7 +27,8 @@ typedef enum glint_prim_kind {
     GLINT_PRIM_PLANE,
     GLINT_PRIM_TRIANGLE = GLINT_KIND(GLINT_WITH_MESH, 2),
     GLINT_PRIM_SOLID = GLINT_KIND(GLINT_WITH_SOLID, 3),
-    GLINT_PRIM_COMBINED = GLINT_KIND(GLINT_WITH_COMBINED, 4)
+    GLINT_PRIM_COMBINED = GLINT_KIND(GLINT_WITH_COMBINED, 4),
+    GLINT_PRIM_HULL = GLINT_KIND(GLINT_WITH_COMBINED, 5) ///< a closed mesh, as a part of a combined solid
 } glint_prim_kind;
 
 /// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
@@ -51,13 +52,13 @@ typedef struct glint_prim {
             double places; ///< plane: 2 (|normal| . |center|), above 0; 0: it is along two axes, and heights are exact
         };
         struct {
-            double corner[3][3]; ///< triangle; combined: the middle of its box, the box's lower and its upper corner, -inf
+            double corner[3][3]; ///< triangle; combined, hull: the middle of its box, the box's lower and its upper corner, -inf
                 ///< and inf where it has no end
             uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids;
-                ///< combined: index in combined
+                ///< combined: index in combined; hull: index in hulls
             uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
             uint32_t face; ///< a part of a combined solid: 1 and 2: a torus, by the first and by the second stretch that a ray is inside
-                ///< of it, two parts that follow each other; 0: any other. Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
+                ///< of it, two parts that follow each other; 1 .. GLINT_HULL_PARTS: a closed mesh, likewise; 0: any other. Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
         };
     };
 } glint_prim;
@@ -116,6 +117,7 @@ typedef struct glint_solid {
 } glint_solid;
 
 #define GLINT_PARTS_MAX 64 ///< of a combined solid
+#define GLINT_HULL_PARTS 4 ///< of these a closed mesh is as many: the stretches of a ray within it that are held at a time
 
 /// What the program of a combined solid has beside numbers of parts.
 enum {
@@ -133,6 +135,13 @@ typedef struct glint_combined {
     uint32_t length; ///< of the program
     uint8_t program[2 * GLINT_PARTS_MAX];
 } glint_combined;
+
+/// A closed mesh that is a part of a combined solid. Its triangles are prims[prim_count + first] and on, in the order of definition; they
+/// run counter-clockwise as seen from outside of the whole. Hits are theirs.
+typedef struct glint_hull {
+    uint32_t first, count;
+    const glint_node *nodes; ///< a tree over them, in the index's frame; a slot's GLINT_NODE_PRIM child is a triangle's number from 0
+} glint_hull;
 
 /// How many pairs of faces there are.
 static inline int glint_slab_count(uint32_t form)
@@ -195,7 +204,7 @@ static inline bool glint_solid_holds(const glint_solid *solid, const double cent
 /// What rays meet: the surfaces, of bit-equal ones the first, and the index over those that have an end. Its frame is (x - reference) * scale.
 typedef struct glint_geometry_table {
     const glint_prim *prims; ///< in the order of the index, so that neighbours in space are neighbours in memory; after them
-        ///< the parts of combined solids, which are not counted
+        ///< the parts of combined solids and the triangles of those that are meshes, which are not counted
     uint32_t prim_count;
     const glint_node *nodes; ///< nodes[0] is the root; NULL: nothing has an end
     const uint32_t *unbounded; ///< the primitives that are not in the tree: planes
@@ -206,6 +215,7 @@ typedef struct glint_geometry_table {
     const glint_corner_normals *corner_normals;
     const glint_solid *solids; ///< NULL: there are none, nor combined ones
     const glint_combined *combined;
+    const glint_hull *hulls; ///< NULL: there are none
     const glint_face *faces; ///< of triangles
     const glint_shading_points *shading_points;
     uint32_t shading_point_count; ///< 0: all light is worked out for each sample

@@ -287,19 +287,18 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         R(stretches) s;
-        vr p[3], d[3];
+        vr p[3], d[3], from = r_set(0), t;
         if (!lanes)
             continue;
         R(load3)(args->point, at + i, p);
         R(directions_to)(args, position, at, i, d);
-        R(find_stretches)(args->geometry, whole, p, d, args->prim + at + i, back >> i, &s);
-        if (!s.live)
-            continue;
-        const vr t = R(first_change)(&s);
-        rm hit = r_lt(t, r_set(HUGE_VAL));
-        if (!args->directional)
-            hit = rm_and(hit, r_lt(t * r_set(args->scale), r_set(1)));
-        blocked |= (rm_bits(hit) & lanes) << i;
+        const R(whole_rays) rays = { p, d, args->prim + at + i, back >> i, lanes };
+        for (unsigned left = lanes, hit; left;) {
+            left = R(next_change)(args->geometry, whole, &rays, left, &from, &s, &t, &hit);
+            if (!args->directional)
+                hit &= rm_bits(r_lt(t * r_set(args->scale), r_set(1)));
+            blocked |= hit << i;
+        }
     }
     return blocked;
 }

@@ -54,10 +54,14 @@ static NAME(stretch) NAME(within_torus)(const glint_geometry_table *geometry, co
     return (NAME(stretch)) { ends[2 * (part->face - 1)], ends[2 * (part->face - 1) + 1] };
 }
 
+#include "engine/stages/ref/hull.h"
+
 static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint32_t index, NAME(vec3) origin,
                                       NAME(vec3) direction, NAME(start) start)
 {
     const glint_prim *part = &geometry->prims[index];
+    if (part->kind == GLINT_PRIM_HULL)
+        return NAME(nowhere)(); // its stretches are many: see ref/hull.h
     if (part->face)
         return NAME(within_torus)(geometry, part, origin, direction,
                                   start.on == index || start.on == (part->face == 1 ? index + 1 : index - 1), start.inward);
@@ -89,17 +93,37 @@ static NAME(change) NAME(combine)(uint8_t operation, NAME(change) a, NAME(change
     return out;
 }
 
-static NAME(change) NAME(change_at)(const glint_combined *whole, const NAME(stretch) * part, REAL t)
+/// What a ray has to do with a combined solid.
+typedef struct NAME(passing) {
+    const glint_geometry_table *geometry;
+    const glint_combined *whole;
+    NAME(vec3) origin, direction;
+    NAME(start) start;
+    NAME(stretch) part[GLINT_PARTS_MAX];
+} NAME(passing);
+
+static NAME(change) NAME(change_of_part)(const NAME(passing) * ray, uint32_t j, REAL t)
+{
+    const uint32_t index = ray->geometry->prim_count + ray->whole->first + j;
+    const glint_prim *part = &ray->geometry->prims[index];
+    if (part->kind == GLINT_PRIM_HULL && part->face == 1) {
+        NAME(hull_change)
+        change = NAME(hull_change_at)(ray->geometry, part, ray->origin, ray->direction, ray->start, t);
+        return (NAME(change)) { change.before, change.after, change.triangle };
+    }
+    return (NAME(change)) { ray->part[j].in < t && t <= ray->part[j].out, ray->part[j].in <= t && t < ray->part[j].out, index };
+}
+
+static NAME(change) NAME(change_at)(const NAME(passing) * ray, REAL t)
 {
     NAME(change) stack[GLINT_PARTS_MAX];
     int top = 0;
-    for (uint32_t k = 0; k < whole->length; k++) {
-        uint8_t p = whole->program[k];
+    for (uint32_t k = 0; k < ray->whole->length; k++) {
+        uint8_t p = ray->whole->program[k];
         if (p == GLINT_COMBINE_NOTHING) {
             stack[top++] = (NAME(change)) { false, false, 0 };
         } else if (p < GLINT_PARTS_MAX) {
-            bool before = part[p].in < t && t <= part[p].out, after = part[p].in <= t && t < part[p].out;
-            stack[top++] = (NAME(change)) { before, after, p };
+            stack[top++] = NAME(change_of_part)(ray, p, t);
         } else {
             top--;
             stack[top - 1] = NAME(combine)(p, stack[top - 1], stack[top]);
@@ -108,25 +132,37 @@ static NAME(change) NAME(change_at)(const glint_combined *whole, const NAME(stre
     return stack[0];
 }
 
-/// The distance at which a ray meets a combined solid; 0 stands for a miss. *met: the part, an index in prims.
+/// Takes what changes at t, if that is nearer than what is known.
+static void NAME(consider)(const NAME(passing) * ray, REAL t, REAL *best, uint32_t *met)
+{
+    if (!(t > 0 && t < *best))
+        return;
+    NAME(change) change = NAME(change_at)(ray, t);
+    if (change.before == change.after)
+        return;
+    *best = t;
+    *met = change.part;
+}
+
+/// The distance at which a ray meets a combined solid; 0 stands for a miss. *met: the part, or the triangle of one; an index in prims.
 static REAL NAME(combined_t)(const glint_geometry_table *geometry, const glint_prim *prim, NAME(vec3) origin,
                              NAME(vec3) direction, NAME(start) start, uint32_t *met)
 {
-    const glint_combined *whole = &geometry->combined[prim->item];
-    const uint32_t first = geometry->prim_count + whole->first;
-    NAME(stretch) part[GLINT_PARTS_MAX];
-    REAL best = INFINITY;
-    for (uint32_t j = 0; j < whole->count; j++)
-        part[j] = NAME(stretch_of)(geometry, first + j, origin, direction, start);
-    for (uint32_t k = 0; k < 2 * whole->count; k++) {
-        REAL t = k % 2 ? part[k / 2].out : part[k / 2].in;
-        if (!(t > 0 && t < best))
+    NAME(passing) ray = { geometry, &geometry->combined[prim->item], origin, direction, start, { { 0, 0 } } };
+    const uint32_t first = geometry->prim_count + ray.whole->first;
+    REAL best = INFINITY, t;
+    for (uint32_t j = 0; j < ray.whole->count; j++)
+        ray.part[j] = NAME(stretch_of)(geometry, first + j, origin, direction, start);
+    for (uint32_t j = 0; j < ray.whole->count; j++) {
+        const glint_prim *part = &geometry->prims[first + j];
+        NAME(consider)(&ray, ray.part[j].in, &best, met);
+        NAME(consider)(&ray, ray.part[j].out, &best, met);
+        if (part->kind != GLINT_PRIM_HULL || part->face != 1)
             continue;
-        NAME(change) change = NAME(change_at)(whole, part, t);
-        if (change.before == change.after)
-            continue;
-        best = t;
-        *met = first + change.part;
+        for (uint32_t k = 0; k < geometry->hulls[part->item].count; k++)
+            if (NAME(hull_crossing)(geometry, part, k, origin, direction, start, &t))
+                NAME(consider)(&ray, t, &best, met);
+        NAME(consider)(&ray, (REAL)GLINT_LEAST_WAY, &best, met); // where the ray may begin on it
     }
     return best < INFINITY ? best : 0;
 }

@@ -8,6 +8,7 @@
 #include "engine/stages/cast/torus.h"
 #include "engine/stages/cast/solid.h"
 #include "engine/stages/cast/meet.h"
+#include "engine/stages/cast/hull.h"
 #include "engine/stages/cast/combined.h"
 #include "engine/stages/index/candidate.h"
 #include "engine/stages/index/cover.h"

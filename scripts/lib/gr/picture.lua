@@ -199,12 +199,13 @@ local combine
 local function part_of(node, order, count, map, dressed)
   if node.kind == "combined" then return combine(node, order, count, map, dressed) end
   if node.is_nothing then return nil end
-  if node.kind == "mesh" then
-    check.raise("gr.render: %s '%s' is a part of a combined solid, which is made of other shapes only", node.call,
-      node.name)
-  end
   if not dressed then need_material(node) end
   local plain = not node.material and not node.picture
+  if node.kind == "mesh" then
+    if not has_mesh(node) then return nil end
+    node.mesh_shape.material = not plain and shade_of(node, map) or nil
+    return try(make_mesh_place, node, map)
+  end
   local fields = { material = not plain and shade_of(node, map) or nil, name = cut_name(node.name), transform = map }
   return try(makers[node.kind], fields, node)
 end

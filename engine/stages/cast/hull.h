@@ -1,0 +1,272 @@
+// hull: where rays are inside of a closed mesh that is a part of a combined solid. A place is inside where the rest of the ray goes
+// out through the triangles more often than in. Each ray goes through one of those that share an edge or corner, or through
+// none, so that this holds whatever it passes: it is taken for one beside, on the side to which the two axes across the
+// direction's largest component point, the second of them before the first. Contract: stages.h, cast.
+
+#define HULL_KEPT 16 ///< places of a ray that are held at a time
+
+/// Where one ray goes through triangles ahead of where it starts, nearest first.
+typedef struct R(crossings) {
+    int count, sum; ///< sum: how often it goes out less how often in, all of it
+    real t[HULL_KEPT];
+    int way[HULL_KEPT]; ///< out less in at that place
+    uint32_t triangle[HULL_KEPT][2]; ///< the first there that it goes in through, out through; GLINT_MISS: none
+    uint32_t begun[2]; ///< likewise of those that it starts on
+    real lost; ///< the nearest place that had no room; inf: there is none
+} R(crossings);
+
+/// A vector of rays before one mesh.
+typedef struct R(hull_rays) {
+    const glint_geometry_table *table;
+    const glint_prim *part;
+    const vr *o, *d;
+    const uint32_t *on; ///< the primitive that each starts on; NULL: none
+    vr turned[3]; ///< the direction, its largest component last
+    rm y, z; ///< which that is; neither: x
+    _Alignas(64) real origin[3][VR];
+    _Alignas(64) real from[VR]; ///< what is no further has been dealt with
+    ray_view view[VR];
+    R(crossings) of[VR];
+} R(hull_rays);
+
+static inline void R(turn_axes)(const R(hull_rays) * rays, const vr v[3], vr out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = r_select(rays->z, v[k], r_select(rays->y, v[(k + 2) % 3], v[(k + 1) % 3]));
+}
+
+static void R(begin_hull_rays)(R(hull_rays) * rays, vr from)
+{
+    const glint_geometry_table *table = rays->table;
+    const vr ax = R(abs)(rays->d[0]), ay = R(abs)(rays->d[1]), az = R(abs)(rays->d[2]);
+    _Alignas(64) real local[3][VR], way[3][VR];
+    rays->y = r_lt(ax, ay);
+    rays->z = r_lt(r_select(rays->y, ay, ax), az);
+    R(turn_axes)(rays, rays->d, rays->turned);
+    r_store(rays->from, from);
+    for (int k = 0; k < 3; k++) {
+        r_store(rays->origin[k], rays->o[k]);
+        r_store(local[k], (rays->o[k] - r_set(table->reference[k])) * r_set(table->scale));
+        r_store(way[k], rays->d[k]);
+    }
+    for (int i = 0; i < VR; i++) {
+        rays->view[i].slack = R(walk_slack)(table);
+        for (int k = 0; k < 3; k++) {
+            rays->view[i].origin[k] = (float)local[k][i];
+            rays->view[i].inverse[k] = 1 / (float)way[k][i];
+        }
+        rays->of[i].count = rays->of[i].sum = 0;
+        rays->of[i].begun[0] = rays->of[i].begun[1] = GLINT_MISS;
+        rays->of[i].lost = (real)HUGE_VAL;
+    }
+}
+
+/// Notes the first of the triangles at one place that are gone through one way.
+static inline void R(note_triangle)(uint32_t found[2], int way, uint32_t index)
+{
+    if (index < found[way > 0])
+        found[way > 0] = index;
+}
+
+static void R(keep_crossing)(R(crossings) * of, real t, int way, uint32_t index)
+{
+    int at = 0;
+    if (!(t < of->lost))
+        return;
+    while (at < of->count && of->t[at] < t)
+        at++;
+    if (at == of->count || of->t[at] != t) {
+        if (of->count == HULL_KEPT)
+            of->lost = at == HULL_KEPT ? t : of->t[--of->count];
+        if (at == HULL_KEPT)
+            return;
+        for (int i = of->count++; i > at; i--) {
+            of->t[i] = of->t[i - 1];
+            of->way[i] = of->way[i - 1];
+            memcpy(of->triangle[i], of->triangle[i - 1], sizeof of->triangle[i]);
+        }
+        of->t[at] = t;
+        of->way[at] = 0;
+        of->triangle[at][0] = of->triangle[at][1] = GLINT_MISS;
+    }
+    of->way[at] += way;
+    R(note_triangle)(of->triangle[at], way, index);
+}
+
+static inline bool R(starts_on_hull)(const R(hull_rays) * rays, int i)
+{
+    const glint_hull *hull = &rays->table->hulls[rays->part->item];
+    return rays->on && rays->on[i] != GLINT_MISS && rays->on[i] - (rays->table->prim_count + hull->first) < hull->count;
+}
+
+/// Notes where the rays of `out` and `in` go through the triangle.
+static void R(note_crossings)(R(hull_rays) * rays, uint32_t index, unsigned out, unsigned in, vr way)
+{
+    const glint_prim *prim = &rays->table->prims[index];
+    const real near = R(near_shared_edge)(rays->table);
+    _Alignas(64) real t[VR];
+    r_store(t, way);
+    for (unsigned left = out | in; left; left &= left - 1) {
+        const int i = __builtin_ctz(left), turns = out >> i & 1 ? 1 : -1;
+        const bool on_surface = rays->on && rays->on[i] != GLINT_MISS, on_hull = R(starts_on_hull)(rays, i);
+        bool begun = t[i] == 0; // of a plane that triangles share; at an edge, where rays may start, rounding has a part in it
+        if (rays->on && rays->on[i] == index)
+            continue;
+        if ((!prim->face || on_hull) && t[i] <= near && -near <= t[i]) {
+            const R(flat) flat = R(flat_of)(prim, rays->table->scale);
+            const real place[3] = { rays->origin[0][i], rays->origin[1][i], rays->origin[2][i] };
+            begun = R(is_in_plane)(&flat, place, on_surface) || begun;
+        }
+        if (begun) {
+            R(note_triangle)(rays->of[i].begun, turns, index);
+        } else if (rays->from[i] < t[i]) {
+            rays->of[i].sum += turns;
+            R(keep_crossing)(&rays->of[i], t[i], turns, index);
+        }
+    }
+}
+
+/// Decides one triangle for the rays of `lanes`.
+static void R(cross_triangle)(R(hull_rays) * rays, uint32_t index, unsigned lanes)
+{
+    const glint_prim *prim = &rays->table->prims[index];
+    const vr zero = r_set(0), scale = r_set(rays->table->scale);
+    const vr dx = rays->turned[0], dy = rays->turned[1], dz = rays->turned[2];
+    vr p[3][3], x[3], y[3], z[3];
+    rm up = r_lt(zero, zero), down = up;
+    R(corners_from)(rays->o, prim, rays->table->scale, p);
+    for (int j = 0; j < 3; j++) {
+        vr c[3];
+        R(turn_axes)(rays, p[j], c);
+        x[j] = c[0] * dz - c[2] * dx;
+        y[j] = c[1] * dz - c[2] * dy;
+        z[j] = c[2];
+    }
+    for (int j = 0; j < 3; j++) {
+        const int k = (j + 1) % 3;
+        const vr side = x[j] * y[k] - y[j] * x[k];
+        up = rm_or(up, rm_and(rm_and(r_le(y[j], zero), r_lt(zero, y[k])), r_lt(zero, side)));
+        down = rm_or(down, rm_and(rm_and(r_le(y[k], zero), r_lt(zero, y[j])), r_lt(side, zero)));
+    }
+    const rm ahead = r_lt(zero, dz), left = rm_andnot(up, down), right = rm_andnot(down, up);
+    const unsigned with = rm_bits(rm_or(rm_and(left, ahead), rm_andnot(right, ahead))) & lanes;
+    const unsigned against = rm_bits(rm_or(rm_and(right, ahead), rm_andnot(left, ahead))) & lanes;
+    if (!(with | against))
+        return;
+    const glint_face *face = R(face_of)(rays->table, prim);
+    vr t;
+    if (face) {
+        t = R(face_way)(face, rays->o, rays->d);
+    } else {
+        const R(seen_edges) edges = R(see_edges)(p, rays->d, false);
+        for (int j = 0; j < 3; j++)
+            z[j] = z[j] / (dz * scale);
+        t = edges.depth / ((R(det)(&edges) * edges.dz) * scale);
+        t = r_min(r_max(t, r_min(r_min(z[0], z[1]), z[2])), r_max(r_max(z[0], z[1]), z[2]));
+    }
+    R(note_crossings)(rays, index, rays->part->turned ? against : with, rays->part->turned ? with : against, t);
+}
+
+/// Finds all triangles that the rays of `lanes` go through.
+static void R(walk_hull)(R(hull_rays) * rays, const glint_hull *hull, unsigned lanes)
+{
+    struct {
+        uint32_t node;
+        unsigned lanes;
+    } stack[WALK_STACK];
+    int height = 0;
+    stack[height].node = 0;
+    stack[height++].lanes = lanes;
+    while (height > 0) {
+        const glint_node *node = &hull->nodes[stack[--height].node];
+        unsigned near[GLINT_NODE_WIDTH] = { 0 };
+        for (unsigned left = stack[height].lanes; left; left &= left - 1) {
+            _Alignas(64) float depth[GLINT_NODE_WIDTH];
+            for (unsigned slots = boxes_on_ray(node, &rays->view[__builtin_ctz(left)], HUGE_VALF, depth); slots; slots &= slots - 1)
+                near[__builtin_ctz(slots)] |= left & -left;
+        }
+        for (int i = 0; i < GLINT_NODE_WIDTH; i++) {
+            const uint32_t child = node->child[i];
+            if (near[i] && child & GLINT_NODE_PRIM) {
+                R(cross_triangle)(rays, rays->table->prim_count + hull->first + (child & ~GLINT_NODE_PRIM), near[i]);
+            } else if (near[i]) {
+                stack[height].node = child;
+                stack[height++].lanes = near[i];
+            }
+        }
+    }
+}
+
+/// Of one ray: where it is inside, and the triangles by which it comes in and goes out.
+typedef struct R(ray_within) {
+    int count;
+    real t[2][GLINT_HULL_PARTS];
+    uint32_t triangle[2][GLINT_HULL_PARTS];
+    real known; ///< what is told of it is told up to here
+} R(ray_within);
+
+/// A ray that starts on the mesh goes into it or not, and what is ahead may tell another: then it goes out, or in, where it starts.
+static int R(agree_at_start)(R(crossings) * of, uint32_t on, bool inside)
+{
+    const int way = (inside ? 1 : 0) - of->sum;
+    if (inside == (of->sum > 0))
+        return of->sum;
+    const uint32_t begun = of->begun[way > 0];
+    R(keep_crossing)(of, (real)GLINT_LEAST_WAY, way, begun == GLINT_MISS ? on : begun);
+    return inside;
+}
+
+/// left: how often it goes out yet, less how often in.
+static void R(find_within)(const R(crossings) * of, int left, R(ray_within) * in)
+{
+    in->count = 0;
+    in->known = of->lost;
+    in->t[0][0] = (real)-HUGE_VAL;
+    for (int i = 0; i < of->count; i++) {
+        const int after = left - of->way[i], side = left > 0;
+        if (side != (after > 0)) {
+            if (!side && in->count == GLINT_HULL_PARTS) {
+                in->known = of->t[i];
+                return;
+            }
+            in->t[side][in->count] = of->t[i];
+            in->triangle[side][in->count] = of->triangle[i][side];
+            in->count += side;
+        }
+        left = after;
+    }
+    if (left > 0)
+        in->t[1][in->count++] = (real)HUGE_VAL;
+}
+
+/// Finds where the rays of `lanes` are inside of a mesh, GLINT_HULL_PARTS stretches at a time: `t` and `triangle` are those of its
+/// parts, *known: up to where. into: lanes that go into the mesh where they start on it. first: nothing has been dealt with before.
+/// Returns which of the parts have some, a bit each.
+static unsigned R(hull_stretches)(R(hull_rays) * rays, unsigned lanes, unsigned into, bool first, vr *const t[2],
+                                  uint32_t (*const triangle[2])[VR], vr *known)
+{
+    const glint_hull *hull = &rays->table->hulls[rays->part->item];
+    _Alignas(64) real ends[2][GLINT_HULL_PARTS][VR], told[VR];
+    int most = 0;
+    R(walk_hull)(rays, hull, lanes);
+    for (int i = 0; i < VR; i++) {
+        R(ray_within) in = { .count = 0, .known = (real)HUGE_VAL };
+        R(crossings) *of = &rays->of[i];
+        if (lanes >> i & 1) {
+            const bool own = first && R(starts_on_hull)(rays, i);
+            R(find_within)(of, own ? R(agree_at_start)(of, rays->on[i], into >> i & 1) : of->sum, &in);
+        }
+        told[i] = in.known;
+        most = in.count > most ? in.count : most;
+        for (int k = 0; k < GLINT_HULL_PARTS; k++)
+            for (int end = 0; end < 2; end++) {
+                ends[end][k][i] = k < in.count ? in.t[end][k] : (real)(end ? -HUGE_VAL : HUGE_VAL);
+                triangle[end][k][i] = k < in.count ? in.triangle[end][k] : GLINT_MISS;
+            }
+    }
+    for (int k = 0; k < GLINT_HULL_PARTS; k++)
+        for (int end = 0; end < 2; end++)
+            t[end][k] = r_load(ends[end][k]);
+    *known = r_min(*known, r_load(told));
+    return (1u << most) - 1;
+}

@@ -1,0 +1,133 @@
+// The reference of closed meshes that are parts of combined solids; included by ref/combined.h. One line of stages.h after the other.
+
+/// How the triangle turns around a ray, seen along it: +-1 where the ray goes through. A ray through an edge or corner is taken for
+/// one beside it, on the side to which the two axes across point, the second before the first: of what shares them it goes through one.
+static int NAME(turns)(const NAME(vec3) corner[3], NAME(vec3) d)
+{
+    int z = NAME(main_axis)(d), x = (z + 1) % 3, y = (z + 2) % 3, turns = 0;
+    REAL dx = NAME(component)(d, x), dy = NAME(component)(d, y), dz = NAME(component)(d, z), px[3], py[3];
+    for (int j = 0; j < 3; j++) {
+        REAL pz = NAME(component)(corner[j], z);
+        px[j] = NAME(component)(corner[j], x) * dz - pz * dx;
+        py[j] = NAME(component)(corner[j], y) * dz - pz * dy;
+    }
+    for (int j = 0; j < 3; j++) {
+        int k = (j + 1) % 3;
+        REAL side = px[j] * py[k] - py[j] * px[k];
+        if (py[j] <= 0 && py[k] > 0 && side > 0)
+            turns++;
+        if (py[k] <= 0 && py[j] > 0 && side < 0)
+            turns--;
+    }
+    return dz > 0 ? turns : -turns;
+}
+
+static bool NAME(starts_on_hull)(const glint_geometry_table *table, const glint_hull *hull, NAME(start) start)
+{
+    const uint32_t first = table->prim_count + hull->first;
+    return start.on != GLINT_MISS && start.on >= first && start.on - first < hull->count;
+}
+
+/// Whether the ray begins in the triangle's plane, as far as rounding lets us know. That is 0 or not of a plane that triangles
+/// share, but of a ray that starts on the mesh, which may do so at an edge.
+static bool NAME(begins_on)(const glint_geometry_table *table, const glint_prim *prim, NAME(vec3) origin,
+                            NAME(vec3) direction, bool on_surface, bool on_hull, REAL t)
+{
+    const glint_occlude_args plane_of = { .geometry = table, .directional = true };
+    REAL near = (REAL)(GLINT_NEAR_SHARED_EDGE * table->extent);
+    return (!prim->face || on_hull) && t <= near && -near <= t &&
+           NAME(in_plane)(NAME(part)(&plane_of, prim, direction), prim, origin, on_surface);
+}
+
+/// How the ray goes through triangle k of the mesh: 1: out, -1: in, 0: not; *t: where, within the triangle's own depth.
+static int NAME(way_through)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
+                             NAME(vec3) direction, REAL *t)
+{
+    const glint_prim *prim = &table->prims[table->prim_count + table->hulls[part->item].first + k];
+    NAME(vec3) corner[3];
+    NAME(corners_seen)(prim, origin, table->scale, corner);
+    int turns = NAME(turns)(corner, direction), z = NAME(main_axis)(direction);
+    if (!turns)
+        return 0;
+    NAME(seen_edges) seen = NAME(see_edges)(corner, direction);
+    *t = NAME(way_to_plane)(table, prim, seen, origin, direction);
+    if (!prim->face) {
+        REAL w[3];
+        for (int j = 0; j < 3; j++)
+            w[j] = NAME(component)(corner[j], z) / (seen.dz * (REAL)table->scale);
+        *t = NAME(min)(NAME(max)(*t, NAME(min)(NAME(min)(w[0], w[1]), w[2])), NAME(max)(NAME(max)(w[0], w[1]), w[2]));
+    }
+    return part->turned ? -turns : turns;
+}
+
+/// The same ahead of where the ray starts: not of the triangle that it starts on, nor of others whose plane it starts in.
+static int NAME(hull_crossing)(const glint_geometry_table *table, const glint_prim *part, uint32_t k, NAME(vec3) origin,
+                          NAME(vec3) direction, NAME(start) start, REAL *t)
+{
+    const uint32_t index = table->prim_count + table->hulls[part->item].first + k;
+    const bool on_hull = NAME(starts_on_hull)(table, &table->hulls[part->item], start);
+    int way = start.on == index ? 0 : NAME(way_through)(table, part, k, origin, direction, t);
+    if (!way || !(*t > 0) ||
+        NAME(begins_on)(table, &table->prims[index], origin, direction, start.on != GLINT_MISS, on_hull, *t))
+        return 0;
+    return way;
+}
+
+/// Where the ray starts on the mesh, whether it goes into it or not is known, and what is ahead may tell another: then it goes
+/// out, or in, where it starts. Returns how, as many times as makes it agree. *triangle: the first that it starts on and goes through
+/// likewise, or the one that it starts on.
+static int NAME(hull_crossing_at_start)(const glint_geometry_table *table, const glint_prim *part, NAME(vec3) origin,
+                                   NAME(vec3) direction, NAME(start) start, uint32_t *triangle)
+{
+    const glint_hull *hull = &table->hulls[part->item];
+    const uint32_t first = table->prim_count + hull->first;
+    int ahead = 0;
+    REAL t;
+    if (!NAME(starts_on_hull)(table, hull, start))
+        return 0;
+    for (uint32_t k = 0; k < hull->count; k++)
+        ahead += NAME(hull_crossing)(table, part, k, origin, direction, start, &t);
+    const bool inside = start.inward != (part->turned != 0);
+    *triangle = start.on;
+    if (inside == (ahead > 0))
+        return 0;
+    const int way = (inside ? 1 : 0) - ahead;
+    for (uint32_t k = hull->count; k-- > 0;) {
+        int through = first + k == start.on ? 0 : NAME(way_through)(table, part, k, origin, direction, &t);
+        if (through * way > 0 && (t == 0 || NAME(begins_on)(table, &table->prims[first + k], origin, direction, true, true, t)))
+            *triangle = first + k;
+    }
+    return way;
+}
+
+/// What holds of the mesh next to a place on the ray: it is inside where it is yet to go out more often than in.
+typedef struct NAME(hull_change) {
+    bool before, after;
+    uint32_t triangle; ///< the first of those that are gone through there as the change goes
+} NAME(hull_change);
+
+static void NAME(note_crossing)(int way, bool here, bool later, uint32_t triangle, int left[2], uint32_t found[2])
+{
+    left[0] += here || later ? way : 0;
+    left[1] += later ? way : 0;
+    if (here && way && found[way > 0] == GLINT_MISS)
+        found[way > 0] = triangle;
+}
+
+static NAME(hull_change) NAME(hull_change_at)(const glint_geometry_table *table, const glint_prim *part, NAME(vec3) origin,
+                                              NAME(vec3) direction, NAME(start) start, REAL t)
+{
+    const glint_hull *hull = &table->hulls[part->item];
+    const REAL least = (REAL)GLINT_LEAST_WAY;
+    int left[2] = { 0, 0 };
+    uint32_t found[2] = { GLINT_MISS, GLINT_MISS }, triangle = GLINT_MISS;
+    int way = NAME(hull_crossing_at_start)(table, part, origin, direction, start, &triangle);
+    NAME(note_crossing)(way, t == least, t < least, triangle, left, found);
+    for (uint32_t k = 0; k < hull->count; k++) {
+        REAL at;
+        way = NAME(hull_crossing)(table, part, k, origin, direction, start, &at);
+        if (way)
+            NAME(note_crossing)(way, at == t, at > t, table->prim_count + hull->first + k, left, found);
+    }
+    return (NAME(hull_change)) { left[0] > 0, left[1] > 0, found[left[0] > 0] };
+}
