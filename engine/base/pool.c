@@ -8,6 +8,10 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+// Of a worker: eight times what tiles were seen to take. Where systems choose, it is from 128 KiB (musl), which is all, to
+// 8 MiB, of which some hundred workers fill the addresses that a process may have.
+#define STACK_BYTES ((size_t)1 << 20)
+
 struct worker {
     glint_pool *pool;
     pthread_t thread;
@@ -65,16 +69,21 @@ static void *work(void *argument)
 static int start_workers(glint_pool *pool, int threads)
 {
     sigset_t all, old;
+    pthread_attr_t how;
+    if (pthread_attr_init(&how))
+        return pool->threads;
+    pthread_attr_setstacksize(&how, STACK_BYTES);
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &old);
     while (pool->threads < threads) {
         struct worker *worker = &pool->workers[pool->threads - 1];
         *worker = (struct worker) { .pool = pool, .number = pool->threads };
-        if (pthread_create(&worker->thread, NULL, work, worker))
+        if (pthread_create(&worker->thread, &how, work, worker))
             break;
         pool->threads++;
     }
     pthread_sigmask(SIG_SETMASK, &old, NULL);
+    pthread_attr_destroy(&how);
     return pool->threads;
 }
 
