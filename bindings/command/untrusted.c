@@ -16,7 +16,9 @@
 #include <unistd.h>
 
 #define FILES_LIMIT 4 // what is written in all, in times of what one file may have
-#define TICK_MS 50 // between two looks at what was written
+#define TICK_MS 50.0 // between two looks at what was written, where much is left
+#define SHORTEST_TICK_MS 1.0
+#define FASTEST 8e6 // bytes that are written in a millisecond: of memory to memory, by several threads
 #define GRACE_MS 500 // between the signal that ends the child and the one that kills it
 
 // ---- The folder ----
@@ -57,6 +59,7 @@ typedef struct watched {
     end_cause ended_by;
     int number; // BY_SIGNAL: the first one
     uint64_t most; // bytes that it may write in all
+    double tick_ms; // to the next look at them
 } watched;
 
 // The bytes that the child has passed to write(), 0 where the kernel does not count them.
@@ -80,6 +83,15 @@ static uint64_t most_bytes(void)
     return FILES_LIMIT * (is_lower ? limit.rlim_max : CLI_UNTRUSTED_FILE);
 }
 
+// Whether the child has written too much. The less it may still write, the sooner is the next look.
+static bool has_written_too_much(watched *child)
+{
+    const uint64_t written = bytes_written(child->process);
+    const double left_ms = written < child->most ? (double)(child->most - written) / FASTEST : 0;
+    child->tick_ms = left_ms > TICK_MS ? TICK_MS : left_ms > SHORTEST_TICK_MS ? left_ms : SHORTEST_TICK_MS;
+    return written > child->most;
+}
+
 // Tells the child to end, and kills it when it has been told.
 static void end_child(watched *child, end_cause cause, int number)
 {
@@ -96,7 +108,8 @@ static int watch_child(watched *child, const sigset_t *signals)
 {
     int status;
     for (;;) {
-        const double left_ms = child->until_ms - glintL_now_ms(), wait_ms = left_ms < TICK_MS ? left_ms : TICK_MS;
+        const double left_ms = child->until_ms - glintL_now_ms();
+        const double wait_ms = left_ms < child->tick_ms ? left_ms : child->tick_ms;
         const struct timespec wait = { 0, wait_ms > 0 ? (long)(1e6 * wait_ms) : 0 };
         const int number = sigtimedwait(signals, NULL, &wait);
         if (waitpid(child->process, &status, WNOHANG) == child->process)
@@ -105,8 +118,8 @@ static int watch_child(watched *child, const sigset_t *signals)
             end_child(child, BY_SIGNAL, number);
         else if (glintL_now_ms() >= child->until_ms)
             end_child(child, LATE, SIGTERM);
-        else if (!child->ended_by && bytes_written(child->process) > child->most)
-            end_child(child, TOO_MUCH, SIGTERM);
+        else if (!child->ended_by && has_written_too_much(child))
+            end_child(child, TOO_MUCH, SIGKILL); // it would go on writing until it hears
     }
 }
 
@@ -141,6 +154,7 @@ static int await_child(pid_t process, const sigset_t *signals, const cli_options
 {
     watched child = { .process = process, .until_ms = glintL_now_ms() + 1e3 * options->untrusted_s };
     child.most = most_bytes();
+    child.tick_ms = SHORTEST_TICK_MS;
     const int status = watch_child(&child, signals);
     char *folder = WIFSIGNALED(status) ? folder_of(options) : NULL;
     if (folder)

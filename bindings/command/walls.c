@@ -21,6 +21,8 @@
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers" // SCMP_A0 and the like leave fields out, says clang
 
 #define MEMORY_LIMIT ((rlim_t)4 << 30) // of the process
+#define ARENAS 4 // of malloc, which has 64 MiB of addresses for each
+#define WRITE_LIMIT ((uint64_t)64 << 20) // of one call, which the parent sees when it has ended
 #define OPEN_FILES_LIMIT 64
 #define CPU_SLACK_S 2 // beyond the clock of the parent, which comes first
 
@@ -51,6 +53,7 @@ static bool set_limits(double seconds, char *message)
 #endif
 #ifdef M_MMAP_THRESHOLD
     mallopt(M_MMAP_THRESHOLD, 128 << 10); // a large block grows in its place, not beside itself
+    mallopt(M_ARENA_MAX, ARENAS);
 #endif
     return good || fail(message, "the limits of the process");
 }
@@ -173,7 +176,6 @@ static const int allowed[] = {
     SCMP_SYS(poll),
     SCMP_SYS(ppoll),
     SCMP_SYS(pread64),
-    SCMP_SYS(pwrite64),
     SCMP_SYS(read),
     SCMP_SYS(readlink),
     SCMP_SYS(readlinkat),
@@ -198,14 +200,12 @@ static const int allowed[] = {
     SCMP_SYS(uname),
     SCMP_SYS(unlink),
     SCMP_SYS(unlinkat),
-    SCMP_SYS(write),
-    SCMP_SYS(writev),
 };
 
 #define THREAD (CLONE_VM | CLONE_FS | CLONE_FILES | CLONE_SIGHAND | CLONE_THREAD)
 
 // 0, or a negative errno.
-static int add_rules(scmp_filter_ctx filter)
+static int add_rules(scmp_filter_ctx filter, int data)
 {
     int code = 0;
     for (size_t i = 0; i < sizeof allowed / sizeof *allowed && !code; i++)
@@ -214,7 +214,9 @@ static int add_rules(scmp_filter_ctx filter)
     const struct scmp_arg_cmp thread = SCMP_A0(SCMP_CMP_MASKED_EQ, THREAD, THREAD), own = SCMP_A0(SCMP_CMP_EQ, 0),
                               self = SCMP_A0(SCMP_CMP_EQ, (uint64_t)getpid()), no_new = SCMP_A2(SCMP_CMP_EQ, 0),
                               flags = SCMP_A1(SCMP_CMP_EQ, F_GETFL), terminal = SCMP_A1(SCMP_CMP_EQ, TCGETS),
-                              width = SCMP_A1(SCMP_CMP_EQ, TIOCGWINSZ);
+                              width = SCMP_A1(SCMP_CMP_EQ, TIOCGWINSZ), few = SCMP_A2(SCMP_CMP_LE, WRITE_LIMIT),
+                              errors = SCMP_A0(SCMP_CMP_LE, STDERR_FILENO),
+                              report = SCMP_A0(SCMP_CMP_EQ, (uint64_t)data);
     const struct {
         int call;
         unsigned count;
@@ -226,6 +228,10 @@ static int add_rules(scmp_filter_ctx filter)
         { SCMP_SYS(ioctl), 1, { terminal } },
         { SCMP_SYS(ioctl), 1, { width } },
         { SCMP_SYS(prlimit64), 2, { own, no_new } }, // its own limits, to read
+        { SCMP_SYS(write), 1, { few } },
+        { SCMP_SYS(pwrite64), 1, { few } },
+        { SCMP_SYS(writev), 1, { errors } }, // not into pictures: a filter does not see how much it is
+        { SCMP_SYS(writev), 1, { report } },
     };
     for (size_t i = 0; i < sizeof rules / sizeof *rules && !code; i++)
         code = seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, rules[i].call, rules[i].count, rules[i].arguments);
@@ -233,12 +239,12 @@ static int add_rules(scmp_filter_ctx filter)
                 : seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
 }
 
-static bool close_calls(char *message)
+static bool close_calls(int data, char *message)
 {
     int code = -ENOMEM;
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
     if (filter) {
-        code = add_rules(filter);
+        code = add_rules(filter, data);
         if (!code)
             code = seccomp_load(filter);
         seccomp_release(filter);
@@ -251,7 +257,7 @@ bool cli_untrusted_walls(const cli_options *options, int data, char *message)
 {
     return close_descriptors(data, message) && set_limits(options->untrusted_s, message) &&
            (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 || fail(message, "no_new_privs")) &&
-           close_files(options->script, options->request.folder, message) && close_calls(message);
+           close_files(options->script, options->request.folder, message) && close_calls(data, message);
 }
 
 #endif

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +14,7 @@
 
 #define TEMPORARY_TRIES 100
 #define TEMPORARY_ROOM 160 // what the temporary name adds to the file's: host, process, number
+#define PIECE ((size_t)1 << 20) // bytes of one call: who watches how much is written sees it go
 
 struct glint_draft {
     char *path; ///< as it was given
@@ -27,7 +27,7 @@ struct glint_draft {
 static int write_all(int file, const uint8_t *data, size_t size)
 {
     while (size) {
-        ssize_t done = write(file, data, size < SSIZE_MAX ? size : SSIZE_MAX);
+        ssize_t done = write(file, data, size < PIECE ? size : PIECE);
         if (done < 0 && errno != EINTR)
             return errno;
         if (done == 0)

@@ -90,20 +90,21 @@ refused "a traced function that only grows" "$late" -o a.png
 # Within C no hook sees the end of the time: the process is killed.
 slack_ms=1000
 ldd "$glint" | grep -qE 'lib[at]san' && slack_ms=4000
-stopped() {
-    local begun took
+stopped() { # NAME [OPTION...]
+    local name=$1 begun took
+    shift
     begun=$(date +%s%N)
-    refused "$1" "$late" -o a.png
+    refused "$name" "$late" "$@"
     took=$((($(date +%s%N) - begun) / 1000000))
     [ $took -le $((1000 * seconds + slack_ms)) ]
-    result $? "$1: after $took ms"
+    result $? "$name: after $took ms"
 }
 endless='setmetatable({}, { __len = function() return 2147483646 end, __index = rawlen, __newindex = rawlen })'
 for line in 'string.rep("a", 40):find(string.rep("a-", 40) .. "b")' 'string.rep("a", 40):gsub(string.rep("a*", 40) .. "b", "")' \
     '("x"):rep(3e7):find(".-.-.-b")' '("").rep("", 1 << 60)' 'table.move({}, 1, 1 << 60, 2, {})' "table.insert($endless, 1, 0)" \
     "table.sort($endless)" 'pcall(pcall, string.rep, "", 1 << 60)' 'coroutine.wrap(string.rep)("", 1 << 60)'; do
     script "$line"
-    stopped "$line"
+    stopped "$line" -o a.png
 done
 seconds=20
 script "table.concat($endless)"
@@ -134,6 +135,29 @@ if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then
 else
     skip "memory is measured without a sanitizer, by /usr/bin/time"
 fi
+if [ $slack_ms -eq 1000 ] && [ -x /usr/bin/time ]; then # as RLIMIT_AS counts it, so that the limit may be a tenth of the real one
+    limit=$((200 << 10))
+    for line in 'for i = 1, 1e9 do pcall(function() t[i] = glint.sphere_mesh { center = { i, 0, 0 }, radius = 1, segments = 300 } end) end' \
+        'local d = ("\\0\\0\\0\\63"):rep(8e5) for i = 1, 1e9 do t[i] = glint.spheres { data = d, format = "f32" } end' \
+        'for i = 1, 1e9 do ball.radius = 1 + i * 1e-4 t[i] = scene:render { width = 700, height = 700 } end' \
+        'scene:render { width = 30000, height = 30000 }'; do
+        {
+            echo 'local glint, t = require "glint", {} local ball = glint.sphere { center = { 0, 0, 0 }, radius = 2 }'
+            echo 'local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1, ball }'
+            echo "$line"
+        } >scene.lua
+        (ulimit -v $limit && exec /usr/bin/time -q -o used -f %M "$glint" --untrusted=3 scene.lua -o none -q) >out 2>err
+        code=$?
+        case $line in *pcall*) said="the script took longer" ;; *) said="out of memory" ;; esac
+        [ $code -eq 2 ] && grep -q "$said" err && [ "$(tail -n 1 used)" -le $limit ]
+        result $? "memory of the process, $(tail -n 1 used) of $limit KiB, $code, $(tail -n 1 err): $line"
+    done
+    script
+    for threads in 256 1024; do
+        run -o none --threads $threads
+        result $? "$threads threads have room beneath the limit: $(cat err)"
+    done
+fi
 script 'local function deep(n) return 1 + deep(n + 1) end deep(1)'
 refused "a deep stack" "\(stack overflow\|not enough memory\)" -o a.png # their limits are near each other
 script 'local function deep() return ("x"):gsub("x", deep) end deep()'
@@ -158,6 +182,16 @@ run -o inside/b.png && [ "$(cat outside.png)" = kept ]
 result $? "a symbolic link leads nowhere"
 script 'local good, why = pcall(require "glint".mesh, { file = "/etc/passwd" }); assert(not good and why:find "reads no files", why)'
 passes "no file is read"
+seconds=1
+mkfifo pipe.png pipe.lua
+script 'name = "pipe.png"'
+stopped "a picture into a pipe that is not read"
+seconds=20
+script 'function after() image:save("pipe.png") end'
+refused "image:save into a pipe" "save.path: file that is no pipe or device expected" -o a.png
+timeout 5 "$glint" --untrusted pipe.lua -o none >out 2>err </dev/null
+[ $? -eq 2 ] && grep -q "a script expected, got a pipe" err
+result $? "a script that is a pipe"
 script
 refused "a film" "pictures expected" -o a.mp4
 refused "a device" "a file expected" -o /dev/null
@@ -214,6 +248,14 @@ LUA
 (ulimit -f 200 && exec "$glint" --untrusted=20 scene.lua -o much/%06d.pfm -q) >out 2>err </dev/null
 [ $? -eq 2 ] && grep -q "the script wrote more than 819200 bytes" err && [ "$(find much | wc -l)" -lt 50000 ]
 result $? "bytes in all: four times what one file may have"
+rm -r much && mkdir much # pictures of 1.2 MB, as fast as they come
+(ulimit -f 20000 && exec "$glint" --untrusted=60 scene.lua -o much/%06d.pfm --size 320x320 -q) >out 2>err </dev/null
+[ $? -eq 2 ] && grep -q "the script wrote more than 81920000 bytes" err
+result $? "bytes in all: $(cat err)"
+most=$((81920000 / 100 * 110)) there=$(du -sb much | cut -f 1)
+[ "$there" -le $most ]
+result $? "bytes in all, within a tenth: $there of $most"
+rm -r much
 (ulimit -f 20 && exec "$glint" --untrusted=20 scene.lua -o much/one.pfm -f 1 -q) >out 2>err </dev/null
 [ $? -eq 1 ] && grep -q "File too large" err
 result $? "bytes of a file"

@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -113,14 +114,30 @@ static int writes_much(void)
     return file < 0 ? 0 : errno_of(pwrite(file, "x", 1, (off_t)CLI_UNTRUSTED_FILE));
 }
 
+static int writes_at_once(void)
+{
+    const size_t size = (size_t)256 << 20;
+    const int file = open("pictures/at_once", O_WRONLY | O_CREAT, 0600);
+    void *zeros = mmap(NULL, size, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return file < 0 || zeros == MAP_FAILED ? 0 : errno_of(write(file, zeros, size));
+}
+
+static int writes_scattered(void)
+{
+    struct iovec piece = { (void *)"x", 1 };
+    const int file = open("pictures/scattered", O_WRONLY | O_CREAT, 0600);
+    return file < 0 ? 0 : errno_of(writev(file, &piece, 1));
+}
+
 // What a render does must go on working.
 static int works(void)
 {
+    struct iovec nothing = { (void *)"", 0 };
     const int file = open("pictures/.draft", O_WRONLY | O_CREAT | O_EXCL, 0600);
     const bool good = file >= 0 && write(file, "x", 1) == 1 && fsync(file) == 0 && fcntl(file, F_GETFL) >= 0 &&
                       close(file) == 0 && rename("pictures/.draft", "pictures/done") == 0 &&
                       opens("pictures/done", O_RDONLY) == 0 && opens("scene.lua", O_RDONLY) == 0 &&
-                      write(DATA, "", 0) == 0;
+                      write(DATA, "", 0) == 0 && writev(DATA, &nothing, 1) == 0;
     return good ? 0 : errno ? errno : EIO;
 }
 
@@ -137,7 +154,8 @@ static const struct attack {
     ATTACK(starts_process), ATTACK(signals_parent),  ATTACK(signals_thread),    ATTACK(traces),
     ATTACK(connects),       ATTACK(joins),           ATTACK(owns_signals),      ATTACK(copies),
     ATTACK(leases),         ATTACK(fakes_typing),    ATTACK(makes_memory_file), ATTACK(takes_memory),
-    ATTACK(raises_limit),   ATTACK(opens_many),      ATTACK(writes_much),
+    ATTACK(raises_limit),   ATTACK(opens_many),      ATTACK(writes_much),       ATTACK(writes_at_once),
+    ATTACK(writes_scattered),
 };
 
 static bool write_file(const char *path)
