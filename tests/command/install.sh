@@ -104,7 +104,7 @@ objects="build/engine/base/pool.o build/engine/file/png.o build/bindings/command
 for folder in one another/folder; do
     mkdir -p "$work/$folder" && cp -r Makefile engine bindings scripts "$work/$folder/"
     mkdir "$work/$folder/tests" && cp tests/deps.sh "$work/$folder/tests/"
-    check "objects built in $folder" env -u BUILD ${MAKE:-make} -s --no-print-directory -C "$work/$folder" $objects
+    check "objects built in $folder" ${MAKE:-make} -s --no-print-directory -C "$work/$folder" BUILD=build $objects
 done
 for object in $objects; do
     check "$object is the same from two folders" cmp "$work/one/$object" "$work/another/folder/$object"
