@@ -678,7 +678,9 @@ glint_status glint_mesh_create(const glint_mesh_desc *desc, glint_shape **out, g
 /// when it is not as it should be, with the number of the line, or of the vertex or face. By the ending of the name:
 ///
 /// .stl  text or binary; corners at one place are one vertex. Normals are those of the faces, whatever the file says.
-/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces; colours are passed over.
+/// .ply  text or binary, of either byte order: vertices (x y z, nx ny nz, u v or s t) and faces. Where `desc`
+///       has no material and vertices or faces have red, green and blue of 8 bits, sRGB codes, each face has a material of its
+///       colour, named by it ("#ff8000"): its own, or the mean of its corners' light, rounded to 8 bits.
 /// else  Wavefront .obj: v, vt, vn and f (any polygon; v, v/vt, v//vn, v/vt/vn; numbers from the end where negative), and where
 ///       `desc` has no material usemtl and mtllib: a material by name with the file's Kd, Ks, Ns, d or Tr, and map_Kd,
 ///       map_Ks, map_d (where red is below one half there is a hole) and map_Bump (grey, with its -bm as height); .png. What lets light through (d < 1) is not refracted, and leaves d of Kd and Ks. Groups, lines and points

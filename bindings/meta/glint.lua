@@ -372,7 +372,7 @@ function glint.spheres(fields) end
 --- Polygons that share vertices, from tables or from a file, .obj, .stl or .ply; copied once. Give `file`, or `vertices` and
 --- `faces`. Faces that are not convex are cut up rightly; those that cross themselves are refused.
 ---@class glint.mesh_fields: glint.shape_fields
----@field file? string  a mesh, relative to the working directory: .stl; .ply; else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
+---@field file? string  a mesh, relative to the working directory: .stl; .ply (without `material` also its colours, a material each); else a Wavefront .obj (v, vt, vn, f; without `material` also usemtl and mtllib: Kd, Ks, Ns, d or Tr, map_Kd, map_Ks, map_d, map_Bump with -bm)
 ---@field vertices? glint.vec3[]|number[]|string  places: a list of {x, y, z}, a flat table or packed numbers
 ---@field faces? integer[][]|integer[]|string  numbers of vertices, from 1: a list for each face, any number of corners, seen from the front counter-clockwise; or a flat table or packed u32 numbers of triangles
 ---@field normals? glint.vec3[]|number[]|string  one a vertex, or one a corner in the order of the faces; not zero, need not be unit

@@ -10,7 +10,9 @@
 watch_picture *watch_picture_create(const glint_image *image, const glintL_render *render, glint_error *error)
 {
     watch_picture *picture = calloc(1, sizeof *picture);
-    glint_write_desc desc = { .path = "watch.png", .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone, .dpi = render->dpi };
+    glint_write_desc desc = {
+        .path = "watch.png", .pass = GLINT_PASS_BEAUTY, .tone = render->desc.tone, .dpi = render->dpi
+    };
     desc.tone.bits = 8; // a screen shows no more
     if (!picture) {
         *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
@@ -94,9 +96,11 @@ bool watch_small_create(const watch_picture *from, int width, int height, watch_
     glint_picture *picture = NULL;
     glint_error error;
     *out = (watch_small) { width, height, malloc((size_t)width * (size_t)height * 3) };
-    shrinking s = { .to = out, .sums = malloc((size_t)width * 3 * sizeof(double)), .row = malloc((size_t)from->width * 3) };
-    const bool good = out->rgb && s.sums && s.row &&
-                      glint_picture_from_bytes(from->bytes, from->size, &picture, &error) == GLINT_OK;
+    shrinking s = { .to = out,
+                    .sums = malloc((size_t)width * 3 * sizeof(double)),
+                    .row = malloc((size_t)from->width * 3) };
+    const bool good =
+        out->rgb && s.sums && s.row && glint_picture_from_bytes(from->bytes, from->size, &picture, &error) == GLINT_OK;
     s.from = picture;
     for (int code = 0; code < 256; code++)
         s.light[code] = light_of(code);

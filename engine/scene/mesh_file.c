@@ -224,6 +224,11 @@ static glint_status make_mesh(glint_mesh_reader *r, bool leave_flat, glint_shape
     mesh.uv_corners = r->corner_uv.count ? r->corner_uv.items : NULL;
     if (r->library)
         glint_mesh_library_give(r->library, r, &mesh);
+    if (r->materials.count) {
+        mesh.materials = r->materials.items;
+        mesh.material_count = r->materials.count;
+        mesh.material_index = r->material_index.items;
+    }
     glint_status status = glint_mesh_make(&mesh, leave_flat ? &flat : NULL, out, &inner);
     if (status)
         return glint_fail(r->error, status, "%.300s: %.200s", r->text.path, inner.message);
@@ -236,7 +241,10 @@ static glint_status make_mesh(glint_mesh_reader *r, bool leave_flat, glint_shape
 static void release(glint_mesh_reader *r)
 {
     glint_mesh_array *const arrays[] = { &r->vertices,       &r->normals,   &r->uv,    &r->corners,
-                                         &r->corner_normals, &r->corner_uv, &r->sizes, &r->material_index };
+                                         &r->corner_normals, &r->corner_uv, &r->sizes, &r->material_index,
+                                         &r->colors,         &r->materials };
+    for (size_t i = 0; i < r->materials.count; i++)
+        glint_material_release(((glint_material **)r->materials.items)[i]);
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         free(arrays[i]->items);
     free(r->places.slots);
@@ -260,6 +268,8 @@ glint_status glint_mesh_load(const char *path, const glint_mesh_desc *desc, glin
     const reading read = reader_of(path);
     r.vertices.size = r.normals.size = 3 * sizeof(double);
     r.uv.size = 2 * sizeof(double);
+    r.colors.size = 3;
+    r.materials.size = sizeof(glint_material *);
     r.corners.size = r.corner_normals.size = r.corner_uv.size = r.sizes.size = r.material_index.size = sizeof(uint32_t);
     glint_status status = desc->has_shading ? glint_check_shading(desc->shading, error) : GLINT_OK;
     if (status)

@@ -74,6 +74,9 @@ typedef struct glint_mesh_reader {
     glint_mesh_array corner_uv; ///< of the corners up to the last that named one
     glint_mesh_array material_index; ///< of each face, where faces have materials of their own
     glint_mesh_library *library; ///< .obj: the materials; NULL: those of `desc`
+    glint_mesh_array colors; ///< .ply: sRGB codes of red, green and blue, of each vertex or face; none: there are none
+    bool colors_of_faces; ///< not of vertices
+    glint_mesh_array materials; ///< .ply: glint_material *, owned; none: those of `desc`
     glint_mesh_set places; ///< .stl: of the vertices
     bool has_normals;
     glint_error *error;
@@ -86,6 +89,8 @@ void glint_mesh_warn(const glint_mesh_desc *desc, const char *path, const char *
 glint_status glint_mesh_read_obj(glint_mesh_reader *reader);
 glint_status glint_mesh_read_stl(glint_mesh_reader *reader);
 glint_status glint_mesh_read_ply(glint_mesh_reader *reader);
+/// Makes the materials, and the index of each face among them, of the colours of a file that is read.
+glint_status glint_mesh_color_faces(glint_mesh_reader *reader);
 
 /// glint_mesh_create; flat: NULL, or faces without an area are no error but left out, and counted here.
 glint_status glint_mesh_make(const glint_mesh_desc *desc, size_t *flat, glint_shape **out, glint_error *error);

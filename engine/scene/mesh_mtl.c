@@ -382,7 +382,8 @@ static void dissolve(entry *e)
 /// Whether a picture's red, green and blue are alike in the mean: heights are grey, directions of normals are bluish.
 static glint_status find_grey(const glint_texture *texture, bool *grey, glint_error *error)
 {
-    static const double one[3] = { 1, 1, 1 }, inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // all of it
+    static const double one[3] = { 1, 1, 1 },
+                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // all of it
     const glint_mesh_map whole = { .scale = { 1, 1 } };
     double mean[3] = { 0 };
     glint_program *program = NULL;
@@ -424,9 +425,11 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
     if (!status && texture && kind == MAP_BUMP)
         status = find_grey(texture, &grey, reader->error);
     if (!status && !grey) {
-        glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s' has no relief in place of its map_Bump: heights in grey expected, and the picture "
-                        "has colours, as pictures of normals do", e->desc.name);
+        glint_mesh_warn(
+            reader->desc, reader->text.path,
+            "material '%s' has no relief in place of its map_Bump: heights in grey expected, and the picture "
+            "has colours, as pictures of normals do",
+            e->desc.name);
         return status;
     }
     if (!status && texture)

@@ -21,8 +21,23 @@ static const char *const TYPES[TYPE_COUNT][2] = { { "char", "int8" },     { "uch
                                                   { "float", "float32" }, { "double", "float64" } };
 static const unsigned char SIZES[TYPE_COUNT] = { 1, 1, 2, 2, 4, 4, 4, 8 };
 
-/// What a property is to a mesh. The first eight are the numbers of a vertex.
-typedef enum property_role { X, Y, Z, NX, NY, NZ, U, V, VERTEX_NUMBERS, COLOR, PASSED_OVER } property_role;
+/// What a property is to a mesh. The first ones are numbers of a vertex, of a face the colours alone.
+typedef enum property_role {
+    X,
+    Y,
+    Z,
+    NX,
+    NY,
+    NZ,
+    U,
+    V,
+    RED,
+    GREEN,
+    BLUE,
+    NUMBERS, ///< how many these are
+    VERTEX_NUMBERS = NUMBERS,
+    PASSED_OVER
+} property_role;
 
 typedef struct property {
     number_type type, count_type; ///< count_type: of a list
@@ -41,6 +56,7 @@ typedef struct head {
     format format;
     uint32_t element_count;
     uint64_t vertex_count, face_count;
+    const element *colored; ///< whose colours count; NULL: there are none
     element elements[ELEMENTS_MAX];
 } head;
 
@@ -77,13 +93,16 @@ static property_role role_of(const element *e, const property *p, const char *na
                   { "u", U },         { "v", V },
                   { "s", U },         { "t", V },
                   { "texture_u", U }, { "texture_v", V },
-                  { "red", COLOR },   { "diffuse_red", COLOR },
-                  { "r", COLOR } };
+                  { "red", RED },     { "green", GREEN },
+                  { "blue", BLUE },   { "diffuse_red", RED },
+                  { "r", RED },       { "diffuse_green", GREEN },
+                  { "g", GREEN },     { "diffuse_blue", BLUE },
+                  { "b", BLUE } };
     const bool vertex = strcmp(e->name, "vertex") == 0, face = strcmp(e->name, "face") == 0;
     if (face && p->is_list && (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0))
         return VERTEX_NUMBERS;
     for (size_t i = 0; i < sizeof roles / sizeof *roles && (vertex || face) && !p->is_list; i++)
-        if (strcmp(name, roles[i].name) == 0 && (vertex || roles[i].role == COLOR))
+        if (strcmp(name, roles[i].name) == 0 && (vertex || roles[i].role >= RED))
             return roles[i].role;
     return PASSED_OVER;
 }
@@ -108,7 +127,9 @@ static glint_status read_property(glint_mesh_reader *r, element *e, char **words
     if (e->property_count == PROPERTIES_MAX)
         return glint_mesh_refuse(&r->text, "at most 256 properties", words[0]);
     p.role = role_of(e, &p, rest[1]);
-    if (p.role != PASSED_OVER && p.role != COLOR && has_role(e, p.role))
+    if (p.role >= RED && p.role <= BLUE && has_role(e, p.role))
+        p.role = PASSED_OVER; // other colours, under another name
+    if (p.role != PASSED_OVER && has_role(e, p.role))
         return glint_mesh_refuse(&r->text, "a property once", rest[1]);
     e->properties[e->property_count++] = p;
     return GLINT_OK;
@@ -189,10 +210,42 @@ static glint_status read_head(glint_mesh_reader *r, head *h)
     return status;
 }
 
+/// How many of red, green and blue an element has; 0 where some are not 8 bits.
+static int count_colors(const element *e)
+{
+    int count = 0;
+    for (uint32_t i = 0; i < e->property_count; i++) {
+        const property *p = &e->properties[i];
+        if (p->role < RED || p->role > BLUE)
+            continue;
+        if (p->type != UINT8)
+            return 0;
+        count++;
+    }
+    return count;
+}
+
+/// Finds the colours that count, those of faces before those of vertices; a material of the script stands for all.
+static void find_colors(const glint_mesh_reader *r, head *h)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < h->element_count; i++) {
+        const element *e = &h->elements[i];
+        any = any || has_role(e, RED) || has_role(e, GREEN) || has_role(e, BLUE);
+        if (count_colors(e) == 3 && (!h->colored || strcmp(e->name, "face") == 0))
+            h->colored = e;
+    }
+    if (r->desc->material || r->desc->material_count)
+        h->colored = NULL;
+    else if (any && !h->colored)
+        glint_mesh_warn(r->desc, r->text.path,
+                        "its colours are passed over: red, green and blue of 8 bits (uchar) expected");
+}
+
 /// Whether the elements make a mesh, and have no more rows than the file has room for.
 static glint_status check_head(const glint_mesh_reader *r, const head *h)
 {
-    bool places = false, faces = false, colors = false;
+    bool places = false, faces = false;
     for (uint32_t i = 0; i < h->element_count; i++) {
         const element *e = &h->elements[i];
         uint64_t least = 0;
@@ -206,7 +259,6 @@ static glint_status check_head(const glint_mesh_reader *r, const head *h)
                               e->name, (unsigned long long)e->count);
         places = places || (has_role(e, X) && has_role(e, Y) && has_role(e, Z));
         faces = faces || has_role(e, VERTEX_NUMBERS);
-        colors = colors || has_role(e, COLOR);
     }
     if (!places)
         return glint_fail(r->error, GLINT_ERR_FORMAT, "%s: an element vertex with x, y and z expected", r->text.path);
@@ -214,8 +266,6 @@ static glint_status check_head(const glint_mesh_reader *r, const head *h)
         return glint_fail(r->error, GLINT_ERR_FORMAT,
                           "%s: an element face with a list vertex_indices expected, got %llu vertices and no face",
                           r->text.path, (unsigned long long)h->vertex_count);
-    if (colors)
-        glint_mesh_warn(r->desc, r->text.path, "its colours are passed over: the mesh has those of its material");
     return GLINT_OK;
 }
 
@@ -342,8 +392,8 @@ static glint_status pass_over(body *b, const property *p)
     return status;
 }
 
-/// The numbers of a row that belong to a vertex go to `v`.
-static glint_status read_properties(body *b, double v[8])
+/// The numbers of a row that a mesh has go to `v`.
+static glint_status read_properties(body *b, double v[NUMBERS])
 {
     for (uint32_t i = 0; i < b->element->property_count; i++) {
         const property *p = &b->element->properties[i];
@@ -351,7 +401,7 @@ static glint_status read_properties(body *b, double v[8])
         if (p->role == VERTEX_NUMBERS)
             status = read_face(b, p);
         else
-            status = p->role > V ? pass_over(b, p) : read_number(b, p->type, &v[p->role]);
+            status = p->role == PASSED_OVER ? pass_over(b, p) : read_number(b, p->type, &v[p->role]);
         if (status)
             return status;
     }
@@ -360,7 +410,22 @@ static glint_status read_properties(body *b, double v[8])
     return GLINT_OK;
 }
 
-static glint_status add_vertex(body *b, const double v[8])
+static glint_status add_color(body *b, const double v[NUMBERS])
+{
+    uint8_t codes[3];
+    char got[40];
+    for (int c = 0; c < 3; c++) {
+        const double code = v[RED + c];
+        if (!(code >= 0 && code <= 255 && code == floor(code))) { // of a text
+            snprintf(got, sizeof got, "%.15g", code);
+            return fail_at(b, "a colour's code, 0 .. 255,", got);
+        }
+        codes[c] = (uint8_t)code;
+    }
+    return glint_mesh_append(&b->reader->colors, codes, b->reader->error);
+}
+
+static glint_status add_vertex(body *b, const double v[NUMBERS])
 {
     glint_mesh_reader *r = b->reader;
     double normal[3] = { v[NX], v[NY], v[NZ] };
@@ -402,12 +467,14 @@ static glint_status read_rows(body *b)
     if (is_vertex)
         b->reader->has_normals = has_role(e, NX) && has_role(e, NY) && has_role(e, NZ);
     for (b->row = 1; b->row <= e->count && !status; b->row++) {
-        double v[8] = { 0 };
+        double v[NUMBERS] = { 0 };
         status = next_row(b);
         if (!status)
             status = read_properties(b, v);
         if (!status && is_vertex)
             status = add_vertex(b, v);
+        if (!status && e == b->head->colored)
+            status = add_color(b, v);
     }
     return status;
 }
@@ -437,12 +504,17 @@ glint_status glint_mesh_read_ply(glint_mesh_reader *r)
     glint_status status = read_head(r, h);
     if (!status)
         status = check_head(r, h);
+    if (!status)
+        find_colors(r, h);
     for (uint32_t i = 0; i < h->element_count && !status; i++) {
         b.element = &h->elements[i];
         status = read_rows(&b);
     }
     if (!status && b.bad_normals)
         status = drop_bad_normals(r);
+    r->colors_of_faces = h->colored && strcmp(h->colored->name, "face") == 0;
+    if (!status && h->colored)
+        status = glint_mesh_color_faces(r);
     free(h);
     return status;
 }

@@ -86,6 +86,7 @@ picture photometric --set lights=8 --set folder="$out/photometric" --frames 3 --
 picture protein --size 320x180
 picture rings --frames 9 --samples 4
 picture roughness --size 400x160
+picture scan --set file="$out/scan.ply"
 picture shaders --samples 4
 picture shading --size 400x200 --frames 5
 picture shininess_sweep --frames 5 --samples 4

@@ -311,7 +311,11 @@ silent "a material of the script: the file's are not looked at"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n' >m.ply
 printf 'element face 1\nproperty list uchar int vertex_indices\nend_header\n-1 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2\n' >>m.ply
 scene 'objects = { glint.mesh { file = "m.ply" }, glint.mesh { file = "m.ply" } }'
-warns "colours of vertices, once" "m.ply: its colours are passed over: the mesh has those of its material$"
+warns "colours of vertices, once" "m.ply: its colours are passed over: red, green and blue of 8 bits (uchar) expected$"
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n' >m.ply
+printf 'property uchar %s\n' red green blue >>m.ply
+printf 'property list uchar int vertex_indices\nend_header\n-1 0 0\n1 0 0\n0 1 0\n9 9 9 3 0 1 2\n' >>m.ply
+silent "colours that are there"
 {
     echo 'solid x'
     for corner in '0 0 0' '0 1 0'; do

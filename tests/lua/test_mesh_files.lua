@@ -321,6 +321,66 @@ function tests.materials_meet_in_vertices()
   end
 end
 
+-- ---- Colours of .ply ----
+
+-- Two triangles beside each other before the eye, with colours of corners, of faces or of both; nil: none.
+local function colored(format, corners, faces)
+  local names = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
+  local text = { "ply\nformat ", format, " 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n",
+    corners and names or "", "element face 2\nproperty list uchar int vertex_indices\n", faces and names or "", "end_header\n" }
+  local order = format:find "big" and ">" or "<"
+  local function row(kinds, list)
+    text[#text + 1] = format == "ascii" and table.concat(list, " ") .. "\n" or (order .. kinds):pack(table.unpack(list))
+  end
+  local function add(list, color)
+    if color then table.move({ color[1], color[2], color[3], 7 }, 1, 4, #list + 1, list) end
+    return list
+  end
+  for i, p in ipairs { { -3, -2, 0 }, { 0, -2, 0 }, { 0, 2, 0 }, { 0, -2, 0 }, { 3, -2, 0 }, { 0, 2, 0 } } do
+    row(corners and "fffBBBB" or "fff", add(p, corners and corners[i]))
+  end
+  for i, f in ipairs { { 3, 0, 1, 2 }, { 3, 3, 4, 5 } } do row(faces and "Bi4i4i4BBBB" or "Bi4i4i4", add(f, faces and faces[i])) end
+  return table.concat(text)
+end
+
+local function light_of(code)
+  local v = code / 255
+  return v <= 0.04045 and v / 12.92 or ((v + 0.055) / 1.055) ^ 2.4
+end
+
+function tests.colours_of_ply()
+  local RED <const>, BLUE <const>, SKY <const> = { 255, 0, 0 }, { 0, 0, 255 }, { 16, 128, 240 }
+  local function shows(name, text, left, right)
+    local mesh = load(name, text)
+    local image = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 1, mesh }:render { width = 64, height = 36 }
+    for x, want in pairs { [29] = left, [34] = right } do
+      local got = { image:pixel(x, 24) }
+      for c = 1, 3 do near(got[c], light_of(want[c]), 1e-7, ("%s, x %d, component %d"):format(name, x, c)) end
+    end
+    return mesh
+  end
+  for _, format in ipairs { "ascii", "binary_little_endian", "binary_big_endian" } do
+    local mesh = shows("faces.ply", colored(format, nil, { RED, SKY }), RED, SKY)
+    check(#mesh.materials == 2 and mesh.materials[1].name == "#ff0000" and mesh.materials[2].name == "#1080f0", "materials by name")
+    check(is(mesh.materials[1].specular, 0, 0, 0), "without a highlight")
+    mesh = shows("corners.ply", colored(format, { SKY, SKY, SKY, RED, RED, RED }), SKY, RED)
+    check(#mesh.materials == 2, "corners that agree")
+    shows("both.ply", colored(format, { RED, RED, RED, RED, RED, RED }, { SKY, BLUE }), SKY, BLUE)
+    -- the mean of light, as the nearest code: two thirds of it red, one third blue
+    local r, b = 0, 0
+    while light_of(r + 0.5) < 2 / 3 do r = r + 1 end
+    while light_of(b + 0.5) < 1 / 3 do b = b + 1 end
+    shows("mean.ply", colored(format, { RED, BLUE, RED, SKY, SKY, SKY }), { r, 0, b }, SKY)
+  end
+  check(#load("one.ply", colored("ascii", nil, { SKY, SKY })).materials == 1, "one colour is one material")
+  local own = glint.material { diffuse = 0.5 }
+  local mesh = glint.mesh { file = write("own.ply", colored("ascii", nil, { RED, SKY })), material = own }
+  check(#mesh.materials == 1 and mesh.material == own, "a material of the script comes first")
+  refuses("vertex 2 of 6: a colour's code, 0 .. 255, expected, got 256", "a.ply",
+    colored("ascii", { RED, { 0, 256, 0 }, RED, RED, RED, RED }))
+  refuses("face 1 of 2: a colour's code, 0 .. 255, expected, got 0.5", "a.ply", colored("ascii", nil, { { 0, 0, 0.5 }, RED }))
+end
+
 -- ---- Files that are not as they should be ----
 
 function tests.refused()
@@ -369,7 +429,8 @@ end
 function tests.cut_short_and_changed()
   write("some file.mtl", MATERIALS)
   local files = { { "cut.obj", PLATES }, { "cut.stl", text_stl() }, { "bin.stl", binary_stl() }, { "cut.ply", ply "ascii" },
-    { "little.ply", ply "binary_little_endian" }, { "big.ply", ply "binary_big_endian" } }
+    { "little.ply", ply "binary_little_endian" }, { "big.ply", ply "binary_big_endian" },
+    { "color.ply", colored("ascii", nil, { { 1, 2, 3 }, { 4, 5, 6 } }) } }
   for _, file in ipairs(files) do
     local name, text, bad = file[1], file[2], 0
     for i = 0, #text - 1 do

@@ -1,0 +1,60 @@
+/// Colours of .ply files: each face has a material of one, its own or the mean of its corners'.
+#include "engine/scene/mesh_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/// The light of each code.
+static void fill_lights(double lights[256])
+{
+    for (int code = 0; code < 256; code++)
+        lights[code] = glint_srgb_decode(code / 255.0);
+}
+
+/// The code of the mean light of a face's corners, of the c-th of red, green and blue; corners that agree have their own.
+static uint8_t mean_code(const uint8_t (*colors)[3], const uint32_t *corners, uint32_t count, int c,
+                         const double lights[256])
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += lights[colors[corners[i]][c]];
+    return (uint8_t)(glint_srgb_encode(sum / count) * 255 + 0.5);
+}
+
+static glint_status add_material(glint_mesh_array *materials, uint32_t color, const double lights[256],
+                                 glint_error *error)
+{
+    glint_material_desc desc = glint_material_desc_default();
+    glint_material *material;
+    for (int c = 0; c < 3; c++)
+        desc.diffuse[c] = lights[color >> (16 - 8 * c) & 255];
+    snprintf(desc.name, sizeof desc.name, "#%06x", (unsigned)color);
+    glint_status status = glint_material_create(&desc, &material, error);
+    if (!status && (status = glint_mesh_append(materials, &material, error)))
+        glint_material_release(material);
+    return status;
+}
+
+glint_status glint_mesh_color_faces(glint_mesh_reader *r)
+{
+    const uint8_t(*colors)[3] = r->colors.items;
+    const uint32_t *corners = r->corners.items, *sizes = r->sizes.items;
+    glint_mesh_array shades = { .size = sizeof(uint32_t) }; // 0xrrggbb, beside the materials
+    glint_mesh_set set = { 0 };
+    glint_status status = GLINT_OK;
+    double lights[256];
+    fill_lights(lights);
+    for (size_t i = 0; i < r->sizes.count && !status; corners += sizes[i++]) {
+        uint32_t color = 0, number = 0;
+        for (int c = 0; c < 3; c++)
+            color = color << 8 | (r->colors_of_faces ? colors[i][c] : mean_code(colors, corners, sizes[i], c, lights));
+        status = glint_mesh_find(&set, &shades, &color, sizeof color, &number, r->error);
+        if (!status && shades.count > r->materials.count)
+            status = add_material(&r->materials, color, lights, r->error);
+        if (!status)
+            status = glint_mesh_append(&r->material_index, &number, r->error);
+    }
+    free(shades.items);
+    free(set.slots);
+    return status;
+}
