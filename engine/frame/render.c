@@ -494,14 +494,15 @@ void glint_frame_stats_add(glint_frame_stats *to, const glint_frame_stats *more,
 }
 
 /// Adds what the base took, and the choice.
-static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms)
+static void add_base(glint_frame_stats *to, const glint_frame_stats *base, const glint_plan *plan, double choose_ms,
+                     bool time_stages)
 {
     const double pixels = (double)to->pixels;
     const double all = pixels + (double)to->refined * plan->desc.samples; // samples
     glint_frame_stats_add(to, base, pixels / all);
     to->render_ms += choose_ms;
     for (int i = 0; i < to->stage_count; i++)
-        if (to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
+        if (time_stages && to->stage_name[i] == glint_stage_names[GLINT_STAGE_REFINE])
             to->stage_ms[i] = choose_ms;
 }
 
@@ -527,7 +528,7 @@ static glint_status run_adaptive(glint_renderer *renderer, const glint_plan *pla
     if (status)
         return status;
     stats->refined = renderer->refine.count;
-    add_base(stats, &first, plan, renderer->time_stages ? choose_ms : 0);
+    add_base(stats, &first, plan, choose_ms, renderer->time_stages);
     return GLINT_OK;
 }
 

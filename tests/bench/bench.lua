@@ -95,6 +95,16 @@ local function verdict(row, ratio)
   return ("%s %-5s %s"):format(row.more and ">=" or "<=", number(row.bar), met and "met" or "MISSED")
 end
 
+-- The other of a peer's two times: its clock beside its processor time, or that beside its clock.
+local function beside(name)
+  local id, value = name:match "^(.-):(.+)$"
+  local samples = by_id[id].samples or {}
+  if not samples.cpu then return nil end
+  local other = value == "cpu" and "render" or "cpu"
+  local unit = samples[other].unit == samples[value].unit and "" or " " .. samples[other].unit
+  return (other == "cpu" and "processor time %s%s" or "by its clock %s%s"):format(cell(samples[other]), unit)
+end
+
 local function print_line(...) print((("%-46s %-6s %-26s %-13s %-26s %8s  %s"):format(...):gsub("%s+$", ""))) end
 
 local function print_row(row)
@@ -107,7 +117,8 @@ local function print_row(row)
   local note = why or their_why or row.note
   if ours and theirs then
     local ratio = row.more and median(theirs) / median(ours) or median(ours) / median(theirs)
-    print_line(row[2], unit, cell(ours), label, cell(theirs), ("%.2f"):format(ratio), verdict(row, ratio))
+    local last = table.concat({ verdict(row, ratio), beside(row[4]) }, "  ")
+    print_line(row[2], unit, cell(ours), label, cell(theirs), ("%.2f"):format(ratio), last)
   elseif ours and not row[4] then
     print_line(row[2], unit, cell(ours), "", "", "", verdict(row, median(ours)))
   else

@@ -229,6 +229,7 @@ static glint_render_desc frame_desc(const bench_options *options)
     d.width = BENCH_WIDTH;
     d.height = BENCH_HEIGHT;
     d.samples = options->samples;
+    d.adaptive = options->adaptive ? 0.1 : 0;
     d.precision = options->is_float ? GLINT_FLOAT : GLINT_DOUBLE;
     d.passes = 0;
     d.codes = true;

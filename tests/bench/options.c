@@ -49,6 +49,8 @@ static void read_word(bench_options *o, const char *word)
         o->shadows = on;
     else if (strcmp(name, "area") == 0)
         o->area = on;
+    else if (strcmp(name, "adaptive") == 0)
+        o->adaptive = on;
     else
         bench_fail(word, "no such option");
 }

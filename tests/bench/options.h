@@ -23,6 +23,7 @@ typedef struct bench_options {
     bool no_reuse; ///< glint alone
     bool shadows; ///< default true
     bool area; ///< 16 samples of a sphere light instead of a point light
+    bool adaptive; ///< all samples only where neighbours differ by more than a tenth; for glint and POV-Ray alone, of 16
 } bench_options;
 
 /// Ends the program with a message when a word is not understood.

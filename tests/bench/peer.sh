@@ -1,18 +1,20 @@
 #!/bin/sh
 # Renders a scene with POV-Ray or Tachyon, and prints what the driver reads: name, unit, value.
-#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N]
-#       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything
+#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N] [adaptive=1]
+#       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything; cpu: processor time, of
+#       POV-Ray that of tracing, which it tells, of Tachyon that of everything
 #   peer.sh povray job change=light|shininess [threads=N]
-#       seconds for the job's 60 frames: its first FRAMES are rendered, and the time multiplied
+#       seconds for the job's 60 frames: its first FRAMES are rendered, and the time multiplied; cpu likewise
 set -eu
 FRAMES=6
 program=$1 mode=$2
 shift 2
-threads=1 samples=1 shade=-fullshade
+threads=1 samples=1 adaptive=0 shade=-fullshade
 for word in "$@"; do
     case $word in
     threads=*) threads=${word#*=} ;;
     samples=*) samples=${word#*=} ;;
+    adaptive=*) adaptive=${word#*=} ;;
     shadows=0) shade=-mediumshade ;;
     esac
 done
@@ -24,8 +26,8 @@ trap 'rm -rf "$folder"' EXIT
 case $program in
 povray)
     set -- "+I$folder/scene" "+O$folder/out.png" +W1920 +H1080 +FN8 -D "+WT$threads"
-    # method 1 with threshold 0: N x N samples wherever neighbours differ at all
-    if [ "$samples" -gt 1 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
+    # method 1: R x R samples wherever neighbours differ by more than the threshold
+    if [ "$adaptive" = 1 ]; then set -- "$@" +AM1 +A0.1 +R4 -J; elif [ "$samples" -gt 1 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
     if [ "$mode" = job ]; then set -- "$@" +KFI1 "+KFF$FRAMES"; fi
     ;;
 tachyon)
@@ -38,20 +40,30 @@ tachyon)
     ;;
 esac
 
+times >"$folder/before"
 begin=$(date +%s%N)
 "$program" "$@" >"$folder/log" 2>&1 </dev/null || {
     tail -n 5 "$folder/log" >&2
     exit 1
 }
 end=$(date +%s%N)
+times >"$folder/after"
+# The second line is of the children: "0m0.60s 0m0.01s", user and system.
+cpu=$(awk 'FNR == 2 { sign = FILENAME ~ /after$/ ? 1 : -1
+    for (i = 1; i <= 2; i++) { split($i, part, "m"); sum += sign * (60 * part[1] + part[2]) } }
+    END { print sum }' "$folder/before" "$folder/after")
 
 if [ "$mode" = job ]; then
-    awk -v ns=$((end - begin)) -v frames=$FRAMES 'BEGIN { print "job s", ns / 1e9 * 60 / frames }'
+    awk -v ns=$((end - begin)) -v cpu="$cpu" -v frames=$FRAMES 'BEGIN {
+        print "job s", ns / 1e9 * 60 / frames; print "cpu s", cpu * 60 / frames }'
     exit
 fi
-# POV-Ray: "Trace Time: 0 hours 0 minutes 0 seconds (0.603 seconds)"; Tachyon: "Ray Tracing Time: 0.1595 seconds"
-tr '\r' '\n' <"$folder/log" | awk -v ns=$((end - begin)) '
+# POV-Ray: "Trace Time: 0 hours 0 minutes 0 seconds (0.603 seconds)", "using 1 thread(s) with 0.600 CPU-seconds total"; Tachyon:
+# "Ray Tracing Time: 0.1595 seconds"
+tr '\r' '\n' <"$folder/log" | awk -v ns=$((end - begin)) -v cpu="$cpu" '
+    /CPU-seconds total/ { cpu = substr($0, index($0, "with ") + 5) + 0 }
     match($0, /[0-9.]+ seconds\)?$/) { seconds = substr($0, RSTART) + 0 }
     /Parse Time|Bounding Time|Parsing Time|Preprocessing Time/ { setup += seconds }
     /Trace Time|Ray Tracing Time/ { render = seconds }
-    END { print "setup ms", setup * 1e3; print "render ms", render * 1e3; print "wall ms", ns / 1e6 }'
+    END { print "setup ms", setup * 1e3; print "render ms", render * 1e3; print "wall ms", ns / 1e6
+          print "cpu ms", cpu * 1e3 }'

@@ -1,6 +1,6 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|1k|1M|glass|box|floor100] [shadows=0] [samples=N] [area=1] [lamps=N] [change=light|shininess]
+///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100] [shadows=0] [samples=N] [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of

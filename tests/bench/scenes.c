@@ -59,6 +59,13 @@ static void make_workshop(bench_scene *s, size_t count)
     set3(s->light, 0, 20, 0);
 }
 
+/// The ball in front is of glass.
+static void make_glass_ball(bench_scene *s, size_t count)
+{
+    make_workshop(s, count);
+    s->materials[count - 1] = (bench_material) { .transmission = 0.9F };
+}
+
 /// splitmix64, as a number in 0 .. 1 of 24 bits.
 static float random_unit(uint64_t *state)
 {
@@ -200,6 +207,7 @@ static const struct {
     void (*make)(bench_scene *s, size_t count);
     size_t count;
 } scenes[] = { { "workshop", make_workshop, 5 },
+               { "glassball", make_glass_ball, 5 },
                { "1k", make_cloud, 1000 },
                { "1M", make_cloud, 1000000 },
                { "over1k", make_cloud_over_floor, 1000 },

@@ -33,6 +33,7 @@ typedef struct bench_scene {
 
 /// False when there is no such scene. There are:
 ///   workshop                 four balls on a large one
+///   glassball                the same, one of them of glass
 ///   1k, 1M                   a cloud of so many spheres; over1k, over1M: above the top of a large ball
 ///   floor100, floor1k, floor1M   so many spheres resting on such a floor
 ///   glass                    24 mirrors, glass and matt spheres on a floor
