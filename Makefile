@@ -135,7 +135,7 @@ $(BUILD)/engine/stages/simd/isa_sse2.o:   ISA := $(KERNEL_CFLAGS)
 $(BUILD)/engine/stages/simd/isa_avx2.o:   ISA := $(KERNEL_CFLAGS) $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/isa_avx512.o: ISA := $(KERNEL_CFLAGS) -mavx512f -mavx512dq -mavx512vl -mavx512bw $(X86_BITS) -mavx2 -mfma
 $(BUILD)/engine/stages/simd/select.o: ISA := $(KERNELS:%=-DGLINT_KERNEL_%)
-$(addprefix $(BUILD)/engine/,compare/flip.o frame/refine.o tile/derivative.o tile/derivative_light.o tile/environment.o tile/pattern_inputs.o tile/shader.o plan/tints.o): ISA := $(KERNEL_CFLAGS)
+$(addprefix $(BUILD)/engine/,compare/flip.o frame/refine.o tile/derivative.o tile/derivative_light.o tile/environment.o tile/indirect.o tile/pattern_inputs.o tile/shader.o plan/tints.o): ISA := $(KERNEL_CFLAGS)
 $(BINDINGS_OBJ): ISA := $(LUA_CFLAGS)
 $(BUILD)/engine/text/letters.o $(BUILD)/shared/engine/text/letters.o: OWN := $(FONT_CFLAGS)
 $(BUILD)/bindings/watch/sixel.o: OWN := $(SIXEL_CFLAGS)

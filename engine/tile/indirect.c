@@ -400,16 +400,33 @@ static bool go_on(struct glint_indirect *indirect, const glint_tile_frame *frame
 
 // ---- What they find ----
 
-/// Adds what ray i has found in sample `at`. Paths that end there do without the light that more of them would bring: they take
-/// the ambient light that it stands for.
-static void collect_sample(const glint_batch *batch, const glint_plan *plan, uint32_t i, uint32_t at, glint_tile *to)
+/// The light that the samples of a group have been found to send back, in each channel.
+static void found_in(const glint_batch *batch, uint32_t g, double found[3][GLINT_GROUP])
+{
+    const double(*sum)[3][GLINT_TILE_SAMPLES] = batch->tile.film.sum;
+    _Static_assert(GLINT_TERM_LOCAL == 4, "in the order of glint_batch_found");
+    for (int c = 0; c < 3; c++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            const uint32_t at = g * GLINT_GROUP + i;
+            found[c][i] = ((sum[0][c][at] + sum[1][c][at]) + sum[2][c][at]) + sum[3][c][at];
+        }
+}
+
+/// Adds what rays have found in some samples of a group. Paths that end there do without the light that more of them would bring: they
+/// take the ambient light that it stands for.
+static void collect_group(const glint_batch *batch, const glint_plan *plan, uint32_t g, unsigned lanes, glint_tile *to)
 {
     const glint_rays *rays = batch->rays;
-    const bool last = rays->scatters[i] == plan->indirect.bounces && glint_has_lane(batch->tile.at.hits, at);
-    for (int c = 0; c < 3; c++) {
-        const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
-        to->film.sum[rays->term[i]][c][rays->pixel[i]] +=
-            rays->weight[c][i] * (glint_batch_found(batch, c, at) + rest);
+    double found[3][GLINT_GROUP];
+    found_in(batch, g, found);
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctz(left), at = g * GLINT_GROUP + lane, i = batch->ray_of[at];
+        const bool last = rays->scatters[i] == plan->indirect.bounces && batch->tile.at.hits[g] >> lane & 1;
+        double(*sum)[GLINT_TILE_SAMPLES] = to->film.sum[rays->term[i]];
+        for (int c = 0; c < 3; c++) {
+            const double rest = last ? glint_tile_ambient_rest(&batch->tile, plan, at, c) : 0;
+            sum[c][rays->pixel[i]] += rays->weight[c][i] * (found[c][lane] + rest);
+        }
     }
 }
 
@@ -452,10 +469,8 @@ static void collect(const struct glint_indirect *indirect, const glint_tile_fram
     const uint16_t *lanes = batch->whole ? batch->rays->active : batch->tile.at.hits;
     const uint32_t groups = batch->whole ? batch->rays->group_count : batch->tile.group_count;
     for (uint32_t g = 0; g < groups; g++)
-        for (unsigned left = lanes[g]; left; left &= left - 1) {
-            const uint32_t at = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left);
-            collect_sample(batch, frame->plan, batch->ray_of[at], at, to);
-        }
+        if (lanes[g])
+            collect_group(batch, frame->plan, g, lanes[g], to);
     if (batch->whole)
         return;
     uint16_t missed[GLINT_TILE_GROUPS];

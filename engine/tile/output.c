@@ -87,6 +87,11 @@ static void store_normal(const glint_tile *tile, const glint_tile_frame *frame)
     float normal[3][GLINT_TILE_SAMPLES];
     double group[GLINT_GROUP];
     for (uint32_t g = 0; g < tile->group_count; g++) {
+        if (!tile->at.hits[g] && !frame->plan->visible_light_count) {
+            for (int c = 0; c < 3; c++)
+                memset(normal[c] + g * GLINT_GROUP, 0, GLINT_GROUP * sizeof *normal[c]);
+            continue;
+        }
         if (tile->at.hits[g] != 0xffff) {
             part_normals(tile, frame, g, (float *const[3]) { normal[0], normal[1], normal[2] });
             continue;
