@@ -58,6 +58,7 @@ typedef uint32_t glint_value; ///< a value of a builder: one double for each poi
 #define GLINT_PROGRAM_LENGTH_MAX 4096 ///< instructions of a program
 #define GLINT_PROGRAM_ROWS_MAX 256 ///< intermediate values that a program may need at the same time
 #define GLINT_PROGRAM_OUTPUTS_MAX 8 ///< numbers that it gives for each point
+#define GLINT_PARAMETERS_MAX 32 ///< that numbers of a program may change with
 
 /// A pattern gives a number or a colour at a point, a shader what one light leaves there.
 typedef enum glint_program_kind { GLINT_PROGRAM_PATTERN, GLINT_PROGRAM_SHADER } glint_program_kind;
@@ -189,6 +190,10 @@ glint_status glint_builder_create(glint_program_kind kind, glint_builder **out, 
 void glint_builder_destroy(glint_builder *builder);
 /// A number: any double. The same bits are the same value.
 glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error);
+/// A number that changes with parameters: slopes[k] is how fast with parameter k, `count` of them. Programs have the number itself, and
+/// glint_program_tangent. GLINT_ERR_INVALID for more than GLINT_PARAMETERS_MAX.
+glint_status glint_builder_parameter(glint_builder *builder, double number, const double *slopes, size_t count,
+                                     glint_value *out, glint_error *error);
 /// GLINT_ERR_INVALID for an input of shaders in a pattern.
 glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error);
 /// operands  as many values of this builder as the operation has.
@@ -241,6 +246,9 @@ bool glint_program_reads(const glint_program *program, glint_input input);
 void glint_program_structure(const glint_program *program, uint64_t key[2]);
 /// True, with `outputs` filled, when all outputs are numbers: the same everywhere.
 bool glint_program_constant(const glint_program *program, double *outputs);
+/// A program of how fast the outputs change with a parameter, for glint_slope: exact, but that floor and its like, comparisons and a
+/// texel's footprint have slope 0. Owned by the program. NULL: none of its numbers changes with it.
+const glint_program *glint_program_tangent(const glint_program *program, size_t parameter);
 /// The instructions as text, a line each, "r3 = muladd p.x 0.5 r1", and the outputs last; the numbers read back as the
 /// same bits. The caller frees it. NULL: out of memory.
 char *glint_program_listing(const glint_program *program);
@@ -960,13 +968,16 @@ typedef struct glint_slope {
     const glint_camera *camera; ///< likewise
     const char *field; ///< its name in the description, one of those under glint_derivative
     double slope[3]; ///< of each component; of a single number the first
+    const glint_program *program; ///< of a material's field that a program gives: how fast that changes, for each point, as
+        ///< glint_program_tangent has it; `slope` means nothing. Retained by the plan. NULL: numbers
 } glint_slope;
 
 /// How fast the picture's light, linear beauty, changes with a parameter: exact where surfaces, shadows and the samples of area
 /// lights are seen where they were, a point of a surface moving with what sees it, by the eye, in mirrors and through glass. Rays too
-/// weak to be seen (2^-20 of linear light, a sample) are not followed. Patterns have no slopes of their own. Slopes of what the scene does not have count as nothing.
+/// weak to be seen (2^-20 of linear light, a sample) are not followed. Slopes of what the scene does not have count as nothing.
 ///
-///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption
+///   material  diffuse, ambient, specular, shininess, roughness, f0; mirror and transmission where they are above 0, ior, absorption;
+///             of those that programs give, of built-in models
 ///   light     color, intensity, ambient, diffuse, specular, attenuation, position, direction, inner_rad, outer_rad,
 ///             exponent, radiance
 ///   scene     ambient, background

@@ -26,7 +26,7 @@ static int apply_each(lua_State *L)
     glintL_operand in[GLINT_OPERANDS_MAX], out = { .is_vector = false };
     char path[48];
     check_count(L, info, count, count);
-    if (glintL_dual_function(L, info->name))
+    if (!glintL_current_trace(L) && glintL_dual_function(L, info->name))
         return 1;
     for (int i = 0; i < count; i++) {
         snprintf(path, sizeof path, count > 1 ? "%s: argument %d" : "%s", info->name, i + 1);

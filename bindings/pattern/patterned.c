@@ -101,6 +101,15 @@ static void push_traced(lua_State *L, int frame, bool is_background)
     lua_rawset(L, frame);
 }
 
+// Whether some number of the program changes with a variable.
+static bool changes(const glint_program *program)
+{
+    bool any = false;
+    for (size_t k = 0; k < GLINTL_VARIABLES_MAX; k++)
+        any = any || glint_program_tangent(program, k);
+    return any;
+}
+
 // Gives the object whose userdata is at `index` the programs of its patterns.
 static void trace_object(lua_State *L, int index, const char *type, int frame)
 {
@@ -112,6 +121,8 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
         char bytes[GLINTL_DESC_SIZE];
     } desc;
     glint_error error;
+    bool sloped = false;
+    double outputs[GLINT_PROGRAM_OUTPUTS_MAX];
     for (const glintL_field *field = fields; field->name; field++)
         if (field->program_offset && glintL_push_kept(L, index, field->name))
             push_traced(L, frame, strcmp(type, GLINTL_SCENE) == 0);
@@ -128,10 +139,16 @@ static void trace_object(lua_State *L, int index, const char *type, int frame)
         const glintL_traced *traced = lua_touserdata(L, -1);
         if (traced)
             program = traced->program;
+        sloped = sloped || (program && changes(program));
+        if (program && changes(program) && glint_program_constant(program, outputs))
+            glintL_error(L, "%s.%s: a pattern that gives one number everywhere has no derivative by it; the number itself has",
+                         type + sizeof "glint." - 1, field->name);
         memcpy(desc.bytes + field->program_offset, &program, sizeof program);
     }
     glintL_check_status(L, type + sizeof "glint." - 1, &error, class->set(object, &desc, &error));
     lua_settop(L, top);
+    if (sloped)
+        glintL_note_sloped(L, index);
 }
 
 void glintL_trace_material(lua_State *L, int index)

@@ -117,6 +117,18 @@ glintL_term glintL_dot_terms(lua_State *L, const glintL_term a[3], const glintL_
 
 // ---- From Lua ----
 
+// A number that changes with variables: while a function is traced a parameter of the program, for one point the number.
+static glintL_term dual_term(lua_State *L, const glintL_trace *trace, const glintL_dual *d)
+{
+    glint_error error;
+    glintL_term term = { .is_symbol = true };
+    if (!trace->builder)
+        return glintL_number_term(d->value);
+    glintL_check_status(L, "", &error,
+                        glint_builder_parameter(trace->builder, d->value, d->slope, GLINTL_VARIABLES_MAX, &term.value, &error));
+    return term;
+}
+
 // False: neither a number nor a symbol. Raises for a symbol that has outlived its function.
 static bool to_term(lua_State *L, int index, glintL_term *out)
 {
@@ -124,10 +136,15 @@ static bool to_term(lua_State *L, int index, glintL_term *out)
         *out = glintL_number_term(lua_tonumber(L, index));
         return true;
     }
+    const glintL_dual *d = glintL_to_dual(L, index);
+    const glintL_trace *trace = glintL_current_trace(L);
+    if (d && trace) {
+        *out = dual_term(L, trace, d);
+        return true;
+    }
     const symbol *found = luaL_testudata(L, index, GLINTL_SYMBOL);
     if (!found)
         return false;
-    const glintL_trace *trace = glintL_current_trace(L);
     if (!trace || trace->serial != found->serial)
         glintL_error(L, "a symbol of another call of a pattern's function: what is made of p or s lasts for that call "
                         "only; keep none of it in variables outside");

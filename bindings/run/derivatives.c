@@ -46,6 +46,21 @@ typedef struct gathering {
     size_t count;
 } gathering;
 
+// How fast the program of a field changes; NULL: it does not, or there is none.
+static const glint_program *find_tangent(const glintL_class *class, const void *object, const glintL_field *field, int variable)
+{
+    union {
+        max_align_t align;
+        char bytes[GLINTL_DESC_SIZE];
+    } desc;
+    const glint_program *program;
+    if (!field->program_offset)
+        return NULL;
+    class->get(object, &desc);
+    memcpy(&program, desc.bytes + field->program_offset, sizeof program);
+    return program ? glint_program_tangent(program, (size_t)variable) : NULL;
+}
+
 // The slopes of the object whose userdata is at `index` by a variable. Allocates nothing.
 static void gather_object(lua_State *L, int index, const char *type, int variable, gathering *g)
 {
@@ -54,8 +69,8 @@ static void gather_object(lua_State *L, int index, const char *type, int variabl
     if (!object || (strcmp(type, GLINTL_SCENE) == 0 && object != g->scene))
         return;
     for (const glintL_field *field = class->variant(object)->fields; field->name; field++) {
-        glint_slope slope = { .field = engine_name(field) };
-        if (!glintL_get_slope(L, index, field, variable, slope.slope))
+        glint_slope slope = { .field = engine_name(field), .program = find_tangent(class, object, field, variable) };
+        if (!glintL_get_slope(L, index, field, variable, slope.slope) && !slope.program)
             continue;
         for (int c = 0; c < 3 && field->kind == GLINTL_DEGREES; c++)
             slope.slope[c] *= PI / 180;

@@ -112,6 +112,21 @@ glintL_dual glintL_dual_pow(const glintL_dual *a, const glintL_dual *b)
 
 // ---- Operators ----
 
+// Whether the other operand has an operator of its own, a symbol's or a vector's: that makes the result.
+static bool defer(lua_State *L, const char *event)
+{
+    for (int i = 1; i <= 2; i++) {
+        const int type = lua_type(L, i);
+        if ((type != LUA_TUSERDATA && type != LUA_TTABLE) || glintL_to_dual(L, i) || luaL_getmetafield(L, i, event) == LUA_TNIL)
+            continue;
+        lua_pushvalue(L, 1);
+        lua_pushvalue(L, 2);
+        lua_call(L, 2, 1);
+        return true;
+    }
+    return false;
+}
+
 static void read_operands(lua_State *L, glintL_dual *a, glintL_dual *b)
 {
     for (int i = 1; i <= 2; i++)
@@ -128,6 +143,8 @@ static int push_result(lua_State *L, glintL_dual d)
 static int add(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__add"))
+        return 1;
     read_operands(L, &a, &b);
     return push_result(L, glintL_dual_apply(&a, 1, &b, 1, a.value + b.value));
 }
@@ -135,6 +152,8 @@ static int add(lua_State *L)
 static int subtract(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__sub"))
+        return 1;
     read_operands(L, &a, &b);
     return push_result(L, glintL_dual_apply(&a, 1, &b, -1, a.value - b.value));
 }
@@ -142,6 +161,8 @@ static int subtract(lua_State *L)
 static int multiply(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__mul"))
+        return 1;
     read_operands(L, &a, &b);
     return push_result(L, glintL_dual_apply(&a, b.value, &b, a.value, a.value * b.value));
 }
@@ -149,6 +170,8 @@ static int multiply(lua_State *L)
 static int divide(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__div"))
+        return 1;
     read_operands(L, &a, &b);
     const double q = a.value / b.value;
     return push_result(L, glintL_dual_apply(&a, 1 / b.value, &b, -q / b.value, q));
@@ -158,6 +181,8 @@ static int divide(lua_State *L)
 static int modulo(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__mod"))
+        return 1;
     read_operands(L, &a, &b);
     lua_pushnumber(L, a.value);
     lua_pushnumber(L, b.value);
@@ -177,6 +202,8 @@ static int divide_whole(lua_State *L)
 static int raise(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__pow"))
+        return 1;
     read_operands(L, &a, &b);
     return push_result(L, glintL_dual_pow(&a, &b));
 }
@@ -320,11 +347,19 @@ static void put_slopes(lua_State *L, int object, const glintL_field *field, cons
     slopes *kept = lua_newuserdatauv(L, sizeof *kept, 0);
     *kept = *s;
     glintL_keep(L, object, key, -1);
+    lua_pop(L, 1);
+    glintL_note_sloped(L, object);
+}
+
+void glintL_note_sloped(lua_State *L, int index)
+{
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 6, "slopes");
     glintL_push_weak_table(L, &SLOPED, "k");
-    lua_pushvalue(L, object);
+    lua_pushvalue(L, index);
     lua_pushboolean(L, true);
     lua_rawset(L, -3);
-    lua_pop(L, 2);
+    lua_pop(L, 1);
 }
 
 void glintL_keep_slopes(lua_State *L, int index, const glintL_field *field, int value)

@@ -147,6 +147,8 @@ void glintL_keep_table_slopes(lua_State *L, int index, int table, const glintL_f
 bool glintL_push_sloped(lua_State *L, int index, const glintL_field *field);
 /// The slopes of a field by a variable; false: all are 0.
 bool glintL_get_slope(lua_State *L, int index, const glintL_field *field, int variable, double out[3]);
+/// Counts the userdata at `index` among those with slopes.
+void glintL_note_sloped(lua_State *L, int index);
 /// Pushes a table that has as keys all userdata with slopes, and maybe others.
 void glintL_push_all_sloped(lua_State *L);
 void glintL_open_dual(lua_State *L);

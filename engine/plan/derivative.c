@@ -4,6 +4,7 @@
 #include "engine/base/vec.h"
 #include "engine/geometry/prims.h"
 #include "engine/plan/derivative_slopes.h"
+#include "engine/program/program.h"
 #include "engine/scene/area_light.h"
 
 #include <stdio.h>
@@ -259,6 +260,21 @@ static void fill_view(glint_derivative_view *out, const glint_plan *plan, const 
     out->moves = glint_any_slope(out->eye) || glint_any_slope(out->forward) || glint_any_slope(out->right) || glint_any_slope(out->up);
 }
 
+/// What changes with programs that do.
+static void take_programs(const glint_derivative_programs *programs, size_t material, glint_plan_derivative *out)
+{
+    for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
+        if (!programs->of[field])
+            continue;
+        out->repaints = true;
+        if (field == GLINT_FIELD_MIRROR || field == GLINT_FIELD_TRANSMISSION)
+            out->weighs = true;
+        else
+            out->materials[material].varies = 1;
+        out->everywhere = out->everywhere || field == GLINT_FIELD_AMBIENT || field == GLINT_FIELD_DIFFUSE; // which may be both
+    }
+}
+
 // ---- A derivative ---------------------------------------------------------------------------------------------------
 
 /// Ia, of the scene and all lights.
@@ -284,6 +300,7 @@ static void fill(const glint_plan *plan, const glint_scene *scene, const glint_s
         const glint_derivative_bounce *bounce = &out->bounces[i];
         fill_material(&out->materials[i], desc, &slopes->materials[i], plan->materials[i].planes, ambient);
         fill_bounce(&out->bounces[i], desc, &slopes->materials[i]);
+        take_programs(&out->programs[i], i, out);
         out->bends = out->bends || bounce->ior != 0;
         out->weighs = out->weighs || bounce->ior != 0 || glint_any_slope(bounce->mirror) ||
                       glint_any_slope(bounce->transmission) || glint_any_slope(bounce->absorption);
@@ -326,6 +343,9 @@ static glint_status make_one(const glint_plan *plan, const glint_scene *scene, c
     memset(slopes->shapes, 0, (parts + 1) * sizeof *slopes->shapes);
     memset(&slopes->camera, 0, sizeof slopes->camera);
     memset(&slopes->scene, 0, sizeof slopes->scene);
+    slopes->programs = out->programs = calloc(materials + 1, sizeof *out->programs);
+    if (!out->programs)
+        return glint_fail_nomem(error);
     for (size_t i = 0; i < d->slope_count && !status; i++)
         status = glint_derivative_add(plan, scene, d, &d->slopes[i], slopes, error);
     if (status)
@@ -367,6 +387,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
                                   .shapes = malloc((plan->geometry->part_count + 1) * sizeof *slopes.shapes) };
     glint_status status = slopes.materials && slopes.lights && slopes.shapes ? GLINT_OK : glint_fail_nomem(error);
     all->light_count = scene->lights.count;
+    all->material_count = plan->geometry->materials.count;
     for (size_t i = 0; i < desc->derivative_count && !status; i++) {
         glint_plan_derivative *d = &all->of[all->count++];
         status = make_one(plan, scene, &desc->derivatives[i], &slopes, d, error);
@@ -374,6 +395,7 @@ static glint_status make_all(glint_plan *plan, const glint_scene *scene, const g
         all->bends = all->bends || d->bends;
         all->weighs = all->weighs || d->weighs;
         all->everywhere = all->everywhere || d->everywhere;
+        all->repaints = all->repaints || d->repaints;
     }
     free(slopes.materials);
     free(slopes.lights);
@@ -396,6 +418,9 @@ void glint_plan_derivatives_free(glint_plan_derivatives *derivatives)
     for (size_t i = 0; derivatives && i < GLINT_DERIVATIVES_MAX; i++) {
         free(derivatives->of[i].materials);
         free(derivatives->of[i].bounces);
+        for (size_t k = 0; k < derivatives->material_count * GLINT_FIELD_PLANES && derivatives->of[i].programs; k++)
+            glint_program_release((glint_program *)(uintptr_t)derivatives->of[i].programs[k / GLINT_FIELD_PLANES].of[k % GLINT_FIELD_PLANES]);
+        free(derivatives->of[i].programs);
         free(derivatives->of[i].lights);
         free(derivatives->of[i].parts);
     }
@@ -408,6 +433,14 @@ glint_key glint_derivative_key(const glint_plan *plan, size_t index, glint_key k
     key = glint_key_add_string(key, d->name);
     key = glint_key_add(key, d->materials, plan->geometry->materials.count * sizeof *d->materials);
     key = glint_key_add(key, d->bounces, plan->geometry->materials.count * sizeof *d->bounces);
+    for (size_t i = 0; i < plan->geometry->materials.count * GLINT_FIELD_PLANES; i++) {
+        const glint_program *program = d->programs[i / GLINT_FIELD_PLANES].of[i % GLINT_FIELD_PLANES];
+        if (program) {
+            key = glint_key_add(key, &i, sizeof i);
+            key = glint_key_add(key, &program->structure, sizeof program->structure);
+            key = glint_key_add(key, &program->numbers, sizeof program->numbers);
+        }
+    }
     key = glint_key_add(key, d->lights, plan->derivatives->light_count * sizeof *d->lights);
     key = glint_key_add(key, d->parts, plan->geometry->part_count * sizeof *d->parts);
     key = glint_key_add(key, &d->view, sizeof d->view);

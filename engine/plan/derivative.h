@@ -4,6 +4,7 @@
 
 #include "engine/base/dual.h"
 #include "engine/base/hash.h"
+#include "engine/plan/patterns.h"
 #include "engine/stages/stages.h"
 
 /// A material, as glint_shade_material has it.
@@ -48,8 +49,14 @@ typedef struct glint_derivative_view {
     double eye[3], forward[3], right[3], up[3]; ///< as in glint_plan_camera
 } glint_derivative_view;
 
+/// How fast programs of a material change; owned references.
+typedef struct glint_derivative_programs {
+    const glint_program *of[GLINT_FIELD_PLANES]; ///< NULL: not at all
+} glint_derivative_programs;
+
 typedef struct glint_plan_derivative {
     char name[GLINT_DERIVATIVE_NAME_SIZE];
+    glint_derivative_programs *programs; ///< beside the plan's materials
     glint_derivative_material *materials; ///< beside the plan's
     glint_derivative_bounce *bounces; ///< likewise
     glint_derivative_light *lights; ///< in the scene's order
@@ -60,11 +67,12 @@ typedef struct glint_plan_derivative {
     bool bends; ///< some surface moves, or the eye, or an index of refraction turns rays
     bool weighs; ///< some material sends on another share
     bool everywhere; ///< something has a slope that no light brings
+    bool repaints; ///< some program changes
 } glint_plan_derivative;
 
 typedef struct glint_plan_derivatives {
-    size_t count, light_count;
-    bool moves, bends, weighs, everywhere;
+    size_t count, light_count, material_count;
+    bool moves, bends, weighs, everywhere, repaints;
     glint_plan_derivative of[GLINT_DERIVATIVES_MAX];
 } glint_plan_derivatives;
 

@@ -61,6 +61,9 @@ static const char *find_bounce_obstacle(const glint_plan *plan, const glint_plan
             return "material.mirror: 0 sends no ray on, and has no derivative; above 0 it has";
         if (glint_any_slope(d->bounces[i].transmission) && !glint_material_transmits(desc))
             return "material.transmission: 0 sends no ray on, and has no derivative; above 0 it has";
+        if (plan->tints && d->programs[i].of[GLINT_FIELD_TRANSMISSION])
+            return "material.transmission: light through what a pattern colours has no derivative by the pattern; lights with "
+                   "shadows = false have";
         absorbs = absorbs || glint_any_slope(d->bounces[i].absorption);
     }
     if (plan->patterns && d->bends)

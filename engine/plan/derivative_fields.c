@@ -1,6 +1,7 @@
 /// Which fields of a scene have derivatives, and the slopes that a derivative gives them.
 #include "engine/base/status.h"
 #include "engine/plan/derivative_slopes.h"
+#include "engine/program/program.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -78,9 +79,43 @@ static void add(void *desc, const slope_field *field, const double slope[3])
         to[c] += slope[c];
 }
 
+/// The program's field of that name; GLINT_FIELD_PLANES: there is none.
+static int find_program_field(const char *name)
+{
+    int field = 0;
+    while (field < GLINT_FIELD_PLANES && (!name || field == GLINT_FIELD_REST || strcmp(name, glint_field_name(field)) != 0))
+        field++;
+    return field;
+}
+
+static glint_status add_program(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
+                                glint_scene_slopes *out, glint_error *error)
+{
+    const glint_list *list = &plan->geometry->materials;
+    const size_t i = glint_list_find(list, s->material);
+    const int field = find_program_field(s->field);
+    if (i == list->count)
+        return GLINT_OK;
+    if (field == GLINT_FIELD_PLANES)
+        return refuse_field(d, "material", s->field, material_fields, 0, error);
+    const glint_program *own = plan->patterns ? plan->patterns->of[i].program[field] : NULL;
+    if (!own || own->code.output_count != s->program->code.output_count || own->kind != s->program->kind)
+        return glint_fail(error, GLINT_ERR_INVALID,
+                          "derivative '%s': material.%s: the slope is a program's, but not of the one that gives the field", d->name,
+                          s->field);
+    plan->patterns->of[i].repaints = true;
+    if (plan->patterns->row_count < s->program->code.row_count)
+        plan->patterns->row_count = s->program->code.row_count;
+    glint_program_release((glint_program *)(uintptr_t)out->programs[i].of[field]);
+    out->programs[i].of[field] = glint_program_retain((glint_program *)(uintptr_t)s->program);
+    return GLINT_OK;
+}
+
 static glint_status add_material(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
                                  glint_scene_slopes *out, glint_error *error)
 {
+    if (s->program)
+        return add_program(plan, d, s, out, error);
     const glint_list *list = &plan->geometry->materials;
     const slope_field *field = find_field(material_fields, s->field, 0);
     if (!field)
@@ -141,6 +176,9 @@ glint_status glint_derivative_add(const glint_plan *plan, const glint_scene *sce
         if (!isfinite(s->slope[c]))
             return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: finite slopes expected, got %g", d->name,
                               s->field ? s->field : "(null)", s->slope[c]);
+    if (s->program && !s->material)
+        return glint_fail(error, GLINT_ERR_INVALID, "derivative '%s': %s: the numbers of its program have no derivative; those of "
+                          "materials have", d->name, s->field ? s->field : "(null)");
     if (s->material)
         return add_material(plan, d, s, out, error);
     if (s->light)

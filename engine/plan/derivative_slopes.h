@@ -11,6 +11,7 @@ typedef struct glint_scene_slopes {
     glint_shape_desc *shapes; ///< of the geometry's parts
     glint_camera_desc camera;
     glint_scene_desc scene;
+    glint_derivative_programs *programs; ///< as glint_plan_derivative has them
 } glint_scene_slopes;
 
 /// plan/derivative_fields.c: adds one slope to those of its object's description; fails where no derivative goes through the field.

@@ -43,6 +43,7 @@ typedef struct glint_plan_pattern {
     uint32_t reads; ///< inputs of the programs that are run at surfaces, a bit each
     bool any; ///< it has programs
     bool cut; ///< there are holes in its surfaces, or may be
+    bool repaints; ///< a derivative of the frame is by numbers of its programs
     bool ambient_follows; ///< ambient is diffuse
     glint_key numbers; ///< of the description, that are read beside the programs
     glint_key places; ///< of the shapes that show it

@@ -28,6 +28,7 @@ void glint_builder_destroy(glint_builder *builder)
     free(builder->textures);
     free(builder->nodes);
     free(builder->slots);
+    free(builder->parameters);
     free(builder);
 }
 
@@ -104,10 +105,16 @@ static glint_status share(glint_builder *builder, const glint_ssa_node *node, ui
     return GLINT_OK;
 }
 
+glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t operand, double number, glint_value *out,
+                                glint_error *error)
+{
+    const glint_ssa_node node = { .op = kind, .operand = { operand }, .number = number };
+    return share(builder, &node, 1, out, error);
+}
+
 glint_status glint_builder_number(glint_builder *builder, double number, glint_value *out, glint_error *error)
 {
-    const glint_ssa_node node = { .op = GLINT_SSA_NUMBER, .number = number };
-    return share(builder, &node, 1, out, error);
+    return glint_builder_keep(builder, GLINT_SSA_NUMBER, 0, number, out, error);
 }
 
 glint_status glint_builder_input(glint_builder *builder, glint_input input, glint_value *out, glint_error *error)
@@ -282,5 +289,6 @@ glint_status glint_builder_finish(glint_builder *builder, const glint_value *out
         return glint_fail(error, GLINT_ERR_INVALID, "count: 1 or 3 outputs of a pattern expected, got %zu", count);
     if (!pattern && count != 3 && count != 6)
         return glint_fail(error, GLINT_ERR_INVALID, "count: 3 or 6 outputs of a shader expected, got %zu", count);
-    return glint_program_make(builder, outputs, count, out, error);
+    return builder->parameter_count ? glint_builder_finish_open(builder, outputs, count, out, error)
+                                    : glint_program_make(builder, outputs, count, out, error);
 }

@@ -6,6 +6,7 @@
 
 #define GLINT_SSA_NUMBER GLINT_OP_COUNT ///< kinds of node that are no operation
 #define GLINT_SSA_INPUT (GLINT_OP_COUNT + 1)
+#define GLINT_SSA_PARAMETER (GLINT_OP_COUNT + 2)
 #define GLINT_VALUES_MAX 65536u ///< of a builder, those that no output needs included
 
 typedef struct glint_ssa_node {
@@ -13,7 +14,7 @@ typedef struct glint_ssa_node {
     uint16_t part; ///< which result; the first has the operands
     uint32_t operand[GLINT_OPERANDS_MAX]; ///< an input: which, in the first
     uint32_t texture; ///< index into the builder's
-    double number;
+    double number; ///< of a parameter, too, whose slopes are in the builder's place operand[0]
 } glint_ssa_node;
 
 struct glint_builder {
@@ -25,6 +26,8 @@ struct glint_builder {
     uint32_t slot_count; ///< a power of 2
     glint_texture **textures; ///< retained
     uint32_t texture_count;
+    double (*parameters)[GLINT_PARAMETERS_MAX]; ///< slopes of numbers that change
+    uint32_t parameter_count;
 };
 
 static inline bool glint_ssa_is_op(const glint_ssa_node *node) { return node->op < GLINT_OP_COUNT; }
@@ -36,11 +39,31 @@ glint_status glint_builder_add(glint_builder *builder, glint_op op, uint32_t tex
 glint_status glint_builder_texture(glint_builder *builder, const glint_texture *texture, uint32_t *out,
                                    glint_error *error);
 
+/// A value that is no operation's: `kind` of node, with its first operand and its number.
+glint_status glint_builder_keep(glint_builder *builder, uint16_t kind, uint32_t operand, double number, glint_value *out,
+                                glint_error *error);
+
 /// The results of an operation on numbers, by the reference kernels.
 void glint_fold(glint_op op, const glint_texture *texture, const double *operands, double results[GLINT_RESULTS_MAX]);
 
 /// glint_builder_finish without its check of how many outputs a kind of program has.
 glint_status glint_program_make(const glint_builder *builder, const glint_value *outputs, size_t count,
                                 glint_program **out, glint_error *error);
+
+// program/parameter.c: builders that have parameters.
+
+/// All values of a builder in a new one, which the caller destroys on error, too: `map` says which they are there, and is freed. open:
+/// parameters stay what they are; else they are numbers.
+glint_status glint_builder_copy(const glint_builder *from, bool open, glint_builder **out, glint_value **map,
+                                glint_error *error);
+/// A program in which parameters are numbers.
+glint_status glint_builder_close(const glint_builder *builder, const glint_value *outputs, size_t count,
+                                 glint_program **out, glint_error *error);
+/// The same with its tangents.
+glint_status glint_builder_finish_open(const glint_builder *builder, const glint_value *outputs, size_t count,
+                                       glint_program **out, glint_error *error);
+/// program/slope.c: a program of how fast the outputs change with a parameter, as exact as glint_program_slope.
+glint_status glint_builder_tangent(const glint_builder *builder, const glint_value *outputs, size_t count, size_t parameter,
+                                   glint_program **out, glint_error *error);
 
 #endif

@@ -18,6 +18,9 @@ void glint_program_release(glint_program *program)
         return;
     for (uint32_t i = 0; i < program->texture_count; i++)
         glint_texture_release(program->textures[i]);
+    for (uint32_t i = 0; program->tangents && i < GLINT_PARAMETERS_MAX; i++)
+        glint_program_release(program->tangents[i]);
+    free(program->tangents);
     free(program->textures);
     free((void *)program->code.textures);
     free((void *)program->code.instructions);

@@ -15,6 +15,7 @@ struct glint_program {
     glint_key structure; ///< of the operations, what they read and the textures
     glint_key numbers; ///< of the numbers alone
     glint_texture **textures; ///< retained
+    glint_program **tangents; ///< GLINT_PARAMETERS_MAX of them, owned, NULL where nothing changes; NULL: nothing does
     _Atomic uint32_t references;
 };
 

@@ -369,3 +369,63 @@ glint_status glint_program_slope(const glint_program *program, const glint_input
     glint_builder_destroy(s.builder);
     return s.status;
 }
+
+// ---- By parameters ------------------------------------------------------------------------------------------------
+
+/// What depends on parameter number `parameter`. The copy's parameters have the numbers of the builder's.
+static void find_what_changes(slope_maker *s, const glint_builder *builder, size_t parameter)
+{
+    find_what_varies(s, 0);
+    for (uint32_t i = 0; i < s->count; i++) {
+        const glint_ssa_node *node = &s->builder->nodes[i];
+        if (node->op == GLINT_SSA_PARAMETER)
+            s->varies[i] = builder->parameters[node->operand[0]][parameter] != 0;
+        for (uint32_t k = 0; glint_ssa_is_op(node) && k < glint_op_info_of((glint_op)node->op)->operands; k++)
+            s->varies[i] = s->varies[i] || s->varies[node->operand[k]];
+    }
+}
+
+/// What an output was given by all numbers that change, as fast as they do.
+static glint_value gather(slope_maker *s, const glint_builder *builder, size_t parameter)
+{
+    glint_value sum = number(s, 0);
+    bool any = false;
+    for (uint32_t i = 0; i < s->count && !s->status; i++) {
+        const glint_ssa_node node = s->builder->nodes[i];
+        if (node.op != GLINT_SSA_PARAMETER || !s->varies[i] || s->given[i] == NOTHING)
+            continue;
+        const glint_value share = times(s, s->given[i], number(s, builder->parameters[node.operand[0]][parameter]));
+        sum = any ? two(s, GLINT_OP_ADD, sum, share) : share;
+        any = true;
+    }
+    return sum;
+}
+
+glint_status glint_builder_tangent(const glint_builder *builder, const glint_value *outputs, size_t count, size_t parameter,
+                                   glint_program **out, glint_error *error)
+{
+    slope_maker s = { .error = error };
+    glint_value *map = NULL, values[GLINT_PROGRAM_OUTPUTS_MAX];
+    s.status = glint_builder_copy(builder, true, &s.builder, &map, error);
+    s.count = s.builder ? s.builder->count : 0;
+    s.given = malloc((s.count + 1) * sizeof *s.given);
+    s.varies = calloc(s.count + 1, sizeof *s.varies);
+    if (!s.status && (!s.given || !s.varies))
+        s.status = glint_fail_nomem(error);
+    if (!s.status)
+        find_what_changes(&s, builder, parameter);
+    for (size_t k = 0; k < count && !s.status; k++) {
+        for (uint32_t i = 0; i < s.count; i++)
+            s.given[i] = NOTHING;
+        give(&s, map[outputs[k]], number(&s, 1));
+        walk_back(&s);
+        values[k] = gather(&s, builder, parameter);
+    }
+    if (!s.status)
+        s.status = glint_builder_close(s.builder, values, count, out, error);
+    free(map);
+    free(s.given);
+    free(s.varies);
+    glint_builder_destroy(s.builder);
+    return s.status;
+}

@@ -46,7 +46,7 @@ void glint_bounce_destroy(struct glint_bounce *bounce)
     free(bounce);
 }
 
-bool glint_bounce_derives(struct glint_bounce *bounce)
+bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan)
 {
     const size_t each = (size_t)GLINT_TILE_SAMPLES * GLINT_DERIVATIVES_MAX;
     if (!bounce->batch.tile.derivative)
@@ -57,7 +57,7 @@ bool glint_bounce_derives(struct glint_bounce *bounce)
         bounce->room[i].slopes = bounce->slopes + i * each;
     if (bounce->slopes)
         bounce->batch.own.slopes = bounce->slopes + GLINT_BOUNCE_LEVELS * each;
-    return bounce->slopes && bounce->batch.tile.derivative;
+    return bounce->slopes && bounce->batch.tile.derivative && glint_derivative_fits(bounce->batch.tile.derivative, plan);
 }
 
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame)

@@ -11,7 +11,12 @@
 
 struct glint_derivative_work *glint_derivative_create(void) { return glint_alloc(1, sizeof(glint_derivative_work)); }
 
-void glint_derivative_destroy(struct glint_derivative_work *work) { free(work); }
+void glint_derivative_destroy(struct glint_derivative_work *work)
+{
+    if (work)
+        free(work->painted);
+    free(work);
+}
 
 // ---- Points ---------------------------------------------------------------------------------------------------------
 
@@ -114,32 +119,34 @@ static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, u
 
 // ---- What programs give -------------------------------------------------------------------------------------------
 
-static void take_field(const glint_tile *tile, const glint_plan *plan, int field, int which, uint32_t g,
+static void take_field(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int which, uint32_t g,
                        glint_derivative_planes *out)
 {
     glint_derivative_work *work = tile->derivative;
     for (int c = 0; c < glint_field_channels(field); c++) {
         glint_reals_of(glint_plane_of(tile->at.planes, plan, field, c), GLINT_FLOAT, g, work->planes[which + c]);
+        const double *slope = glint_derivative_painted(tile, plan, index, field, c);
         out->value[which + c] = work->planes[which + c];
+        out->slope[which + c] = slope ? slope + (size_t)g * GLINT_GROUP : NULL;
     }
 }
 
-/// Of a material, in group g. NULL: it has numbers alone.
-static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, uint32_t material, uint32_t g,
-                                                glint_derivative_planes *room)
+/// Of a material, in group g, by derivative number `index`. NULL: it has numbers alone.
+static const glint_derivative_planes *planes_of(const glint_tile *tile, const glint_plan *plan, size_t index,
+                                                uint32_t material, uint32_t g, glint_derivative_planes *room)
 {
     const uint32_t planes = plan->materials[material].planes;
     if (!planes)
         return NULL;
-    *room = (glint_derivative_planes) { .value = { NULL } };
+    *room = (glint_derivative_planes) { .value = { NULL }, .slope = { NULL } };
     if (planes & GLINT_PLANE_DIFFUSE)
-        take_field(tile, plan, GLINT_FIELD_DIFFUSE, GLINT_DERIVED_DIFFUSE, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_DIFFUSE, GLINT_DERIVED_DIFFUSE, g, room);
     if (planes & GLINT_PLANE_SPECULAR)
-        take_field(tile, plan, GLINT_FIELD_SPECULAR, GLINT_DERIVED_SPECULAR, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_SPECULAR, GLINT_DERIVED_SPECULAR, g, room);
     if (planes & GLINT_PLANE_SHININESS)
-        take_field(tile, plan, GLINT_FIELD_SHININESS, GLINT_DERIVED_SHININESS, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_SHININESS, GLINT_DERIVED_SHININESS, g, room);
     if (planes & GLINT_PLANE_ALPHA)
-        take_field(tile, plan, GLINT_FIELD_ROUGHNESS, GLINT_DERIVED_ALPHA, g, room);
+        take_field(tile, plan, index, GLINT_FIELD_ROUGHNESS, GLINT_DERIVED_ALPHA, g, room);
     return room;
 }
 
@@ -150,6 +157,18 @@ static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint
     if (planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE)
         return (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, c)[i];
     return planes & GLINT_PLANE_AMBIENT ? (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c)[i] : 1;
+}
+
+/// How fast sample i's ambient light changes.
+static double ambient_slope(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t i, int c)
+{
+    const uint32_t material = tile->surface.material[i], planes = plan->materials[material].planes;
+    const glint_dual own = plan->derivatives->of[index].materials[material].ambient[c];
+    const double *painted = NULL;
+    if (planes & (GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT))
+        painted = glint_derivative_painted(
+            tile, plan, index, planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE ? GLINT_FIELD_DIFFUSE : GLINT_FIELD_AMBIENT, c);
+    return own.slope * ambient_plane(tile, plan, i, c) + (painted ? own.value * painted[i] : 0);
 }
 
 // ---- One light ----------------------------------------------------------------------------------------------------
@@ -177,11 +196,11 @@ static void derive_group(glint_tile *tile, const glint_tile_frame *frame, const 
     for (unsigned left = reached, lanes; left; left &= ~lanes) {
         uint32_t material;
         lanes = lanes_alike(tile, g, left, &material);
-        glint_derivative_planes room;
-        const glint_derivative_planes *planes = planes_of(tile, frame->plan, material, g, &room);
         for (size_t k = 0; k < all->count; k++) {
             const glint_derivative_light *l = &all->of[k].lights[light->source];
             const glint_derivative_material *m = &all->of[k].materials[material];
+            glint_derivative_planes room;
+            const glint_derivative_planes *planes = planes_of(tile, frame->plan, k, material, g, &room);
             double *const sum[3] = { work->sum[k][0] + at, work->sum[k][1] + at, work->sum[k][2] + at };
             for (int c = 0; c < 3 && tinted; c++) {
                 source.tint[c] = work->tint[c] + at;
@@ -292,9 +311,7 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
                          !(frame->plan->visible_light_count && glint_tile_sees_light(tile, i));
         for (size_t k = 0; k < all->count && (hit || sky); k++)
             for (int c = 0; c < 3; c++)
-                work->sum[k][c][i] += hit ? all->of[k].materials[tile->surface.material[i]].ambient[c].slope *
-                                                ambient_plane(tile, frame->plan, i, c)
-                                          : all->of[k].background[c];
+                work->sum[k][c][i] += hit ? ambient_slope(tile, frame->plan, k, i, c) : all->of[k].background[c];
     }
 }
 
@@ -337,6 +354,8 @@ static void begin_sample(glint_tile *tile, const glint_tile_frame *frame)
     } else if (frame->plan->derivatives->moves) {
         turn_sample(tile, tile->sample == 1);
     }
+    if (frame->plan->derivatives->repaints)
+        glint_derivative_repaint(tile, frame);
     for (uint32_t g = 0; g < tile->group_count; g++) {
         if (frame->plan->derivatives->everywhere)
             begin_group(tile, frame, g);

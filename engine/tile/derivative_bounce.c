@@ -79,6 +79,14 @@ static glint_ray_slope slope_of(const turning *t, glint_dual ratio, glint_dual b
     return out;
 }
 
+/// What a material sends on of a colour, in channel c: `value`, and how fast it changes as a number or as what a program gives.
+static glint_dual share_of(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t i, int field, int c,
+                           double value, double slope)
+{
+    const glint_program *program = plan->derivatives->of[index].programs[tile->surface.material[i]].of[field];
+    return dual(value, program ? glint_derivative_painted(tile, plan, index, field, c)[i] : slope);
+}
+
 /// As glint_batch_split, by one derivative.
 static void split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, size_t index, uint32_t i,
                   glint_ray_slope *mirror, glint_ray_slope *through)
@@ -96,8 +104,8 @@ static void split(const glint_batch *batch, const glint_tile *tile, const glint_
         reflectance.value = glint_real_at(batch->reflectance, frame->plan->desc.precision, i);
     }
     for (int c = 0; c < 3; c++) {
-        mirrored[c] = dual(m->mirror[c], slope->mirror[c]);
-        sent[c] = dual(m->transmission[c], slope->transmission[c]);
+        mirrored[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_MIRROR, c, m->mirror[c], slope->mirror[c]);
+        sent[c] = share_of(tile, frame->plan, index, i, GLINT_FIELD_TRANSMISSION, c, m->transmission[c], slope->transmission[c]);
         if (total) // see total_share of tile/batch.c
             sent[c] = m->transmits && mirrored[c].value < 1 ? dual_sub(one, mirrored[c]) : dual(0, 0);
     }

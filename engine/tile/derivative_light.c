@@ -146,7 +146,7 @@ INLINE lanes take_plane(const glint_derivative_planes *planes, int which, int i,
 {
     if (!planes || !planes->value[which])
         return own;
-    return make(d_load(planes->value[which] + i), d_set(0));
+    return make(d_load(planes->value[which] + i), planes->slope[which] ? d_load(planes->slope[which] + i) : d_set(0));
 }
 
 /// S of Phong and Blinn-Phong.

@@ -23,6 +23,7 @@ enum {
 
 typedef struct glint_derivative_planes {
     const double *value[GLINT_DERIVED_COUNT]; ///< sixteen each; NULL: the material's own
+    const double *slope[GLINT_DERIVED_COUNT]; ///< NULL: 0
 } glint_derivative_planes;
 
 /// A light as a group sees it, or one sample of it.

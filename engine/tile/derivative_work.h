@@ -23,6 +23,8 @@ typedef struct glint_derivative_work {
     _Alignas(64) double tint_slope[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double ray_tint[GLINT_DERIVATIVES_MAX][3][GLINT_TILE_SAMPLES];
     _Alignas(64) double planes[GLINT_DERIVED_COUNT][GLINT_GROUP]; ///< what programs give of the current material
+    double *painted; ///< slopes of what programs give: as many planes as the tile has, for each derivative; NULL: none changes
+    size_t painted_count; ///< numbers that it has room for
     float plane[3][GLINT_TILE_SAMPLES];
     uint32_t shadows[GLINT_TILE_SAMPLES]; ///< a hash of what is kept from each sample; in the first, and in this one
     uint32_t first[GLINT_TILE_SAMPLES];
@@ -43,6 +45,11 @@ static inline bool glint_derivatives_weigh(const glint_plan_derivatives *all)
 
 /// tile/derivative.c: the group that sample i is in, after glint_tile_derive.
 glint_derivative_points glint_derivative_points_of(const glint_tile *tile, const glint_tile_frame *frame, uint32_t g);
+
+/// tile/derivative_pattern.c: finds the slopes of what programs give the current sample.
+void glint_derivative_repaint(const glint_tile *tile, const glint_tile_frame *frame);
+/// Those of a field by derivative number `index`; NULL: no program gives the field, or none changes.
+const double *glint_derivative_painted(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel);
 
 /// tile/derivative_bounce.c: beside glint_batch_split, the slopes of both rays by all derivatives.
 void glint_derive_split(const glint_batch *batch, const glint_tile *tile, const glint_tile_frame *frame, uint32_t i,

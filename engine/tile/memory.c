@@ -28,8 +28,10 @@ bool glint_tile_extend(glint_tile *tile, const glint_plan *plan)
         good = (tile->facets = glint_alloc(1, sizeof *tile->facets)) && good;
     if (plan->derivatives && !tile->derivative)
         good = (tile->derivative = glint_derivative_create()) && good;
+    if (plan->derivatives && tile->derivative)
+        good = glint_derivative_fits(tile->derivative, plan) && good;
     if (plan->derivatives && tile->bounce)
-        good = glint_bounce_derives(tile->bounce) && good;
+        good = glint_bounce_derives(tile->bounce, plan) && good;
     glint_pattern_destroy(tile->pattern); // its size is the plan's
     tile->pattern = NULL;
     if (plan->patterns)

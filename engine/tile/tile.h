@@ -284,7 +284,7 @@ void glint_tile_count_powers(glint_tile *tile, const glint_tile_frame *frame, ui
 struct glint_bounce *glint_bounce_create(void);
 void glint_bounce_destroy(struct glint_bounce *bounce);
 /// Makes room for the slopes of rays; false: no memory.
-bool glint_bounce_derives(struct glint_bounce *bounce);
+bool glint_bounce_derives(struct glint_bounce *bounce, const glint_plan *plan);
 void glint_tile_bounce(glint_tile *tile, const glint_tile_frame *frame);
 /// Whether any material in sight sends rays on. They have been named.
 bool glint_tile_sends_on(const glint_tile *tile, const glint_tile_frame *frame);
@@ -443,6 +443,8 @@ void glint_tile_raster(glint_tile *tile, const glint_tile_frame *frame, const gl
 /// tile/derivative.c: how fast the light of the current sample changes with parameters.
 struct glint_derivative_work *glint_derivative_create(void);
 void glint_derivative_destroy(struct glint_derivative_work *work); ///< NULL: nothing
+/// Makes room for what the plan's derivatives need beside; false: no memory.
+bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan *plan);
 /// What is there without lights, at the first call of a sample, and what `count` lights of the plan from `from` on add, of which
 /// it is known where they reach. The points are found.
 void glint_tile_derive(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count);

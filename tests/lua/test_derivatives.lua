@@ -174,6 +174,64 @@ function tests.beside_patterns_against_differences()
   compare("holes", function(x) return with(x, { mirror = x / 5, opacity = wave }) end)
 end
 
+-- Numbers of patterns.
+function tests.patterns_against_differences()
+  local function compare(name, fields)
+    local at, h = 2, 1e-3
+    local function make(x)
+      local list = { diffuse = 0.4, specular = 0.3, shininess = 9 }
+      for key, value in pairs(fields(x)) do
+        list[key] = type(value) == "function" and glint.pattern(value) or value
+      end
+      list.floor = nil
+      local floor = glint.pattern(function(p) return 0.4 + 0.3 * glint.sin(x * p.x) end)
+      local scene = scene_of(glint.point_light { position = { 2, 4, 3 }, shadows = false },
+        { material = glint.material(list), ambient = 0.1, background = 0.2 })
+      scene:add(glint.plane { point = { 0, 0, -3 }, normal = { 0, 0, 1 }, material = glint.material { diffuse = fields(x).floor and floor or 0.4 } })
+      return scene
+    end
+    local image = render(make(glint.variable("p", at)), "d:p")
+    local plain, high, low = render(make(at), "beauty"), render(make(at + h), "beauty"), render(make(at - h), "beauty")
+    local list, most, distances, same = {}, 0, {}, true
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    each(image, "beauty", plain, "beauty", function(p, q) same = same and p == q end)
+    each(image, "d:p", image, "d:p", function(d)
+      distances[#distances + 1] = math.abs(d - list[#distances + 1])
+      most = math.max(most, math.abs(d))
+    end)
+    table.sort(distances)
+    local worst = distances[#distances * 49 // 50]
+    check(most > 0 and worst < 2e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+    check(same, "%s: the picture is that of plain numbers", name)
+  end
+  compare("colours", function(x)
+    return { diffuse = function(p) return { 0.4 + 0.3 * glint.sin(x * p.x), 0.1 * x, p.y * x } end }
+  end)
+  compare("vectors and choices", function(x)
+    return { diffuse = function(p)
+      local q = x * p + p * x - p / x
+      return glint.mix({ 0.1, 0.1 * x, 0.3 }, 0.1 * q, glint.smoothstep(-x, x, glint.max(p.x, p.y / x)))
+    end }
+  end)
+  compare("noise and cells", function(x)
+    return { diffuse = function(p) return 0.4 + 0.2 * glint.noise(x * p) + 0.1 * glint.cell(p * x) ^ x end }
+  end)
+  compare("specular", function(x) return { specular = function(p) return 0.4 + 0.3 * glint.sin(x * p.y) end } end)
+  compare("shininess", function(x) return { shininess = function(p) return 20 + 10 * glint.sin(x * p.y) end } end)
+  compare("an even highlight", function(x)
+    return { model = "blinn_phong", normalized = true, matched = true, shininess = function(p) return 20 + 10 * glint.sin(x * p.y) end,
+      specular = function(p) return 0.1 + 0.1 * glint.sin(x * p.x) end }
+  end)
+  compare("roughness", function(x)
+    return { model = "cook_torrance", roughness = function(p) return 0.4 + 0.2 * glint.sin(x * p.y) end }
+  end)
+  compare("ambient", function(x) return { ambient = function(p) return 0.4 + 0.2 * glint.sin(x * p.y) end } end)
+  compare("mirror", function(x) return { floor = true, mirror = function(p) return 0.4 + 0.2 * glint.sin(x * p.y) end } end)
+  compare("glass", function(x)
+    return { floor = true, fresnel = true, transmission = function(p) return 0.4 + 0.2 * glint.sin(x * p.y) end }
+  end)
+end
+
 -- The eye over faces, within a ball, and a ball that moves under a lens: nineteen pixels of twenty, which are no edges.
 function tests.what_moves_against_differences()
   local h = 1e-3
@@ -320,6 +378,15 @@ function tests.errors_are_told()
   moved = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = bricks })
   moved.camera.eye = { x, 2, 8 }
   raises("derivative 'x': material: what moves or bends", render, moved, "d:x")
+  local function patterned(field, f) return scene_of(glint.point_light { position = { 2, 4, 3 } },
+    { material = glint.material { [field] = glint.pattern(f) } }) end
+  raises("material.diffuse: a pattern that gives one number everywhere", render, patterned("diffuse", function() return x / 9 end), "d:x")
+  raises("derivative 'x': material.bump: no derivative", render, patterned("bump", function(p) return x * p.x end), "d:x")
+  raises("derivative 'x': material.transmission: light through what a pattern colours has no derivative by the pattern", render,
+    patterned("transmission", function(p) return x * p.x end), "d:x")
+  local sky = scene_of(glint.point_light { position = { 2, 4, 3 } })
+  sky.background = glint.pattern(function(d) return x * d.y end)
+  raises("derivative 'x': background: the numbers of its program have no derivative", render, sky, "d:x")
   raises("derivative 'x': adaptive", render, scene_of(lamp), "d:x", { samples = 4, adaptive = 0.1 })
   local seen = glint.sphere_light { position = { x, 4, 3 }, radius = 1, visible = true }
   raises("sphere_light #1: visible", render, scene_of(seen), "d:x")
