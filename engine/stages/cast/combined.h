@@ -316,8 +316,8 @@ static bool R(cast_combined_rays)(const glint_cast_args *args, uint32_t g, const
 }
 
 /// The same of the eye's rays, in group (x, y) of a tile.
-static bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim, int x, int y, size_t at,
-                                    unsigned near)
+static __attribute__((noinline)) bool R(cast_combined_pixels)(const glint_cast_args *args, const glint_prim *prim,
+                                                              int x, int y, size_t at, unsigned near)
 {
     const double *eye = args->camera->eye;
     const vr o[3] = { r_set(eye[0]), r_set(eye[1]), r_set(eye[2]) };

@@ -197,7 +197,7 @@ static unsigned R(caps_of_group)(const R(shadow_tile) * tile, uint32_t g, unsign
     return open & lit;
 }
 
-static void R(occlude_caps)(const glint_occlude_args *args)
+static __attribute__((noinline)) void R(occlude_caps)(const glint_occlude_args *args)
 {
     R(shadow_tile) tile;
     R(light_cap) cap;
