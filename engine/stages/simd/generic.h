@@ -1,5 +1,5 @@
-/// The vector vocabulary in the vector extensions of GCC and clang, for any processor that is little-endian: ARM's NEON,
-/// RISC-V's V, and SSE2 to test it with. What the words mean: simd/avx512.h.
+/// The vector vocabulary in the vector extensions of GCC and clang, for any processor that is little-endian: ARM's NEON
+/// (with the few intrinsics of simd/neon.h), RISC-V's V, and SSE2 to test it with. What the words mean: simd/avx512.h.
 #ifndef GLINT_SIMD_H
 #define GLINT_SIMD_H
 
@@ -20,6 +20,52 @@ typedef int64_t dm __attribute__((vector_size(16)));
 typedef uint64_t glint_u64x2 __attribute__((vector_size(16)));
 typedef glint_u64x2 vq;
 typedef float glint_f32x2 __attribute__((vector_size(8)));
+
+#ifdef __aarch64__
+#include "engine/stages/simd/neon.h"
+#else
+static inline unsigned fm_bits(fm m)
+{
+    const glint_u64x2 lane = (glint_u64x2)(m & (fm) { 1, 2, 4, 8 });
+    const uint64_t all = lane[0] | lane[1];
+    return (unsigned)(all | all >> 32);
+}
+static inline unsigned dm_bits(dm m)
+{
+    const dm lane = m & (dm) { 1, 2 };
+    return (unsigned)(lane[0] | lane[1]);
+}
+
+static inline vd d_load_f(const float *p)
+{
+    glint_f32x2 x;
+    memcpy(&x, p, sizeof x);
+    return __builtin_convertvector(x, vd);
+}
+
+/// Two vectors of doubles, rounded.
+static inline vf f_join(vd low, vd high)
+{
+    return (vf) { (float)low[0], (float)low[1], (float)high[0], (float)high[1] };
+}
+
+/// The other way.
+static inline void f_split(vf x, vd out[2])
+{
+    out[0] = (vd) { x[0], x[1] };
+    out[1] = (vd) { x[2], x[3] };
+}
+
+/// p = i in the lanes of the mask.
+static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
+{
+    for (int lane = 0; lane < VD; lane++)
+        if (mask[lane])
+            p[lane] = i;
+}
+
+static inline vq q_mul(vq a, vq b) { return (a & UINT32_MAX) * (b & UINT32_MAX); }
+#endif
 
 static inline vf f_set(float x) { return (vf) { x, x, x, x }; }
 static inline vf f_load(const float *p) { return *(const vf *)p; }
@@ -51,12 +97,6 @@ static inline vf f_abs(vf x) { return (vf)((fm)x & INT32_MAX); }
 static inline fm fm_and(fm a, fm b) { return a & b; }
 static inline fm fm_or(fm a, fm b) { return a | b; }
 static inline fm fm_andnot(fm a, fm b) { return a & ~b; }
-static inline unsigned fm_bits(fm m)
-{
-    const glint_u64x2 lane = (glint_u64x2)(m & (fm) { 1, 2, 4, 8 });
-    const uint64_t all = lane[0] | lane[1];
-    return (unsigned)(all | all >> 32);
-}
 static inline fm fm_from_bits(unsigned bits)
 {
     const fm lane = { 1, 2, 4, 8 };
@@ -108,44 +148,12 @@ static inline vd d_max(vd a, vd b) { return d_select(a > b, a, b); }
 static inline dm dm_and(dm a, dm b) { return a & b; }
 static inline dm dm_or(dm a, dm b) { return a | b; }
 static inline dm dm_andnot(dm a, dm b) { return a & ~b; }
-static inline unsigned dm_bits(dm m)
-{
-    const dm lane = m & (dm) { 1, 2 };
-    return (unsigned)(lane[0] | lane[1]);
-}
 static inline dm dm_from_bits(unsigned bits) { return (dm) { -(int64_t)(bits & 1), -(int64_t)(bits >> 1 & 1) }; }
 
-static inline vd d_load_f(const float *p)
-{
-    glint_f32x2 x;
-    memcpy(&x, p, sizeof x);
-    return __builtin_convertvector(x, vd);
-}
 static inline void d_store_f(float *p, vd x)
 {
     const glint_f32x2 rounded = __builtin_convertvector(x, glint_f32x2);
     memcpy(p, &rounded, sizeof rounded);
-}
-
-/// Two vectors of doubles, rounded.
-static inline vf f_join(vd low, vd high)
-{
-    return (vf) { (float)low[0], (float)low[1], (float)high[0], (float)high[1] };
-}
-
-/// The other way.
-static inline void f_split(vf x, vd out[2])
-{
-    out[0] = (vd) { x[0], x[1] };
-    out[1] = (vd) { x[2], x[3] };
-}
-
-/// p = i in the lanes of the mask.
-static inline void d_put_index(uint32_t *p, dm mask, uint32_t i)
-{
-    for (int lane = 0; lane < VD; lane++)
-        if (mask[lane])
-            p[lane] = i;
 }
 
 static inline vd d_exponent(vd x)
@@ -166,7 +174,6 @@ static inline vq q_add(vq a, vq b) { return a + b; }
 static inline vq q_and(vq a, vq b) { return a & b; }
 static inline vq q_or(vq a, vq b) { return a | b; }
 static inline vq q_xor(vq a, vq b) { return a ^ b; }
-static inline vq q_mul(vq a, vq b) { return (a & UINT32_MAX) * (b & UINT32_MAX); }
 #define q_shl(x, n) ((x) << (n))
 #define q_shr(x, n) ((x) >> (n))
 static inline dm q_test(vq x, uint32_t bit) { return (x & bit) != 0; }
