@@ -23,9 +23,14 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const group_pixels at = pixels_of(tile, frame, g);
         unsigned lanes = 0;
-        for (uint32_t y = 0; y < at.rows; y++)
-            for (uint32_t x = 0; x < at.columns; x++)
-                lanes |= (unsigned)(frame->refined[at.first + y * (size_t)frame->image->width + x] != 0) << (4 * y + x);
+        for (uint32_t y = 0; y < at.rows; y++) {
+            const uint8_t *row = frame->refined + at.first + y * (size_t)frame->image->width;
+            uint32_t four = 1;
+            if (at.columns == 4)
+                memcpy(&four, row, sizeof four);
+            for (uint32_t x = 0; four && x < at.columns; x++)
+                lanes |= (unsigned)(row[x] != 0) << (4 * y + x);
+        }
         tile->active[g] = (uint16_t)lanes;
         any |= lanes;
     }
