@@ -1208,6 +1208,9 @@ typedef struct glint_write_desc {
     glint_tone_desc tone;
     glint_encode encode; ///< .png; default GLINT_ENCODE_FAST
     double dpi; ///< .png: pixels an inch where it is printed, 0 .. 1e6; 0: not said
+    /// .png of depth and derivatives: 1 + a glint_colormap, whose colours show the number in place of a grey; 0: grey. Of depth the
+    /// background stays black, of a derivative the mean of its three components is shown
+    int colormap;
     const glint_text *text; ///< .png and .exr
     size_t text_count; ///< 0: no texts
 } glint_write_desc;

@@ -103,7 +103,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 63
+#define CLI_OPTION_COUNT 64
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.

@@ -83,7 +83,8 @@ static glint_pass check_pass(lua_State *L, int index, const char *path)
     glint_pass pass = GLINT_PASS_COUNT;
     if (lua_type(L, index) == LUA_TSTRING)
         pass = glint_pass_from_name(lua_tostring(L, index));
-    if (pass == GLINT_PASS_COUNT && lua_type(L, index) == LUA_TSTRING && strncmp(lua_tostring(L, index), "d:", 2) == 0) {
+    if (pass == GLINT_PASS_COUNT && lua_type(L, index) == LUA_TSTRING &&
+        strncmp(lua_tostring(L, index), "d:", 2) == 0) {
         const char *name = lua_tostring(L, index) + 2;
         pass = find_derivative(glintL_check_object(L, 1, GLINTL_IMAGE), name);
         if (pass == GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX)
@@ -136,6 +137,10 @@ static void read_options(lua_State *L, glint_write_desc *desc)
         { .name = "exposure", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.tone.exposure) },
         { .name = "encode", .kind = GLINTL_ENUM, .offset = offsetof(options, desc.encode), .names = encodes },
         { .name = "dpi", .kind = GLINTL_NUMBER, .offset = offsetof(options, desc.dpi) },
+        { .name = "colormap",
+          .kind = GLINTL_ENUM,
+          .offset = offsetof(options, desc.colormap),
+          .names = glintL_pass_colormaps },
         { .name = "pass", .kind = GLINTL_OTHER },
         { .name = NULL },
     };

@@ -758,6 +758,7 @@ function glint.scene(fields) end
 ---@field alpha? boolean  transparent background: a .png is RGBA, and passes hold light times coverage. Default false
 ---@field outline? "none"|"black"|"white"  lines drawn into the .png where the pass "outline" is 1. Default "none"
 ---@field encode? "fast"|"small"  of a .png; the pixels are the same. Default "fast"
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of the .png of depth and d:NAME. Default "none": grey
 ---@field dpi? number  pixels an inch where a .png is printed, 0 .. 1e6. Default 0: not said
 ---@field output? string  file name, .png, .pfm, .npy or .exr (all passes in one file); %04d or #### takes the frame number. Or a film: .mp4, .webm, .gif, .apng
 ---@field passes? glint.pass[]|string  files beside the beauty: a list, or "ambient,depth". Default none
@@ -770,6 +771,7 @@ function glint.scene(fields) end
 ---@field tone? "clamp"|"reinhard"|"filmic"  Default "clamp"
 ---@field exposure? number  stops, -32 .. 32. Default 0
 ---@field encode? "fast"|"small"  Default "fast"
+---@field colormap? "none"|"viridis"|"magma"|"cividis"|"turbo"|"coolwarm"  of depth and d:NAME. Default "none": grey
 ---@field dpi? number  pixels an inch of a .png, 0 .. 1e6. Default 0: not said
 ---@field pass? glint.pass  Default "beauty"
 

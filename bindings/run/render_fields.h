@@ -18,6 +18,7 @@
     OPTION(rounding, ENUM, CHOICE, desc.tone.rounding, 0, 0, roundings, "", "of codes")                                 \
     OPTION(tone, ENUM, CHOICE, desc.tone.curve, 0, 0, glintL_tone_curves, "", "curve of bright light")                  \
     OPTION(encode, ENUM, CHOICE, encode, 0, 0, encodes, "", "fast to write or small on disk")                           \
+    OPTION(colormap, ENUM, CHOICE, colormap, 0, 0, glintL_pass_colormaps, "", "of depth and d:NAME in their .png")        \
     FIELD(dpi, NUMBER, REAL, dpi, 0, 1e6, NULL)                                                                         \
     FIELD(output, STRING, OUTPUT, output, 0, 0, NULL)                                                                   \
     FIELD(passes, STRING, PASSES, file_passes, 0, 0, NULL)                                                              \

@@ -39,6 +39,8 @@ static const char *const encodes[] = { "fast", "small", NULL };
 #define AT(member) offsetof(glintL_render, member)
 
 const char *const glintL_tone_curves[] = { "clamp", "reinhard", "filmic", NULL };
+const char *const glintL_pass_colormaps[] = { "none", "viridis", "magma", "cividis", "turbo", "coolwarm", NULL };
+_Static_assert(sizeof glintL_pass_colormaps / sizeof *glintL_pass_colormaps == GLINT_COLORMAP_COUNT + 2, "a name each");
 
 #define WITH_TEXT(name, kind, sort, member, min, max, words, text, help) \
     FIELD(name, kind, sort, member, min, max, words)

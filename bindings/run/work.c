@@ -75,6 +75,7 @@ static glint_write_desc write_desc(const glintL_work *work, const glintL_file *f
     desc.tone = work->render.desc.tone;
     desc.encode = work->render.encode;
     desc.dpi = work->render.dpi;
+    desc.colormap = work->render.colormap;
     return desc;
 }
 
@@ -157,6 +158,13 @@ static void warn_of_lens(glintL_run *run, const glint_plan *plan)
                                  "more, beside width, or give --samples 16");
 }
 
+static void warn_of_colormap(glintL_run *run, const glintL_render *render)
+{
+    if (render->colormap && !(render->file_passes >> GLINT_PASS_DEPTH & 1) && !render->derivative_count)
+        glintL_run_warn(run, "colormap: it shows the passes depth and d:NAME, and none of them is written; give --passes "
+                             "depth, or passes = \"depth\"");
+}
+
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
 {
     glint_image *image = NULL;
@@ -166,6 +174,7 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
         run->reporter.rendering(run->reporter.context, run, true);
     warn_of_caps(run, work->plan);
     warn_of_lens(run, work->plan);
+    warn_of_colormap(run, &work->render);
     glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);

@@ -349,6 +349,7 @@ typedef struct glintL_render {
     glint_render_desc desc;
     char output[4096]; ///< "" = none given
     glint_encode encode;
+    int colormap; ///< of the passes depth and d:NAME: 1 + a glint_colormap; 0: grey
     double dpi; ///< pixels an inch; 0: not said
     uint32_t file_passes; ///< passes to write as files beside the beauty: bits 1u << GLINT_PASS_...
     char derivative[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE]; ///< likewise: names of the passes d:NAME
@@ -367,5 +368,6 @@ int glintL_render_call(lua_State *L, glint_scene *scene, int index);
 
 extern const char *const glintL_colormaps[]; ///< names of glint_colormap, NULL at the end
 extern const char *const glintL_tone_curves[]; ///< names of glint_tone_curve, NULL at the end
+extern const char *const glintL_pass_colormaps[]; ///< "none" and the names of glint_colormap, NULL at the end
 
 #endif

@@ -16,7 +16,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-
 /// What a row of codes is made from.
 typedef struct picture {
     const glint_image *image;
@@ -26,6 +25,7 @@ typedef struct picture {
     float gain; ///< likewise
     double nearest; ///< of all depths
     double steepest; ///< of all slopes, either way
+    const uint32_t *map; ///< depth and slopes: colours, 0xrrggbb, from 0 to 1; NULL: greys
     const void *(*under)(const void *user, int y, void *scratch); ///< outlined: the rows below the lines
     const void *(*plain)(const void *user, int y, void *scratch); ///< with overlays: the rows below them
     glint_stamps stamps; ///< the overlays
@@ -157,6 +157,14 @@ static const void *row_of_shares(const void *user, int y, void *scratch)
     return scratch;
 }
 
+/// Stores a pixel of a number (of 0 .. 1): a linear grey, or the sRGB code of its colour.
+static void put_number(const picture *p, void *codes, size_t x, double value)
+{
+    const uint32_t color = p->map ? p->map[(int)(fmin(fmax(value, 0), 1) * 255 + 0.5)] : 0;
+    for (size_t c = 0; c < 3; c++)
+        put_linear(p, codes, 3 * x + c, p->map ? (color >> (16 - 8 * c) & 255) / 255.0 : value);
+}
+
 /// Nearest over distance: white at the nearest point, half as bright at twice its distance, and a horizon far away
 /// leaves the objects in front their contrast. The background, at infinity, is black.
 static const void *row_of_depth(const void *user, int y, void *scratch)
@@ -166,8 +174,11 @@ static const void *row_of_depth(const void *user, int y, void *scratch)
     const float *depth = p->plane[0] + (size_t)y * width;
     for (size_t x = 0; x < width; x++) {
         double value = depth[x] > 0 ? p->nearest / depth[x] : 1;
-        for (size_t c = 0; c < 3; c++)
-            put_linear(p, scratch, 3 * x + c, value);
+        if (p->map && isinf(depth[x]))
+            for (size_t c = 0; c < 3; c++)
+                put_linear(p, scratch, 3 * x + c, 0);
+        else
+            put_number(p, scratch, x, value);
     }
     return scratch;
 }
@@ -212,9 +223,15 @@ static const void *row_of_slopes(const void *user, int y, void *scratch)
 {
     const picture *p = user;
     const size_t width = (size_t)p->image->width, at = (size_t)y * width;
-    for (size_t x = 0; x < width; x++)
-        for (size_t c = 0; c < 3; c++)
+    for (size_t x = 0; x < width; x++) {
+        double mean = 0;
+        for (size_t c = 0; c < 3; c++) {
+            mean += p->plane[c][at + x] / 3.0;
             put_linear(p, scratch, 3 * x + c, 0.5 + 0.5 * p->plane[c][at + x] / p->steepest);
+        }
+        if (p->map)
+            put_number(p, scratch, x, 0.5 + 0.5 * mean / p->steepest);
+    }
     return scratch;
 }
 
@@ -241,8 +258,9 @@ static void find_steepest(picture *p)
 
 static bool is_color(glint_pass pass)
 {
-    return pass < GLINT_PASS_DERIVATIVE && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL && pass != GLINT_PASS_OBJECT_ID &&
-           pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE && pass != GLINT_PASS_REFINED;
+    return pass < GLINT_PASS_DERIVATIVE && pass != GLINT_PASS_DEPTH && pass != GLINT_PASS_NORMAL &&
+           pass != GLINT_PASS_OBJECT_ID && pass != GLINT_PASS_ALPHA && pass != GLINT_PASS_OUTLINE &&
+           pass != GLINT_PASS_REFINED;
 }
 
 static glint_status fail_not_kept(const glint_image *image, glint_pass pass, glint_error *error)
@@ -261,8 +279,7 @@ static glint_status lay_over(picture *p, glint_png_source *source, double dpi, u
 {
     const glint_image *image = p->image;
     const size_t count = glint_image_stamps(image);
-    glint_status status =
-        glint_overlays_draw(image->overlays, dpi, p->tone.transfer, p->tone.bits, &p->stamps, error);
+    glint_status status = glint_overlays_draw(image->overlays, dpi, p->tone.transfer, p->tone.bits, &p->stamps, error);
     if (status)
         return status;
     p->plain = source->row;
@@ -290,8 +307,10 @@ static glint_status encode_rows(const glint_image *image, const glint_write_desc
     glint_png_source source = { .width = image->width, .height = image->height, .tone = desc->tone, .user = &p };
     source.alpha = desc->pass == GLINT_PASS_BEAUTY && image->alpha;
     glint_png_desc png = { desc->encode, desc->text, desc->text_count, desc->dpi };
+    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || desc->pass >= GLINT_PASS_DERIVATIVE))
+        p.map = glint_colormap_table((glint_colormap)(desc->colormap - 1));
     if (!is_color(desc->pass))
-        source.tone.transfer = GLINT_TRANSFER_LINEAR;
+        source.tone.transfer = p.map ? GLINT_TRANSFER_SRGB : GLINT_TRANSFER_LINEAR;
     if (desc->pass == GLINT_PASS_BEAUTY && image->codes && glint_tone_same(&image->code_tone, &desc->tone)) {
         source.row = row_of_codes;
         source.stamp = image->row_stamp;
@@ -351,6 +370,9 @@ glint_status glint_image_encode(const glint_image *image, const glint_write_desc
         return glint_fail(error, GLINT_ERR_INVALID, "encode: fast or small expected, got %d", (int)desc->encode);
     if (!(desc->dpi >= 0 && desc->dpi <= 1e6))
         return glint_fail(error, GLINT_ERR_INVALID, "dpi: number 0 .. 1000000 expected, got %g", desc->dpi);
+    if (desc->colormap < 0 || desc->colormap > GLINT_COLORMAP_COUNT)
+        return glint_fail(error, GLINT_ERR_INVALID, "colormap: 0 .. %d expected, got %d", GLINT_COLORMAP_COUNT,
+                          desc->colormap);
     if (kind == GLINT_FILE_PNG)
         return encode_png(image, desc, bands, out, reused, error);
     if (kind == GLINT_FILE_EXR)

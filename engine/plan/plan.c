@@ -396,6 +396,8 @@ static glint_key whole_key(const glint_plan *plan, const glint_write_desc *desc)
     const size_t derivative = (size_t)desc->pass - GLINT_PASS_DERIVATIVE;
     if (desc->pass >= GLINT_PASS_DERIVATIVE && plan->derivatives && derivative < plan->derivatives->count)
         key = glint_derivative_key(plan, derivative, key);
+    if (desc->colormap && (desc->pass == GLINT_PASS_DEPTH || desc->pass >= GLINT_PASS_DERIVATIVE))
+        key = glint_key_add(key, &desc->colormap, sizeof desc->colormap);
     if (desc->dpi > 0)
         key = glint_key_add(key, &desc->dpi, sizeof desc->dpi);
     key = glint_key_add_string(key, GLINT_VERSION);

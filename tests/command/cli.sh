@@ -334,7 +334,7 @@ paint "rde"'
     for wrong in '-f x' '-f 3-1' '-f 1,' '-f -3' '-f 1-5:0' '-s 0' '-e x' '-j 0' '-s 5 -e 4' '-f 1 -s 1' '--shard 0/2' \
         '--shard 3/2' '--shard 1' '-o x.jpg' '-o %s.png' '-o .png' '-o x' '--size 40' '--size 0x4' '--size 40x24x' \
         '--size 65536x1' '--samples 0' '--samples 1.5' '--samples nan' '--precision half' '--bits 9' '--transfer foo' \
-        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--adaptive x' '--adaptive -1' '--adaptive 3.5' '--adaptive nan' '--passes foo' '--passes depth,' '--encode foo' '--dpi x' '--dpi -1' '--dpi 1e7' '-t 0' '-t x' '-t 1025' '--seed -1' \
+        '--rounding up' '--tone foo' '--exposure x' '--exposure nan' '--exposure 33' '--adaptive x' '--adaptive -1' '--adaptive 3.5' '--adaptive nan' '--passes foo' '--passes depth,' '--encode foo' '--dpi x' '--dpi -1' '--dpi 1e7' '--colormap veridis' '-t 0' '-t x' '-t 1025' '--seed -1' \
         '--seed 1.5' '--reuse-memory x' '--repeat 0' '--repeat x' '--json=1' '--alpha=true' '--samples' '--fail 1'; do
         # shellcheck disable=SC2086
         exits 2 "wrong: $wrong" ten.lua $wrong
@@ -351,6 +351,16 @@ paint "rde"'
     exits 0 "another dpi is another file" ten.lua --precision float --size 20x12 -f 1 -o plain.png --dpi 72 --json
     prints "rendered again" '"status":"rendered"'
     exits 0 "the script's, said by the file" reproduce plain_0001.png ten.lua
+    exits 0 "a colour map, and no pass to show" ten.lua --size 20x12 -f 1 -o map.png --colormap viridis
+    check "is told of" grep -q 'colormap: it shows the passes depth and d:NAME, and none of them is written' err
+    for map in none viridis magma; do
+        exits 0 "depth in $map" ten.lua --size 20x12 -f 1 -o map.png --passes depth --colormap $map --json
+        prints "is another file" '"status":"rendered"'
+        cp map_0001.depth.png depth_$map.png
+    done
+    exits 0 "the same again" ten.lua --size 20x12 -f 1 -o map.png --passes depth --colormap magma --json
+    prints "is kept" '"status":"kept"'
+    check "three pictures" test "$(cat depth_none.png | cksum)" != "$(cat depth_viridis.png | cksum)" -a "$(cat depth_magma.png | cksum)" != "$(cat depth_viridis.png | cksum)"
     clean
     script fields 'local S = require "scene" S.scene:render { widht = 3 }'
     exits 2 "unknown field" fields.lua
@@ -359,7 +369,7 @@ paint "rde"'
     exits 2 "wrong field" fields.lua
     says "wrong field" 'scene:render: width: whole number 1 \.\. 65535 expected, got -1'
     for wrong in 'width=1.5' 'height=0/0' 'samples="4"' 'bits=9' 'transfer="x"' 'tone=1' 'tone="filmik"' 'exposure=-33' 'exposure="1"' 'adaptive=-0.1' 'adaptive=4' 'adaptive=true' 'precision=true' 'rounding="up"' \
-        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'encode="x"' 'dpi=-1' 'dpi="300"' 'output="x.jpg"' 'output=3' '[1]=2'; do
+        'outline="red"' 'outline=true' 'alpha=1' 'alpha="true"' 'passes={"x"}' 'passes={1}' 'passes=3' 'seed=-1' 'max_depth=-1' 'visibility="x"' 'encode="x"' 'dpi=-1' 'dpi="300"' 'colormap=1' 'colormap="jet"' 'output="x.jpg"' 'output=3' '[1]=2'; do
         script fields "local S = require 'scene' S.scene:render { $wrong }"
         exits 2 "wrong field $wrong" fields.lua
     done

@@ -139,5 +139,51 @@ function tests.refused()
   raises("colormap: one number or symbol expected, got 2 values", map, 1, 2)
 end
 
+-- The codes of a .png, as one string.
+local build = os.getenv "BUILD" or "build"
+local function codes_of(image, options)
+  local path = os.tmpname()
+  check(image:save(path .. ".png", options), "saved")
+  local pipe <close> = assert(io.popen(("'%s/tests/gr/codes' '%s.png'"):format(build, path)))
+  pipe:read("n", "n")
+  pipe:read(1)
+  local codes = pipe:read "a"
+  os.remove(path)
+  os.remove(path .. ".png")
+  return codes
+end
+
+-- A colour is that of the grey which stands there without a map; depth's background is black.
+function tests.passes_in_colours()
+  local x = glint.variable("x", 1)
+  local scene = glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } }, ambient = 0.1,
+    glint.point_light { position = { 5, x * 5, 5 } }, glint.sphere { center = { 0, 0, 0 }, radius = 2 },
+    glint.sphere { center = { 3, 0, -40 }, radius = 9 } }
+  local image = scene:render { width = 48, height = 32, passes = "depth,d:x,alpha" }
+  for _, map in ipairs { "viridis", "coolwarm" } do
+    local colors = glint.colormap(map, 0, 255)
+    for _, pass in ipairs { "depth", "d:x" } do
+      local grey, mapped, seen = codes_of(image, { pass = pass }), codes_of(image, { pass = pass, colormap = map }), {}
+      check(#grey == 3 * 48 * 32 and #mapped == #grey, "their sizes")
+      for i = 1, #grey, 3 do
+        local level = grey:byte(i)
+        local color = (pass ~= "depth" or level > 0) and colors(level) or { 0, 0, 0 }
+        seen[level] = true
+        for c = 1, 3 do near(mapped:byte(i - 1 + c), code(color[c]), 0.501, ("%s of %s, grey %d"):format(map, pass, level)) end
+      end
+      local levels = 0
+      for _ in pairs(seen) do levels = levels + 1 end
+      check(levels > 20, "%s has %d levels", pass, levels)
+    end
+    for _, pass in ipairs { "beauty", "alpha" } do
+      check(codes_of(image, { pass = pass, colormap = map }) == codes_of(image, { pass = pass }), "%s is as ever", pass)
+    end
+  end
+  check(codes_of(image, { pass = "depth", colormap = "none" }) == codes_of(image, { pass = "depth" }), "none is grey")
+  local good, message = pcall(image.save, image, "x.png", { colormap = "jet" })
+  local want = 'save.colormap: "none", "viridis", "magma", "cividis", "turbo" or "coolwarm" expected, got string "jet"'
+  check(not good and message:find(want, 1, true), "<%s> expected, got %s", want, message)
+end
+
 tally.run(tests)
 tally.finish()
