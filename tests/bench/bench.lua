@@ -1,13 +1,13 @@
 -- make bench: all sides in turn, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
 --
--- Parts: frame reuse jobs many lamps ways programs encode stages peers, and slow (minutes), which runs only when named. At least 7
+-- Parts: frame reuse jobs many lamps ways solids programs encode stages peers, and slow (minutes), which runs only when named. At least 7
 -- runs of everything but the slow renderers, in an order shuffled anew for each round; medians, with quartiles.
 package.path = "tests/bench/?.lua;" .. package.path
 local cases, measure = require "cases", require "measure"
 
 local build, compiler, selection = arg[1], arg[2], arg[3] or ""
 local runs = math.tointeger(tonumber(arg[4] ~= "" and arg[4] or "7"))
-local default_parts = "frame,reuse,jobs,many,lamps,ways,programs,encode,stages,peers"
+local default_parts = "frame,reuse,jobs,many,lamps,ways,solids,programs,encode,stages,peers"
 local labels = {
   glint = "glint", hand = "hand-written", plain = "plain C", embree = "Embree", embree_lone = "Embree, lone",
   povray = "POV-Ray", tachyon = "Tachyon", lua = "plain Lua"

@@ -87,6 +87,13 @@ local measurements = {
   { "g.glassball", "glint", "frame scene=glassball area=1" },
   { "g.glassball.adaptive", "glint", "frame scene=glassball area=1 samples=16 adaptive=1" },
 
+  -- combined solids, tori, a lens
+  { "g.cut", "glint", "frame scene=cut1k" },
+  { "g.pieces", "glint", "frame scene=pieces1k" },
+  { "g.tori", "glint", "frame scene=tori" },
+  { "g.lens", "glint", "frame lens=1 samples=16" },
+  { "g.16", "glint", "frame samples=16" },
+
   { "g.encode", "glint", "encode out=$OUT" },
   { "h.encode", "hand", "encode" },
 
@@ -123,6 +130,10 @@ local measurements = {
   { "p.adaptive", "povray", "frame samples=16 adaptive=1", runs = 3 },
   { "p.glassball", "povray", "frame scene=glassball area=1", runs = 1 },
   { "p.glassball.adaptive", "povray", "frame scene=glassball area=1 samples=16 adaptive=1", runs = 1 },
+  { "p.cut", "povray", "frame scene=cut1k", runs = 3 },
+  { "p.pieces", "povray", "frame scene=pieces1k", runs = 3 },
+  { "p.tori", "povray", "frame scene=tori", runs = 3 },
+  { "p.lens", "povray", "frame lens=1 samples=16", runs = 1 },
   { "p.1M", "povray", "frame scene=1M", runs = 1 },
   { "p.light", "povray", "job change=light threads=2", runs = 1 },
   { "p.shininess", "povray", "job change=shininess threads=2", runs = 1 },
@@ -218,6 +229,14 @@ local rows = {
   { "peers", "workshop, adaptive", "g.adaptive:render", "p.adaptive:cpu", bar = 35, more = true },
   { "peers", "a glass ball, 16-sample area light", "g.glassball:render", "p.glassball:cpu", bar = 5, more = true },
   { "peers", "the same, adaptive", "g.glassball.adaptive:render", "p.glassball.adaptive:cpu", bar = 5, more = true },
+
+  { "Combined solids, tori and a lens, hard shadow, one thread; by processor time on both sides" },
+  { "solids", "1,000 boxes less a ball / these boxes and balls by themselves", "g.cut:cpu", "g.pieces:cpu", bar = 2.5 },
+  { "peers", "1,000 boxes less a ball", "g.cut:cpu", "p.cut:cpu", bar = 40, more = true },
+  { "peers", "these boxes and balls by themselves", "g.pieces:cpu", "p.pieces:cpu" },
+  { "peers", "24 tori", "g.tori:cpu", "p.tori:cpu", bar = 20, more = true },
+  { "solids", "a lens, 16 samples a pixel / without", "g.lens:cpu", "g.16:cpu", bar = 3 },
+  { "peers", "a lens, 16 samples a pixel", "g.lens:cpu", "p.lens:cpu" },
 
   { "A point of a pattern or a shader, by the kernel alone" },
   { "programs", "Phong as a program", "g.program:phong", "h.program:phong", bar = 2 },

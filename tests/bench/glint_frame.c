@@ -5,12 +5,14 @@
 
 #include "tests/bench/glint_side.h"
 
-enum { ROUNDS = 15, LIMIT_S = 20 };
+enum { ROUNDS = 15, LIMIT_S = 20, LAST = 15 };
 
 typedef struct frame_state {
     glint_renderer *renderer;
     glint_plan *plan;
     glint_frame_stats stats; ///< of the last frame
+    double processor_ms[LAST]; ///< of the last frames
+    int frames;
 } frame_state;
 
 static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats)
@@ -25,7 +27,9 @@ static double render(glint_renderer *renderer, const glint_plan *plan, glint_fra
 static double time_render(void *state)
 {
     frame_state *f = state;
-    return render(f->renderer, f->plan, &f->stats);
+    const double start = bench_processor_ms(), ms = render(f->renderer, f->plan, &f->stats);
+    f->processor_ms[f->frames++ % LAST] = bench_processor_ms() - start;
+    return ms;
 }
 
 static double time_codes(void *state)
@@ -67,6 +71,7 @@ void side_run_frame(const bench_options *options)
     double ms = bench_median(time_render, &f);
     double rays = (double)(f.stats.rays.primary + f.stats.rays.shadow);
     bench_say("render", "ms", ms);
+    bench_say("cpu", "ms", bench_median_of(f.processor_ms, f.frames < LAST ? f.frames : LAST)); // the film's codes with it
     bench_say("codes", "ms", bench_median(time_codes, &f));
     bench_say("rays", "M/s", rays / ms / 1e3);
     bench_say("shadow_rays", "rays", (double)f.stats.rays.shadow);

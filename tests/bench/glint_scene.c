@@ -86,6 +86,52 @@ static void add_spheres(side_scene *s)
     }
 }
 
+static glint_shape *new_shape(const glint_shape_desc *d)
+{
+    glint_error error;
+    glint_shape *shape;
+    side_must(glint_shape_create(d, &shape, &error), &error);
+    return shape;
+}
+
+/// Puts a part into the combined solid, or by itself into the scene where there is none.
+static void add_part(side_scene *s, glint_shape *whole, glint_shape *part)
+{
+    glint_error error;
+    if (!whole) {
+        add_shape(s, part);
+        return;
+    }
+    side_must(glint_group_add(whole, part, &error), &error);
+    glint_shape_release(part);
+}
+
+static void add_solid(side_scene *s, const bench_solid *solid)
+{
+    glint_shape_desc box = glint_shape_desc_default(GLINT_SHAPE_BOX), ball = glint_shape_desc_default(GLINT_SHAPE_SPHERE);
+    glint_shape_desc torus = glint_shape_desc_default(GLINT_SHAPE_TORUS), cut = glint_shape_desc_default(GLINT_SHAPE_DIFFERENCE);
+    box.material = ball.material = torus.material = cut.material = s->materials[solid->material];
+    if (solid->kind == BENCH_TORUS) {
+        widen(solid->center, torus.center);
+        widen(solid->ball, torus.axis);
+        torus.major = (double)solid->size;
+        torus.minor = (double)solid->ball[3];
+        add_shape(s, new_shape(&torus));
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        box.min[c] = (double)solid->center[c] - (double)solid->size;
+        box.max[c] = (double)solid->center[c] + (double)solid->size;
+    }
+    widen(solid->ball, ball.center);
+    ball.radius = (double)solid->ball[3];
+    glint_shape *whole = solid->kind == BENCH_CUT ? new_shape(&cut) : NULL;
+    add_part(s, whole, new_shape(&box));
+    add_part(s, whole, new_shape(&ball));
+    if (whole)
+        add_shape(s, whole);
+}
+
 static void add_mesh(side_scene *s)
 {
     const bench_scene *p = &s->plain;
@@ -123,6 +169,10 @@ static void set_camera(side_scene *s, const bench_options *options)
         c.projection = GLINT_ORTHOGRAPHIC;
         c.height = (double)s->plain.height;
     }
+    if (options->lens) {
+        c.aperture = (double)s->plain.lens_radius;
+        c.focus = (double)s->plain.lens_focus;
+    }
     glint_camera *camera;
     side_must(glint_camera_create(&c, &camera, &error), &error);
     glint_scene_desc d = *glint_scene_get(s->scene);
@@ -159,6 +209,8 @@ side_scene side_scene_create(const bench_options *options)
     side_must(glint_scene_create(&s.scene, &error), &error);
     make_materials(&s);
     add_spheres(&s);
+    for (size_t i = 0; i < s.plain.solid_count; i++)
+        add_solid(&s, &s.plain.solids[i]);
     if (s.plain.triangle_count)
         add_mesh(&s);
     for (int i = 0; i < options->lamps; i++)

@@ -47,6 +47,8 @@ static void read_word(bench_options *o, const char *word)
         o->no_reuse = !on;
     else if (strcmp(name, "shadows") == 0)
         o->shadows = on;
+    else if (strcmp(name, "lens") == 0)
+        o->lens = on;
     else if (strcmp(name, "area") == 0)
         o->area = on;
     else if (strcmp(name, "adaptive") == 0)
@@ -72,12 +74,16 @@ bench_options bench_options_read(int argc, char **argv)
     return o;
 }
 
-double bench_now_ms(void)
+static double clock_ms(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
+
+double bench_now_ms(void) { return clock_ms(CLOCK_MONOTONIC); }
+
+double bench_processor_ms(void) { return clock_ms(CLOCK_PROCESS_CPUTIME_ID); }
 
 void bench_say(const char *name, const char *unit, double value) { printf("%s %s %.6g\n", name, unit, value); }
 

@@ -22,6 +22,7 @@ typedef struct bench_options {
     bool is_float; ///< glint alone
     bool no_reuse; ///< glint alone
     bool shadows; ///< default true
+    bool lens; ///< the scene's lens is open; for glint and POV-Ray alone
     bool area; ///< 16 samples of a sphere light instead of a point light
     bool adaptive; ///< all samples only where neighbours differ by more than a tenth; for glint and POV-Ray alone, of 16
 } bench_options;
@@ -30,6 +31,8 @@ typedef struct bench_options {
 bench_options bench_options_read(int argc, char **argv);
 
 double bench_now_ms(void);
+/// The processor's time of this program so far, all threads.
+double bench_processor_ms(void);
 
 /// Prints one measurement as the driver reads it: name, unit, value.
 void bench_say(const char *name, const char *unit, double value);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Renders a scene with POV-Ray or Tachyon, and prints what the driver reads: name, unit, value.
-#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N] [adaptive=1]
+#   peer.sh povray|tachyon frame [scene=...] [threads=N] [samples=4] [shadows=0] [area=1] [lamps=N] [adaptive=1] [lens=1]
 #       setup (parsing, bounding) and render (tracing) by the program's own clock; wall with everything; cpu: processor time, of
 #       POV-Ray that of tracing, which it tells, of Tachyon that of everything
 #   peer.sh povray job change=light|shininess [threads=N]
@@ -9,12 +9,13 @@ set -eu
 FRAMES=6
 program=$1 mode=$2
 shift 2
-threads=1 samples=1 adaptive=0 shade=-fullshade
+threads=1 samples=1 adaptive=0 lens=0 shade=-fullshade
 for word in "$@"; do
     case $word in
     threads=*) threads=${word#*=} ;;
     samples=*) samples=${word#*=} ;;
     adaptive=*) adaptive=${word#*=} ;;
+    lens=*) lens=${word#*=} ;;
     shadows=0) shade=-mediumshade ;;
     esac
 done
@@ -26,8 +27,8 @@ trap 'rm -rf "$folder"' EXIT
 case $program in
 povray)
     set -- "+I$folder/scene" "+O$folder/out.png" +W1920 +H1080 +FN8 -D "+WT$threads"
-    # method 1: R x R samples wherever neighbours differ by more than the threshold
-    if [ "$adaptive" = 1 ]; then set -- "$@" +AM1 +A0.1 +R4 -J; elif [ "$samples" -gt 1 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
+    # method 1: R x R samples wherever neighbours differ by more than the threshold; a lens has samples of its own
+    if [ "$adaptive" = 1 ]; then set -- "$@" +AM1 +A0.1 +R4 -J; elif [ "$samples" -gt 1 ] && [ "$lens" = 0 ]; then set -- "$@" +AM1 +A0.0 +R2 -J; else set -- "$@" -A; fi
     if [ "$mode" = job ]; then set -- "$@" +KFI1 "+KFF$FRAMES"; fi
     ;;
 tachyon)

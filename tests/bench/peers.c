@@ -1,6 +1,7 @@
 /// Writes a scene to stdout for POV-Ray 3.7 or Tachyon 0.99, so that they render what the other sides do.
 ///
-///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100] [shadows=0] [samples=N] [area=1] [lamps=N] [change=light|shininess]
+///   peers povray|tachyon [scene=workshop|glassball|1k|1M|glass|box|floor100|cut1k|pieces1k|tori] [shadows=0] [lens=1] [samples=N]
+///       [area=1] [lamps=N] [change=light|shininess]
 ///       [pattern=NAME]
 ///
 /// POV-Ray: the formulas match ours term by term (tests/povray/pov.lua tells how); with change=... the scene is that of
@@ -16,7 +17,16 @@ static void print3(const char *format, const float v[3]) { printf(format, (doubl
 
 // ---- POV-Ray ----
 
-static void povray_camera(const bench_scene *s)
+/// aperture: four times the radius of the lens, as tests/povray/pov.lua tells.
+static void povray_lens(const bench_scene *s, const bench_options *o, const double forward[3])
+{
+    const double focus = (double)s->lens_focus;
+    printf(" aperture %.9g blur_samples %d variance 0", 4 * (double)s->lens_radius, o->samples);
+    printf(" focal_point <%.9g, %.9g, %.9g>", (double)s->eye[0] + focus * forward[0], (double)s->eye[1] + focus * forward[1],
+           (double)s->eye[2] + focus * forward[2]);
+}
+
+static void povray_camera(const bench_scene *s, const bench_options *o)
 {
     bench_camera c = bench_camera_of(s);
     double forward[3], right[3], up[3];
@@ -29,7 +39,10 @@ static void povray_camera(const bench_scene *s)
     print3(" location <%.9g, %.9g, %.9g>", s->eye);
     printf(" direction <%.9g, %.9g, %.9g>", forward[0], forward[1], forward[2]);
     printf(" right <%.9g, %.9g, %.9g>", right[0], right[1], right[2]);
-    printf(" up <%.9g, %.9g, %.9g> }\n", up[0], up[1], up[2]);
+    printf(" up <%.9g, %.9g, %.9g>", up[0], up[1], up[2]);
+    if (o->lens)
+        povray_lens(s, o, forward);
+    puts(" }");
 }
 
 static void povray_light(const bench_scene *s, const bench_options *o, const double at[3], bool moves)
@@ -63,6 +76,47 @@ static void povray_pigment(const bench_material *p, const char *pattern)
         print3("pigment { rgb <%.9g, %.9g, %.9g> }", p->diffuse);
 }
 
+static void povray_torus(const bench_solid *t)
+{
+    double y[3], x[3], length = 0;
+    int least = 0;
+    for (int c = 0; c < 3; c++) {
+        y[c] = (double)t->ball[c];
+        least = fabs(y[c]) < fabs(y[least]) ? c : least;
+    }
+    const double e[3] = { least == 0, least == 1, least == 2 };
+    for (int c = 0; c < 3; c++) {
+        x[c] = y[(c + 1) % 3] * e[(c + 2) % 3] - y[(c + 2) % 3] * e[(c + 1) % 3];
+        length = hypot(length, x[c]);
+    }
+    for (int c = 0; c < 3; c++)
+        x[c] /= length;
+    printf("torus { %.9g, %.9g sturm matrix <%.9g, %.9g, %.9g, %.9g, %.9g, %.9g", (double)t->size, (double)t->ball[3], x[0], x[1], x[2],
+           y[0], y[1], y[2]);
+    for (int c = 0; c < 3; c++)
+        printf(", %.9g", x[(c + 1) % 3] * y[(c + 2) % 3] - x[(c + 2) % 3] * y[(c + 1) % 3]);
+    print3(", %.9g, %.9g, %.9g>", t->center);
+    printf(" texture { M%u } }\n", (unsigned)t->material);
+}
+
+static void povray_solid(const bench_solid *solid)
+{
+    if (solid->kind == BENCH_TORUS) {
+        povray_torus(solid);
+        return;
+    }
+    const float *at = solid->center, *ball = solid->ball, r = solid->size;
+    const float low[3] = { at[0] - r, at[1] - r, at[2] - r }, high[3] = { at[0] + r, at[1] + r, at[2] + r };
+    const bool cut = solid->kind == BENCH_CUT;
+    const unsigned m = (unsigned)solid->material;
+    printf("%sbox {", cut ? "difference { " : "");
+    print3(" <%.9g, %.9g, %.9g>,", low);
+    print3(" <%.9g, %.9g, %.9g> ", high);
+    cut ? printf("}") : printf("texture { M%u } }\n", m);
+    print3(" sphere { <%.9g, %.9g, %.9g>,", ball);
+    cut ? printf(" %.9g } texture { M%u } }\n", (double)ball[3], m) : printf(" %.9g texture { M%u } }\n", (double)ball[3], m);
+}
+
 static void write_povray(const bench_scene *s, const bench_options *o)
 {
     bool changes = strcmp(o->change, "none") != 0, shines = strcmp(o->change, "shininess") == 0;
@@ -70,7 +124,7 @@ static void write_povray(const bench_scene *s, const bench_options *o)
     if (strstr(o->pattern, "-function"))
         puts("#declare f_noise3d = function(x, y, z) { internal(76) };"); // as functions.inc has it
     print3("background { rgb <%.9g, %.9g, %.9g> }\n", s->background);
-    povray_camera(s);
+    povray_camera(s, o);
     for (int i = 0; i < o->lamps; i++) {
         double at[3];
         bench_lamp(s, i, o->lamps, at);
@@ -100,6 +154,8 @@ static void write_povray(const bench_scene *s, const bench_options *o)
         printf(", %.9g texture { M%u }%s }\n", (double)p[3], (unsigned)s->sphere_material[i],
                s->materials[s->sphere_material[i]].transmission > 0 ? " interior { ior 1.5 }" : "");
     }
+    for (size_t i = 0; i < s->solid_count; i++)
+        povray_solid(&s->solids[i]);
 }
 
 // ---- Tachyon ----

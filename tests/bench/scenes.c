@@ -57,6 +57,8 @@ static void make_workshop(bench_scene *s, size_t count)
     set3(s->at, 0, 3.8F, 0);
     s->fov_y_degrees = 42;
     set3(s->light, 0, 20, 0);
+    s->lens_radius = 0.6F;
+    s->lens_focus = 17;
 }
 
 /// The ball in front is of glass.
@@ -166,6 +168,38 @@ static void make_floor(bench_scene *s, size_t count)
     set3(s->light, 9, 20, 6);
 }
 
+/// Solids of one kind that stand on the floor in place of its spheres.
+static void make_solids(bench_scene *s, size_t count, bench_solid_kind kind)
+{
+    uint64_t state = 7 * count;
+    make_floor(s, count);
+    s->solid_count = count;
+    s->solids = need(count, sizeof *s->solids);
+    for (size_t i = 0; i < count; i++) {
+        const float *ball = s->spheres + 4 * (i + 1);
+        bench_solid *solid = &s->solids[i];
+        *solid = (bench_solid) { .kind = kind, .material = s->sphere_material[i + 1], .size = ball[3] };
+        memcpy(solid->center, ball, sizeof solid->center);
+        float length = 0;
+        for (int c = 0; c < 3; c++) {
+            solid->ball[c] = random_unit(&state) - (c == 1 ? 0 : 0.5F);
+            length += solid->ball[c] * solid->ball[c];
+        }
+        for (int c = 0; c < 3; c++) // the cutting ball is over a corner or an edge of the box's upper side
+            solid->ball[c] = kind == BENCH_TORUS ? solid->ball[c] / sqrtf(length)
+                                                 : ball[c] + ball[3] * (c == 1 ? 1 : 2 * solid->ball[c]);
+        solid->ball[3] = kind == BENCH_TORUS ? (0.2F + 0.3F * random_unit(&state)) * ball[3] : 0.8F * ball[3];
+        solid->size = kind == BENCH_TORUS ? ball[3] - solid->ball[3] : ball[3];
+    }
+    s->sphere_count = 1;
+}
+
+static void make_cut(bench_scene *s, size_t count) { make_solids(s, count, BENCH_CUT); }
+
+static void make_pieces(bench_scene *s, size_t count) { make_solids(s, count, BENCH_PIECES); }
+
+static void make_tori(bench_scene *s, size_t count) { make_solids(s, count, BENCH_TORUS); }
+
 static void make_cloud_over_floor(bench_scene *s, size_t count)
 {
     static const float ground[4] = { 0, -1009, 0, 1000 };
@@ -216,6 +250,9 @@ static const struct {
                { "floor1k", make_floor, 1000 },
                { "floor1M", make_floor, 1000000 },
                { "glass", make_glass, 24 },
+               { "cut1k", make_cut, 1000 },
+               { "pieces1k", make_pieces, 1000 },
+               { "tori", make_tori, 24 },
                { "box", make_box, 100000 },
                { "mesh", make_mesh, 250000 },
                { "mesh100k", make_mesh, 50176 } };
@@ -237,6 +274,7 @@ void bench_scene_free(bench_scene *scene)
 {
     free(scene->spheres);
     free(scene->sphere_material);
+    free(scene->solids);
     free(scene->vertices);
     free(scene->triangles);
 }

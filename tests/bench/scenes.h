@@ -16,16 +16,33 @@ typedef struct bench_material {
     float mirror, transmission; ///< above 0: glass with an index of 1.5, of which POV-Ray's twin shows nothing matt
 } bench_material;
 
+typedef enum bench_solid_kind {
+    BENCH_CUT, ///< a box less a ball
+    BENCH_PIECES, ///< that box and that ball, each by itself
+    BENCH_TORUS
+} bench_solid_kind;
+
+/// For glint and POV-Ray alone.
+typedef struct bench_solid {
+    bench_solid_kind kind;
+    uint32_t material;
+    float center[3], size; ///< of the box, half its width; of the torus, the radius of its ring
+    float ball[4]; ///< centre and radius; of a torus its axis, unit, and the radius of its tube
+} bench_solid;
+
 typedef struct bench_scene {
     size_t sphere_count;
     float *spheres; ///< x, y, z, radius of each; binary32, so that all sides have the same numbers
     uint32_t *sphere_material;
+    size_t solid_count;
+    bench_solid *solids;
     size_t vertex_count, triangle_count; ///< a mesh of the first material
     float *vertices; ///< x, y, z of each
     uint32_t *triangles; ///< three vertices of each
     int material_count;
     bench_material materials[BENCH_MATERIALS];
     float eye[3], at[3], fov_y_degrees;
+    float lens_radius, lens_focus; ///< of a lens, where one is called for; for glint and POV-Ray alone
     float height; ///< above 0: of an orthographic view, world units; for glint and POV-Ray alone
     float light[3], light_radius; ///< a white light; the radius is that of the area light
     float ambient[3], background[3];
@@ -37,6 +54,8 @@ typedef struct bench_scene {
 ///   1k, 1M                   a cloud of so many spheres; over1k, over1M: above the top of a large ball
 ///   floor100, floor1k, floor1M   so many spheres resting on such a floor
 ///   glass                    24 mirrors, glass and matt spheres on a floor
+///   cut1k, pieces1k          1,000 boxes less a ball on such a floor; these boxes and balls, each by itself
+///   tori                     24 tori on such a floor
 ///   box                      100,000 spheres, an orthographic view
 ///   mesh, mesh100k           500,000 and 100,000 triangles
 bool bench_scene_create(const char *name, bench_scene *out);
