@@ -52,8 +52,8 @@ glint_render_desc glint_plan_base(const glint_render_desc *desc)
     base.samples = 1;
     base.adaptive = 0;
     base.outline = GLINT_OUTLINE_NONE;
-    base.passes = (desc->passes & ~(1u << GLINT_PASS_REFINED | 1u << GLINT_PASS_OUTLINE)) | 1u << GLINT_PASS_BEAUTY |
-                  1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID;
+    base.passes = desc->passes & ~(1u << GLINT_PASS_REFINED | 1u << GLINT_PASS_OUTLINE) & ((1u << GLINT_PASS_COUNT) - 1);
+    base.passes |= 1u << GLINT_PASS_BEAUTY | 1u << GLINT_PASS_NORMAL | 1u << GLINT_PASS_OBJECT_ID;
     base.codes = desc->alpha || desc->tone.curve != GLINT_TONE_CLAMP; // else the choice makes what it needs of them
     base.tone = glint_tone_desc_default();
     base.tone.curve = desc->tone.curve;

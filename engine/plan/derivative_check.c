@@ -34,8 +34,6 @@ static const char *find_obstacle(const glint_plan *plan)
         return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
     if (plan->shutter_times > 0)
         return "camera.shutter: an open shutter has no derivative; shutter = 0 has";
-    if (plan->runs[GLINT_STAGE_REFINE])
-        return "adaptive: every pixel of a derivative has all samples; leave `adaptive` out";
     return NULL;
 }
 

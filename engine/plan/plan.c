@@ -222,7 +222,8 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
         status = glint_overlays_take(scene, (int)desc->width, (int)desc->height, view, &plan->overlays, error);
     }
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
-        const glint_render_desc base = glint_plan_base(&plan->desc);
+        glint_render_desc base = glint_plan_base(&plan->desc);
+        base.derivatives = desc->derivatives;
         status = glint_plan_create(scene, &base, &plan->base, error);
         if (!status)
             plan->base->is_base = true;

@@ -387,6 +387,8 @@ static void store_shadows(glint_tile *tile, const glint_tile_frame *frame)
     for (uint32_t g = 0; g < tile->group_count; g++)
         for (unsigned rest = work->mixed[g]; rest; rest &= rest - 1)
             work->first[g * GLINT_GROUP + (unsigned)__builtin_ctz(rest)] = 0;
+    if (frame->base)
+        glint_tile_take_plane(tile, frame, frame->base->shadows, work->first);
     glint_tile_store_plane(tile, work->first, frame->image->shadows, frame->image->width);
 }
 
@@ -396,9 +398,12 @@ void glint_tile_store_derivatives(glint_tile *tile, const glint_tile_frame *fram
     const glint_plan *plan = frame->plan;
     const double share = 1 / plan->desc.samples;
     for (size_t k = 0; k < plan->derivatives->count; k++) {
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
                 work->plane[c][i] = (float)(work->sum[k][c][i] * share);
+            if (frame->base)
+                glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_DERIVATIVE + k][c], work->plane[c]);
+        }
         glint_tile_store_pass(tile, frame, (glint_pass)(GLINT_PASS_DERIVATIVE + k), work->plane[0]);
     }
     if (plan->derivatives->moves)

@@ -37,23 +37,22 @@ bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame)
     return any;
 }
 
-/// Takes the lanes of a plane that were not refined from the base.
-static void take_plane(const glint_tile *tile, const glint_tile_frame *frame, const float *plane, float *groups)
+void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups)
 {
-    const size_t stride = (size_t)frame->image->width;
+    const size_t size = sizeof(float), stride = size * (size_t)frame->image->width;
     for (uint32_t g = 0; g < tile->group_count; g++) {
         const group_pixels at = pixels_of(tile, frame, g);
         const unsigned refined = tile->active[g];
         for (uint32_t y = 0; y < at.rows; y++) {
-            const float *from = plane + at.first + y * stride;
-            float *to = groups + g * GLINT_GROUP + 4 * y;
+            const char *from = (const char *)plane + size * at.first + y * stride;
+            char *to = (char *)groups + size * (g * GLINT_GROUP + 4 * y);
             if (!(refined >> 4 * y & 15) && at.columns == 4) {
-                memcpy(to, from, 4 * sizeof *to);
+                memcpy(to, from, 4 * size);
                 continue;
             }
             for (uint32_t x = 0; x < at.columns; x++)
                 if (!(refined >> (4 * y + x) & 1))
-                    to[x] = from[x];
+                    memcpy(to + size * x, from + size * x, size);
         }
     }
 }
@@ -62,7 +61,7 @@ static void take_plane(const glint_tile *tile, const glint_tile_frame *frame, co
 static void take_coverage(glint_tile *tile, const glint_tile_frame *frame)
 {
     float alpha[GLINT_TILE_SAMPLES] = { 0 };
-    take_plane(tile, frame, frame->base->plane[GLINT_PASS_ALPHA][0], alpha);
+    glint_tile_take_plane(tile, frame, frame->base->plane[GLINT_PASS_ALPHA][0], alpha);
     for (uint32_t i = 0; i < tile->group_count * GLINT_GROUP; i++)
         if (!glint_has_lane(tile->active, i))
             tile->film.covered[i] = alpha[i] > 0 ? (uint32_t)frame->plan->desc.samples : 0;
@@ -89,10 +88,10 @@ void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_image *base = frame->base;
     for (int c = 0; c < 3; c++) {
-        take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->film.beauty[c]);
+        glint_tile_take_plane(tile, frame, base->plane[GLINT_PASS_BEAUTY][c], tile->film.beauty[c]);
         for (int k = 0; k < GLINT_TERM_COUNT; k++)
             if (frame->plan->desc.passes >> (GLINT_PASS_BACKGROUND + k) & 1)
-                take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film.terms[k][c]);
+                glint_tile_take_plane(tile, frame, base->plane[GLINT_PASS_BACKGROUND + k][c], tile->film.terms[k][c]);
     }
     if (glint_tile_wants_coverage(frame->plan))
         take_coverage(tile, frame);

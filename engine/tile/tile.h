@@ -327,6 +327,8 @@ void glint_tile_add_environment(glint_tile *tile, const glint_tile_frame *frame)
 
 /// tile/refine.c: leaves the pixels active that get all samples; returns whether there are any.
 bool glint_tile_choose_refined(glint_tile *tile, const glint_tile_frame *frame);
+/// Takes the lanes that are not refined from a plane of the base, of numbers of four bytes, into an array of the tile.
+void glint_tile_take_plane(const glint_tile *tile, const glint_tile_frame *frame, const void *plane, void *groups);
 /// The other pixels' light, and all pixels' geometry, are those of the base; all are active again.
 void glint_tile_take_base(glint_tile *tile, const glint_tile_frame *frame);
 

@@ -406,11 +406,11 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
         glint_tile_resolve_samples(tile, frame);
     else if (plan->accumulate && refined)
         glint_tile_resolve(tile, frame);
+    if (plan->derivatives)
+        glint_tile_store_derivatives(tile, frame);
     if (frame->base)
         glint_tile_take_base(tile, frame);
     glint_tile_store_light(tile, frame);
-    if (plan->derivatives)
-        glint_tile_store_derivatives(tile, frame);
     const uint64_t rendered = clock_of(tile, frame);
     if (plan->runs[GLINT_STAGE_TONE]) {
         glint_tile_tone(tile, frame);

@@ -387,7 +387,6 @@ function tests.errors_are_told()
   local sky = scene_of(glint.point_light { position = { 2, 4, 3 } })
   sky.background = glint.pattern(function(d) return x * d.y end)
   raises("derivative 'x': background: the numbers of its program have no derivative", render, sky, "d:x")
-  raises("derivative 'x': adaptive", render, scene_of(lamp), "d:x", { samples = 4, adaptive = 0.1 })
   local seen = glint.sphere_light { position = { x, 4, 3 }, radius = 1, visible = true }
   raises("sphere_light #1: visible", render, scene_of(seen), "d:x")
   local cone = glint.sphere_light { position = { x, 4, 3 }, radius = 1, radiance = 1 }
@@ -395,6 +394,24 @@ function tests.errors_are_told()
   local names = {}
   for i = 1, 9 do names[i] = "d:v" .. i end
   raises("of at most 8 derivatives", render, scene_of(lamp), table.concat(names, ","))
+end
+
+-- A pixel that is refined has the derivative of all samples, any other that of its one.
+function tests.adaptive()
+  local x = glint.variable("x", 2)
+  local scene = scene_of(glint.point_light { position = { x, 4, 3 } }, { material = glint.material { mirror = 0.5, specular = 0.5 } })
+  local mixed = render(scene, "d:x,refined", { samples = 4, adaptive = 0.1 })
+  local all, one = render(scene, "d:x", { samples = 4 }), render(scene, "d:x")
+  local count, wrong = { [0] = 0, 0 }, 0
+  for y = 0, H - 1 do
+    for column = 0, W - 1 do
+      local refined = mixed:pixel(column, y, "refined")
+      count[refined] = count[refined] + 1
+      local got, want = { mixed:pixel(column, y, "d:x") }, { (refined == 1 and all or one):pixel(column, y, "d:x") }
+      for c = 1, 3 do wrong = wrong + (got[c] ~= want[c] and 1 or 0) end
+    end
+  end
+  check(count[0] > 100 and count[1] > 100 and wrong == 0, "%d refined, %d not, %d numbers wrong", count[1], count[0], wrong)
 end
 
 -- What else is kept of a frame is the same with derivatives and without.
