@@ -159,16 +159,22 @@ static double ambient_plane(const glint_tile *tile, const glint_plan *plan, uint
     return planes & GLINT_PLANE_AMBIENT ? (double)glint_plane_of(tile->at.planes, plan, GLINT_FIELD_AMBIENT, c)[i] : 1;
 }
 
-/// How fast sample i's ambient light changes.
-static double ambient_slope(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t i, int c)
+/// Adds how fast the ambient light of lanes `hits` of group g changes in channel c by derivative number `index`.
+static void add_ambient(const glint_tile *tile, const glint_plan *plan, size_t index, uint32_t g, unsigned hits, int c)
 {
-    const uint32_t material = tile->surface.material[i], planes = plan->materials[material].planes;
-    const glint_dual own = plan->derivatives->of[index].materials[material].ambient[c];
-    const double *painted = NULL;
-    if (planes & (GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT))
-        painted = glint_derivative_painted(
-            tile, plan, index, planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE ? GLINT_FIELD_DIFFUSE : GLINT_FIELD_AMBIENT, c);
-    return own.slope * ambient_plane(tile, plan, i, c) + (painted ? own.value * painted[i] : 0);
+    const glint_plan_derivative *d = &plan->derivatives->of[index];
+    const double *diffuse = d->repaints ? glint_derivative_painted(tile, plan, index, GLINT_FIELD_DIFFUSE, c) : NULL;
+    const double *ambient = d->repaints ? glint_derivative_painted(tile, plan, index, GLINT_FIELD_AMBIENT, c) : NULL;
+    for (unsigned left = hits; left; left &= left - 1) {
+        const uint32_t i = g * GLINT_GROUP + (uint32_t)__builtin_ctz(left), material = tile->surface.material[i];
+        const uint32_t planes = plan->materials[material].planes;
+        const glint_dual own = d->materials[material].ambient[c];
+        const double *painted = planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE ? diffuse : planes & GLINT_PLANE_AMBIENT ? ambient : NULL;
+        if (own.slope != 0)
+            tile->derivative->sum[index][c][i] += own.slope * ambient_plane(tile, plan, i, c);
+        if (painted)
+            tile->derivative->sum[index][c][i] += own.value * painted[i];
+    }
 }
 
 // ---- One light ----------------------------------------------------------------------------------------------------
@@ -303,16 +309,16 @@ static void begin_group(glint_tile *tile, const glint_tile_frame *frame, uint32_
 {
     glint_derivative_work *work = tile->derivative;
     const glint_plan_derivatives *all = frame->plan->derivatives;
-    const unsigned hits = tile->at.hits[g];
-    for (uint32_t lane = 0; lane < GLINT_GROUP; lane++) {
-        const uint32_t i = g * GLINT_GROUP + lane;
-        const bool hit = hits >> lane & 1, active = tile->active[g] >> lane & 1;
-        const bool sky = active && !hit && !tile->transparent &&
-                         !(frame->plan->visible_light_count && glint_tile_sees_light(tile, i));
-        for (size_t k = 0; k < all->count && (hit || sky); k++)
-            for (int c = 0; c < 3; c++)
-                work->sum[k][c][i] += hit ? ambient_slope(tile, frame->plan, k, i, c) : all->of[k].background[c];
-    }
+    unsigned sky = tile->transparent ? 0 : tile->active[g] & ~(unsigned)tile->at.hits[g];
+    for (unsigned left = frame->plan->visible_light_count ? sky : 0; left; left &= left - 1)
+        if (glint_tile_sees_light(tile, g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)))
+            sky &= ~(left & -left);
+    for (size_t k = 0; k < all->count; k++)
+        for (int c = 0; c < 3; c++) {
+            add_ambient(tile, frame->plan, k, g, tile->at.hits[g], c);
+            for (unsigned left = all->of[k].background[c] != 0 ? sky : 0; left; left &= left - 1)
+                work->sum[k][c][g * GLINT_GROUP + (uint32_t)__builtin_ctz(left)] += all->of[k].background[c];
+        }
 }
 
 /// What hits of a batch give without lights.

@@ -84,31 +84,57 @@ static void finish(const glint_tile *tile, const glint_plan *plan, size_t index,
 
 // ---- The programs -------------------------------------------------------------------------------------------------
 
-/// One program and how it changes, for entries whose inputs are gathered. What is below 0 is taken as 0, and stays; so does what has no
-/// slope, such as the root of what is 0 all around.
-static void run_field(const glint_tile *tile, const glint_tile_frame *frame, size_t index, int field,
-                      const glint_pattern_lanes *entries, glint_program_args args)
+/// Runs a program of a field for entries whose inputs are gathered, into pattern->slopes from place `to` on.
+static void run(const glint_tile *tile, const glint_tile_frame *frame, const glint_program *program,
+                glint_program_args args, uint32_t to)
 {
-    struct glint_pattern *pattern = tile->pattern;
-    const glint_program *program = frame->plan->patterns->of[entries->material].program[field];
-    const glint_program *tangent = frame->plan->derivatives->of[index].programs[entries->material].of[field];
-    const uint32_t outputs = program->code.output_count;
-    for (uint32_t k = 0; k < outputs; k++)
-        args.result[k] = pattern->slopes[k];
-    glint_pattern_call(pattern, frame, &program->code, &args);
-    for (uint32_t k = 0; k < outputs; k++)
-        args.result[k] = pattern->slopes[3 + k];
-    glint_pattern_call(pattern, frame, &tangent->code, &args);
-    for (uint32_t e = 0; e < args.group_count; e++)
-        for (unsigned left = entries[e].lanes; left; left &= left - 1) {
-            const uint32_t lane = (uint32_t)__builtin_ctz(left), i = entries[e].group * GLINT_GROUP + lane;
-            for (int c = 0; c < glint_field_channels(field); c++) {
-                const uint32_t k = outputs > 1 ? (uint32_t)c : 0, from = e * GLINT_GROUP + lane;
-                const double value = pattern->slopes[k][from], slope = pattern->slopes[3 + k][from];
-                const bool changes = value >= 0 && value <= GLINT_REFLECTANCE_MAX && isfinite(slope);
-                painted_at(tile, frame->plan, index, field, c)[i] = changes ? slope : 0;
-            }
+    for (uint32_t k = 0; k < program->code.output_count; k++)
+        args.result[k] = tile->pattern->slopes[to + k];
+    glint_pattern_call(tile->pattern, frame, &program->code, &args);
+}
+
+/// Whether some plane of an entry holds what may be a bound, and not what the program gave.
+static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field, const glint_pattern_lanes *entry)
+{
+    bool any = false;
+    for (int c = 0; c < glint_field_channels(field); c++) {
+        const float *plane = glint_plane_of(tile->at.planes, plan, field, c) + (size_t)entry->group * GLINT_GROUP;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            any = any || ((entry->lanes >> i & 1) && !(plane[i] > 1e-17f && plane[i] < 0x1p99f)); // roughness is at least 1e-18
+    }
+    return any;
+}
+
+/// Puts the slopes of one entry, number e of its call, in their places. What is below 0 is taken as 0, and stays; so does what has no
+/// slope, such as the root of what is 0 all around.
+static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t index, int field, bool one, bool bounded,
+                       const glint_pattern_lanes *entry, uint32_t e)
+{
+    for (int c = 0; c < glint_field_channels(field); c++) {
+        const double *value = tile->pattern->slopes[one ? 0 : c] + e * GLINT_GROUP;
+        const double *slope = tile->pattern->slopes[one ? 3 : 3 + c] + e * GLINT_GROUP;
+        double *to = painted_at(tile, plan, index, field, c) + (size_t)entry->group * GLINT_GROUP;
+        for (unsigned left = entry->lanes; left; left &= left - 1) {
+            const int i = __builtin_ctz(left);
+            const bool inside = !bounded || (value[i] >= 0 && value[i] <= GLINT_REFLECTANCE_MAX);
+            to[i] = inside && isfinite(slope[i]) ? slope[i] : 0;
         }
+    }
+}
+
+/// One program of some groups that show a material.
+static void run_field(const glint_tile *tile, const glint_tile_frame *frame, size_t index, int field,
+                      const glint_pattern_lanes *entries, const glint_program_args *args)
+{
+    const glint_program *program = frame->plan->patterns->of[entries->material].program[field];
+    bool bounded = false;
+    for (uint32_t e = 0; e < args->group_count && !bounded; e++)
+        bounded = is_bounded(tile, frame->plan, field, &entries[e]);
+    if (bounded)
+        run(tile, frame, program, *args, 0);
+    run(tile, frame, frame->plan->derivatives->of[index].programs[entries->material].of[field], *args, 3);
+    for (uint32_t e = 0; e < args->group_count; e++)
+        put_slopes(tile, frame->plan, index, field, program->code.output_count == 1, bounded, &entries[e], e);
 }
 
 /// Some groups that show one material.
@@ -126,7 +152,7 @@ static void run_material(const glint_tile *tile, const glint_tile_frame *frame, 
     for (size_t k = 0; k < all->count; k++) {
         for (int field = 0; field < GLINT_FIELD_PLANES; field++)
             if (all->of[k].programs[entries->material].of[field])
-                run_field(tile, frame, k, field, entries, args);
+                run_field(tile, frame, k, field, entries, &args);
         for (uint32_t e = 0; e < count; e++)
             finish(tile, frame->plan, k, &entries[e]);
     }
