@@ -294,7 +294,7 @@ ARM64_CC ?= aarch64-linux-gnu-gcc
 
 check-arm64-run:
 	@ELSEWHERE=$(ARM64) GLINT_CASE_STEP=23 EMULATOR="$(ARM64_EMULATOR)" ENCODERS=same LACKS=avx2 \
-	    $(RUNNER) tests/machines/elsewhere.sh $(ARM64_TESTS)
+	    TEST_LIMIT_S=$${TEST_LIMIT_S:-1200} $(RUNNER) tests/machines/elsewhere.sh $(ARM64_TESTS)
 
 MUSL           := build-musl
 MUSL_LIBRARIES := $(CURDIR)/$(MUSL)/libraries
@@ -314,7 +314,7 @@ check-musl-run:
 
 # libFuzzer is clang's. The kernels are compiled without its counters: other tests are for them.
 FUZZ       := build-fuzz
-FUZZERS    := picture mesh command data scene
+FUZZERS    := picture mesh command data scene pattern
 FUZZ_CC    ?= clang
 FUZZ_BIN   := $(FUZZERS:%=$(BUILD)/tests/fuzz/fuzz_%)
 FUZZ_MAKE  := $(MAKE) --no-print-directory BUILD=$(FUZZ) PORTABLE=1 CC="$(FUZZ_CC)" CFLAGS="-O1 -g" \
@@ -332,7 +332,7 @@ fuzz: ## the fuzzers for an hour each, or FUZZ_SECONDS
 
 fuzz-programs: $(FUZZ_BIN)
 
-$(BUILD)/tests/fuzz/fuzz_data $(BUILD)/tests/fuzz/fuzz_scene: $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_lua.c tests/fuzz/fuzz.h \
+$(addprefix $(BUILD)/tests/fuzz/fuzz_,data scene pattern): $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/fuzz_lua.c tests/fuzz/fuzz.h \
     $(MODULE_OBJ) $(BUILD)/libglint.a
 	@mkdir -p $(@D)
 	$(call say,CC)

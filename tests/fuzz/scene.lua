@@ -12,8 +12,18 @@ local function any(list) return list[next_byte() % #list + 1] end
 
 local NUMBERS = { 0, 1, -1, 2, 0.5, 3, 1e-3, 1e3, 1e-30, 1e30, 1e-310, 1e308, -1e308, 1 / 0, -1 / 0, 0 / 0, 2 ^ 31, 2 ^ 53, 16, -0.0 }
 local TEXTS = { "", "red", "#123456", "phong", "blinn_phong", "cook_torrance", "lambert", "flat", "gouraud", "ggx", "f32", "hard", "a\0b" }
-local function number() return next_byte() < 200 and (next_byte() - 100) / 16 or any(NUMBERS) end
+local function number()
+  local kind = next_byte()
+  if kind == 255 then return glint.variable("x", (next_byte() - 100) / 16) end
+  return kind < 200 and (next_byte() - 100) / 16 or any(NUMBERS)
+end
 local function three() return { number(), number(), number() } end
+
+local PROGRAMS = {
+  glint.pattern(function(p) return glint.checker(p, 0.2) end), glint.pattern(function(p, s) return p * s.n + glint.noise(p) end),
+  glint.pattern(function(_, s) return s.uv.u end), glint.pattern(function() return 0.25 end),
+  glint.shader(function(s) return s.kd * s.light, s.ks end), glint.texture { file = "tests/fuzz/corpus/picture/rgb.png" },
+}
 
 local depth = 0
 local value
@@ -29,6 +39,7 @@ local KINDS = {
     return t
   end,
   function() return { { 1, 2, 3 }, { 1, 3, next_byte() % 6 } } end,
+  function() return any(PROGRAMS) end,
 }
 function value()
   depth = depth + 1
@@ -42,9 +53,11 @@ local FIELDS = {
   box = { "min", "max", "material", "transform" }, disk = { "center", "normal", "radius", "material" },
   cylinder = { "base", "top", "radius", "capped", "material", "transform" }, cone = { "base", "top", "radius", "capped", "material" },
   torus = { "center", "axis", "major", "minor", "material", "transform" },
-  mesh = { "vertices", "faces", "normals", "shading", "material" }, spheres = { "data", "format", "material" },
+  mesh = { "vertices", "faces", "normals", "shading", "material", "uv", "index" },
+  spheres = { "data", "format", "material", "index" },
   sphere_mesh = { "center", "radius", "segments", "shading" }, group = { "transform" },
-  union = { "material", "transform", "two_sided" }, intersection = { "material" }, difference = { "transform" },
+  union = { "material", "transform", "two_sided", "part" }, intersection = { "material", "part" },
+  difference = { "transform", "part" },
   point_light = { "position", "intensity", "color", "attenuation", "shadows" },
   directional_light = { "direction", "intensity", "color", "shadows" },
   spot_light = { "position", "direction", "inner", "outer", "exponent" },
@@ -52,8 +65,10 @@ local FIELDS = {
   polygon_light = { "vertices", "two_sided", "radiance", "visible" },
   sphere_light = { "position", "radius", "intensity", "visible" },
   material = { "model", "diffuse", "specular", "shininess", "ambient", "mirror", "transmission", "ior", "fresnel", "roughness", "absorption",
-    "distribution", "normalized" },
-  camera = { "eye", "at", "direction", "up", "fov", "projection", "height" },
+    "distribution", "normalized", "matched", "f0", "bump", "opacity" },
+  camera = { "eye", "at", "direction", "up", "fov", "projection", "height", "pixel_offset", "aperture", "focus", "blades", "blade_rotation",
+    "shutter", "shutter_times" },
+  ambient_occlusion = { "distance" },
   label = { "text", "at", "position", "size", "margin", "color", "background", "opacity" },
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
   axes = { "labels", "length", "at", "position", "size" },
@@ -85,8 +100,11 @@ local GOOD = {
   disk_light = { position = { 0, 5, 0 }, normal = { 0, -1, 0 }, radius = 1 },
   polygon_light = { vertices = { { 0, 5, 0 }, { 1, 5, 0 }, { 0, 5, 1 } } }, sphere_light = { position = { 0, 5, 0 }, radius = 1 },
   material = {}, camera = { eye = { 0, 0, 9 }, at = { 0, 0, 0 } },
-  label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
+  ambient_occlusion = { samples = 2 }, label = { text = "a" }, colorbar = { map = "magma", low = 0, high = 1 }, axes = {},
 }
+
+-- What may be a part of a combined solid, and some that may not.
+local PARTS = { "sphere", "box", "torus", "cylinder", "cone", "plane", "disk", "mesh", "group", "union", "difference" }
 
 local function field_value(field, made)
   if field == "material" and made.material then return made.material end
@@ -103,7 +121,12 @@ local function make(name, made)
   for key, v in pairs(GOOD[name]) do fields[key] = v end
   for _ = 1, next_byte() % 4 do
     local field = any(FIELDS[name])
-    fields[field] = field_value(field, made)
+    if field == "part" then
+      fields[#fields + 1] = made[any(PARTS)]
+    else
+      fields[field] = field_value(field, made)
+    end
+    if field == "index" then fields.materials = { made.material or glint.material {}, glint.material { mirror = 0.5 } } end
   end
   if name:find "disk_light" or name:find "polygon_light" or name:find "sphere_light" then fields.samples = 1 + next_byte() % 4 end
   local ok, object = pcall(glint[name], fields)
@@ -117,10 +140,26 @@ local function change(object, name, made)
   if not ok then refused(message) end
 end
 
+local SCENE = {
+  indirect = function() return { samples = 1 + next_byte() % 3, bounces = next_byte() % 3 } end,
+  depth_cue = function() return { far = number(), near = number(), color = value() } end,
+  ambient_occlusion = function() return { samples = 1 + next_byte() % 3, distance = number() } end,
+  background = value, ambient = value,
+}
+local SCENE_NAMES = { "indirect", "depth_cue", "ambient_occlusion", "background", "ambient" }
+
+local function change_scene(scene)
+  local field = any(SCENE_NAMES)
+  local ok, message = pcall(function() scene[field] = SCENE[field]() end)
+  if not ok then refused(message) end
+end
+
+local PASSES = { "beauty", "d:x", "depth,normal,object_id", "albedo,outline,refined", "alpha,indirect,mirror" }
+
 local function render(scene)
   local ok, image, message = pcall(scene.render, scene, {
     width = 1 + next_byte() % 24, height = 1 + next_byte() % 24, samples = any { 1, 1, 2, 4 }, precision = any { "double", "float" },
-    max_depth = next_byte() % 4,
+    max_depth = next_byte() % 4, passes = any(PASSES), adaptive = any { false, 0, 0.1 } or nil, visibility = any { "auto", "scan" },
   })
   if not ok then refused(image) else assert(image or message) end
 end
@@ -140,6 +179,7 @@ return function(input)
       if not ok then refused(message) end
     end
   end
+  for _ = 1, next_byte() % 3 do change_scene(scene) end
   render(scene)
   for _ = 1, next_byte() % 4 do
     if #list > 0 then
