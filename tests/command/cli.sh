@@ -650,6 +650,18 @@ signals() {
         signalled "SIGINT in a loop that catches errors" INT 130 stubborn.lua
         ;;
     esac
+    # A script that waits within C: the first is heard when that ends, the second ends the process.
+    mkfifo waits
+    echo 'io.open "waits"' >waiting.lua
+    "$GLINT" waiting.lua -o none >out 2>err </dev/null &
+    local waiting=$!
+    sleep 0.5
+    kill -s TERM $waiting
+    sleep 0.2
+    kill -s TERM $waiting
+    wait $waiting
+    check "a second signal ends what waits for a pipe" test $? -eq 143
+    rm waits waiting.lua
     local begin=$SECONDS
     "$GLINT" slow.lua -o 'many%d.png' --size 60x40 --samples 1 >out 2>err </dev/null &
     local pid=$!
