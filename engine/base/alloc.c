@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #define LARGE_PAGE ((size_t)2 << 20)
 
@@ -49,10 +50,6 @@ void *glint_scratch_resize(void *memory, size_t from, size_t to)
     void *pages = mmap(NULL, to, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED)
         return NULL;
-#ifdef MADV_HUGEPAGE
-    if (to >= 2 * LARGE_PAGE)
-        madvise(pages, to, MADV_HUGEPAGE);
-#endif
     if (memory)
         memcpy(pages, memory, from < to ? from : to);
     glint_scratch_free(memory, from);
@@ -65,4 +62,18 @@ void glint_scratch_free(void *memory, size_t bytes)
         free(memory);
     else if (memory)
         munmap(memory, bytes);
+}
+
+void glint_scratch_drop(void *memory, size_t bytes, size_t from, size_t to)
+{
+#ifdef MADV_DONTNEED
+    const long page = sysconf(_SC_PAGESIZE);
+    if (bytes < PAGED_FROM || page <= 0)
+        return;
+    const size_t first = (from + (size_t)page - 1) / (size_t)page, last = to / (size_t)page; // whole pages within
+    if (first < last)
+        madvise((char *)memory + first * (size_t)page, (last - first) * (size_t)page, MADV_DONTNEED);
+#else
+    (void)memory, (void)bytes, (void)from, (void)to;
+#endif
 }

@@ -52,7 +52,8 @@ static size_t part_number(const glint_geometry *geometry, uint32_t whole, uint32
     size_t parts = 0;
     for (uint32_t i = 0; i < count; i++) {
         const glint_prim *member = &geometry->members[i];
-        parts += member->id > whole && member->id <= id && member->face <= 1; // the first of those that are one
+        const bool first = member->kind == GLINT_PRIM_PLANE || member->face <= 1; // of those that are one
+        parts += member->id > whole && member->id <= id && first;
     }
     return parts - 1;
 }

@@ -266,6 +266,7 @@ static void build_task(void *context, size_t index, int worker)
     builder *b = context;
     task *t = &b->tasks[index];
     t->failed = nodes_add(&t->list, 1) == UINT32_MAX || !build_node(b, &t->list, 0, &t->set, t->depth);
+    glint_records_drop(&b->records, &t->set);
 }
 
 /// Copies a task's nodes to where they stay.

@@ -437,3 +437,9 @@ void glint_records_free(glint_records *records)
     records->wrong = NULL;
     records->chunks = NULL;
 }
+
+void glint_records_drop(const glint_records *records, const glint_record_set *set)
+{
+    glint_scratch_drop(records->all, records->count * sizeof *records->all, set->begin * sizeof *records->all,
+                       (set->begin + set->count) * sizeof *records->all);
+}

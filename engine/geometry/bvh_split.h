@@ -37,6 +37,8 @@ typedef struct glint_records {
 bool glint_records_init(glint_records *records, glint_box *boxes, uint32_t count, glint_pool *pool,
                         glint_record_set *root);
 void glint_records_free(glint_records *records);
+/// Gives back the memory of records that are in nodes.
+void glint_records_drop(const glint_records *records, const glint_record_set *set);
 
 /// Splits by place, where the surface area heuristic finds it cheapest, or by number where places do not differ; `set`
 /// becomes the lower part and `above` the other. set->count must be above GLINT_NODE_WIDTH. Either way has the same

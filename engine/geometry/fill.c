@@ -95,6 +95,7 @@ void glint_fill_triangle(glint_filler *f, glint_prim *prim, const glint_shape *s
     const glint_mesh *mesh = shape->mesh;
     const uint32_t *at = mesh->triangles[i], *normal = mesh->triangle_normals ? mesh->triangle_normals[i] : at;
     prim->kind = GLINT_PRIM_TRIANGLE;
+    prim->corner = f->geometry->corners[f->corner_count++];
     prim->face = 0;
     prim->item = is_smooth(shape) ? f->normal_count++ : GLINT_MISS;
     prim->shading_points = is_shared(shape) ? f->shared_count++ : GLINT_MISS;
@@ -157,7 +158,7 @@ static void add_prim(glint_filler *f, const glint_shape *shape, size_t i, uint32
         add_ball(f, prim, desc->center, desc->radius, place);
         break;
     case GLINT_SHAPE_PLANE:
-        glint_plane_init(prim, desc->point, desc->normal, place);
+        glint_plane_init(prim, geometry->planes[f->plane_count++], desc->point, desc->normal, place);
         break;
     default:
         glint_fill_solid(f, prim, desc, place);
@@ -251,6 +252,8 @@ static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool 
         f->members += count;
         f->hulls += shape->mesh != NULL;
         f->hull_prims += shape->mesh ? shape->count : 0;
+        f->corners += shape->mesh ? shape->count + count : 0;
+        f->planes += shape->desc.kind == GLINT_SHAPE_PLANE;
         f->smooth += is_smooth(shape) ? shape->count : 0;
         f->maps += mapped ? count + 1 : 0;
         f->solids += shape->mesh ? 0 : count;
@@ -258,6 +261,8 @@ static glint_status count_shape(glint_filler *f, const glint_shape *shape, bool 
         f->materials = shape->material_count > f->materials ? shape->material_count : f->materials;
         return status;
     }
+    f->planes += shape->desc.kind == GLINT_SHAPE_PLANE;
+    f->corners += shape->mesh ? shape->count : !within && glint_shape_combines(shape);
     f->combined += !within && glint_shape_combines(shape);
     f->parts += !group;
     f->maps += !group && mapped; // at most
@@ -301,6 +306,10 @@ static bool allocate(glint_filler *f)
     f->solids += f->combined > 0; // the kernels look for either where there are solids
     geometry->solids = f->solids ? glint_alloc(f->solids, sizeof *geometry->solids) : NULL;
     geometry->faces = f->faces ? glint_alloc(f->faces, sizeof *geometry->faces) : NULL;
+    geometry->corners = f->corners ? glint_alloc_large(f->corners, sizeof *geometry->corners) : NULL;
+    geometry->planes = f->planes ? glint_alloc(f->planes, sizeof *geometry->planes) : NULL;
+    if ((f->corners && !geometry->corners) || (f->planes && !geometry->planes))
+        return false;
     if ((f->members && !geometry->members) || (f->combined && !geometry->combined) || (f->hulls && !geometry->hulls))
         return false;
     return f->numbers && geometry->prims && geometry->prim_part && geometry->parts && (geometry->maps || !f->maps) &&
@@ -333,6 +342,7 @@ glint_status glint_geometry_fill(glint_geometry *geometry, const glint_scene *sc
     geometry->table.hulls = geometry->hulls;
     geometry->hull_count = f.hull_count;
     geometry->id_count = f.id_count;
+    geometry->corner_count = f.corner_count;
     geometry->table.shading_points = geometry->shading_points;
     geometry->table.faces = geometry->faces;
     return status;

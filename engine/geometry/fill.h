@@ -13,8 +13,9 @@ typedef struct glint_filler {
     size_t prims, parts, smooth, shared, shading_points, solids, faces,
         materials; ///< how many there are; materials: most of any shape
     size_t maps; ///< of parts, at most
+    size_t corners, planes; ///< of triangles and boxes; of planes
     size_t visits, map_count;
-    uint32_t normal_count, shared_count, solid_count, face_count, combined_count, hull_count, member_count, hull_prim_count;
+    uint32_t corner_count, plane_count, normal_count, shared_count, solid_count, face_count, combined_count, hull_count, member_count, hull_prim_count;
     int level_axis; ///< of the last triangle of the shape that is square to an axis; 3: none so far
     double level; ///< where on it
     glint_error *error;

@@ -62,10 +62,11 @@ static glint_status add_member(glint_filler *f, maker *m, glint_shape *shape, co
     glint_status status = start_member(f, m, shape, place, dress, turned, half, &prim);
     if (status)
         return status;
-    if (shape->desc.kind == GLINT_SHAPE_PLANE)
-        glint_plane_init(prim, shape->desc.point, shape->desc.normal, place);
-    else
-        glint_fill_solid(f, prim, &shape->desc, place);
+    if (shape->desc.kind == GLINT_SHAPE_PLANE) {
+        glint_plane_init(prim, f->geometry->planes[f->plane_count++], shape->desc.point, shape->desc.normal, place);
+        return GLINT_OK;
+    }
+    glint_fill_solid(f, prim, &shape->desc, place);
     prim->face = half;
     return GLINT_OK;
 }
@@ -110,13 +111,17 @@ static glint_status add_hull(glint_filler *f, maker *m, glint_shape *shape, cons
         status = start_member(f, m, shape, place, dress, turned, k + 1, &prim[k]);
     if (status)
         return status;
+    for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++)
+        prim[k]->corner = f->geometry->corners[f->corner_count++];
     add_hull_triangles(f, m, shape, place, dress, turned, prim[0]);
     for (uint32_t k = 0; k < GLINT_HULL_PARTS; k++) {
         prim[k]->kind = GLINT_PRIM_HULL;
         prim[k]->item = hull;
-        memcpy(prim[k]->corner, prim[0]->corner, sizeof prim[k]->corner);
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
+            prim[k]->corner[1][c] = prim[0]->corner[1][c];
+            prim[k]->corner[2][c] = prim[0]->corner[2][c];
             prim[k]->corner[0][c] = 0.5 * prim[0]->corner[1][c] + 0.5 * prim[0]->corner[2][c];
+        }
     }
     return GLINT_OK;
 }
@@ -181,6 +186,7 @@ glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glin
     *m.combined = (glint_combined) { .first = f->member_count };
     glint_fill_dress(f, prim, part, m.medium, m.medium, shape->desc.two_sided);
     prim->kind = GLINT_PRIM_COMBINED;
+    prim->corner = geometry->corners[f->corner_count++];
     prim->item = f->combined_count++;
     char name[2 * GLINT_NAME_SIZE];
     glint_describe_shape(&shape->desc, geometry->whole_count, name, sizeof name);

@@ -108,7 +108,7 @@ static void choose_frame(glint_geometry *geometry)
         double sample[SAMPLES + 1] = { 0 };
         size_t n = 0;
         for (uint32_t i = 0; i < count; i += step)
-            sample[n++] = geometry->prims[i].center[c]; // of a triangle, a corner
+            sample[n++] = glint_prim_has_corners(&geometry->prims[i]) ? geometry->prims[i].corner[0][c] : geometry->prims[i].center[c];
         qsort(sample, n, sizeof *sample, by_value);
         table->reference[c] = n ? sample[n / 2] : 0;
     }
@@ -130,7 +130,7 @@ static void choose_frame(glint_geometry *geometry)
         const glint_prim *member = &geometry->members[i];
         const bool hull = member->kind == GLINT_PRIM_HULL; // whose box is that of all its triangles
         for (int k = hull ? 1 : 0; k < (hull ? 3 : 1); k++)
-            table->extent = fmax(table->extent, vec_max_abs(member->corner[k])); // of others, the centre
+            table->extent = fmax(table->extent, vec_max_abs(glint_prim_has_corners(member) ? member->corner[k] : member->center));
     }
     table->scale = largest > 0 && isfinite(largest) ? power_of_two_scale(largest) : 1;
 }
@@ -167,7 +167,8 @@ static double reach_of(const glint_solid *solid)
     return unit * sqrt(most);
 }
 
-/// The box of a primitive, and a sphere around it, which becomes the primitive's: its own, or that of the box, or a smaller one.
+/// The box of a primitive, where there is room for one, and a sphere around it, which becomes the primitive's: its own, or that of the
+/// box, or a smaller one.
 static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, glint_box *box)
 {
     double lower[3], upper[3], center[3], half[3];
@@ -179,8 +180,10 @@ static void place_in_frame(const glint_geometry_table *table, glint_prim *prim, 
         half[c] *= table->scale;
         const double loose = half[c] + box_slack(table, prim, center[c], half[c]);
         prim->filter_center[c] = (float)center[c];
-        box->lower[c] = float_down(fmax(center[c] - loose, -BOX_MAX));
-        box->upper[c] = float_up(fmin(center[c] + loose, BOX_MAX));
+        if (box) {
+            box->lower[c] = float_down(fmax(center[c] - loose, -BOX_MAX));
+            box->upper[c] = float_up(fmin(center[c] + loose, BOX_MAX));
+        }
         half[c] = prim->kind == GLINT_PRIM_SPHERE ? half[c] : loose;
     }
     double radius = prim->kind == GLINT_PRIM_SPHERE ? half[0] : sqrt(vec_dot(half, half));
@@ -209,12 +212,11 @@ static glint_status index_create(glint_geometry *geometry, glint_error *error)
     pthread_mutex_init(&index->lock, NULL);
     for (uint32_t i = 0; i < count; i++) {
         glint_prim *prim = &geometry->prims[i];
-        glint_box box;
         if (prim->filter_bound == REPEATED)
             continue; // the first of equal ones wins every tie and casts every shadow
         prim->filter_bound = HUGE_VALF;
         if (glint_prim_bounded(prim)) {
-            place_in_frame(&geometry->table, prim, &box);
+            place_in_frame(&geometry->table, prim, NULL);
             index->box_count++;
         } else {
             geometry->unbounded[geometry->table.unbounded_count++] = i;
@@ -345,16 +347,42 @@ static void move_prims(arrangement *a, glint_prim *prims, uint32_t count)
     }
 }
 
+static uint32_t move_corners_of(glint_prim *prims, uint32_t count, double (*to)[3][3])
+{
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!glint_prim_has_corners(&prims[i]))
+            continue;
+        memcpy(to[next], prims[i].corner, sizeof *to);
+        prims[i].corner = to[next++];
+    }
+    return next;
+}
+
+/// Has the corners follow the primitives: neighbours in space are neighbours in memory. corners: room for them.
+static void move_corners(glint_geometry *geometry, double (*corners)[3][3])
+{
+    const uint32_t first = move_corners_of(geometry->prims, geometry->table.prim_count, corners);
+    move_corners_of(geometry->members, geometry->member_count, corners + first);
+    free(geometry->corners);
+    geometry->corners = corners;
+}
+
 /// Puts the primitives into the order of the index, those without an end last; repeats are gone.
 static glint_status arrange(glint_geometry *geometry, glint_error *error)
 {
     const uint32_t bounded = geometry->index->box_count;
     arrangement a;
+    double(*corners)[3][3] = NULL;
     bool room = arrangement_init(&a, geometry);
+    if (geometry->corners)
+        room = (corners = glint_alloc_large(geometry->corner_count, sizeof *corners)) && room;
     if (geometry->shading_points && !geometry->places)
         room = (geometry->places = glint_alloc(geometry->id_count, sizeof *geometry->places)) && room;
     if (room) {
         move_prims(&a, geometry->prims, geometry->table.prim_count);
+        if (corners)
+            move_corners(geometry, corners);
         for (uint32_t i = 0; geometry->places && i < bounded; i++)
             geometry->places[geometry->prims[i].id] = i;
         for (uint32_t i = 0; i < geometry->table.unbounded_count; i++)
@@ -367,6 +395,8 @@ static glint_status arrange(glint_geometry *geometry, glint_error *error)
     }
     free(a.rest);
     free(a.done);
+    if (!room)
+        free(corners);
     return room ? GLINT_OK : glint_fail_nomem(error);
 }
 
@@ -443,6 +473,8 @@ void glint_geometry_release(glint_geometry *geometry)
     glint_bvh_free(&geometry->others);
     glint_list_free(&geometry->materials);
     free(geometry->prims);
+    free(geometry->corners);
+    free(geometry->planes);
     free(geometry->prim_part);
     free(geometry->parts);
     free(geometry->maps);

@@ -37,6 +37,9 @@ struct glint_geometry {
     glint_key revision; ///< of the shapes it was made from
     glint_prim *prims; ///< in order of definition, and in that of the index once it is built
     bool arranged; ///< the latter
+    double (*corners)[3][3]; ///< of triangles, and the boxes of combined solids; in the order of the primitives
+    uint32_t corner_count; ///< of these
+    double (*planes)[4]; ///< what planes have beside a place
     uint32_t *prim_part; ///< which part each is of, by id
     glint_part *parts; ///< in order of definition; parts of combined solids after all else
     glint_transform *maps; ///< of those that have one
@@ -116,6 +119,11 @@ void glint_geometry_release_hulls(glint_geometry *geometry);
 /// How a ray from a place crosses a triangle: 1: it goes out, -1: in, 0: past it, or the triangle is behind. Of a closed mesh the sum of
 /// all is how often the place is inside.
 int glint_prim_crossing(const glint_prim *triangle, const double from[3], const double d[3]);
+
+static inline bool glint_prim_has_corners(const glint_prim *prim)
+{
+    return prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED || prim->kind == GLINT_PRIM_HULL;
+}
 
 /// geometry/combined.c: the box of a combined solid whose program and members are there: the middle, the lower and the upper corner; -inf
 /// and inf where it has no end.

@@ -40,7 +40,7 @@ static glint_key key_of(const glint_geometry *geometry, const glint_hull *hull)
     glint_key key = glint_key_add((glint_key) { 0 }, frame, sizeof frame);
     for (uint32_t i = 0; i < hull->count; i++) {
         const glint_prim *prim = &geometry->members[hull->first + i];
-        key = glint_key_add(key, prim->corner, sizeof prim->corner);
+        key = glint_key_add(key, prim->corner, 9 * sizeof prim->corner[0][0]);
     }
     return key;
 }

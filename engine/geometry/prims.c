@@ -11,23 +11,20 @@ void glint_sphere_init(glint_prim *prim, const double center[3], double radius)
     for (int c = 0; c < 3; c++)
         prim->center[c] = center[c] + 0.0; // -0 and 0 are one place
     prim->radius = radius;
-    prim->scale = power_of_two_scale(radius);
-    const double r = radius * prim->scale;
-    prim->r2 = r * r;
-    prim->r2_low = fma(r, r, -prim->r2);
 }
 
-void glint_plane_init(glint_prim *prim, const double point[3], const double normal[3], const glint_placing *place)
+void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
+                      const glint_placing *place)
 {
     glint_face face;
     glint_face_init(&face, place, normal, point);
     prim->kind = GLINT_PRIM_PLANE;
     vec_copy(prim->center, face.at);
-    vec_copy(prim->normal, face.normal);
-    prim->scale = 1;
-    prim->places = 0;
+    prim->normal = room;
+    vec_copy(room, face.normal);
+    room[3] = 0;
     for (int c = 0; c < 3 && face.axis == 3; c++)
-        prim->places += 2 * fabs(face.normal[c] * face.at[c]) + DBL_MIN;
+        room[3] += 2 * fabs(face.normal[c] * face.at[c]) + DBL_MIN;
 }
 
 static int copy_face(double *out, const glint_face *face)
@@ -69,7 +66,7 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
 {
     out[0] = prim->kind;
     if (prim->kind == GLINT_PRIM_TRIANGLE) {
-        memcpy(out + 1, prim->corner, sizeof prim->corner);
+        memcpy(out + 1, prim->corner, 9 * sizeof *out);
         return 10 + (prim->face ? copy_face(out + 10, &geometry->faces[prim->face - 1]) : 0);
     }
     if (prim->kind == GLINT_PRIM_COMBINED)
@@ -88,8 +85,10 @@ int glint_prim_place(const glint_geometry *geometry, const glint_prim *prim, dou
             count += copy_face(out + count, &solid->faces[i]);
         return count;
     }
-    vec_copy(out + 4, prim->normal);
-    out[7] = prim->radius;
+    const bool plane = prim->kind == GLINT_PRIM_PLANE;
+    for (int c = 0; c < 3; c++)
+        out[4 + c] = plane ? prim->normal[c] : 0;
+    out[7] = plane ? 0 : prim->radius;
     return 8;
 }
 

@@ -6,7 +6,9 @@
 #include "engine/geometry/geometry.h"
 
 void glint_sphere_init(glint_prim *prim, const double center[3], double radius);
-void glint_plane_init(glint_prim *prim, const double point[3], const double normal[3], const glint_placing *place);
+/// room: for what a plane has beside a place, as long as the primitive.
+void glint_plane_init(glint_prim *prim, double room[4], const double point[3], const double normal[3],
+                      const glint_placing *place);
 /// Of a ball, box, disk, cylinder, cone or torus; faces: room for those that it has. Returns how many these are.
 int glint_solid_init(glint_prim *prim, glint_solid *solid, const glint_shape_desc *desc, const glint_placing *place,
                      glint_face *faces);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Soak test of memory: what a run holds on to does not grow with the scenes, meshes and frames that have gone. A script
+# Tests of memory. What a run holds on to does not grow with the scenes, meshes and frames that have gone. A script
 # reads its own process's resident bytes after a full collection: the least of the second tenth of its rounds is held
 # against the least of the last tenth (what malloc has not given back yet comes and goes by a megabyte). Prints TAP.
 set -u
@@ -69,4 +69,44 @@ script 20000 'local lamp = glint.point_light { position = { 0, 8, 4 } }' \
     'return glint.animation { scene = scene, frames = rounds, width = 4, height = 4, frame = function(t, n)' \
     '  lamp.position = { 9 * glint.cos(6 * t), t - 0.5, 4 }' '  measure(n)' 'end }'
 grows "20,000 frames" 1000000 -o none
+
+# Spheres given as data, four doubles each, take at most six times that at the peak of a run, beside what a run of one takes.
+cat >write.lua <<'LUA'
+local glint = require "glint"
+local file, state = io.open("spheres", "wb"), 1
+local function random()
+  state = state * 48271 % 0x7fffffff
+  return state / 0x7fffffff
+end
+for _ = 1, 300000 do
+  file:write(string.pack("<dddd", 67 * random(), 67 * random(), 67 * random(), 0.2 + 0.2 * random()))
+end
+file:close()
+glint.scene { camera = glint.camera { eye = { 0, 0, 9 }, at = { 0, 0, 0 } } }:render { width = 4, height = 4 }
+LUA
+cat >read.lua <<'LUA'
+local glint = require "glint"
+local P = glint.params { count = { 1, min = 1, max = 300000, doc = "spheres" } }
+local scene = glint.scene { camera = glint.camera { eye = { -30, 80, 130 }, at = { 33, 22, 33 } }, ambient = 0.1,
+  glint.point_light { position = { 13, 134, 80 } }, glint.plane { point = { 0, -1, 0 }, normal = { 0, 1, 0 } } }
+do
+  local file = io.open("spheres", "rb")
+  scene:add(glint.spheres { data = file:read(32 * P.count), format = "f64" })
+  file:close()
+end
+collectgarbage() collectgarbage()
+scene:render { width = 64, height = 36 }
+LUA
+# peak COUNT: the most memory of a run of so many spheres, in bytes
+peak() { "$glint" read.lua --set count="$1" -t 1 --json -o none 2>err </dev/null | grep -o '"peak_bytes":[0-9]*' | cut -d: -f2; }
+"$glint" write.lua -t 1 -q -o none
+one=$(peak 1)
+all=$(peak 300000)
+if [ -n "$one" ] && [ -n "$all" ] && [ $((all - one)) -le $((6 * 32 * 300000)) ]; then
+    echo "ok - 300,000 spheres take $((all - one)) bytes at the peak"
+else
+    echo "not ok - 300,000 spheres: at most $((6 * 32 * 300000)) bytes at the peak expected, got '$one' for one and '$all' for all"
+    cat err
+    bad=1
+fi
 exit $bad

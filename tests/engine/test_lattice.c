@@ -28,7 +28,7 @@ static void lattice_way(double v[3])
 static void set_lattice_triangle(glint_prim *prim, const glint_prim *last)
 {
     double f[3], g[3], n[3];
-    *prim = (glint_prim) { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .shading_points = GLINT_MISS };
+    *prim = (glint_prim) { .kind = GLINT_PRIM_TRIANGLE, .corner = corner_room(), .item = GLINT_MISS, .shading_points = GLINT_MISS };
     do {
         for (int j = 0; j < 3; j++)
             if (j < 2 && last && last->kind == GLINT_PRIM_TRIANGLE && one_in(2))
@@ -52,7 +52,7 @@ static void set_lattice_solid(test_scene *scene, uint32_t i)
         solid->forward[(k + turn) % 3][k] = size;
         solid->inverse[k][(k + turn) % 3] = 1 / size;
     }
-    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1 };
+    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID };
     scene->prims[i].item = i;
     lattice3(scene->prims[i].center);
 }

@@ -20,7 +20,7 @@ INNER void R(cast_alone)(const R(tile_cast) * tile, const R(candidate) * candida
         if (lanes) {
             R(load_direction)(directions, args->direction, 0, i, d);
             if (sphere)
-                hit = R(meet_sphere)(f, d, DOT(d, d), r_set(candidate->c), candidate->prim, &t);
+                hit = R(meet_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale), &t);
             else
                 hit = R(meet_candidate)(args, candidate, f, d, &t);
             hit = rm_and(rm_from_bits(lanes), hit);
@@ -41,7 +41,7 @@ static void R(cast_filled)(const R(tile_cast) * tile, const R(candidate) * candi
 {
     const glint_cast_args *args = tile->args;
     const vr f[3] = { r_set(-candidate->f[0]), r_set(-candidate->f[1]), r_set(-candidate->f[2]) };
-    const vr c = r_set(candidate->c), r2 = r_set(candidate->prim->r2), scale = r_set(candidate->prim->scale);
+    const vr c = r_set(candidate->c), r2 = r_set(candidate->r2), scale = r_set(candidate->scale);
     const bool distant = candidate->distant;
     if (args->tests)
         *args->tests += GLINT_GROUP * (unsigned)__builtin_popcountll(groups);

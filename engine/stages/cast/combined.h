@@ -162,7 +162,7 @@ static void R(find_stretches)(const glint_geometry_table *table, const glint_com
                 live |= R(stretches_of_hull)(table, part, j, w, lanes, from, s);
             continue;
         }
-        if (part->face) {
+        if (part->kind == GLINT_PRIM_SOLID && part->face) {
             own |= starts ? R(vector_lanes)(on, part->face == 1 ? first + j + 1 : first + j - 1) : 0;
             any = R(stretch_of_torus)(table, part, o, d, own, into, t);
         } else {

@@ -15,9 +15,21 @@ INNER vr R(exact_power)(const vr f[3], vr r2, vr r2_low)
 #endif
 }
 
+/// What of a sphere its radius says, found once for many rays; of anything else nothing.
+typedef struct R(ball) {
+    vr scale, r2, r2_low;
+} R(ball);
+
+static inline R(ball) R(ball_of)(const glint_prim *prim)
+{
+    if (prim->kind != GLINT_PRIM_SPHERE)
+        return (R(ball)) { r_set(0), r_set(0), r_set(0) };
+    return (R(ball)) { r_set(glint_sphere_scale(prim)), r_set(glint_sphere_r2(prim)), r_set(glint_sphere_r2_low(prim)) };
+}
+
 INNER vr R(exact_c)(const vr f[3], const glint_prim *prim)
 {
-    return R(exact_power)(f, r_set(prim->r2), r_set(prim->r2_low));
+    return R(exact_power)(f, r_set(glint_sphere_r2(prim)), r_set(glint_sphere_r2_low(prim)));
 }
 
 /// a r^2 - |f x d|^2
@@ -50,11 +62,6 @@ INNER rm R(meet_ball)(const vr f[3], const vr d[3], vr a, vr c, vr r2, vr scale,
     rm far_root = rm_and(r_le(c, zero), ahead);
     *t = r_select(far_root, q, c) / (r_select(far_root, a, q) * scale);
     return rm_and(r_le(zero, disc), r_lt(zero, *t));
-}
-
-INNER rm R(meet_sphere)(const vr f[3], const vr d[3], vr a, vr c, const glint_prim *prim, vr *t)
-{
-    return R(meet_ball)(f, d, a, c, r_set(prim->r2), r_set(prim->scale), t);
 }
 
 INNER rm R(meet_plane)(const vr d[3], vr a, vr h, const glint_prim *prim, vr *t)
@@ -122,8 +129,8 @@ static inline vf R(filter_offset)(const R(ray_group) * rays, int i, const glint_
     if (prim->kind != GLINT_PRIM_SPHERE)
         return f_set(HUGE_VALF);
     for (int k = 0; k < 3; k++)
-        f[k] = (f[k] - f_set((float)prim->center[k])) * f_set((float)prim->scale);
-    return f_set((float)(prim->radius * prim->scale * (1 + 2e-6))) +
+        f[k] = (f[k] - f_set((float)prim->center[k])) * f_set((float)glint_sphere_scale(prim));
+    return f_set((float)(prim->radius * glint_sphere_scale(prim) * (1 + 2e-6))) +
            f_set(GLINT_FILTER_SLACK) * ((f_abs(f[0]) + f_abs(f[1])) + f_abs(f[2]));
 #endif
 }
@@ -176,7 +183,7 @@ static inline void R(offset)(const vr origin[3], const glint_prim *prim, vr f[3]
     for (int k = 0; k < 3; k++) {
         f[k] = origin[k] - r_set(prim->center[k]);
         if (prim->kind == GLINT_PRIM_SPHERE)
-            f[k] = f[k] * r_set(prim->scale);
+            f[k] = f[k] * r_set(glint_sphere_scale(prim));
     }
 }
 
@@ -193,18 +200,18 @@ static inline vr R(offset_constant)(const vr f[3], const glint_prim *prim)
 static inline vr R(point_constant)(const vr f[3], const glint_prim *prim)
 {
     const vr c = R(offset_constant)(f, prim);
-    if (prim->kind != GLINT_PRIM_PLANE || !(prim->places > 0))
+    if (prim->kind != GLINT_PRIM_PLANE || !(prim->normal[3] > 0))
         return c;
     const vr n[3] = { r_set(prim->normal[0]), r_set(prim->normal[1]), r_set(prim->normal[2]) };
     const vr sizes = (R(abs)(n[0] * f[0]) + R(abs)(n[1] * f[1])) + R(abs)(n[2] * f[2]);
-    return R(unless_within)(c, r_set(GLINT_ON_FACE) * (sizes + r_set(prim->places)));
+    return R(unless_within)(c, r_set(GLINT_ON_FACE) * (sizes + r_set(prim->normal[3])));
 }
 
 INNER rm R(meet)(const vr f[3], vr c, const vr d[3], const glint_prim *prim, vr *t)
 {
     const vr a = DOT(d, d);
     if (prim->kind == GLINT_PRIM_SPHERE)
-        return R(meet_sphere)(f, d, a, c, prim, t);
+        return R(meet_ball)(f, d, a, c, r_set(glint_sphere_r2(prim)), r_set(glint_sphere_scale(prim)), t);
     return R(meet_plane)(d, a, c, prim, t);
 }
 

@@ -81,9 +81,9 @@ static inline void R(add_pair)(const glint_cast_args *args, R(ray_pairs) * pairs
         pairs->direction[k][n] = ((const real *)args->direction[k])[ray];
         pairs->center[k][n] = (real)prim->center[k];
     }
-    pairs->scale[n] = (real)prim->scale;
-    pairs->r2[n] = (real)prim->r2;
-    pairs->r2_low[n] = (real)prim->r2_low;
+    pairs->scale[n] = (real)glint_sphere_scale(prim);
+    pairs->r2[n] = (real)glint_sphere_r2(prim);
+    pairs->r2_low[n] = (real)glint_sphere_r2_low(prim);
     pairs->ray[n] = ray;
     pairs->prim[n] = id;
     pairs->next[n] = next;

@@ -21,7 +21,7 @@ static inline rm R(way_out)(const glint_geometry_table *table, const glint_prim 
     }
     R(offset)(o, prim, f);
     const vr b = -DOT(f, d);
-    *t = r_max((b + b) / (DOT(d, d) * r_set(prim->scale)), r_set(GLINT_LEAST_WAY));
+    *t = r_max((b + b) / (DOT(d, d) * r_set(glint_sphere_scale(prim))), r_set(GLINT_LEAST_WAY));
     return all;
 }
 

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define GLINT_GROUP 16
 #define GLINT_TILE_WIDTH 32
@@ -31,7 +32,7 @@ typedef enum glint_prim_kind {
     GLINT_PRIM_HULL = GLINT_KIND(GLINT_WITH_COMBINED, 5) ///< a closed mesh, as a part of a combined solid
 } glint_prim_kind;
 
-/// One surface, as far as no ray is concerned. What the filter reads is in the first 64 bytes.
+/// One surface, as far as no ray is concerned: a line of the cache, of which the filter reads the first half.
 typedef struct glint_prim {
     _Alignas(64) uint16_t kind;
     uint8_t two_sided; ///< 0: seen from behind it gets ambient light only
@@ -43,25 +44,58 @@ typedef struct glint_prim {
                         ///< of its box, where the box has on each side 13 GLINT_POINT_SLACK_DOUBLE extent scale besides
     uint32_t medium; ///< index in the material table: of what light is in that has gone in through it; a part: of its whole
     union {
+        double center[3]; ///< sphere, solid: centre; plane: a point of it
         struct {
-            double center[3]; ///< sphere, solid: centre; plane: a point of it
-            double scale; ///< sphere: a power of two, so that radius * scale is in [1, 2)
-            double normal[3]; ///< plane: unit
-            double radius; ///< sphere, world units
-            double r2, r2_low; ///< sphere: (radius * scale)^2 as an unevaluated sum; r2 is the rounded square
-            double places; ///< plane: 2 (|normal| . |center|), above 0; 0: it is along two axes, and heights are exact
-        };
-        struct {
-            double corner[3][3]; ///< triangle; combined, hull: the middle of its box, the box's lower and its upper corner, -inf
+            double (*corner)[3]; ///< triangle: three; combined, hull: the middle of its box, the box's lower and its upper corner, -inf
                 ///< and inf where it has no end
+            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
+        };
+    };
+    union {
+        double radius; ///< sphere, world units
+        double *normal; ///< plane: unit; behind it, in normal[3], 2 (|normal| . |center|), above 0; 0: it is along two axes, and
+            ///< heights are exact
+        struct {
             uint32_t item; ///< triangle: index in corner_normals, GLINT_MISS: it has its own; solid: index in solids;
                 ///< combined: index in combined; hull: index in hulls
-            uint32_t shading_points; ///< triangle: index in sites, GLINT_MISS: its light is worked out for each sample
-            uint32_t face; ///< a part of a combined solid: 1 and 2: a torus, by the first and by the second stretch that a ray is inside
-                ///< of it, two parts that follow each other; 1 .. GLINT_HULL_PARTS: a closed mesh, likewise; 0: any other. Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
+            uint32_t face; ///< of a combined solid's parts: 1 and 2: a torus, by the first and by the second stretch that a ray is inside
+                ///< of it, two parts that follow each other; 1 .. GLINT_HULL_PARTS: a closed mesh, likewise; 0: any other solid.
+                ///< Triangle: 1 + index in faces, of the plane it shares with others; 0: it has its own
         };
     };
 } glint_prim;
+
+/// A sphere's unit is a power of two: its radius times this is in [1, 2). radius: a normal number.
+static inline double glint_sphere_scale(const glint_prim *prim)
+{
+    uint64_t bits;
+    double scale;
+    memcpy(&bits, &prim->radius, sizeof bits);
+    const uint64_t exponent = 2046 - (bits >> 52); // of 2^e it is 1023 + e
+    bits = (exponent > 1 ? exponent : 1) << 52;
+    memcpy(&scale, &bits, sizeof scale);
+    return scale;
+}
+
+/// (radius scale)^2, rounded.
+static inline double glint_sphere_r2(const glint_prim *prim)
+{
+    const double r = prim->radius * glint_sphere_scale(prim);
+    return r * r;
+}
+
+/// What rounding took away from it.
+static inline double glint_sphere_r2_low(const glint_prim *prim)
+{
+    const double r = prim->radius * glint_sphere_scale(prim);
+#ifdef __FMA__
+    return __builtin_fma(r, r, -(r * r));
+#else
+    const double wide = (0x1p27 + 1) * r, upper = wide - (wide - r);
+    const double lower = r - upper; // Veltkamp's halves, of which products are exact, as Dekker has it
+    return ((upper * upper - r * r) + 2 * (upper * lower)) + lower * lower;
+#endif
+}
 
 #define GLINT_NODE_WIDTH 16
 #define GLINT_NODE_PRIM 0x80000000u ///< in `child`: the rest is the index of a primitive, not of a node

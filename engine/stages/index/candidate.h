@@ -34,6 +34,7 @@ typedef struct R(candidate) {
     const glint_prim *prim;
     uint32_t id;
     real f[3], c; ///< see R(offset) and R(offset_constant)
+    real scale, r2; ///< of a sphere
     float base[3], along_s[3],
         along_t[3]; ///< the filter: linear in s and t are f x d of a sphere, e of a triangle, how
     ///< fast a ray nears a plane
@@ -238,6 +239,8 @@ static void R(place_candidate)(const glint_cast_args *args, uint32_t id, R(candi
         candidate->f[0] = candidate->f[1] = candidate->f[2] = candidate->c = 0; // its parts have their own
         return;
     }
+    candidate->scale = (real)(prim->kind == GLINT_PRIM_SPHERE ? glint_sphere_scale(prim) : 1);
+    candidate->r2 = (real)(prim->kind == GLINT_PRIM_SPHERE ? glint_sphere_r2(prim) : 0);
     R(offset)(origin, prim, f);
     for (int k = 0; k < 3; k++)
         candidate->f[k] = R(first_lane)(f[k]);
@@ -258,7 +261,7 @@ static void R(make_candidate)(const R(tile_cast) * tile, uint32_t id, R(candidat
         R(make_solid_filter)(args, candidate);
     } else {
         const double from[3] = { candidate->f[0], candidate->f[1], candidate->f[2] };
-        R(make_filter)(args->camera, from, prim->radius * prim->scale, candidate);
+        R(make_filter)(args->camera, from, prim->radius * glint_sphere_scale(prim), candidate);
     }
 }
 
@@ -294,6 +297,8 @@ INNER rm R(meet_candidate)(const glint_cast_args *args, const R(candidate) * can
         const R(solid_start) start = { .f = { f[0], f[1], f[2] }, .height = candidate->height };
         return R(meet_solid)(solid, &start, d, t);
     }
+    if (candidate->prim->kind == GLINT_PRIM_SPHERE)
+        return R(meet_ball)(f, d, DOT(d, d), r_set(candidate->c), r_set(candidate->r2), r_set(candidate->scale), t);
     if (candidate->prim->kind != GLINT_PRIM_TRIANGLE)
         return R(meet)(f, r_set(candidate->c), d, candidate->prim, t);
     for (int j = 0; j < 9; j++)

@@ -34,16 +34,16 @@ static inline void R(make_sphere_cover)(const R(tile_cast) * tile, R(candidate) 
     const glint_prim *prim = candidate->prim;
     const double f[3] = { candidate->f[0], candidate->f[1], candidate->f[2] }, ff = DOT(f, f), size = sqrt(ff);
     const double c = candidate->c;
-    candidate->distant = 2.1 * prim->r2 < ff;
-    if (!(1e-30 < c) || !(1e-15 < prim->scale && prim->scale < 1e15))
+    candidate->distant = 2.1 * glint_sphere_r2(prim) < ff;
+    if (!(1e-30 < c) || !(1e-15 < glint_sphere_scale(prim) && glint_sphere_scale(prim) < 1e15))
         return;
     candidate->ahead[0] = (float)-DOT(f, camera->forward);
     candidate->ahead[1] = (float)-DOT(f, camera->right);
     candidate->ahead[2] = (float)-DOT(f, camera->up);
     candidate->sway = 4 * (fabsf(candidate->ahead[1]) + fabsf(candidate->ahead[2])) +
                       (float)(GLINT_FILTER_SLACK * size) * tile->longest;
-    candidate->inner = (float)(prim->radius * prim->scale * (1 - COVER_MARGIN) - 2 * GLINT_FILTER_SLACK * size);
-    candidate->power = (float)(c / prim->scale);
+    candidate->inner = (float)(prim->radius * glint_sphere_scale(prim) * (1 - COVER_MARGIN) - 2 * GLINT_FILTER_SLACK * size);
+    candidate->power = (float)(c / glint_sphere_scale(prim));
 }
 
 /// After the filter. Nothing is certain of triangles and solids.

@@ -100,7 +100,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
     const unsigned all = (1u << VR) - 1, back = args->back[at / GLINT_GROUP];
     const double radius = args->light_sample[0]->radius, depth = R(depth_of_light)(args, prim);
     const vr zero = r_set(0), one = r_set(1), within = r_set(R(share_of_diameter)(radius, depth));
-    const vr behind = r_set(R(share_of_diameter)(radius, -depth)), unit = r_set(args->scale / prim->scale);
+    const vr behind = r_set(R(share_of_diameter)(radius, -depth)), unit = r_set(plane ? 1 : args->scale / glint_sphere_scale(prim));
     const unsigned wanted = lit & ~(cap->around | (plane ? own : own & ~back));
     *args->overlaps += (unsigned)__builtin_popcount(wanted);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
@@ -115,7 +115,7 @@ static void R(cover)(const glint_occlude_args *args, const glint_prim *prim, siz
             share = r_select(r_lt(zero, c), within, r_select(r_lt(c, zero), behind, one));
         } else {
             const vr d = r_sqrt(DOT(f, f)), cosine = R(half_cosine)(r_sqrt(r_max(c, zero)) / d);
-            const vr sine = r_min(r_set(prim->radius * prim->scale) / d, one) / (r_set(2) * cosine);
+            const vr sine = r_min(r_set(prim->radius * glint_sphere_scale(prim)) / d, one) / (r_set(2) * cosine);
             vr apart[3], along[3];
             for (int k = 0; k < 3; k++) {
                 const vr u = r_load(cap->way[k] + i), v = -f[k] / d;

@@ -30,9 +30,9 @@ INNER void R(lit_part)(const glint_surface_args *surface, const glint_light_args
     if (sphere) {
         const vr f[3] = { r_set(seen->f[0]), r_set(seen->f[1]), r_set(seen->f[2]) };
         if (seen->range == R(RANGE_CLOSE))
-            R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, R(RANGE_CLOSE), n, p);
+            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_CLOSE), n, p);
         else
-            R(sphere_surface)(f, d, t, seen->prim, seen->inverse_radius, R(RANGE_NEAR), n, p);
+            R(sphere_surface)(f, d, t, seen->prim, seen->scale, seen->inverse_radius, R(RANGE_NEAR), n, p);
     }
     for (int k = 0; k < 3 && !sphere; k++) {
         n[k] = r_set(seen->normal[k]);

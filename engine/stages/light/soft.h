@@ -236,6 +236,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
     }
     for (uint32_t s = 0; back && s < args->sample_count; s++)
         light->open[s] &= ~(back & light->sides[k][s].outside);
+    const R(ball) ball = R(ball_of)(prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         vr p[3], d[3], f[3];
         if (!(others >> i & all))
@@ -252,7 +253,7 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
             count_tests(args->tests, lanes >> i & all);
             R(directions_to)(args, light->light_samples.light_sample[s].position, at, i, d);
             const rm hit =
-                sphere ? R(sphere_blocks)(args, prim, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
+                sphere ? R(sphere_blocks)(args, &ball, outside, inside, f, c, d) : R(plane_blocks)(outside, inside, c);
             light->open[s] &= ~((rm_bits(hit) & lanes >> i & all) << i);
         }
     }

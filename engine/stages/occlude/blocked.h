@@ -43,21 +43,21 @@ typedef struct R(shadow_group) {
 static int R(light_side)(const glint_occlude_args *args, const glint_prim *prim, const double position[3])
 {
     double f[3], height;
-    for (int k = 0; k < 3; k++)
-        f[k] = position[k] - prim->center[k];
     if (prim->kind == GLINT_PRIM_TRIANGLE || prim->kind == GLINT_PRIM_COMBINED)
         return 0; // decided lane by lane
+    for (int k = 0; k < 3; k++)
+        f[k] = position[k] - prim->center[k];
     if (prim->kind == GLINT_PRIM_SOLID)
         return args->directional || !glint_solid_holds(&args->geometry->solids[prim->item], prim->center, position) ? 1 : -1;
     if (prim->kind == GLINT_PRIM_PLANE) {
         height = args->directional ? DOT(prim->normal, position) : DOT(prim->normal, f);
     } else {
         for (int k = 0; k < 3; k++)
-            f[k] *= prim->scale;
+            f[k] *= glint_sphere_scale(prim);
         const double length2 = DOT(f, f); // a few roundings off
-        if (args->directional || !(length2 < prim->r2 * (1 + 1e-12)))
+        if (args->directional || !(length2 < glint_sphere_r2(prim) * (1 + 1e-12)))
             return 1;
-        if (length2 < prim->r2 * (1 - 1e-12))
+        if (length2 < glint_sphere_r2(prim) * (1 - 1e-12))
             return -1;
         const vd v[3] = { d_set(f[0]), d_set(f[1]), d_set(f[2]) };
         _Alignas(64) double c[VD];
@@ -150,16 +150,16 @@ static inline void R(make_shadow_rays)(const R(shadow_tile) * tile, R(shadow_gro
 static inline rm R(either)(rm mask, rm a, rm b) { return rm_or(rm_and(mask, a), rm_andnot(b, mask)); }
 
 /// One vector of segments: from f off the sphere's centre, where its c is, along d.
-static inline rm R(sphere_blocks)(const glint_occlude_args *args, const glint_prim *prim, unsigned outside,
+static inline rm R(sphere_blocks)(const glint_occlude_args *args, const R(ball) *ball, unsigned outside,
                                   unsigned inside, const vr f[3], vr c, const vr d[3])
 {
     const unsigned all = (1u << VR) - 1;
-    const vr zero = r_set(0), scale = r_set(prim->scale);
+    const vr zero = r_set(0), scale = ball->scale;
     const rm from_outside = r_lt(zero, c), from_inside = r_lt(c, zero);
     if (inside == all)
         return from_outside;
     vr a = DOT(d, d), b = -DOT(f, d);
-    rm blocked = rm_and(r_lt(zero, b), r_le(zero, R(discriminant)(f, d, a, b, c, r_set(prim->r2))));
+    rm blocked = rm_and(r_lt(zero, b), r_le(zero, R(discriminant)(f, d, a, b, c, ball->r2)));
     if (!args->directional)
         blocked = rm_and(blocked, r_lt(b * r_set(args->scale), a * scale));
     if (outside == all)
@@ -305,16 +305,20 @@ static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const gli
 
 /// Of VR segments from lane i of the group at `at` along d, those that a sphere or a plane blocks, a bit each; none of the
 /// points is its own.
-static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, R(light_sides) sides,
-                                        size_t at, int i, const vr d[3])
+static inline unsigned R(lanes_blocked)(const glint_occlude_args *args, const glint_prim *prim, const R(ball) *ball,
+                                        R(light_sides) sides, size_t at, int i, const vr d[3])
 {
     const unsigned all = (1u << VR) - 1, outside = sides.outside >> i & all, inside = sides.inside >> i & all;
     vr p[3], f[3];
     R(load3)(args->point, at + (size_t)i, p);
+    if (prim->kind == GLINT_PRIM_SPHERE) {
+        for (int k = 0; k < 3; k++)
+            f[k] = (p[k] - r_set(prim->center[k])) * ball->scale;
+        const vr c = R(exact_power)(f, ball->r2, ball->r2_low);
+        return rm_bits(R(sphere_blocks)(args, ball, outside, inside, f, c, d));
+    }
     R(offset)(p, prim, f);
-    const vr c = R(point_constant)(f, prim);
-    return rm_bits(prim->kind == GLINT_PRIM_SPHERE ? R(sphere_blocks)(args, prim, outside, inside, f, c, d)
-                                                   : R(plane_blocks)(outside, inside, c));
+    return rm_bits(R(plane_blocks)(outside, inside, R(point_constant)(f, prim)));
 }
 
 /// The lanes of `wanted` that the primitive blocks.
@@ -354,6 +358,9 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
     if (occluder.sides.inside != 0xffff) // with the light inside, being outside is enough: no distance is computed
         wanted &= R(near_rays)(&group->rays, prim) | occluder.sides.inside;
     count_tests(args->tests, wanted);
+    if (!wanted)
+        return blocked;
+    const R(ball) ball = R(ball_of)(prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr d[3];
@@ -361,7 +368,7 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
             continue;
         for (int k = 0; k < 3; k++)
             d[k] = r_load(group->to_light[k] + i);
-        blocked |= (R(lanes_blocked)(args, prim, occluder.sides, group->at, i, d) & lanes) << i;
+        blocked |= (R(lanes_blocked)(args, prim, &ball, occluder.sides, group->at, i, d) & lanes) << i;
     }
     return blocked;
 }

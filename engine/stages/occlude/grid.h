@@ -209,9 +209,9 @@ static void grid_decide(const glint_occlude_args *args, const grid_pairs *pairs,
                 lanes.center[k][n] = prim->center[k];
                 lanes.point[k][n] = ((const double *)args->point[k])[at];
             }
-            lanes.scale[n] = prim->scale;
-            lanes.r2[n] = prim->r2;
-            lanes.r2_low[n] = prim->r2_low;
+            lanes.scale[n] = glint_sphere_scale(prim);
+            lanes.r2[n] = glint_sphere_r2(prim);
+            lanes.r2_low[n] = glint_sphere_r2_low(prim);
         }
         count_tests(args->tests, (1u << there) - 1);
         const unsigned blocked = grid_blocked(args, &lanes);

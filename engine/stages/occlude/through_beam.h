@@ -16,13 +16,14 @@ static unsigned R(batch_blocked)(const R(beam) * beam, const glint_prim *prim, u
     unsigned blocked = own & batch->back & sides.outside;
     wanted &= ~own;
     count_tests(batch->args.tests, wanted);
+    const R(ball) ball = R(ball_of)(prim);
     for (int i = 0; i < GLINT_GROUP; i += VR) {
         const unsigned lanes = wanted >> i & ((1u << VR) - 1);
         vr d[3];
         if (!lanes)
             continue;
         R(directions_to)(&batch->args, tile->position, 0, i, d);
-        blocked |= (R(lanes_blocked)(&batch->args, prim, sides, 0, i, d) & lanes) << i;
+        blocked |= (R(lanes_blocked)(&batch->args, prim, &ball, sides, 0, i, d) & lanes) << i;
     }
     return blocked;
 }

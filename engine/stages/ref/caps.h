@@ -68,14 +68,14 @@ static REAL NAME(share_left)(const glint_occlude_args *args, const glint_prim *p
         return h > 0 ? (REAL)within : h < 0 ? (REAL)behind : 1;
     }
     NAME(vec3) f = NAME(from_center)(point, prim);
-    REAL c = NAME(exact_c)(f.x, f.y, f.z, prim), unit = (REAL)(args->scale / prim->scale);
+    REAL c = NAME(exact_c)(f.x, f.y, f.z, prim), unit = (REAL)(args->scale / glint_sphere_scale(prim));
     if (own || c < 0)
         return (REAL)within;
     REAL r = (REAL)(radius * args->scale), d = NAME(square_root)(NAME(length2)(l)), power = (d - r) * (d + r);
     if (!((c * unit) * unit < power))
         return 1;
     return 1 - NAME(covered_part)(NAME(cap_of)(l, r, power),
-                                  NAME(cap_of)(NAME(negated)(f), (REAL)(prim->radius * prim->scale), c));
+                                  NAME(cap_of)(NAME(negated)(f), (REAL)(prim->radius * glint_sphere_scale(prim)), c));
 }
 
 static REAL NAME(share_seen)(const glint_occlude_args *args, uint32_t i)

@@ -10,10 +10,10 @@ static REAL NAME(discriminant)(NAME(vec3) f, NAME(vec3) direction, REAL a, REAL 
 /// The distance at which a ray meets a sphere; 0 stands for a miss.
 static REAL NAME(sphere_t)(NAME(vec3) f, REAL c, NAME(vec3) direction, const glint_prim *prim)
 {
-    REAL scale = (REAL)prim->scale;
+    REAL scale = (REAL)glint_sphere_scale(prim);
     REAL a = NAME(length2)(direction);
     REAL b = -NAME(dot)(f, direction);
-    REAL disc = NAME(discriminant)(f, direction, a, b, c, (REAL)prim->r2);
+    REAL disc = NAME(discriminant)(f, direction, a, b, c, (REAL)glint_sphere_r2(prim));
     REAL s = NAME(square_root)(NAME(max)(disc, 0));
     REAL q = b >= 0 ? b + s : b - s;
     bool far_root = c <= 0 && b >= 0;
@@ -27,7 +27,7 @@ static REAL NAME(over_plane)(const glint_prim *prim, NAME(vec3) place, bool on_s
     NAME(vec3) n = NAME(rounded)(prim->normal), q = NAME(sub)(place, NAME(rounded)(prim->center));
     REAL h = NAME(dot)(n, q);
     REAL sizes = (NAME(abs)(n.x * q.x) + NAME(abs)(n.y * q.y)) + NAME(abs)(n.z * q.z);
-    return on_surface && prim->places > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->places)) : h;
+    return on_surface && prim->normal[3] > 0 ? NAME(zero_within)(h, NAME(ON_FACE) * (sizes + (REAL)prim->normal[3])) : h;
 }
 
 /// The distance at which a ray meets a plane, h being the height of its origin; 0 stands for a miss.
@@ -82,7 +82,7 @@ static bool NAME(leaves)(const glint_cast_args *args, uint32_t index, NAME(vec3)
         return true;
     NAME(vec3) f = NAME(from_center)(origin, prim);
     REAL b = -NAME(dot)(f, direction);
-    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)prim->scale), (REAL)GLINT_LEAST_WAY);
+    *t = NAME(max)((b + b) / (NAME(length2)(direction) * (REAL)glint_sphere_scale(prim)), (REAL)GLINT_LEAST_WAY);
     return true;
 }
 

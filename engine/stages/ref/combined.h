@@ -62,7 +62,7 @@ static NAME(stretch) NAME(stretch_of)(const glint_geometry_table *geometry, uint
     const glint_prim *part = &geometry->prims[index];
     if (part->kind == GLINT_PRIM_HULL)
         return NAME(nowhere)(); // its stretches are many: see ref/hull.h
-    if (part->face)
+    if (part->kind == GLINT_PRIM_SOLID && part->face)
         return NAME(within_torus)(geometry, part, origin, direction,
                                   start.on == index || start.on == (part->face == 1 ? index + 1 : index - 1), start.inward);
     return start.on == index ? NAME(from_part)(geometry, part, origin, direction, start.inward)

@@ -12,8 +12,8 @@ static bool NAME(sphere_blocks)(const glint_occlude_args *args, const glint_prim
         return side > 0;
     REAL a = NAME(length2)(d);
     REAL b = -NAME(dot)(f, d);
-    REAL disc = NAME(discriminant)(f, d, a, b, c, (REAL)prim->r2);
-    return b > 0 && disc >= 0 && (args->directional || b * (REAL)args->scale < a * (REAL)prim->scale);
+    REAL disc = NAME(discriminant)(f, d, a, b, c, (REAL)glint_sphere_r2(prim));
+    return b > 0 && disc >= 0 && (args->directional || b * (REAL)args->scale < a * (REAL)glint_sphere_scale(prim));
 }
 
 static bool NAME(plane_blocks)(const glint_prim *prim, int side, NAME(vec3) point)

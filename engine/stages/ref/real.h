@@ -54,7 +54,7 @@ static void NAME(store)(void *const array[3], uint32_t i, NAME(vec3) v)
 /// From a sphere's centre to a point, in units that bring the radius into [1, 2).
 static NAME(vec3) NAME(from_center)(NAME(vec3) point, const glint_prim *prim)
 {
-    return NAME(times)(NAME(sub)(point, NAME(rounded)(prim->center)), (REAL)prim->scale);
+    return NAME(times)(NAME(sub)(point, NAME(rounded)(prim->center)), (REAL)glint_sphere_scale(prim));
 }
 
 // ---- camera ------------------------------------------------------------------------------------------------------
@@ -147,9 +147,9 @@ static NAME(vec3) NAME(sphere_normal)(NAME(vec3) f, NAME(vec3) direction, REAL t
 {
     REAL ff = NAME(length2)(f);
     if (!(ff < (REAL)GLINT_SPHERE_NEAR))
-        return NAME(far_normal)(f, direction, (REAL)prim->r2);
-    REAL ts = t * (REAL)prim->scale;
-    REAL r = (REAL)prim->radius * (REAL)prim->scale;
+        return NAME(far_normal)(f, direction, (REAL)glint_sphere_r2(prim));
+    REAL ts = t * (REAL)glint_sphere_scale(prim);
+    REAL r = (REAL)prim->radius * (REAL)glint_sphere_scale(prim);
     NAME(vec3) n = NAME(add)(f, NAME(times)(direction, ts));
     n = NAME(times)(n, 1 / r);
     if (ff < NAME(SPHERE_CLOSE))

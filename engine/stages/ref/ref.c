@@ -105,14 +105,14 @@ static double exact_c_double(double fx, double fy, double fz, const glint_prim *
     exact_pair p0 = two_square(fx), p1 = two_square(fy), p2 = two_square(fz);
     exact_pair x = two_sum(p0.value, p1.value);
     exact_pair y = two_sum(x.value, p2.value);
-    exact_pair z = two_sum(y.value, -prim->r2);
+    exact_pair z = two_sum(y.value, -glint_sphere_r2(prim));
     double errors = (p0.error + p1.error) + p2.error;
-    return z.value + (((x.error + y.error) + z.error) + (errors - prim->r2_low));
+    return z.value + (((x.error + y.error) + z.error) + (errors - glint_sphere_r2_low(prim)));
 }
 
 static float exact_c_float(float fx, float fy, float fz, const glint_prim *prim)
 {
-    return ((fx * fx + fy * fy) + fz * fz) - (float)prim->r2;
+    return ((fx * fx + fy * fy) + fz * fz) - (float)glint_sphere_r2(prim);
 }
 
 // ---- On which side of a primitive a light is ----------------------------------------------------------------------
@@ -137,7 +137,7 @@ static int light_side_of_sphere(bool directional, const double position[3], cons
         return 1;
     double f[3];
     for (int k = 0; k < 3; k++)
-        f[k] = (position[k] - prim->center[k]) * prim->scale;
+        f[k] = (position[k] - prim->center[k]) * glint_sphere_scale(prim);
     return isinf(dot_of(f, f)) ? 1 : sign_of(exact_c_double(f[0], f[1], f[2], prim));
 }
 

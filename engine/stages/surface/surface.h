@@ -28,11 +28,11 @@ static R(sphere_range) R(range_of)(const real f[3])
     return ff < GLINT_SPHERE_CLOSE ? R(RANGE_CLOSE) : ff < (real)GLINT_SPHERE_NEAR ? R(RANGE_NEAR) : R(RANGE_ANY);
 }
 
-INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real inverse_radius,
+INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_prim *prim, real scale, real inverse_radius,
                              R(sphere_range) range, vr n[3], vr p[3])
 {
-    const vr scale = r_set(prim->scale), radius = r_set(prim->radius);
-    vr ts = t * scale;
+    const vr radius = r_set(prim->radius);
+    vr ts = t * r_set(scale);
     for (int k = 0; k < 3; k++)
         n[k] = (f[k] + ts * d[k]) * r_set(inverse_radius);
     if (range != R(RANGE_CLOSE)) {
@@ -45,7 +45,7 @@ INNER void R(sphere_surface)(const vr f[3], const vr d[3], vr t, const glint_pri
         const rm near = r_lt(DOT(f, f), r_set(GLINT_SPHERE_NEAR));
         vr far[3];
         if (rm_bits(near) != (1u << VR) - 1)
-            R(far_normal)(f, d, r_set(prim->r2), far);
+            R(far_normal)(f, d, r_set(glint_sphere_r2(prim)), far);
         for (int k = 0; k < 3 && rm_bits(near) != (1u << VR) - 1; k++)
             n[k] = r_select(near, n[k], far[k]);
     }
@@ -76,7 +76,7 @@ INNER void R(put)(void *array, size_t at, bool whole, rm mask, vr x)
 typedef struct R(seen_prim) {
     uint32_t id; ///< GLINT_MISS: none yet
     const glint_prim *prim;
-    real inverse_radius; ///< of a sphere, in its own units
+    real scale, inverse_radius; ///< of a sphere, in its own units
     R(sphere_range) range; ///< of the eye from a sphere
     real f[3]; ///< of a sphere, scaled; of a solid, where it is the unit one
     real height[6]; ///< of the eye over a solid's faces
@@ -90,9 +90,11 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
     const glint_prim *prim = &args->prims[id];
     R(seen_prim) seen = { .id = id, .prim = prim };
     if (prim->kind != GLINT_PRIM_SPHERE) {
-        double n[3] = { prim->normal[0], prim->normal[1], prim->normal[2] };
+        double n[3] = { 0, 0, 0 };
         if (prim->kind == GLINT_PRIM_TRIANGLE)
             R(triangle_normal)(prim, args->scale, n);
+        for (int k = 0; k < 3 && prim->kind == GLINT_PRIM_PLANE; k++)
+            n[k] = prim->normal[k];
         for (int k = 0; k < 3; k++)
             seen.normal[k] = (real)(prim->turned ? -n[k] : n[k]);
         seen.level = prim->kind == GLINT_PRIM_PLANE ? glint_axis_along(prim->normal) : 3;
@@ -104,11 +106,12 @@ static R(seen_prim) R(see_prim)(const glint_surface_args *args, uint32_t id)
             R(start_at_eye)(&args->solids[prim->item], prim, args->camera->eye, seen.f, seen.height);
         return seen;
     }
-    seen.inverse_radius = (real)1 / ((real)prim->radius * (real)prim->scale);
+    seen.scale = (real)glint_sphere_scale(prim);
+    seen.inverse_radius = (real)1 / ((real)prim->radius * seen.scale);
     if (!args->camera)
         return seen;
     for (int k = 0; k < 3; k++)
-        seen.f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)prim->scale;
+        seen.f[k] = ((real)args->camera->eye[k] - (real)prim->center[k]) * (real)glint_sphere_scale(prim);
     seen.range = R(range_of)(seen.f);
     return seen;
 }
@@ -159,7 +162,7 @@ INNER void R(find_lanes)(const glint_surface_args *args, const R(seen_prim) * se
             R(load3)(args->origin, at + i, from);
             R(offset)(from, prim, f);
         }
-        R(sphere_surface)(f, d, t, prim, seen->inverse_radius, seen->range, n, p);
+        R(sphere_surface)(f, d, t, prim, seen->scale, seen->inverse_radius, seen->range, n, p);
     } else {
         for (int k = 0; k < 3; k++) {
             from[k] = args->camera ? r_set(args->camera->eye[k]) : r_load((const real *)args->origin[k] + at + i);

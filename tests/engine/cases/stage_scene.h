@@ -37,20 +37,27 @@ typedef struct test_scene {
 
 // ---- Primitives --------------------------------------------------------------------------------------------------
 
+/// Room for what a primitive has beside itself, for as long as a few scenes are made.
+static inline double (*corner_room(void))[3]
+{
+    static double room[8 * MOST_PRIMS][3][3];
+    static uint32_t next;
+    return room[next++ % (8 * MOST_PRIMS)];
+}
+
 static inline void set_sphere(glint_prim *prim, const double center[3], double radius)
 {
-    *prim = (glint_prim) { .kind = GLINT_PRIM_SPHERE, .radius = radius, .scale = ldexp(1, -ilogb(radius)) };
+    *prim = (glint_prim) { .kind = GLINT_PRIM_SPHERE, .radius = radius };
     memcpy(prim->center, center, sizeof prim->center);
-    double r = radius * prim->scale;
-    prim->r2 = r * r;
-    prim->r2_low = fma(r, r, -prim->r2);
 }
 
 static inline void set_plane(glint_prim *prim, const double point[3], const double normal[3])
 {
     *prim = (glint_prim) { .kind = GLINT_PRIM_PLANE };
     memcpy(prim->center, point, sizeof prim->center);
-    memcpy(prim->normal, normal, sizeof prim->normal);
+    prim->normal = corner_room()[0];
+    memcpy(prim->normal, normal, 3 * sizeof *normal);
+    prim->normal[3] = 0;
 }
 
 /// 0, or anything down to the last digit of 1.
@@ -111,7 +118,7 @@ static inline void set_random_triangle(glint_prim *prim, const glint_prim *last,
 {
     const bool joined = last && last->kind == GLINT_PRIM_TRIANGLE && one_in(3), near = one_in(2);
     double away[3], place[3];
-    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .item = GLINT_MISS, .shading_points = GLINT_MISS };
+    glint_prim out = { .kind = GLINT_PRIM_TRIANGLE, .corner = corner_room(), .item = GLINT_MISS, .shading_points = GLINT_MISS };
     along3(line->origin, line->length * between(-0.2, 1.2), line->direction, place);
     for (int j = 0; j < 3; j++) {
         random_unit(away);
@@ -155,7 +162,7 @@ static inline void set_random_solid(test_scene *scene, uint32_t i, const double 
     } while (!(fabs(det) > 1e-4 * size * size * size));
     for (int c = 0; c < 9; c++)
         solid->inverse[c / 3][c % 3] /= det;
-    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID, .scale = 1 };
+    scene->prims[i] = (glint_prim) { .kind = GLINT_PRIM_SOLID };
     scene->prims[i].item = i;
     memcpy(scene->prims[i].center, center, sizeof scene->prims[i].center);
 }
@@ -430,7 +437,7 @@ static inline void set_faces(test_scene *scene)
         if (prim->kind == GLINT_PRIM_TRIANGLE && one_in(3))
             set_triangle_face(scene, prim);
         for (int c = 0; c < 3 && prim->kind == GLINT_PRIM_PLANE && glint_axis_along(prim->normal) == 3; c++)
-            prim->places += 2 * fabs(prim->normal[c] * prim->center[c]) + DBL_MIN;
+            prim->normal[3] += 2 * fabs(prim->normal[c] * prim->center[c]) + DBL_MIN;
     }
     scene->table.faces = scene->faces;
 }
