@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define CARRY_PRIMS 16384u ///< in a scene of more, frames that changed too much are not looked at for some frames
+#define CARRY_AT_ONCE 131072u ///< in a scene of more, the places of the first frame are not noted, which a picture alone has no use for
 #define CARRY_CHANGES 64 ///< a frame that has changed more keeps nothing
 #define CARRY_PAUSE_MAX 16 ///< frames
 
@@ -303,6 +304,8 @@ static bool carry_changes(carry *c, const glint_cached_place *is, uint32_t count
 static bool is_worth_finding(glint_reuse *reuse, uint32_t count)
 {
     if (count * sizeof(glint_cached_place) >= reuse->budget / 64)
+        return false;
+    if (count > CARRY_AT_ONCE && glint_key_equal(reuse->where, (glint_key) { 0 }))
         return false;
     if (count <= CARRY_PRIMS || reuse->carry_wait == 0)
         return true;
