@@ -3,7 +3,6 @@
 
 #include "engine/base/status.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -379,22 +378,6 @@ static void dissolve(entry *e)
         e->desc.ior = 1;
 }
 
-/// Whether a picture's red, green and blue are alike in the mean: heights are grey, directions of normals are bluish.
-static glint_status find_grey(const glint_texture *texture, bool *grey, glint_error *error)
-{
-    static const double one[3] = { 1, 1, 1 },
-                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // all of it
-    const glint_mesh_map whole = { .scale = { 1, 1 } };
-    double mean[3] = { 0 };
-    glint_program *program = NULL;
-    glint_status status = glint_mesh_paint(texture, &whole, one, 3, &program, error);
-    if (!status)
-        status = glint_program_evaluate(program, inputs, mean, error);
-    glint_program_release(program);
-    *grey = fabs(mean[0] - mean[1]) < 0.02 && fabs(mean[0] - mean[2]) < 0.02;
-    return status;
-}
-
 /// Whether the relief of a material has a height. Those without are counted.
 static bool has_height(glint_mesh_library *library, const entry *e)
 {
@@ -423,7 +406,7 @@ static glint_status paint(glint_mesh_library *library, const glint_mesh_reader *
         status = find_picture(library, reader, e, kind, &texture);
     bool grey = true;
     if (!status && texture && kind == MAP_BUMP)
-        status = find_grey(texture, &grey, reader->error);
+        status = glint_mesh_find_grey(texture, &grey, reader->error);
     if (!status && !grey) {
         glint_mesh_warn(
             reader->desc, reader->text.path,
@@ -495,26 +478,32 @@ static glint_status look_up(glint_mesh_library *library, const glint_mesh_reader
     return GLINT_OK;
 }
 
+/// " and 2 more" of `count`; "" of 1.
+static const char *spell_more(size_t count, char out[32])
+{
+    out[0] = 0;
+    if (count > 1)
+        snprintf(out, 32, " and %zu more", count - 1);
+    return out;
+}
+
 /// Once.
 static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
-    char more[32] = "";
-    if (library->flat > 1)
-        snprintf(more, sizeof more, " and %zu more", library->flat - 1);
+    char more[32];
     if (library->flat)
         glint_mesh_warn(reader->desc, reader->text.path,
                         "material '%s'%s: no relief: map_Bump has no -bm, which says how high it is, in world units",
-                        library->first_flat, more);
+                        library->first_flat, spell_more(library->flat, more));
 }
 
 /// Once, and not where a file that was not read is the reason.
 static void tell_missing(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
-    char more[32] = "";
-    if (library->missing > 1)
-        snprintf(more, sizeof more, " and %zu more", library->missing - 1);
+    char more[32];
     if (library->missing && !library->told)
-        glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: %s%.200s", library->first_missing, more,
+        glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: %s%.200s", library->first_missing,
+                        spell_more(library->missing, more),
                         library->file ? "not in " : "the mesh names no file of materials (mtllib)",
                         library->file ? library->file : "");
 }

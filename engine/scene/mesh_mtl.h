@@ -14,6 +14,9 @@ typedef struct glint_mesh_map {
 glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map *map, const double factor[3], size_t channels,
                               glint_program **out, glint_error *error);
 
+/// Whether a picture's red, green and blue are alike in the mean: heights are grey, directions of normals are bluish.
+glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glint_error *error);
+
 /// NULL: out of memory.
 glint_mesh_library *glint_mesh_library_create(void);
 void glint_mesh_library_free(glint_mesh_library *library); ///< NULL: nothing

@@ -29,3 +29,18 @@ glint_status glint_mesh_paint(const glint_texture *texture, const glint_mesh_map
     glint_builder_destroy(p.builder);
     return p.status;
 }
+
+glint_status glint_mesh_find_grey(const glint_texture *texture, bool *grey, glint_error *error)
+{
+    static const double one[3] = { 1, 1, 1 },
+                        inputs[GLINT_INPUT_COUNT] = { [GLINT_INPUT_UV_FOOTPRINT] = 1 }; // all of it
+    const glint_mesh_map whole = { .scale = { 1, 1 } };
+    double mean[3] = { 0 };
+    glint_program *program = NULL;
+    glint_status status = glint_mesh_paint(texture, &whole, one, 3, &program, error);
+    if (!status)
+        status = glint_program_evaluate(program, inputs, mean, error);
+    glint_program_release(program);
+    *grey = fabs(mean[0] - mean[1]) < 0.02 && fabs(mean[0] - mean[2]) < 0.02;
+    return status;
+}
