@@ -46,7 +46,9 @@ static inline vd d_load_f(const float *p)
 /// Two vectors of doubles, rounded.
 static inline vf f_join(vd low, vd high)
 {
-    return (vf) { (float)low[0], (float)low[1], (float)high[0], (float)high[1] };
+    // not (float)low[0] and so on: after f_split GCC 12 takes such numbers for those before they were rounded
+    const glint_f32x2 x = __builtin_convertvector(low, glint_f32x2), y = __builtin_convertvector(high, glint_f32x2);
+    return (vf) { x[0], x[1], y[0], y[1] };
 }
 
 /// The other way.
