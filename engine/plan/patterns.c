@@ -140,15 +140,29 @@ static void add_material(glint_plan_patterns *patterns, glint_plan_pattern *patt
     patterns->any = patterns->any || pattern->made & GLINT_FIELDS_PLANES;
 }
 
+/// Whether a material's field is one number for all channels, which nothing that follows from its programs changes.
+static bool is_grey(const glint_plan_pattern *pattern, int field)
+{
+    if (field == GLINT_FIELD_AMBIENT || field == GLINT_FIELD_REST)
+        return false;
+    if (field == GLINT_FIELD_SPECULAR && pattern->desc.normalized)
+        return false;
+    return pattern->program[field] && pattern->program[field]->code.output_count == 1;
+}
+
 /// Gives planes to the fields that some material has.
 static void lay_out(glint_plan_patterns *patterns, uint32_t material_count)
 {
-    uint32_t made = 0;
-    for (uint32_t i = 0; i < material_count; i++)
-        made |= patterns->of[i].made;
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
-        patterns->plane[field] = made >> field & 1 ? (int)patterns->plane_count : -1;
-        patterns->plane_count += made >> field & 1 ? (uint32_t)glint_field_channels(field) : 0;
+        bool made = false, grey = true;
+        for (uint32_t i = 0; i < material_count; i++) {
+            const bool here = patterns->of[i].made >> field & 1;
+            made = made || here;
+            grey = grey && (!here || is_grey(&patterns->of[i], field));
+        }
+        patterns->plane[field] = made ? (int)patterns->plane_count : -1;
+        patterns->planes[field] = grey ? 1 : glint_field_channels(field);
+        patterns->plane_count += made ? (uint32_t)patterns->planes[field] : 0;
     }
 }
 

@@ -31,7 +31,7 @@ typedef enum glint_field {
 
 /// "diffuse", "model", "background"
 const char *glint_field_name(int field);
-/// How many planes a field has.
+/// How many numbers a field is.
 static inline int glint_field_channels(int field) { return field < GLINT_FIELD_SHININESS ? 3 : 1; }
 
 /// A material's programs.
@@ -71,6 +71,7 @@ typedef struct glint_plan_patterns {
     glint_plan_pattern *of; ///< beside the plan's materials
     glint_pattern_place *places; ///< of each part of the geometry
     int plane[GLINT_FIELD_PLANES]; ///< the first plane of a field; -1: no material has it
+    int planes[GLINT_FIELD_PLANES]; ///< how many it has: one a channel, or one for all where every material's is grey
     uint32_t plane_count;
     uint32_t row_count; ///< the most that a program needs
     uint32_t reads; ///< of all materials

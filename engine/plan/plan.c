@@ -135,7 +135,7 @@ static void choose_stages(glint_plan *plan)
     plan->runs[GLINT_STAGE_DEPTH_CUE] = plan->depth_cue.on || plan->veil.on;
     plan->accumulate = plan->runs[GLINT_STAGE_DEPTH_CUE] || plan->desc.samples > 1 || plan->visible_light_count > 0 ||
                        plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT] || plan->tints ||
-                       plan->runs[GLINT_STAGE_SHADER] || plan->environment || plan->light_count > GLINT_LIGHT_CHUNK ||
+                       plan->environment || plan->light_count > GLINT_LIGHT_CHUNK ||
                        (lit && plan->geometry->table.shading_point_count > 0);
     plan->runs[GLINT_STAGE_CAMERA] = surfaces || plan->visible_light_count > 0 || plan->environment;
     plan->runs[GLINT_STAGE_CAST] = surfaces;

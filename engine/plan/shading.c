@@ -84,7 +84,8 @@ void glint_shade_material_init(glint_shade_material *out, const glint_material_d
     for (int c = 0; c < 3 && !(out->planes & (GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT)); c++)
         out->ambient[c] = d.ambient[c] == 0 ? 0 : fmin(d.ambient[c] * ambient[c], STRENGTH_MAX);
     if (d.program.shader) {
-        out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT; // the rest is the shader's
+        out->planes &= GLINT_PLANE_AMBIENT_IS_DIFFUSE | GLINT_PLANE_AMBIENT;
+        out->planes |= GLINT_PLANE_SHADED;
         return;
     }
     bounded(out->diffuse, d.diffuse, 1);

@@ -44,6 +44,7 @@ typedef struct glint_stages {
         void (*raster)(const glint_raster_args *args);
     } geometry[2]; ///< by glint_precision: double, float
     void (*program)(const glint_program_args *args);
+    void (*unit)(const glint_unit_args *args);
     void (*sky)(const glint_sky_args *args);
     void (*shade)(const glint_shade_args *args);
     void (*resolve)(const glint_resolve_args *args);

@@ -72,15 +72,13 @@ static void bump_material(glint_tile *tile, const glint_tile_frame *frame, const
     struct glint_pattern *pattern = tile->pattern;
     const uint32_t uv = own->program[GLINT_FIELD_BUMP]->inputs & GLINT_READS_UV;
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
-    for (uint32_t k = 0; k < count; k++) {
+    for (uint32_t k = 0; k < count; k++)
         wanted[k] = entries[k].lanes;
-        glint_pattern_gather(&pattern->inputs, frame, points, own->slope->inputs | uv, entries[k].group,
-                             entries[k].lanes, k);
-    }
+    glint_pattern_gather(&pattern->inputs, frame, points, own->slope->inputs | uv, entries, count);
     glint_program_args args = { .group_count = count, .wanted = wanted };
     for (uint32_t k = 0; k < own->slope->code.output_count; k++)
         args.result[k] = pattern->slopes[k];
-    glint_pattern_call(pattern, frame, &own->slope->code, &args);
+    glint_pattern_call(pattern, frame, &own->slope->code, 0, &args);
     for (uint32_t k = 0; k < count; k++)
         turn_lanes(tile, frame, &entries[k], k, uv);
 }

@@ -56,14 +56,12 @@ static void find_material_holes(glint_tile *tile, const glint_tile_frame *frame,
     for (uint32_t k = 0; k < count; k++) {
         wanted[k] = entries[k].lanes;
         holes[entries[k].group] |= program ? 0 : entries[k].lanes; // its number is below one half
-        if (program)
-            glint_pattern_gather(&pattern->inputs, frame, points, program->inputs, entries[k].group, entries[k].lanes,
-                                 k);
     }
     if (!program)
         return;
+    glint_pattern_gather(&pattern->inputs, frame, points, program->inputs, entries, count);
     glint_program_args args = { .group_count = count, .wanted = wanted, .result = { pattern->cut_out->opacity } };
-    glint_pattern_call(pattern, frame, &program->code, &args);
+    glint_pattern_call(pattern, frame, &program->code, 0, &args);
     for (uint32_t k = 0; k < count; k++)
         for (unsigned left = wanted[k]; left; left &= left - 1)
             if (!(pattern->cut_out->opacity[k * GLINT_GROUP + (uint32_t)__builtin_ctz(left)] >= 0.5))

@@ -24,11 +24,10 @@ bool glint_derivative_fits(struct glint_derivative_work *work, const glint_plan 
 
 const double *glint_derivative_painted(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel)
 {
-    const int first = plan->derivatives->repaints ? plan->patterns->plane[field] : -1;
-    if (first < 0)
+    const ptrdiff_t start = plan->derivatives->repaints ? glint_plane_start(plan->patterns, field, channel) : -1;
+    if (start < 0)
         return NULL;
-    const size_t plane = index * plan->patterns->plane_count + (size_t)(first + channel);
-    return tile->derivative->painted + plane * GLINT_TILE_SAMPLES;
+    return tile->derivative->painted + index * plan->patterns->plane_count * GLINT_TILE_SAMPLES + start;
 }
 
 static double *painted_at(const glint_tile *tile, const glint_plan *plan, size_t index, int field, int channel)
@@ -90,7 +89,7 @@ static void run(const glint_tile *tile, const glint_tile_frame *frame, const gli
 {
     for (uint32_t k = 0; k < program->code.output_count; k++)
         args.result[k] = tile->pattern->slopes[to + k];
-    glint_pattern_call(tile->pattern, frame, &program->code, &args);
+    glint_pattern_call(tile->pattern, frame, &program->code, 0, &args);
 }
 
 /// Whether some plane of an entry holds what may be a bound, and not what the program gave.
@@ -144,10 +143,9 @@ static void run_material(const glint_tile *tile, const glint_tile_frame *frame, 
     const glint_plan_derivatives *all = frame->plan->derivatives;
     const glint_plan_pattern *own = &frame->plan->patterns->of[entries->material];
     uint16_t wanted[GLINT_PROGRAM_GROUPS];
-    for (uint32_t e = 0; e < count; e++) {
+    for (uint32_t e = 0; e < count; e++)
         wanted[e] = entries[e].lanes;
-        glint_pattern_gather(&tile->pattern->inputs, frame, points, own->reads, entries[e].group, entries[e].lanes, e);
-    }
+    glint_pattern_gather(&tile->pattern->inputs, frame, points, own->reads, entries, count);
     const glint_program_args args = { .group_count = count, .wanted = wanted };
     for (size_t k = 0; k < all->count; k++) {
         for (int field = 0; field < GLINT_FIELD_PLANES; field++)

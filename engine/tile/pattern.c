@@ -185,12 +185,14 @@ static void finish(const glint_plan_pattern *own, const glint_pattern_points *po
 // ---- The programs ----
 
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
-                        glint_program_args *args)
+                        uint32_t first, glint_program_args *args)
 {
+    const glint_pattern_inputs *inputs = &pattern->inputs;
     args->code = code;
     args->rows = pattern->rows;
+    args->same = inputs->same;
     for (int input = 0; input < GLINT_INPUT_COUNT; input++)
-        args->input[input] = pattern->inputs.row[input];
+        args->input[input] = inputs->from[input] + (inputs->same >> input & 1 ? 0 : first * GLINT_GROUP);
     frame->stages->program(args);
 }
 
@@ -201,7 +203,7 @@ static void run_program(struct glint_pattern *pattern, const glint_tile_frame *f
     glint_program_code code = program->code;
     for (; code.output_count < (uint32_t)channels; code.output_count++)
         code.outputs[code.output_count] = code.outputs[0];
-    glint_pattern_call(pattern, frame, &code, args);
+    glint_pattern_call(pattern, frame, &code, 0, args);
 }
 
 static bool is_before(const double a[3], const double b[3])
@@ -244,17 +246,18 @@ static void run_material(struct glint_pattern *pattern, const glint_tile_frame *
     for (uint32_t k = 0; k < count; k++) {
         groups[k] = entries[k].group;
         wanted[k] = entries[k].lanes;
-        counts->work.patterns += (uint64_t)__builtin_popcount(entries[k].lanes);
-        glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries[k].group, entries[k].lanes, k);
+        counts->work.patterns += entries[k].lanes == 0xffff ? GLINT_GROUP : (uint64_t)__builtin_popcount(entries[k].lanes);
     }
+    glint_pattern_gather(&pattern->inputs, frame, points, own->reads, entries, count);
     glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups, .odd = odd };
     for (int field = 0; field < GLINT_FIELD_PLANES; field++) {
         if (!(own->made & points->fields & 1u << field))
             continue;
-        for (int c = 0; c < glint_field_channels(field) && own->program[field]; c++)
+        const int planes = frame->plan->patterns->planes[field];
+        for (int c = 0; c < planes && own->program[field]; c++)
             args.plane[c] = plane_at(points, frame->plan, field, c);
         if (own->program[field]) {
-            run_program(pattern, frame, own->program[field], &args, glint_field_channels(field));
+            run_program(pattern, frame, own->program[field], &args, planes);
             note_odd(counts, frame, points, entries, count, odd, field);
         }
         finish(own, points, frame->plan, entries, count, field);
@@ -263,7 +266,7 @@ static void run_material(struct glint_pattern *pattern, const glint_tile_frame *
 
 static bool has_planes(const glint_plan_pattern *own, uint32_t fields) { return own->made & fields; }
 
-void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts)
 {
     const uint32_t count = glint_pattern_find_lanes(pattern, frame->plan->patterns, points, has_planes);
@@ -274,6 +277,7 @@ void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *fr
             run_material(pattern, frame, points, &frame->plan->patterns->of[entries[0].material], entries, taken,
                          counts);
     }
+    return count > 0;
 }
 
 glint_pattern_points glint_pattern_points_of(const glint_tile *tile)
@@ -338,14 +342,14 @@ void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame)
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame)
 {
     const glint_pattern_points points = glint_pattern_points_of(tile);
-    glint_pattern_run(tile->pattern, frame, &points, &tile->counts);
-    glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
+    if (glint_pattern_run(tile->pattern, frame, &points, &tile->counts))
+        glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, false);
 }
 
 const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const glint_plan *plan,
                                                   glint_shade_planes *planes)
 {
-    if (!plan->patterns || !plan->patterns->any)
+    if (!plan->patterns || !(plan->patterns->any || plan->patterns->shaders))
         return NULL;
     for (int c = 0; c < 3; c++) {
         planes->diffuse[c] = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_DIFFUSE, c);
@@ -354,6 +358,9 @@ const glint_shade_planes *glint_tile_shade_planes(const glint_tile *tile, const 
     }
     planes->shininess = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_SHININESS, 0);
     planes->alpha = glint_plane_of(tile->at.planes, plan, GLINT_FIELD_ROUGHNESS, 0);
+    for (int k = 0; k < GLINT_SHADER_TERMS; k++)
+        planes->shaded[k / 3][k % 3] =
+            plan->runs[GLINT_STAGE_SHADER] && !plan->accumulate ? tile->pattern->shaded[k] : NULL;
     vec_copy(planes->ambient_light, plan->ambient);
     return planes;
 }

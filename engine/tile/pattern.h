@@ -44,11 +44,11 @@ bool glint_tile_pattern_memory(glint_tile *tile, const glint_tile_frame *frame, 
 /// Writes down what the kept planes hold now.
 void glint_tile_sign_pattern(glint_tile *tile, const glint_tile_frame *frame);
 
-/// Runs the programs of the materials that are hit, into the tile's planes, and counts the stage. The points are found, and
-/// where programs read them, the normals.
+/// Runs the programs of the materials that are hit, into the tile's planes, and counts the stage, where there are any. The points
+/// are found, and where programs read them, the normals.
 void glint_tile_pattern(glint_tile *tile, const glint_tile_frame *frame);
-/// The same for other points.
-void glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
+/// The same for other points. Returns whether any material has programs.
+bool glint_pattern_run(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_pattern_points *points,
                        glint_tile_counts *counts);
 
 /// Turns the normals of surfaces with a bump, which have been found; what they were is kept in tile->unbumped.
@@ -56,11 +56,18 @@ void glint_tile_bump(glint_tile *tile, const glint_tile_frame *frame);
 /// After the stage light: lanes of surfaces with a bump from whose own normal the light is behind are not lit.
 void glint_tile_cut_horizon(const glint_tile *tile, const glint_plan *plan, const glint_light_args *light);
 
-/// A plane of a field's channel; NULL: no material has it.
+/// Where the plane of a field's channel begins among the tile's; -1: no material has it.
+static inline ptrdiff_t glint_plane_start(const glint_plan_patterns *patterns, int field, int channel)
+{
+    const int first = patterns->plane[field], more = channel < patterns->planes[field] ? channel : 0;
+    return first < 0 ? -1 : (ptrdiff_t)(first + more) * GLINT_TILE_SAMPLES;
+}
+
+/// That plane; NULL: no material has it.
 static inline const float *glint_plane_of(const float *planes, const glint_plan *plan, int field, int channel)
 {
-    const int first = plan->patterns->plane[field];
-    return first < 0 ? NULL : planes + (size_t)(first + channel) * GLINT_TILE_SAMPLES;
+    const ptrdiff_t start = glint_plane_start(plan->patterns, field, channel);
+    return start < 0 ? NULL : planes + start;
 }
 
 /// A colour of material `m` at sample i: `number`, unless a program gives it; `room`: for what it gives.
@@ -81,11 +88,12 @@ void glint_tile_bounce_normals(const glint_tile *tile, const glint_plan *plan, c
 /// Whether light that is scattered around a normal that a bump has turned leaves the surface.
 bool glint_tile_leaves(const glint_tile *tile, const glint_plan *plan, uint32_t i, const double direction[3]);
 
-/// Where a light reaches, and how strongly.
+/// A light as shaders see it: where it reaches, and how strongly.
 typedef struct glint_shader_light {
+    const glint_plan_light *light;
     const uint16_t *lit; ///< a bit a lane
     const float *weight[3]; ///< of its colour, a channel each; NULL: 1
-    const float *share; ///< of what it gives that arrives; NULL: 1
+    const float *visible; ///< of it, times the weight of red; NULL: all
 } glint_shader_light;
 
 /// Whether some material in sight has a shader.
@@ -93,9 +101,9 @@ static inline bool glint_tile_shows_shader(const glint_tile *tile, const glint_p
 {
     return plan->runs[GLINT_STAGE_SHADER] && glint_tile_fields_shown(tile, plan) >> GLINT_FIELD_SHADER & 1;
 }
-/// Adds what shaders make of a light to the sums. Points and normals are found, patterns run.
-void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
-                       const glint_shader_light *reach);
+/// What shaders make of some lights: added to the sums; where the frame has none, into the planes that shade reads, and these
+/// are all lights. Points and normals are found, patterns run.
+void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t count);
 
 /// The diffuse reflectance of a tile's sample.
 static inline const double *glint_tile_diffuse(const glint_tile *tile, const glint_plan *plan, uint32_t i,

@@ -12,7 +12,7 @@
 #define READS_UV GLINT_READS_UV
 #define READS_FOOTPRINT (BITS(GLINT_INPUT_FOOTPRINT, 1) | READS_UV_FOOTPRINT)
 
-/// A call's group: where it is in the tile, and where in the rows.
+/// An entry's group: where it is in the tile, and where in the rows.
 typedef struct gathering {
     glint_pattern_inputs *inputs;
     const glint_tile_frame *frame;
@@ -152,37 +152,38 @@ static void gather_points(const gathering *g, unsigned lanes)
 
 // ---- The viewer ----
 
-/// A component of the group's rays, not unit: as glint_tile_direction.
-static void load_rays(const gathering *g, int c, double out[GLINT_GROUP])
+/// A component of the ways back along the group's rays, not unit: see glint_tile_direction.
+static void load_way_back(const gathering *g, int c, double *restrict out)
 {
     const glint_tile *tile = g->points->tile;
     const glint_precision precision = g->frame->plan->desc.precision;
     const uint32_t group = (uint32_t)(g->at / GLINT_GROUP);
-    double down[GLINT_GROUP];
+    const size_t x = 3 * (group % tile->groups_across) + (uint32_t)c, y = 3 * (group / tile->groups_across) + (uint32_t)c;
     if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
         load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
-        return;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[i] = -out[i];
+    } else if (precision == GLINT_DOUBLE) {
+        const double *across = (const double *)tile->rays.across + x * GLINT_GROUP;
+        const double *down = (const double *)tile->rays.down + y * GLINT_GROUP;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[i] = -(across[i] + down[i]);
+    } else {
+        const float *across = (const float *)tile->rays.across + x * GLINT_GROUP;
+        const float *down = (const float *)tile->rays.down + y * GLINT_GROUP;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            out[i] = -(double)(across[i] + down[i]);
     }
-    glint_reals_of(tile->rays.across, precision, 3 * (group % tile->groups_across) + (uint32_t)c, out);
-    glint_reals_of(tile->rays.down, precision, 3 * (group / tile->groups_across) + (uint32_t)c, down);
-    for (int i = 0; i < GLINT_GROUP; i++)
-        out[i] += down[i];
-    for (int i = 0; precision == GLINT_FLOAT && i < GLINT_GROUP; i++)
-        out[i] = (double)(float)out[i];
 }
 
-static void gather_views(const gathering *g)
+static void make_views(glint_pattern_inputs *inputs, const glint_tile_frame *frame, uint32_t count)
 {
-    double d[3][GLINT_GROUP], length[GLINT_GROUP];
-    for (int c = 0; c < 3; c++)
-        load_rays(g, c, d[c]);
-    for (int i = 0; i < GLINT_GROUP; i++)
-        length[i] = sqrt((d[0][i] * d[0][i] + d[1][i] * d[1][i]) + d[2][i] * d[2][i]);
+    glint_unit_args args = { .group_count = count, .length = inputs->length };
     for (int c = 0; c < 3; c++) {
-        double *restrict to = row(g, GLINT_INPUT_V_X + c);
-        for (int i = 0; i < GLINT_GROUP; i++)
-            to[i] = -d[c][i] / length[i];
+        args.to[c] = inputs->row[GLINT_INPUT_V_X + c];
+        args.unit[c] = inputs->row[GLINT_INPUT_V_X + c];
     }
+    frame->stages->unit(&args);
 }
 
 /// Width of a pixel at a point: that of the pixel whose ray, by whatever mirrors, has come there.
@@ -238,21 +239,111 @@ static void gather_uv(const gathering *g, uint32_t reads, unsigned lanes)
     }
 }
 
-void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
-                          const glint_pattern_points *points, uint32_t reads, uint32_t group, unsigned lanes,
-                          uint32_t k)
+// ---- All of a call ----
+
+double *glint_pattern_row(glint_pattern_inputs *inputs, glint_input input)
 {
-    const gathering g = { inputs, frame, points, (size_t)group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
-    if (reads & (READS_P | READS_UV))
-        gather_points(&g, lanes);
+    inputs->from[input] = inputs->row[input];
+    inputs->same &= ~(1u << input);
+    return inputs->row[input];
+}
+
+void glint_pattern_put_number(glint_pattern_inputs *inputs, glint_input input, double number)
+{
+    double *to = glint_pattern_row(inputs, input);
+    for (int i = 0; i < GLINT_GROUP; i++)
+        to[i] = number;
+    inputs->same |= 1u << input;
+}
+
+/// Whether the entries' groups lie one after the other in arrays of doubles, so that these are read as they are.
+static bool are_in_order(const glint_tile_frame *frame, const glint_pattern_lanes *entries, uint32_t count)
+{
+    if (frame->plan->desc.precision != GLINT_DOUBLE)
+        return false;
+    for (uint32_t k = 1; k < count; k++)
+        if (entries[k].group != entries[0].group + k)
+            return false;
+    return true;
+}
+
+static void read_array(glint_pattern_inputs *inputs, int input, const void *array, uint32_t group)
+{
+    inputs->from[input] = (const double *)array + (size_t)group * GLINT_GROUP;
+}
+
+/// The place of an entry's shape whose points are in the world where they are in its own space, but for a coordinate that all of
+/// them share. NULL: there is none, or there are several.
+static const glint_pattern_place *plain_place(const glint_tile_frame *frame, const glint_pattern_points *points,
+                                              const glint_pattern_lanes *entry)
+{
+    const gathering g = { NULL, frame, points, (size_t)entry->group * GLINT_GROUP, 0 };
+    unsigned here;
+    const glint_pattern_place *place = next_place(&g, entry->lanes, &here);
+    return place->mapped || place->kind == GLINT_SHAPE_BOX || here != entry->lanes ? NULL : place;
+}
+
+/// Reads the points where they are, if all entries are of one such shape.
+static bool read_points(glint_pattern_inputs *inputs, const glint_tile_frame *frame, const glint_pattern_points *points,
+                        const glint_pattern_lanes *entries, uint32_t count)
+{
+    const glint_pattern_place *place = plain_place(frame, points, &entries[0]);
+    if (!place)
+        return false;
+    for (uint32_t k = 1; k < count; k++)
+        if (plain_place(frame, points, &entries[k]) != place)
+            return false;
+    for (int c = 0; c < 3; c++)
+        read_array(inputs, GLINT_INPUT_P_X + c, points->point[c], entries[0].group);
+    if (place->axis >= 0)
+        glint_pattern_put_number(inputs, (glint_input)(GLINT_INPUT_P_X + place->axis), place->face);
+    return true;
+}
+
+/// Finds what can be read where it is. Returns the inputs that are left.
+static uint32_t read_in_place(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
+                              const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
+                              uint32_t count)
+{
+    if (!are_in_order(frame, entries, count))
+        return reads;
     for (int c = 0; c < 3 && reads & READS_WORLD; c++)
-        load_group(&g, points->point[c], row(&g, GLINT_INPUT_WORLD_X + c));
+        read_array(inputs, GLINT_INPUT_WORLD_X + c, points->point[c], entries[0].group);
+    const bool normals = reads & READS_N && (points->shading || !frame->geometry.corner_normals);
+    for (int c = 0; c < 3 && normals; c++)
+        read_array(inputs, GLINT_INPUT_N_X + c, points->normal[c], entries[0].group);
+    const bool own = reads & READS_P && !(reads & READS_UV) && read_points(inputs, frame, points, entries, count);
+    return reads & ~(READS_WORLD | (normals ? READS_N : 0) | (own ? READS_P : 0));
+}
+
+/// One entry's share of what is in rows.
+static void gather_group(const gathering *g, uint32_t reads, unsigned lanes)
+{
+    if (reads & (READS_P | READS_UV))
+        gather_points(g, lanes);
+    for (int c = 0; c < 3 && reads & READS_WORLD; c++)
+        load_group(g, g->points->point[c], row(g, GLINT_INPUT_WORLD_X + c));
     if (reads & READS_N)
-        gather_normals(&g, lanes);
-    if (reads & READS_V)
-        gather_views(&g);
+        gather_normals(g, lanes);
+    for (int c = 0; c < 3 && reads & READS_V; c++)
+        load_way_back(g, c, row(g, GLINT_INPUT_V_X + c));
     if (reads & READS_FOOTPRINT)
-        gather_footprints(&g, lanes);
+        gather_footprints(g, lanes);
     if (reads & READS_UV)
-        gather_uv(&g, reads, lanes);
+        gather_uv(g, reads, lanes);
+}
+
+void glint_pattern_gather(glint_pattern_inputs *inputs, const glint_tile_frame *frame,
+                          const glint_pattern_points *points, uint32_t reads, const glint_pattern_lanes *entries,
+                          uint32_t count)
+{
+    for (int input = 0; input < GLINT_INPUT_COUNT; input++)
+        glint_pattern_row(inputs, (glint_input)input);
+    const uint32_t left = read_in_place(inputs, frame, points, reads, entries, count);
+    for (uint32_t k = 0; left && k < count; k++) {
+        const gathering g = { inputs, frame, points, (size_t)entries[k].group * GLINT_GROUP, (size_t)k * GLINT_GROUP };
+        gather_group(&g, left, entries[k].lanes);
+    }
+    if (left & READS_V)
+        make_views(inputs, frame, count);
 }

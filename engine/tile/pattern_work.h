@@ -8,16 +8,11 @@
 
 #define GLINT_SHADER_TERMS 6 ///< diffuse, specular
 
-/// The lanes of a group that show one material.
-typedef struct glint_pattern_lanes {
-    uint32_t material;
-    uint16_t group, lanes;
-} glint_pattern_lanes;
-
 struct glint_pattern {
     glint_pattern_inputs inputs;
     _Alignas(64) double slopes[GLINT_BUMP_SLOPES][GLINT_PROGRAM_LANES];
-    _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< what a shader gave
+    _Alignas(64) float shaded[GLINT_SHADER_TERMS][GLINT_TILE_SAMPLES]; ///< what shaders made of all lights; see glint_shade_planes
+    _Alignas(64) double total[GLINT_SHADER_TERMS][GLINT_PROGRAM_LANES]; ///< the same of a call's groups, before it is rounded
     _Alignas(64) double bounced[3][GLINT_TILE_SAMPLES]; ///< real: see glint_tile_bounce_normals
     double *rows; ///< scratch of the kernel
     float *planes[GLINT_WALK_COUNT]; ///< those of the first walk for each sample that is shaded together with others
@@ -37,8 +32,8 @@ uint32_t glint_pattern_find_lanes(struct glint_pattern *pattern, const glint_pla
 /// many: 0, where it has been taken.
 uint32_t glint_pattern_take(struct glint_pattern *pattern, uint32_t first, uint32_t count,
                             glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS]);
-/// Runs a program on the inputs that are gathered.
+/// Runs a program on the inputs that are gathered, from entry `first` on.
 void glint_pattern_call(struct glint_pattern *pattern, const glint_tile_frame *frame, const glint_program_code *code,
-                        glint_program_args *args);
+                        uint32_t first, glint_program_args *args);
 
 #endif

@@ -66,17 +66,14 @@ void glint_tile_point_film(glint_tile *tile, const glint_plan *plan, float *film
 static void run_shaders(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count,
                         const glint_shade_light *lights)
 {
+    glint_shader_light seen[GLINT_LIGHT_CHUNK];
     for (uint32_t i = 0; i < count; i++) {
         const glint_plan_light *light = &frame->plan->lights[from + i];
         const float *weight = light->attenuated ? tile->at.light[i].attenuation : NULL;
-        float share[GLINT_TILE_SAMPLES];
-        glint_shader_light reach = { .lit = lights[i].lit, .weight = { weight, weight, weight } };
-        for (uint32_t k = 0; light->cap && k < tile->group_count * GLINT_GROUP; k++) // seen, without the attenuation
-            share[k] =
-                weight && weight[k] > 0 ? tile->at.light[i].visible[k] / weight[k] : tile->at.light[i].visible[k];
-        reach.share = light->cap ? share : NULL;
-        glint_tile_shader(tile, frame, light, &reach);
+        seen[i] = (glint_shader_light) { light, lights[i].lit, { weight, weight, weight }, NULL };
+        seen[i].visible = light->cap ? tile->at.light[i].visible : NULL;
     }
+    glint_tile_shader(tile, frame, seen, count);
 }
 
 void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t from, uint32_t count)
@@ -100,9 +97,9 @@ void glint_tile_shade(glint_tile *tile, const glint_tile_frame *frame, uint32_t 
         for (int c = 0; c < 3; c++)
             args.sum[k][c] = plan->accumulate ? tile->film.sum[k][c] : NULL;
     glint_tile_point_film(tile, plan, args.film, args.beauty);
-    frame->stages->shade(&args);
-    if (glint_tile_shows_shader(tile, plan))
+    if (count > 0 && glint_tile_shows_shader(tile, plan))
         run_shaders(tile, frame, from, count, lights);
+    frame->stages->shade(&args);
     if (plan->runs[GLINT_STAGE_VISIBLE_LIGHT] && args.first)
         glint_tile_add_visible_light(tile, frame);
     if (plan->environment && args.first)

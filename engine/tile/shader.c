@@ -1,130 +1,227 @@
 /// The stage shader: programs that say what one light leaves of a material, in place of the built-in models.
+///
+/// The groups that show a material are taken eight at a time. What they are is gathered once, what each light does there follows,
+/// and the program's results are added up in double before the next eight come.
 #include "engine/program/program.h"
 #include "engine/tile/pattern_work.h"
 
 #include <math.h>
+#include <string.h>
 
-/// One light, or one sample of an area light, as shaders see it.
-typedef struct shader_light {
-    const glint_plan_light *light;
-    const glint_light_sample *sample; ///< NULL: it is no area light
-    const glint_shader_light *reach;
-} shader_light;
+/// Some groups that show one material.
+typedef struct batch {
+    const glint_plan_pattern *own;
+    const glint_program *program;
+    const glint_pattern_lanes *entries;
+    uint32_t groups[GLINT_PROGRAM_GROUPS]; ///< theirs
+    uint32_t count;
+} batch;
 
-static double *row(const glint_tile *tile, int input, uint32_t k)
+/// Where a light's share goes.
+typedef enum result { TO_SUMS, TO_TOTALS, TO_PLANES } result;
+
+/// Those of a batch that a light reaches: from `first` on, with what lies between them.
+typedef struct reached {
+    uint32_t first, count;
+    uint16_t lanes[GLINT_PROGRAM_GROUPS]; ///< of entry first + k
+} reached;
+
+static reached find_reached(const batch *b, const uint16_t *lit)
 {
-    return &tile->pattern->inputs.row[input][(size_t)k * GLINT_GROUP];
-}
-
-/// Where group g sees the light, or its sample; of a directional one the way there.
-static void place_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
-                        double out[3][GLINT_GROUP])
-{
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < GLINT_GROUP; i++)
-            out[c][i] = from->light->position[c];
-    for (uint32_t i = 0; from->sample && i < GLINT_GROUP; i++) {
-        double place[3];
-        glint_tile_sample_place(tile, plan->desc.precision, from->sample, from->light->scale, g * GLINT_GROUP + i, place);
-        for (int c = 0; c < 3; c++)
-            out[c][i] = place[c];
-    }
-}
-
-/// What of group g depends on the light: group k of the rows. Lanes without a hit get anything.
-static void gather_light(const glint_tile *tile, const glint_plan *plan, const shader_light *from, uint32_t g,
-                         uint32_t k)
-{
-    const glint_plan_light *light = from->light;
-    double l[3][GLINT_GROUP], point[GLINT_GROUP], length[GLINT_GROUP];
-    place_light(tile, plan, from, g, l);
-    for (int c = 0; c < 3; c++) {
-        if (light->directional)
+    reached out = { .count = 0 };
+    for (uint32_t k = 0; k < b->count; k++) {
+        const uint16_t lanes = b->entries[k].lanes & lit[b->groups[k]];
+        if (!lanes && !out.count)
             continue;
-        glint_reals_of(tile->surface.point[c], plan->desc.precision, g, point);
-        for (int i = 0; i < GLINT_GROUP; i++)
-            l[c][i] -= point[i];
+        if (!out.count)
+            out.first = k;
+        out.lanes[k - out.first] = lanes;
+        out.count = lanes ? k - out.first + 1 : out.count;
     }
-    for (int i = 0; i < GLINT_GROUP; i++)
-        length[i] = sqrt((l[0][i] * l[0][i] + l[1][i] * l[1][i]) + l[2][i] * l[2][i]);
-    double *restrict distance = row(tile, GLINT_INPUT_DISTANCE, k);
-    for (int i = 0; i < GLINT_GROUP; i++)
-        distance[i] = light->directional ? HUGE_VAL : length[i];
-    for (int c = 0; c < 3; c++) {
-        double *restrict way = row(tile, GLINT_INPUT_L_X + c, k), *restrict color = row(tile, GLINT_INPUT_LIGHT_R + c, k);
-        const float *weight = from->reach->weight[c];
-        for (int i = 0; i < GLINT_GROUP; i++)
-            way[i] = l[c][i] / length[i];
-        for (int i = 0; i < GLINT_GROUP; i++)
-            color[i] = light->diffuse[c] * (weight ? (double)weight[g * GLINT_GROUP + (uint32_t)i] : 1);
-    }
+    return out;
 }
 
-/// A number of a material, or what a program gave of it, of group g: group k of an input's row, if it is read.
-static void gather_field(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own, glint_field field,
-                         int channel, double number, uint32_t g, int input, uint32_t k)
+// ---- What a program reads ----
+
+/// A number of a material, or what a program gave of it, if it is read.
+static void gather_field(glint_tile *tile, const glint_plan *plan, const batch *b, glint_field field, int channel,
+                         double number, int input)
 {
-    double *restrict to = row(tile, input, k);
-    if (!(own->program[GLINT_FIELD_SHADER]->inputs >> input & 1))
+    glint_pattern_inputs *inputs = &tile->pattern->inputs;
+    if (!(b->program->inputs >> input & 1))
         return;
-    const bool made = own->made >> field & 1;
-    const float *plane = made ? glint_plane_of(tile->at.planes, plan, field, channel) + (size_t)g * GLINT_GROUP : NULL;
-    for (int i = 0; i < GLINT_GROUP; i++)
-        to[i] = plane ? (double)plane[i] : number;
+    if (!(b->own->made >> field & 1)) {
+        glint_pattern_put_number(inputs, (glint_input)input, number);
+        return;
+    }
+    const float *plane = glint_plane_of(tile->at.planes, plan, field, channel);
+    double *to = glint_pattern_row(inputs, (glint_input)input);
+    for (uint32_t k = 0; k < b->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++)
+            to[k * GLINT_GROUP + i] = (double)plane[b->groups[k] * GLINT_GROUP + i];
 }
 
-static void gather_material(const glint_tile *tile, const glint_plan *plan, const glint_plan_pattern *own,
-                            const double *diffuse, uint32_t g, uint32_t k)
+static void gather_material(glint_tile *tile, const glint_plan *plan, const batch *b)
+{
+    const double *diffuse = glint_plan_diffuse(plan, b->entries[0].material);
+    for (int c = 0; c < 3; c++) {
+        gather_field(tile, plan, b, GLINT_FIELD_DIFFUSE, c, diffuse[c], GLINT_INPUT_KD_R + c);
+        gather_field(tile, plan, b, GLINT_FIELD_SPECULAR, c, b->own->desc.specular[c], GLINT_INPUT_KS_R + c);
+    }
+    gather_field(tile, plan, b, GLINT_FIELD_SHININESS, 0, b->own->desc.shininess, GLINT_INPUT_SHININESS);
+}
+
+/// Where the batch sees an area light's sample.
+static void place_sample(glint_tile *tile, const glint_plan *plan, const batch *b, const reached *lit,
+                         const glint_plan_light *light, const glint_light_sample *sample)
+{
+    for (uint32_t k = lit->first; k < lit->first + lit->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            double place[3];
+            glint_tile_sample_place(tile, plan->desc.precision, sample, light->scale, b->groups[k] * GLINT_GROUP + i,
+                                    place);
+            for (int c = 0; c < 3; c++)
+                tile->pattern->inputs.row[GLINT_INPUT_L_X + c][k * GLINT_GROUP + i] = place[c];
+        }
+}
+
+/// Ways to a light, and how far it is.
+static void gather_way(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
+                       const glint_plan_light *light)
+{
+    glint_pattern_inputs *inputs = &tile->pattern->inputs;
+    const glint_light_sample *sample = glint_tile_light_sample_of(tile, light);
+    const size_t at = (size_t)lit->first * GLINT_GROUP;
+    _Alignas(64) double place[3][GLINT_GROUP];
+    glint_unit_args args = { .group_count = lit->count,
+                             .same = !sample,
+                             .length = glint_pattern_row(inputs, GLINT_INPUT_DISTANCE) + at };
+    for (int c = 0; c < 3; c++) {
+        double *way = inputs->row[GLINT_INPUT_L_X + c] + at;
+        for (int i = 0; i < GLINT_GROUP; i++)
+            place[c][i] = light->position[c];
+        args.to[c] = sample ? way : place[c];
+        args.from[c] = light->directional ? NULL : inputs->from[GLINT_INPUT_WORLD_X + c] + at;
+        args.unit[c] = way;
+    }
+    if (sample)
+        place_sample(tile, frame->plan, b, lit, light, sample);
+    frame->stages->unit(&args);
+    if (light->directional)
+        glint_pattern_put_number(inputs, GLINT_INPUT_DISTANCE, HUGE_VAL);
+}
+
+/// What arrives of a light's colour.
+static void gather_color(glint_tile *tile, const batch *b, const glint_shader_light *from)
 {
     for (int c = 0; c < 3; c++) {
-        gather_field(tile, plan, own, GLINT_FIELD_DIFFUSE, c, diffuse[c], g, GLINT_INPUT_KD_R + c, k);
-        gather_field(tile, plan, own, GLINT_FIELD_SPECULAR, c, own->desc.specular[c], g, GLINT_INPUT_KS_R + c,
-                     k);
-    }
-    gather_field(tile, plan, own, GLINT_FIELD_SHININESS, 0, own->desc.shininess, g, GLINT_INPUT_SHININESS, k);
-}
-
-/// Adds what the shader gave to the sums.
-static void add_terms(glint_tile *tile, const glint_shader_light *reach, const glint_pattern_lanes *entry, int terms)
-{
-    const size_t at = (size_t)entry->group * GLINT_GROUP;
-    double share[GLINT_GROUP];
-    for (size_t i = 0; i < GLINT_GROUP; i++)
-        share[i] = reach->share ? (double)reach->share[at + i] : 1;
-    for (int k = 0; k < terms; k++) {
-        double *restrict sum = &tile->film.sum[GLINT_TERM_DIFFUSE + k / 3][k % 3][at];
-        const float *restrict given = &tile->pattern->shaded[k][at];
-        for (size_t i = 0; entry->lanes == 0xffff && i < GLINT_GROUP; i++)
-            sum[i] += share[i] * (double)given[i];
-        for (unsigned left = entry->lanes == 0xffff ? 0 : entry->lanes; left; left &= left - 1) {
-            const unsigned i = (unsigned)__builtin_ctz(left);
-            sum[i] += share[i] * (double)given[i];
+        const float *weight = from->weight[c];
+        const glint_input input = (glint_input)(GLINT_INPUT_LIGHT_R + c);
+        if (!weight) {
+            glint_pattern_put_number(&tile->pattern->inputs, input, from->light->diffuse[c]);
+            continue;
         }
+        double *to = glint_pattern_row(&tile->pattern->inputs, input);
+        for (uint32_t k = 0; k < b->count; k++)
+            for (uint32_t i = 0; i < GLINT_GROUP; i++)
+                to[k * GLINT_GROUP + i] =
+                    from->light->diffuse[c] * (double)weight[b->groups[k] * GLINT_GROUP + i];
     }
 }
 
-/// One material's shader, for some groups that show it.
-static void shade_material(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
-                           const glint_plan_pattern *own, const shader_light *from, const glint_pattern_lanes *entries,
-                           uint32_t count)
+/// How much of a light that is partly covered is seen; without the attenuation, which is in its colour.
+static void gather_share(const batch *b, const reached *lit, const glint_shader_light *from, float *share)
 {
-    const glint_program *program = own->program[GLINT_FIELD_SHADER];
-    uint16_t wanted[GLINT_PROGRAM_GROUPS];
-    uint32_t groups[GLINT_PROGRAM_GROUPS];
-    for (uint32_t k = 0; k < count; k++) {
-        groups[k] = entries[k].group;
-        wanted[k] = entries[k].lanes;
-        glint_pattern_gather(&tile->pattern->inputs, frame, points, program->inputs, groups[k], wanted[k], k);
-        gather_light(tile, frame->plan, from, groups[k], k);
-        gather_material(tile, frame->plan, own, glint_plan_diffuse(frame->plan, entries[0].material), groups[k], k);
-        tile->counts.work.patterns += (uint64_t)__builtin_popcount(wanted[k]);
+    for (uint32_t k = 0; k < lit->count; k++)
+        for (uint32_t i = 0; i < GLINT_GROUP; i++) {
+            const size_t at = b->groups[lit->first + k] * GLINT_GROUP + i;
+            const float weight = from->weight[0] ? from->weight[0][at] : 1;
+            share[k * GLINT_GROUP + i] = weight > 0 ? from->visible[at] / weight : from->visible[at];
+        }
+}
+
+// ---- What comes of it ----
+
+/// What one light gives, added to the sums or to the totals of a batch; of the only one, into planes.
+static void add_light(glint_tile *tile, const glint_tile_frame *frame, const batch *b, const reached *lit,
+                      const glint_shader_light *from, result to)
+{
+    struct glint_pattern *pattern = tile->pattern;
+    _Alignas(64) float share[GLINT_PROGRAM_LANES];
+    glint_program_args args = { .group_count = lit->count,
+                                .wanted = lit->lanes,
+                                .groups = to == TO_TOTALS ? NULL : b->groups + lit->first,
+                                .share = from->visible ? share : NULL };
+    gather_way(tile, frame, b, lit, from->light);
+    gather_color(tile, b, from);
+    if (from->visible)
+        gather_share(b, lit, from, share);
+    for (int k = 0; k < GLINT_SHADER_TERMS; k++) {
+        args.plane[k] = to == TO_PLANES ? pattern->shaded[k] : NULL;
+        args.total[k] = to == TO_SUMS     ? tile->film.sum[GLINT_TERM_DIFFUSE + k / 3][k % 3]
+                        : to == TO_TOTALS ? pattern->total[k] + (size_t)lit->first * GLINT_GROUP
+                                          : NULL;
     }
-    glint_program_args args = { .group_count = count, .wanted = wanted, .groups = groups };
-    for (int k = 0; k < GLINT_SHADER_TERMS; k++)
-        args.plane[k] = tile->pattern->shaded[k];
-    glint_pattern_call(tile->pattern, frame, &program->code, &args);
-    for (uint32_t k = 0; k < count; k++)
-        add_terms(tile, from->reach, &entries[k], (int)program->code.output_count);
+    glint_pattern_call(pattern, frame, &b->program->code, lit->first, &args);
+    for (uint32_t k = 0; k < lit->count; k++)
+        tile->counts.work.patterns += (uint64_t)__builtin_popcount(lit->lanes[k]);
+}
+
+/// Rounds the totals of a batch into planes.
+static void round_totals(struct glint_pattern *pattern, const batch *b)
+{
+    for (int term = 0; term < GLINT_SHADER_TERMS; term++)
+        for (uint32_t k = 0; k < b->count; k++) {
+            const double *from = &pattern->total[term][k * GLINT_GROUP];
+            float *to = &pattern->shaded[term][b->groups[k] * GLINT_GROUP];
+            const unsigned lanes = b->entries[k].lanes;
+            for (int i = 0; lanes == 0xffff && i < GLINT_GROUP; i++)
+                to[i] = (float)from[i];
+            for (int i = 0; lanes != 0xffff && i < GLINT_GROUP; i++)
+                to[i] = lanes >> i & 1 ? (float)from[i] : to[i];
+        }
+}
+
+/// Makes the planes 0 where the only light does not reach, and those that the program has no output for.
+static void clear_unlit(struct glint_pattern *pattern, const batch *b, const uint16_t *lit)
+{
+    const uint32_t made = b->program->code.output_count;
+    for (uint32_t k = 0; k < b->count; k++) {
+        const size_t at = b->groups[k] * GLINT_GROUP;
+        const unsigned lanes = b->entries[k].lanes, unlit = lanes & ~(unsigned)lit[b->groups[k]];
+        for (uint32_t term = unlit ? 0 : made; term < GLINT_SHADER_TERMS; term++)
+            if ((term < made ? unlit : lanes) == 0xffff)
+                memset(&pattern->shaded[term][at], 0, GLINT_GROUP * sizeof(float));
+            else
+                for (unsigned left = term < made ? unlit : lanes; left; left &= left - 1)
+                    pattern->shaded[term][at + (unsigned)__builtin_ctz(left)] = 0;
+    }
+}
+
+/// One material's shader, for some groups that show it and all lights.
+static void shade_batch(glint_tile *tile, const glint_tile_frame *frame, const glint_pattern_points *points,
+                        const batch *b, const glint_shader_light *lights, uint32_t light_count)
+{
+    const uint32_t reads = b->program->inputs | 7u << GLINT_INPUT_WORLD_X;
+    const result to = frame->plan->accumulate ? TO_SUMS : light_count > 1 || lights->visible ? TO_TOTALS : TO_PLANES;
+    bool gathered = false;
+    if (to == TO_TOTALS)
+        memset(tile->pattern->total, 0, sizeof tile->pattern->total);
+    for (uint32_t i = 0; i < light_count; i++) {
+        const reached lit = find_reached(b, lights[i].lit);
+        if (!lit.count)
+            continue;
+        if (!gathered) {
+            glint_pattern_gather(&tile->pattern->inputs, frame, points, reads, b->entries, b->count);
+            gather_material(tile, frame->plan, b);
+        }
+        gathered = true;
+        add_light(tile, frame, b, &lit, &lights[i], to);
+    }
+    if (to == TO_TOTALS)
+        round_totals(tile->pattern, b);
+    if (to == TO_PLANES)
+        clear_unlit(tile->pattern, b, lights->lit);
 }
 
 static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
@@ -133,22 +230,23 @@ static bool has_shader(const glint_plan_pattern *own, uint32_t fields)
     return own->program[GLINT_FIELD_SHADER];
 }
 
-void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_plan_light *light,
-                       const glint_shader_light *reach)
+void glint_tile_shader(glint_tile *tile, const glint_tile_frame *frame, const glint_shader_light *lights, uint32_t light_count)
 {
-    const shader_light from = { light, glint_tile_light_sample_of(tile, light), reach };
     glint_pattern_points points = glint_pattern_points_of(tile);
-    points.hits = reach->lit;
     points.shading = true;
     for (int c = 0; c < 3; c++)
         points.normal[c] = tile->surface.normal[c];
     const uint32_t count = glint_pattern_find_lanes(tile->pattern, frame->plan->patterns, &points, has_shader);
     for (uint32_t first = 0; first < count; first++) {
         glint_pattern_lanes entries[GLINT_PROGRAM_GROUPS];
-        const uint32_t taken = glint_pattern_take(tile->pattern, first, count, entries);
-        if (taken)
-            shade_material(tile, frame, &points, &frame->plan->patterns->of[entries[0].material], &from, entries,
-                           taken);
+        batch b = { .entries = entries, .count = glint_pattern_take(tile->pattern, first, count, entries) };
+        if (!b.count)
+            continue;
+        b.own = &frame->plan->patterns->of[entries[0].material];
+        b.program = b.own->program[GLINT_FIELD_SHADER];
+        for (uint32_t k = 0; k < b.count; k++)
+            b.groups[k] = entries[k].group;
+        shade_batch(tile, frame, &points, &b, lights, light_count);
     }
     glint_tile_count_stage(tile, frame, GLINT_STAGE_SHADER, false);
 }

@@ -468,10 +468,10 @@ static void shade(struct glint_transparent_shadow *transparent_shadow, glint_til
     frame->stages->shade(&args);
     if (!glint_tile_shows_shader(tile, frame->plan))
         return;
-    glint_shader_light reach = { .lit = transparent_shadow->reached };
+    glint_shader_light reach = { .light = light, .lit = transparent_shadow->reached };
     for (int c = 0; c < 3; c++)
         reach.weight[c] = transparent_shadow->attenuation[c];
-    glint_tile_shader(tile, frame, light, &reach);
+    glint_tile_shader(tile, frame, &reach, 1);
 }
 
 /// What row `row` of the light, in `slot`, gives along the rays that have arrived.

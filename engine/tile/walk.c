@@ -76,10 +76,11 @@ static void find_patterns(glint_tile *tile, const glint_tile_frame *frame, walk 
         glint_tile_count_stage(tile, frame, GLINT_STAGE_PATTERN, true);
         return;
     }
-    if (!(glint_tile_fields_shown(tile, frame->plan) & GLINT_FIELDS_PLANES))
-        return;
-    if (!w->lit)
+    if (!w->lit && !w->points) {
+        if (!(glint_tile_fields_shown(tile, frame->plan) & GLINT_FIELDS_PLANES))
+            return;
         need_points(tile, frame, w);
+    }
     glint_tile_pattern(tile, frame);
 }
 

@@ -29,6 +29,7 @@ static void operation_case(glint_op op, bool odd)
     assert_int_equal(glint_program_make(b, out, info->results, &program, &error), GLINT_OK);
     const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS);
     glint_program_args args = program_inputs(program, groups, odd);
+    args.same = 0;
     for (uint32_t k = 0; k < info->operands; k++)
         for (uint32_t i = 0; i < groups * GLINT_GROUP; i++) {
             double *x = &((double *)(uintptr_t)args.input[k])[i];
@@ -65,7 +66,26 @@ static void test_operations(void **state)
     run_cases(300, 41000, every_operation);
 }
 
-/// Stored as they are and as reflectances, in groups that lie anywhere.
+/// The outputs of the set that is running: `more` makes the arrays.
+static void make_outputs(glint_program_args *args, uint32_t outputs, uint32_t n, uint32_t groups,
+                         void *(*more)(const char *name, array_kind kind, uint32_t count))
+{
+    for (uint32_t k = 0; k < outputs; k++) {
+        args->result[k] = more("result", KIND_DOUBLE, n);
+        args->plane[k] = more("plane", KIND_FLOAT, n);
+        args->total[k] = more("total", KIND_DOUBLE, n);
+        for (uint32_t i = 0; i < n; i++)
+            args->total[k][i] = 0.125 * i; // whatever was added before
+    }
+    args->odd = more("odd", KIND_U16, groups);
+}
+
+static void *plain_output(const char *name, array_kind kind, uint32_t count)
+{
+    return new_array(gotten, &gotten_count, name, kind, count);
+}
+
+/// Stored as they are, as reflectances and as totals of these, in groups that lie anywhere.
 static void random_program(int precision, bool odd)
 {
     (void)precision;
@@ -79,25 +99,21 @@ static void random_program(int precision, bool odd)
     for (uint32_t g = 0; g < groups; g++)
         place[g] = g + places - groups;
     args.groups = one_in(2) ? place : NULL;
+    float *share = input(KIND_FLOAT, groups * GLINT_GROUP);
+    for (uint32_t i = 0; i < groups * GLINT_GROUP; i++)
+        share[i] = (float)(one_in(6) ? 0 : between(0, 1));
+    args.share = one_in(2) ? share : NULL;
     FOR_EACH_TESTED
     {
         double *rows = args.rows;
-        for (uint32_t k = 0; k < program->code.output_count; k++) {
-            args.result[k] = output("result", KIND_DOUBLE, places * GLINT_GROUP);
-            args.plane[k] = output("plane", KIND_FLOAT, places * GLINT_GROUP);
-        }
-        args.odd = output("odd", KIND_U16, groups);
+        make_outputs(&args, program->code.output_count, places * GLINT_GROUP, groups, output);
         args.code = &program->code;
         running->program(&args);
         if (running != &glint_stages_ref) {
             compare_outputs("program");
             continue;
         }
-        for (uint32_t k = 0; k < program->code.output_count; k++) { // compared below with what the plain program gives
-            args.result[k] = new_array(gotten, &gotten_count, "plain", KIND_DOUBLE, places * GLINT_GROUP);
-            args.plane[k] = new_array(gotten, &gotten_count, "plain", KIND_FLOAT, places * GLINT_GROUP);
-        }
-        args.odd = new_array(gotten, &gotten_count, "plain", KIND_U16, groups);
+        make_outputs(&args, program->code.output_count, places * GLINT_GROUP, groups, plain_output); // compared with these
         args.code = &plain->code;
         args.rows = plain_rows;
         running->program(&args);
@@ -157,6 +173,45 @@ static void test_damaged_programs(void **state)
     assert_true(damaged[0] > CASES / 4 && damaged[1] > CASES / 10);
 }
 
+/// Ways of every size, from points or along directions, in rows of their own or in those that they are read from.
+static void unit_case(int precision, bool odd)
+{
+    (void)precision;
+    const uint32_t groups = 1 + below(GLINT_PROGRAM_GROUPS), n = groups * GLINT_GROUP;
+    const bool same = one_in(2), from = one_in(2), in_place = !same && one_in(2);
+    double *to[3], *start[3];
+    for (int c = 0; c < 3; c++) {
+        to[c] = input(KIND_DOUBLE, n);
+        start[c] = input(KIND_DOUBLE, n);
+        for (uint32_t i = 0; i < n; i++) {
+            const double scale = one_in(8) ? power_of_ten(-200, 200) : 10;
+            to[c][i] = maybe_odd(odd, one_in(6) ? (double)below(5) - 2 : between(-scale, scale));
+            start[c][i] = maybe_odd(odd, one_in(6) ? to[c][i] : between(-scale, scale));
+        }
+        for (uint32_t i = 0; same && i < GLINT_NUMBER_LANES; i++)
+            to[c][i] = to[c][0];
+    }
+    FOR_EACH_TESTED
+    {
+        glint_unit_args args = { .group_count = groups, .same = same, .length = output("length", KIND_DOUBLE, n) };
+        for (int c = 0; c < 3; c++) {
+            args.unit[c] = output("unit", KIND_DOUBLE, n);
+            args.to[c] = to[c];
+            args.from[c] = from ? start[c] : NULL;
+            if (in_place)
+                args.to[c] = memcpy(args.unit[c], to[c], n * sizeof **to);
+        }
+        running->unit(&args);
+        compare_outputs("unit");
+    }
+}
+
+static void test_unit(void **state)
+{
+    (void)state;
+    run_cases(CASES, 46000, unit_case);
+}
+
 /// A picture of odd sides, of any texels.
 static void load_texture(glint_wrap wrap, glint_filter filter)
 {
@@ -202,6 +257,7 @@ int main(void)
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_random_programs),
         cmocka_unit_test(test_damaged_programs),
+        cmocka_unit_test(test_unit),
         cmocka_unit_test(test_texels),
     };
     find_tested();

@@ -59,15 +59,16 @@ static void make_materials(glint_shade_material *material, uint32_t count)
     }
 }
 
-/// Planes for half of the cases: some materials have some of their numbers there.
+/// Planes for half of the cases: some materials have some of their numbers there, or all that lights make of them.
 static const glint_shade_planes *make_planes(glint_shade_material *material, uint32_t count, uint32_t n,
                                              glint_shade_planes *planes)
 {
     if (one_in(2))
         return NULL;
     for (uint32_t i = 0; i < count; i++)
-        material[i].planes = one_in(3) ? 0 : below(64);
+        material[i].planes = one_in(3) ? 0 : below(128);
     float *shininess = input(KIND_FLOAT, n), *alpha = input(KIND_FLOAT, n);
+    const bool shaded = one_in(2);
     for (int c = 0; c < 3; c++) {
         float *diffuse = input(KIND_FLOAT, n), *ambient = input(KIND_FLOAT, n), *specular = input(KIND_FLOAT, n);
         for (uint32_t i = 0; i < n; i++) {
@@ -79,6 +80,8 @@ static const glint_shade_planes *make_planes(glint_shade_material *material, uin
         planes->ambient[c] = ambient;
         planes->specular[c] = specular;
         planes->ambient_light[c] = between(0, 2);
+        planes->shaded[0][c] = shaded ? specular : NULL; // as good as any
+        planes->shaded[1][c] = shaded ? ambient : NULL;
     }
     for (uint32_t i = 0; i < n; i++) {
         shininess[i] = (float)(one_in(8) ? 0 : power_of_ten(-2, 4));
@@ -197,6 +200,8 @@ static void resolve_samples_case(int precision, bool odd)
     random_color(samples[0].background);
     glint_shade_planes planes;
     samples[0].planes = make_planes(material_table, COUNT_OF(material_table), groups * GLINT_GROUP, &planes);
+    for (size_t i = 0; i < COUNT_OF(material_table); i++)
+        material_table[i].planes &= ~(uint32_t)GLINT_PLANE_SHADED;
     for (uint32_t k = 0; k < count; k++) {
         samples[k] = samples[0];
         make_shade_hits(&samples[k], COUNT_OF(material_table));

@@ -103,6 +103,7 @@ typedef struct glint_shade_planes {
     const float *diffuse[3], *ambient[3], *specular[3];
     const float *shininess, *alpha;
     double ambient_light[3]; ///< what a plane of ambient reflectances is multiplied by
+    const float *shaded[2][3]; ///< diffuse and specular terms of materials of GLINT_PLANE_SHADED; NULL: 0. Not read with sums
 } glint_shade_planes;
 
 typedef struct glint_shade_args {
@@ -127,7 +128,7 @@ typedef struct glint_shade_args {
 // What a light adds to a term is float; terms are added up in double:
 // background where active and not hit, ambient where hit, then each light in order. The arithmetic: ref/shade.h; GGX and Beckmann
 // with Smith's masking, whose Beckmann form is that of B. Walter et al., EGSR 2007. The samples of joined lights are added up
-// first, in order, in float from 0. Products of colours, and what planes say, are made in double; a highlight is 0 below
+// first, in order, in float from 0. Of materials of GLINT_PLANE_SHADED lights are not read. Products of colours, and what planes say, are made in double; a highlight is 0 below
 // 2^-40. Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 
@@ -144,7 +145,8 @@ typedef struct glint_resolve_args {
 
 // resolve_samples: as shade for each of `count` samples in turn, with sums that begin at 0, and then resolve; all have
 // `first`, and `lights` of GLINT_LIGHT_CHUNK in all at most. They have groups, active, background, highlights and film and
-// beauty, which groups without an active lane leave as they are, in common; `sum` is not read.
+// beauty, which groups without an active lane leave as they are, in common; `sum` is not read, and no material is of
+// GLINT_PLANE_SHADED.
 
 // ---- tone: 8-bit codes, written into the image ----
 

@@ -49,16 +49,29 @@ typedef struct glint_program_args {
     uint32_t group_count; ///< 1 .. GLINT_PROGRAM_GROUPS
     const uint16_t *wanted; ///< a bit a lane; elsewhere nothing is stored
     const double *input[GLINT_INPUT_COUNT]; ///< those that the program reads: 16 numbers a group
+    uint32_t same; ///< a bit an input: it is one number, which stands there GLINT_NUMBER_LANES times
     double *rows; ///< scratch: row_count * GLINT_PROGRAM_LANES
     const uint32_t *groups; ///< where each group is stored in the arrays below; NULL: 0, 1, 2 ...
     double *result[GLINT_PROGRAM_OUTPUTS_MAX]; ///< out: the outputs as they are; NULL: not wanted
     /// out: the outputs as reflectances, v > 0 ? min(v, 2^100) : 0 in double, then rounded to float; NULL: not wanted
     float *plane[GLINT_PROGRAM_OUTPUTS_MAX];
+    double *total[GLINT_PROGRAM_OUTPUTS_MAX]; ///< in and out: share times what a plane would get is added; NULL: not wanted
+    const float *share; ///< 16 numbers a group, in the order of `wanted`; NULL: 1
     /// out, a bit a wanted lane: an output stored as a plane is NaN, below 0 or above 2^100; NULL: not wanted
     uint16_t *odd;
 } glint_program_args;
 
 #define GLINT_REFLECTANCE_MAX 0x1p100
+
+/// Ways and distances: length = sqrt(length2(d)) and unit = d / length, where d = to - from.
+typedef struct glint_unit_args {
+    uint32_t group_count;
+    const double *to[3]; ///< 16 numbers a group
+    bool same; ///< `to` is one place, which stands there GLINT_NUMBER_LANES times
+    const double *from[3]; ///< 16 numbers a group; NULL: d = to
+    double *unit[3]; ///< out; may be in the place of `to` or `from`
+    double *length; ///< out
+} glint_unit_args;
 
 // What each operation is stands in glint.h; the arithmetic and its order in ref/program.h and ref/pattern.h.
 

@@ -278,7 +278,8 @@ enum {
     GLINT_PLANE_AMBIENT_IS_DIFFUSE = 4, ///< the plane of the diffuse reflectance is the ambient one's, too
     GLINT_PLANE_SPECULAR = 8,
     GLINT_PLANE_SHININESS = 16,
-    GLINT_PLANE_ALPHA = 32
+    GLINT_PLANE_ALPHA = 32,
+    GLINT_PLANE_SHADED = 64 ///< what all lights make of it together is in planes, or in the sums already
 };
 
 typedef struct glint_shade_material {

@@ -65,6 +65,7 @@ static inline void find_operand(const glint_program_args *args, uint32_t row, co
         *from = args->rows + row * GLINT_PROGRAM_LANES;
     } else if (row < GLINT_ROW_NUMBER) {
         *from = args->input[row - GLINT_ROW_INPUT];
+        *step = args->same >> (row - GLINT_ROW_INPUT) & 1 ? 0 : *step;
     } else {
         *from = args->code->numbers[row - GLINT_ROW_NUMBER];
         *step = 0;
@@ -83,6 +84,25 @@ INNER void store_plane(const double *from, unsigned wanted, float *plane)
             f_store(plane + i, v);
         else
             f_store(plane + i, f_select(fm_from_bits(wanted >> i & ((1u << VF) - 1)), v, f_load(plane + i)));
+    }
+}
+
+/// Adds a group of one output, as store_plane rounds it, times `share`.
+INNER void add_total(const double *from, unsigned wanted, const float *share, double *total)
+{
+    for (int i = 0; i < GLINT_GROUP; i += VF) {
+        vd v[VF / VD], weight[VF / VD];
+        f_split(f_join(reflectance(d_load(from + i)), reflectance(d_load(from + i + VD))), v);
+        if (share)
+            f_split(f_load(share + i), weight);
+        for (int k = 0; k < VF / VD; k++) {
+            double *to = total + i + k * VD;
+            if (share)
+                v[k] = weight[k] * v[k];
+            const vd sum = d_load(to) + v[k];
+            d_store(to, wanted == 0xffff ? sum
+                                         : d_select(dm_from_bits(wanted >> (i + k * VD) & D_ALL), sum, d_load(to)));
+        }
     }
 }
 
@@ -118,6 +138,12 @@ static void store_output(const glint_program_args *args, uint32_t k)
             store_plane(from, 0xffff, args->plane[k] + to);
         else if (args->plane[k])
             store_plane(from, wanted, args->plane[k] + to);
+        if (args->total[k] && args->share)
+            add_total(from, wanted, args->share + (size_t)g * GLINT_GROUP, args->total[k] + to);
+        else if (args->total[k] && wanted == 0xffff)
+            add_total(from, 0xffff, NULL, args->total[k] + to);
+        else if (args->total[k] && wanted)
+            add_total(from, wanted, NULL, args->total[k] + to);
         if (args->plane[k] && args->odd)
             args->odd[g] |= (uint16_t)(odd_lanes(from) & wanted);
     }
@@ -139,6 +165,6 @@ static void program(const glint_program_args *args)
     for (uint32_t g = 0; args->odd && g < args->group_count; g++)
         args->odd[g] = 0;
     for (uint32_t k = 0; k < code->output_count; k++)
-        if (args->result[k] || args->plane[k])
+        if (args->result[k] || args->plane[k] || args->total[k])
             store_output(args, k);
 }

@@ -238,7 +238,10 @@ static double row_value(const glint_program_args *args, const double *rows, uint
 {
     if (row >= GLINT_ROW_NUMBER)
         return args->code->numbers[row - GLINT_ROW_NUMBER][0];
-    return row >= GLINT_ROW_INPUT ? args->input[row - GLINT_ROW_INPUT][lane] : rows[row];
+    if (row < GLINT_ROW_INPUT)
+        return rows[row];
+    const uint32_t input = row - GLINT_ROW_INPUT;
+    return args->input[input][args->same >> input & 1 ? 0 : lane];
 }
 
 static void store_outputs(const glint_program_args *args, const double *rows, uint32_t lane)
@@ -249,8 +252,11 @@ static void store_outputs(const glint_program_args *args, const double *rows, ui
         const double v = row_value(args, rows, args->code->outputs[k], lane);
         if (args->result[k])
             args->result[k][to] = v;
+        const float reflectance = (float)(v > 0 ? v < GLINT_REFLECTANCE_MAX ? v : GLINT_REFLECTANCE_MAX : 0);
         if (args->plane[k])
-            args->plane[k][to] = (float)(v > 0 ? v < GLINT_REFLECTANCE_MAX ? v : GLINT_REFLECTANCE_MAX : 0);
+            args->plane[k][to] = reflectance;
+        if (args->total[k])
+            args->total[k][to] += (double)(args->share ? args->share[lane] : 1) * (double)reflectance;
         if (args->plane[k] && args->odd && !(v >= 0 && v <= GLINT_REFLECTANCE_MAX))
             args->odd[group] |= (uint16_t)(1u << lane % GLINT_GROUP);
     }
@@ -274,5 +280,21 @@ static void program(const glint_program_args *args)
                 rows[at->out[k]] = out[k];
         }
         store_outputs(args, rows, lane);
+    }
+}
+
+static void unit(const glint_unit_args *args)
+{
+    for (uint32_t lane = 0; lane < args->group_count * GLINT_GROUP; lane++) {
+        double d[3];
+        for (int c = 0; c < 3; c++) {
+            d[c] = args->to[c][args->same ? 0 : lane];
+            if (args->from[c])
+                d[c] -= args->from[c][lane];
+        }
+        const double length = sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
+        for (int c = 0; c < 3; c++)
+            args->unit[c][lane] = d[c] / length;
+        args->length[lane] = length;
     }
 }

@@ -312,6 +312,7 @@ const glint_stages glint_stages_ref = {
     .name = "ref",
     .geometry = { GEOMETRY_STAGES(double), GEOMETRY_STAGES(float) },
     .program = program,
+    .unit = unit,
     .sky = sky,
     .shade = shade,
     .resolve = resolve,

@@ -58,6 +58,8 @@ static inline void find_plane_factors(const glint_shade_args *args, const glint_
 {
     factors->count = 0;
     factors->shiny = 0;
+    if (material->planes & GLINT_PLANE_SHADED)
+        return;
     if (material->planes & GLINT_PLANE_SHININESS)
         add_factors(args, material, args->planes->shininess + (size_t)g * GLINT_GROUP, specular, g, factors);
     else
@@ -105,23 +107,47 @@ static inline void sum_plane_shares(const glint_shade_args *args, const glint_sh
         d_store_f(sum + i, total[i / VD]);
 }
 
+/// What a term takes from planes in a channel, read once a group: stores may change what pointers lead to.
+typedef struct plane_factor {
+    const float *plane; ///< NULL: `color` is all
+    double number; ///< what the plane is multiplied by
+    float color;
+} plane_factor;
+
+static inline plane_factor factor_of(const glint_shade_args *args, const glint_shade_material *material, int term, int c,
+                                     double light, size_t at)
+{
+    const double constant = (term ? material->specular : material->diffuse)[c];
+    const float *plane = plane_of(args, material, term, c, at);
+    return (plane_factor) { plane, constant * light, plane ? 0 : share_color(constant, light) };
+}
+
+static inline vf factor_lanes(const plane_factor *factor, int i)
+{
+    return factor->plane ? plane_color(factor->plane + i, factor->number) : f_set(factor->color);
+}
+
 /// As shade_whole.
 static __attribute__((noinline)) void whole_planes(const glint_shade_args *args, const glint_shade_material *material,
                                                    bool shines, const light_factors *factors, size_t at)
 {
     const glint_shade_light *light = factors->count ? factors->light[0] : NULL;
+    const bool follows = material->planes & GLINT_PLANE_AMBIENT_IS_DIFFUSE,
+               made = follows || material->planes & GLINT_PLANE_AMBIENT;
     for (int c = 0; c < 3; c++) {
-        const float *diffuse = plane_of(args, material, 0, c, at), *specular = plane_of(args, material, 1, c, at);
+        const float *ambient = made ? (follows ? args->planes->diffuse : args->planes->ambient)[c] + at : NULL;
+        const double strength = made ? args->planes->ambient_light[c] : material->ambient[c];
+        const plane_factor diffuse = factor_of(args, material, 0, c, light ? light->diffuse[c] : 0, at),
+                           specular = factor_of(args, material, 1, c, light ? light->specular[c] : 0, at);
+        float *beauty = args->beauty[c] + at;
         for (int i = 0; i < GLINT_GROUP; i += VF) {
-            const size_t k = at + (size_t)i;
-            vf sum = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
+            vf sum = made ? f_join(d_load_f(ambient + i) * d_set(strength), d_load_f(ambient + i + VD) * d_set(strength))
+                          : f_set((float)strength);
             if (light)
-                sum = sum + plane_product(factors->diffuse[0] + i, diffuse ? diffuse + i : NULL, material->diffuse[c],
-                                          light->diffuse[c]);
+                sum = sum + f_load(factors->diffuse[0] + i) * factor_lanes(&diffuse, i);
             if (light && shines)
-                sum = sum + plane_product(factors->specular[0] + i, specular ? specular + i : NULL, material->specular[c],
-                                          light->specular[c]);
-            f_store(args->beauty[c] + k, sum);
+                sum = sum + f_load(factors->specular[0] + i) * factor_lanes(&specular, i);
+            f_store(beauty + i, sum);
         }
     }
 }
@@ -146,4 +172,33 @@ static __attribute__((noinline)) void shade_planes(const glint_shade_args *args,
                 put_float(terms->term[GLINT_TERM_DIFFUSE + k][c] + i, mask, f_load(light[k][c] + i));
         }
     }
+}
+
+/// As shade_whole, of a material whose light is in planes.
+static __attribute__((noinline)) void whole_shaded(const glint_shade_args *args, const glint_shade_material *material,
+                                                   size_t at)
+{
+    for (int c = 0; c < 3; c++) {
+        const float *diffuse = args->planes->shaded[0][c], *specular = args->planes->shaded[1][c];
+        for (size_t k = at; k < at + GLINT_GROUP; k += VF) {
+            const vf ambient = f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD));
+            f_store(args->beauty[c] + k, (ambient + f_load(diffuse + k)) + f_load(specular + k));
+        }
+    }
+}
+
+/// As shade_direct.
+static __attribute__((noinline)) void shade_shaded(const glint_shade_args *args, const glint_shade_material *material,
+                                                   size_t at, unsigned lanes, group_terms *terms)
+{
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < GLINT_GROUP; i += VF) {
+            const size_t k = at + (size_t)i;
+            const fm mask = fm_from_bits(lanes >> i & ((1u << VF) - 1));
+            put_float(terms->term[GLINT_TERM_AMBIENT][c] + i, mask,
+                      f_join(plane_ambient(args, material, c, k), plane_ambient(args, material, c, k + VD)));
+            for (int term = 0; term < 2; term++)
+                put_float(terms->term[GLINT_TERM_DIFFUSE + term][c] + i, mask,
+                          f_load(args->planes->shaded[term][c] + k));
+        }
 }

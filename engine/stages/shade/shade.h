@@ -320,11 +320,16 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         const glint_shade_material *material = material_of(args, at, &lanes);
         const bool specular = args->highlights && material->highlight;
         const bool planes = GLINT_WITH_PROGRAM && material->planes;
+        const bool shaded = planes && material->planes & GLINT_PLANE_SHADED && args->planes->shaded[0][0];
+        if (shaded && simple && lanes == 0xffff) {
+            whole_shaded(args, material, at);
+            return;
+        }
         if (planes)
             find_plane_factors(args, material, specular, g, &factors);
         else
             find_factors(args, material, specular, g, &factors);
-        if (simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
+        if (!shaded && simple && lanes == 0xffff && factors.count <= 1 && !has_facets(material)) {
             if (planes)
                 whole_planes(args, material, specular && factors.shiny, &factors, at);
             else
@@ -334,7 +339,9 @@ INNER void shade_group(const glint_shade_args *args, const bool simple, uint32_t
         if (!begun)
             start_direct(args, g, &terms);
         begun = true;
-        if (planes)
+        if (shaded)
+            shade_shaded(args, material, at, lanes, &terms);
+        else if (planes)
             shade_planes(args, material, specular, &factors, at, lanes, &terms);
         else
             shade_direct(material, specular, &factors, lanes, &terms);

@@ -24,6 +24,7 @@
 
 #include "engine/stages/program/coefficients.h"
 #include "engine/stages/program/program.h"
+#include "engine/stages/program/unit.h"
 #include "engine/stages/shade/shade.h"
 #include "engine/stages/shade/sky.h"
 #include "engine/stages/film/resolve.h"
@@ -48,6 +49,7 @@ const glint_stages GLINT_STAGES_SYMBOL = {
     .geometry = { GEOMETRY_STAGES(f64), GEOMETRY_STAGES(f32) },
     .sky = GLINT_WITH_INDIRECT ? sky : NULL,
     .program = GLINT_WITH_PROGRAM ? program : NULL,
+    .unit = GLINT_WITH_PROGRAM ? unit : NULL,
     .shade = shade,
     .resolve = GLINT_WITH_SAMPLES ? resolve : NULL,
     .resolve_samples = GLINT_WITH_SAMPLES ? resolve_samples : NULL,

@@ -119,6 +119,9 @@ static inline glint_program_args program_inputs(const glint_program *program, ui
         for (uint32_t lane = 0; lane < groups * GLINT_GROUP; lane++)
             row[lane] = maybe_odd(odd, one_in(10) ? (double)below(9) - 4 : between(-scale, scale));
         args.input[i] = row;
+        args.same |= one_in(4) ? 1u << i : 0;
+        for (uint32_t lane = 0; args.same >> i & 1 && lane < GLINT_NUMBER_LANES; lane++)
+            row[lane] = row[0];
     }
     args.rows = input(KIND_DOUBLE, (program->code.row_count + 1) * GLINT_PROGRAM_LANES);
     return args;
