@@ -1,5 +1,5 @@
 /// glint_writer: one list of jobs in the order they were submitted. A thread encodes them (with a pool of its own, if it may
-/// use several), another brings them to disk, so that no thread computes less while a file is synced.
+/// use several), others bring them to disk, several files at a time: a sync waits for the disk, not for a processor.
 #include "engine/base/pool.h"
 #include "engine/base/status.h"
 #include "engine/file/file.h"
@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+
+#define FILERS 4 ///< threads that bring files to disk, at most
 
 typedef enum job_state { JOB_QUEUED, JOB_ENCODING, JOB_ENCODED, JOB_FILING, JOB_DONE } job_state;
 
@@ -24,7 +26,8 @@ typedef struct job {
 } job;
 
 struct glint_writer {
-    pthread_t encoder, filer;
+    pthread_t encoder, filers[FILERS];
+    int filer_count;
     glint_bands *bands; ///< the encoder's
     pthread_mutex_t
         lock; ///< over all below; what is being encoded or filed is the thread's meanwhile, but for `next`, `state`
@@ -72,11 +75,20 @@ static void file(job *j)
     j->result.write_ms = now_ms() - start;
 }
 
+/// Whether a file of the same path, submitted before, is on its way: the last one submitted is the one that stays.
+static bool is_behind(const glint_writer *writer, const job *j)
+{
+    for (const job *before = writer->first; before != j; before = before->next)
+        if (before->state == JOB_FILING && strcmp(before->desc.path, j->desc.path) == 0)
+            return true;
+    return false;
+}
+
 /// The first job that waits for its next step, which begins; NULL: none does.
 static job *take(glint_writer *writer, job_state waiting)
 {
     job *j = writer->first;
-    while (j && j->state != waiting)
+    while (j && (j->state != waiting || (waiting == JOB_ENCODED && is_behind(writer, j))))
         j = j->next;
     if (j) {
         j->state = waiting + 1;
@@ -127,7 +139,7 @@ static void *run_filer(void *user)
     pthread_mutex_lock(&writer->lock);
     for (;;) {
         job *j = take(writer, JOB_ENCODED);
-        if (!j && writer->encoded_all)
+        if (!j && writer->encoded_all && !writer->waiting[JOB_ENCODED])
             break;
         if (!j) {
             pthread_cond_wait(&writer->changed, &writer->lock);
@@ -169,7 +181,9 @@ static bool start_threads(glint_writer *writer)
 {
     if (!start_thread(writer, &writer->encoder, run_encoder))
         return false;
-    if (start_thread(writer, &writer->filer, run_filer))
+    while (writer->filer_count < FILERS && start_thread(writer, &writer->filers[writer->filer_count], run_filer))
+        writer->filer_count++;
+    if (writer->filer_count > 0)
         return true;
     close_encoder(writer);
     return false;
@@ -213,7 +227,8 @@ void glint_writer_destroy(glint_writer *writer)
     if (!writer)
         return;
     close_encoder(writer);
-    pthread_join(writer->filer, NULL);
+    for (int i = 0; i < writer->filer_count; i++)
+        pthread_join(writer->filers[i], NULL);
     for (job *j = writer->first; j;) {
         job *next = j->next;
         free(j);

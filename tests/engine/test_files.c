@@ -318,6 +318,36 @@ static void test_writer_order(void **state)
     glint_image_release(image);
 }
 
+/// Files are brought to disk several at a time; of one path the last submitted is the one that stays, though it takes less time.
+static void test_writer_one_path(void **state)
+{
+    (void)state;
+    glint_tone_desc tone = glint_tone_desc_default();
+    glint_image *large = make_image(1500, 1000, &tone), *small = make_image(3, 2, &tone);
+    glint_writer *writer;
+    glint_write_result result;
+    struct stat info;
+    glint_write_desc desc = describe(in_folder("alone.png"));
+    write_ok(small, &desc);
+    assert_int_equal(stat(in_folder("alone.png"), &info), 0);
+    const long want = (long)info.st_size;
+    desc.path = in_folder("again.png");
+    assert_int_equal(glint_writer_create(16, 1, &writer, NULL), GLINT_OK);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(glint_writer_submit(writer, large, &desc, NULL, NULL), GLINT_OK);
+        assert_int_equal(glint_writer_submit(writer, small, &desc, NULL, NULL), GLINT_OK);
+        for (int k = 0; k < 2; k++) {
+            assert_true(glint_writer_collect(writer, true, &result));
+            assert_int_equal(result.status, GLINT_OK);
+        }
+        assert_int_equal(stat(in_folder("again.png"), &info), 0);
+        assert_int_equal((long)info.st_size, want);
+    }
+    glint_writer_destroy(writer);
+    glint_image_release(large);
+    glint_image_release(small);
+}
+
 static void test_writer_cancel(void **state)
 {
     (void)state;
@@ -383,7 +413,7 @@ int main(void)
         WITH_FOLDER(test_png_round_trip), WITH_FOLDER(test_png_bytes_repeat), WITH_FOLDER(test_png_speed),
         WITH_FOLDER(test_png_spoilt),     WITH_FOLDER(test_png_text),         WITH_FOLDER(test_file_write),
         WITH_FOLDER(test_file_pipe),      WITH_FOLDER(test_file_limit),       WITH_FOLDER(test_writer_order),
-        WITH_FOLDER(test_writer_cancel),  WITH_FOLDER(test_writer_reuse),
+        WITH_FOLDER(test_writer_cancel),  WITH_FOLDER(test_writer_reuse),     WITH_FOLDER(test_writer_one_path),
     };
     glint_tone_store_open();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
