@@ -156,21 +156,20 @@ static void gather_points(const gathering *g, unsigned lanes)
 static void load_way_back(const gathering *g, int c, double *restrict out)
 {
     const glint_tile *tile = g->points->tile;
-    const glint_precision precision = g->frame->plan->desc.precision;
-    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP);
-    const size_t x = 3 * (group % tile->groups_across) + (uint32_t)c, y = 3 * (group / tile->groups_across) + (uint32_t)c;
-    if (g->points->direction[c] || glint_tile_has_arrays(tile)) {
+    const bool arrays = g->points->direction[c] || glint_tile_has_arrays(tile);
+    const uint32_t group = (uint32_t)(g->at / GLINT_GROUP), columns = arrays ? 1 : tile->groups_across;
+    const size_t x = (3 * (group % columns) + (uint32_t)c) * GLINT_GROUP;
+    const size_t y = (3 * (group / columns) + (uint32_t)c) * GLINT_GROUP;
+    if (arrays) {
         load_group(g, g->points->direction[c] ? g->points->direction[c] : tile->rays.direction[c], out);
         for (int i = 0; i < GLINT_GROUP; i++)
             out[i] = -out[i];
-    } else if (precision == GLINT_DOUBLE) {
-        const double *across = (const double *)tile->rays.across + x * GLINT_GROUP;
-        const double *down = (const double *)tile->rays.down + y * GLINT_GROUP;
+    } else if (g->frame->plan->desc.precision == GLINT_DOUBLE) {
+        const double *across = (const double *)tile->rays.across + x, *down = (const double *)tile->rays.down + y;
         for (int i = 0; i < GLINT_GROUP; i++)
             out[i] = -(across[i] + down[i]);
     } else {
-        const float *across = (const float *)tile->rays.across + x * GLINT_GROUP;
-        const float *down = (const float *)tile->rays.down + y * GLINT_GROUP;
+        const float *across = (const float *)tile->rays.across + x, *down = (const float *)tile->rays.down + y;
         for (int i = 0; i < GLINT_GROUP; i++)
             out[i] = -(double)(across[i] + down[i]);
     }
