@@ -123,7 +123,8 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
         total += g.count;
         first[i + 1] = total;
     }
-    // A finalizer that the allocation runs may change what is gathered: at most what was counted is taken.
+    // What the allocation collects is gathered no more, and a finalizer that it runs may change what is: at most what was counted
+    // is taken.
     struct {
         glint_derivative of[GLINT_DERIVATIVES_MAX];
         char names[GLINT_DERIVATIVES_MAX][GLINT_DERIVATIVE_NAME_SIZE];
@@ -134,7 +135,7 @@ void glintL_find_derivatives(lua_State *L, const glint_scene *scene, glintL_rend
         gathering g = { .scene = scene };
         const int variable = glintL_find_variable(L, render->derivative[i]);
         gather(L, variable, &g);
-        if (g.count != first[i + 1] - first[i])
+        if (g.count > first[i + 1] - first[i])
             luaL_error(L, "passes: d:%s: a finalizer changed what it depends on", render->derivative[i]);
         g = (gathering) { .scene = scene, .out = list->slopes + first[i] };
         gather(L, variable, &g);

@@ -194,6 +194,8 @@ static int modulo(lua_State *L)
 static int divide_whole(lua_State *L)
 {
     glintL_dual a, b;
+    if (defer(L, "__idiv"))
+        return 1;
     read_operands(L, &a, &b);
     lua_pushnumber(L, floor(a.value / b.value));
     return 1;

@@ -212,7 +212,8 @@ INLINE void find_lobe(bool bends, const glint_derivative_material *material, lan
     lanes sine2 = divide(dot(across, across), h2);
     sine2 = where(d_lt(sine2.v, one.v), sine2, one);
     const lanes facing = dot_bent(bends, normal, eye);
-    const lanes l = where(d_lt(s->cosine.v, one.v), s->cosine, one), v = where(d_lt(facing.v, one.v), facing, one);
+    const lanes l = where(d_lt(s->cosine.v, one.v), s->cosine, one), least = where(d_lt(facing.v, one.v), facing, one);
+    const lanes v = where(d_lt(zero.v, least.v), least, zero); // a bumped normal may face away; see stages/ref/microfacets.h
     *specular = find_facets(material, alpha, sine2, l, v);
     lanes z = times(add(one, dot_bent(bends, s->way, eye)), d_set(0.5));
     z = where(d_lt(z.v, one.v), z, one);

@@ -216,6 +216,9 @@ function tests.patterns_against_differences()
   compare("noise and cells", function(x)
     return { diffuse = function(p) return 0.4 + 0.2 * glint.noise(x * p) + 0.1 * glint.cell(p * x) ^ x end }
   end)
+  compare("whole parts", function(x)
+    return { diffuse = function(p) return 0.1 * x + 0.01 * (x // (2 + p.x)) + 0.01 * ((p.y + 2) // x) end }
+  end)
   compare("specular", function(x) return { specular = function(p) return 0.4 + 0.3 * glint.sin(x * p.y) end } end)
   compare("shininess", function(x) return { shininess = function(p) return 20 + 10 * glint.sin(x * p.y) end } end)
   compare("an even highlight", function(x)
@@ -230,6 +233,43 @@ function tests.patterns_against_differences()
   compare("glass", function(x)
     return { floor = true, fresnel = true, transmission = function(p) return 0.4 + 0.2 * glint.sin(x * p.y) end }
   end)
+end
+
+-- Every pixel, by the largest distance: a bump turns the normal of a few from the eye, where one wrong number is enough.
+function tests.every_pixel_against_differences()
+  local function compare(name, at, h, fields)
+    local function make(x)
+      return glint.scene { camera = glint.camera { eye = { 0.5, 2, 9 }, at = { 0, 0.8, 0 } },
+        glint.point_light { position = { 0, 6, 4 }, shadows = false },
+        glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 }, material = glint.material(fields(x)) } }
+    end
+    local image, worst, most = render(make(glint.variable("p", at)), "d:p"), 0, 0
+    local high, low, list = render(make(at + h), "beauty"), render(make(at - h), "beauty"), {}
+    each(high, "beauty", low, "beauty", function(p, q) list[#list + 1] = (p - q) / (2 * h) end)
+    local i = 0
+    each(image, "d:p", image, "d:p", function(d)
+      i = i + 1
+      worst, most = math.max(worst, math.abs(d - list[i])), math.max(most, math.abs(list[i]))
+    end)
+    check(most > 0 and worst < 1e-3 * most, "%s: off by %.2g of %.2g", name, worst, most)
+  end
+  local waves = glint.pattern(function(p) return 0.03 * glint.sin(4 * p.x) end)
+  for _, distribution in ipairs { "ggx", "beckmann" } do
+    compare(distribution .. " on bumps", 0.5, 1e-2, function(x)
+      return { diffuse = 0.2, model = "cook_torrance", distribution = distribution, roughness = 0.5, specular = x, bump = waves }
+    end)
+  end
+end
+
+-- Objects that the script has dropped count until they are collected, at whatever time that is.
+function tests.dropped_objects()
+  local x = glint.variable("x", 0.5)
+  local scene, good = scene_of(glint.point_light { position = { 2, 4, 3 }, intensity = x }), true
+  for _ = 1, 2000 do
+    glint.material { diffuse = x }
+    good = good and pcall(render, scene, "d:x", { width = 2, height = 2 })
+  end
+  check(good, "what is dropped changes no derivative")
 end
 
 -- The eye over faces, within a ball, and a ball that moves under a lens: nineteen pixels of twenty, which are no edges.
