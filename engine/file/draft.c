@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@
 
 #define TEMPORARY_TRIES 100
 #define TEMPORARY_ROOM 160 // what the temporary name adds to the file's: host, process, number
+#define LINKS 40 // that lead from one to the next, as many as the system follows
 #define PIECE ((size_t)1 << 20) // bytes of one call: who watches how much is written sees it go
 
 struct glint_draft {
@@ -125,6 +127,94 @@ static char *target_of(const char *path)
             return target;
     }
     return strdup(path);
+}
+
+/// What `name`, as a link at `path` has it, is called from here. NULL: out of memory.
+static char *beside(const char *path, const char *name)
+{
+    const char *slash = *name == '/' ? NULL : strrchr(path, '/');
+    const size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(name) + 1;
+    char *out = malloc(folder + length);
+    if (out) {
+        memcpy(out, path, folder);
+        memcpy(out + folder, name, length);
+    }
+    return out;
+}
+
+/// The same as target_of, and of a link to a file that is not there yet, too.
+static char *end_of_links(const char *path)
+{
+    char link[PATH_MAX];
+    char *end = target_of(path);
+    for (int i = 0; end && i < LINKS; i++) {
+        const ssize_t length = readlink(end, link, sizeof link - 1);
+        if (length < 0)
+            return end;
+        link[length] = '\0';
+        char *next = beside(end, link);
+        free(end);
+        end = next;
+    }
+    return end;
+}
+
+/// The innermost folder of `path` that is there, by its one name; *rest: where in `path` what lies in it begins. NULL: out
+/// of memory.
+static char *folder_of(const char *path, const char **rest)
+{
+    char *folder = NULL;
+    size_t length = strlen(path);
+    do {
+        while (length > 0 && path[length - 1] != '/')
+            length--;
+        *rest = path + length;
+        char *head = length > 0 ? strndup(path, length) : strdup(".");
+        if (!head)
+            return NULL;
+        folder = realpath(head, NULL);
+        const bool short_of_memory = !folder && errno == ENOMEM;
+        free(head);
+        if (short_of_memory)
+            return NULL;
+        while (length > 0 && path[length - 1] == '/')
+            length--;
+    } while (!folder && length > 0);
+    return folder ? folder : strdup(""); // the current folder is gone
+}
+
+/// Takes the next name of `rest` into `out`, of *length bytes: folders that are still to be made have no links.
+static const char *add_name(const char *rest, char *out, size_t *length)
+{
+    const size_t size = strcspn(rest, "/");
+    if (size == 2 && memcmp(rest, "..", 2) == 0) {
+        while (*length > 0 && out[--*length] != '/')
+            ;
+    } else if (size > 0 && !(size == 1 && *rest == '.')) {
+        out[(*length)++] = '/';
+        memcpy(out + *length, rest, size);
+        *length += size;
+    }
+    return rest + size + strspn(rest + size, "/");
+}
+
+char *glint_draft_place(const char *path)
+{
+    const char *rest;
+    char *end = end_of_links(path);
+    char *folder = end ? folder_of(end, &rest) : NULL;
+    char *out = folder ? malloc(strlen(folder) + strlen(rest) + 2) : NULL;
+    if (out) {
+        size_t length = strlen(folder);
+        memcpy(out, folder, length);
+        length -= length == 1; // of "/"
+        while (*rest)
+            rest = add_name(rest, out, &length);
+        out[length] = '\0';
+    }
+    free(folder);
+    free(end);
+    return out;
 }
 
 /// Removes what killed processes have left in the folder of `path`.

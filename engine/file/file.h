@@ -10,6 +10,10 @@
 /// reported like the others. draft.c
 glint_status glint_file_write(const char *path, const void *bytes, size_t size, glint_error *error);
 
+/// The one name of the place that a write to `path` goes to, whichever way `path` is spelled and through whichever links,
+/// and whether the file and its folders are there or not; the caller's to free. NULL: out of memory. draft.c
+char *glint_draft_place(const char *path);
+
 /// Reads a whole file, which glint_open_file opens; *out is filled on success and its data is the caller's to free. More
 /// than `limit` bytes is GLINT_ERR_FORMAT.
 glint_status glint_file_read(const char *path, size_t limit, glint_bytes *out, glint_error *error);

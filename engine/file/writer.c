@@ -21,6 +21,7 @@ typedef struct job {
     job_state state;
     glint_image *image; ///< owned until it is encoded
     glint_write_desc desc; ///< its strings follow the job in memory
+    char *place; ///< of the file, see glint_draft_place; owned
     glint_bytes bytes; ///< of the file, from then until they are in it; owned
     glint_write_result result;
 } job;
@@ -44,6 +45,13 @@ static double now_ms(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static void free_job(job *j)
+{
+    if (j)
+        free(j->place);
+    free(j);
 }
 
 // ---- The threads --------------------------------------------------------------------------------------------------
@@ -75,11 +83,11 @@ static void file(job *j)
     j->result.write_ms = now_ms() - start;
 }
 
-/// Whether a file of the same path, submitted before, is on its way: the last one submitted is the one that stays.
+/// Whether a file of the same place, submitted before, is on its way: the last one submitted is the one that stays.
 static bool is_behind(const glint_writer *writer, const job *j)
 {
     for (const job *before = writer->first; before != j; before = before->next)
-        if (before->state == JOB_FILING && strcmp(before->desc.path, j->desc.path) == 0)
+        if (before->state == JOB_FILING && strcmp(before->place, j->place) == 0)
             return true;
     return false;
 }
@@ -231,7 +239,7 @@ void glint_writer_destroy(glint_writer *writer)
         pthread_join(writer->filers[i], NULL);
     for (job *j = writer->first; j;) {
         job *next = j->next;
-        free(j);
+        free_job(j);
         j = next;
     }
     free_writer(writer);
@@ -261,7 +269,11 @@ static job *make_job(const glint_write_desc *desc)
     job *j = malloc(room);
     if (!j)
         return NULL;
-    *j = (job) { .state = JOB_QUEUED, .desc = *desc };
+    *j = (job) { .state = JOB_QUEUED, .desc = *desc, .place = glint_draft_place(desc->path) };
+    if (!j->place) {
+        free(j);
+        return NULL;
+    }
     glint_text *text = (glint_text *)(j + 1);
     char *at = (char *)(text + desc->text_count);
     j->desc.path = keep_string(&at, desc->path);
@@ -306,7 +318,7 @@ bool glint_writer_collect(glint_writer *writer, bool wait, glint_write_result *r
     pthread_mutex_unlock(&writer->lock);
     if (j)
         *result = j->result;
-    free(j);
+    free_job(j);
     return j != NULL;
 }
 
