@@ -62,6 +62,16 @@ static void set_constant(double value[3], double slope[3])
     }
 }
 
+/// Of a constant whose product with a program's factor is in planes: 1, and its slope in shares of it. What is 0 has no
+/// slope here; see is_lost in derivative_fields.c.
+static void set_share(double value[3], double slope[3])
+{
+    for (int c = 0; c < 3; c++) {
+        slope[c] = value[c] > 0 ? slope[c] / value[c] : 0;
+        value[c] = 1;
+    }
+}
+
 /// Of what programs give: 1 for what it is multiplied by.
 static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_desc *slope)
 {
@@ -69,12 +79,22 @@ static void take_planes(uint32_t planes, glint_material_desc *d, glint_material_
         set_constant(d->ambient, slope->ambient);
     if (planes & GLINT_PLANE_DIFFUSE)
         set_constant(d->diffuse, slope->diffuse);
-    if (planes & GLINT_PLANE_SPECULAR)
+    if (planes & GLINT_PLANE_SPECULAR && !d->program.specular)
+        set_share(d->specular, slope->specular); // of normalized highlights
+    else if (planes & GLINT_PLANE_SPECULAR)
         set_constant(d->specular, slope->specular);
     if (planes & GLINT_PLANE_SHININESS)
         slope->shininess = 0;
     if (planes & GLINT_PLANE_ALPHA)
         slope->roughness = 0;
+}
+
+/// Of a resolved description. Without one of its own f0 follows ior; see glint_material_desc_resolve.
+static void fill_f0(glint_dual out[3], const glint_material_desc *d, const glint_material_desc *slope, bool is_own)
+{
+    const double up = d->ior + 1, by_ior = is_own || !(d->ior < 1e300) ? 0 : 4 * (d->ior - 1) / up / up / up * slope->ior;
+    for (int c = 0; c < 3; c++)
+        out[c] = dual(d->f0[c], is_own ? slope->f0[c] : by_ior);
 }
 
 /// planes: of glint_shade_material.
@@ -90,7 +110,7 @@ static void fill_material(glint_derivative_material *out, const glint_material_d
     duals(out->diffuse, d.diffuse, slope->diffuse);
     duals(out->specular, d.specular, slope->specular);
     duals(out->ambient, d.ambient, slope->ambient);
-    duals(f0, d.f0, slope->f0);
+    fill_f0(f0, &d, slope, desc->has_f0);
     for (int c = 0; c < 3; c++)
         out->ambient[c] = dual_mul(out->ambient[c], light[c]);
     out->shininess = dual(d.shininess, slope->shininess);

@@ -111,6 +111,20 @@ static glint_status add_program(const glint_plan *plan, const glint_derivative *
     return GLINT_OK;
 }
 
+/// Whether a slope of `specular` is of a channel that is 0, which leaves no plane of the pattern that shapes the highlight.
+static bool is_lost(const glint_material_desc *desc, const glint_slope *s)
+{
+    const bool facets = desc->model == GLINT_MODEL_COOK_TORRANCE;
+    const glint_program *shape = facets ? desc->program.roughness : desc->program.shininess;
+    const bool needs_all = !facets && desc->normalized;
+    bool lost = false;
+    if (strcmp(s->field, "specular") != 0 || !shape || desc->program.specular || desc->model == GLINT_MODEL_LAMBERT)
+        return false;
+    for (int c = 0; c < 3; c++)
+        lost = lost || (s->slope[c] != 0 && desc->specular[c] == 0);
+    return lost && (needs_all || !glint_material_is_shiny(desc));
+}
+
 static glint_status add_material(const glint_plan *plan, const glint_derivative *d, const glint_slope *s,
                                  glint_scene_slopes *out, glint_error *error)
 {
@@ -120,9 +134,15 @@ static glint_status add_material(const glint_plan *plan, const glint_derivative 
     const slope_field *field = find_field(material_fields, s->field, 0);
     if (!field)
         return refuse_field(d, "material", s->field, material_fields, 0, error);
-    for (size_t i = 0; i < list->count; i++)
-        if (list->items[i] == s->material)
-            add(&out->materials[i], field, s->slope);
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->items[i] != s->material)
+            continue;
+        if (is_lost(&s->material->desc, s))
+            return glint_fail(error, GLINT_ERR_INVALID,
+                              "derivative '%s': material.specular: 0 has no derivative where a pattern gives the highlight's shape; "
+                              "above 0 it has", d->name);
+        add(&out->materials[i], field, s->slope);
+    }
     return GLINT_OK;
 }
 

@@ -259,6 +259,20 @@ function tests.every_pixel_against_differences()
       return { diffuse = 0.2, model = "cook_torrance", distribution = distribution, roughness = 0.5, specular = x, bump = waves }
     end)
   end
+  local exponent = glint.pattern(function(p) return 12 + 4 * glint.sin(p.y + p.x) end)
+  for _, model in ipairs { "phong", "blinn_phong" } do
+    compare("an even highlight by a number", 0.5, 1e-2, function(x)
+      return { diffuse = 0.1 * x, model = model, specular = { x, 0.3, x * x }, normalized = true, shininess = exponent }
+    end)
+  end
+  compare("an even highlight by a number and its pattern", 0.5, 1e-3, function(x)
+    return { specular = { x, 0, x * x }, normalized = true, shininess = glint.pattern(function(p) return 12 + 8 * x * glint.sin(p.x) end) }
+  end)
+  for _, transmission in ipairs { 0, 0.5 } do
+    compare("what ior reflects straight back", 1.5, 1e-2, function(x)
+      return { diffuse = 0.2, model = "cook_torrance", roughness = 0.4, ior = x, transmission = transmission }
+    end)
+  end
 end
 
 -- Objects that the script has dropped count until they are collected, at whatever time that is.
@@ -424,6 +438,11 @@ function tests.errors_are_told()
   raises("derivative 'x': material.bump: no derivative", render, patterned("bump", function(p) return x * p.x end), "d:x")
   raises("derivative 'x': material.transmission: light through what a pattern colours has no derivative by the pattern", render,
     patterned("transmission", function(p) return x * p.x end), "d:x")
+  for _, fields in ipairs { { normalized = true, specular = { none, 1, 1 } }, { specular = none } } do
+    fields.shininess = glint.pattern(function(p) return 9 + p.x end)
+    local shapely = scene_of(glint.point_light { position = { 2, 4, 3 } }, { material = glint.material(fields) })
+    raises("derivative 'none': material.specular: 0 has no derivative where", render, shapely, "d:none")
+  end
   local sky = scene_of(glint.point_light { position = { 2, 4, 3 } })
   sky.background = glint.pattern(function(d) return x * d.y end)
   raises("derivative 'x': background: the numbers of its program have no derivative", render, sky, "d:x")
