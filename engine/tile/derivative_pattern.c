@@ -96,7 +96,7 @@ static void run(const glint_tile *tile, const glint_tile_frame *frame, const gli
 static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field, const glint_pattern_lanes *entry)
 {
     bool any = false;
-    for (int c = 0; c < glint_field_channels(field); c++) {
+    for (int c = 0; c < plan->patterns->planes[field]; c++) {
         const float *plane = glint_plane_of(tile->at.planes, plan, field, c) + (size_t)entry->group * GLINT_GROUP;
         for (int i = 0; i < GLINT_GROUP; i++)
             any = any || ((entry->lanes >> i & 1) && !(plane[i] > 1e-17f && plane[i] < 0x1p99f)); // roughness is at least 1e-18
@@ -109,7 +109,7 @@ static bool is_bounded(const glint_tile *tile, const glint_plan *plan, int field
 static void put_slopes(const glint_tile *tile, const glint_plan *plan, size_t index, int field, bool one, bool bounded,
                        const glint_pattern_lanes *entry, uint32_t e)
 {
-    for (int c = 0; c < glint_field_channels(field); c++) {
+    for (int c = 0; c < plan->patterns->planes[field]; c++) {
         const double *value = tile->pattern->slopes[one ? 0 : c] + e * GLINT_GROUP;
         const double *slope = tile->pattern->slopes[one ? 3 : 3 + c] + e * GLINT_GROUP;
         double *to = painted_at(tile, plan, index, field, c) + (size_t)entry->group * GLINT_GROUP;
