@@ -218,6 +218,9 @@ void glintL_read_operand(lua_State *L, int index, const char *path, glintL_opera
         return;
     if (lua_istable(L, index))
         glintL_error(L, "%s: number, symbol or vector {x, y, z} of three of them expected, got another table", path);
+    if (glintL_to_dual(L, index)) // a pattern's function takes it
+        glintL_error(L, "%s: number or vector expected, got a number made of glint.variable; glint.value(x) is the number "
+                        "alone", path);
     if (lua_isnoneornil(L, index))
         glintL_error(L, "%s: number, symbol or vector expected, got %s: is a variable or a field not set?", path,
                      glintL_push_spelling(L, index));

@@ -158,11 +158,17 @@ static void warn_of_lens(glintL_run *run, const glint_plan *plan)
                                  "more, beside width, or give --samples 16");
 }
 
-static void warn_of_colormap(glintL_run *run, const glintL_render *render)
+static void warn_of_colormap(glintL_run *run, const glintL_work *work)
 {
-    if (render->colormap && !(render->file_passes >> GLINT_PASS_DEPTH & 1) && !render->derivative_count)
+    const glintL_render *render = &work->render;
+    if (!render->colormap)
+        return;
+    if (!(render->file_passes >> GLINT_PASS_DEPTH & 1) && !render->derivative_count)
         glintL_run_warn(run, "colormap: it shows the passes depth and d:NAME, and none of them is written; give --passes "
                              "depth, or passes = \"depth\"");
+    else if (work->file_count > 0 && glintL_name_is_linear(work->files[0].path))
+        glintL_run_warn(run, "colormap has no effect on .pfm, .npy and .exr, which have numbers; give -o a name in .png, or "
+                             "output = \"name.png\"");
 }
 
 glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error *error)
@@ -174,7 +180,7 @@ glint_status glintL_work_render(glintL_run *run, glintL_work *work, glint_error 
         run->reporter.rendering(run->reporter.context, run, true);
     warn_of_caps(run, work->plan);
     warn_of_lens(run, work->plan);
-    warn_of_colormap(run, &work->render);
+    warn_of_colormap(run, work);
     glint_status status = glint_render(run->renderer, work->plan, &image, &work->stats, error);
     if (run->reporter.rendering)
         run->reporter.rendering(run->reporter.context, run, false);

@@ -20,7 +20,9 @@ typedef struct entry {
     bool lacks_uv; ///< a face has it and a corner without coordinates
     char *map[MAP_COUNT]; ///< NULL: none
     glint_mesh_map place[MAP_COUNT]; ///< of each
-    double height; ///< -bm of the relief, world units; 0: the file does not say it
+    double height; ///< -bm of the relief, world units; 0: none that can be taken
+    char bm[GLINT_NAME_SIZE]; ///< what the file says for it; "": nothing
+    bool bm_last; ///< it stands after the picture's name
 } entry;
 
 typedef struct picture {
@@ -38,7 +40,7 @@ struct glint_mesh_library {
     size_t missing; ///< materials of faces that no file has
     char first_missing[GLINT_NAME_SIZE];
     size_t flat; ///< materials whose relief has no height
-    char first_flat[GLINT_NAME_SIZE];
+    entry first_flat; ///< its pictures are another's
     bool told; ///< a file could not be read, which was a warning
 };
 
@@ -193,7 +195,10 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, map_ki
 {
     glint_mesh_map *place = &to->place[kind];
     at = glint_skip_blanks(at);
-    to->height = kind == MAP_BUMP ? 0 : to->height;
+    if (kind == MAP_BUMP) {
+        to->height = 0;
+        to->bm[0] = 0;
+    }
     for (int words; (words = option_words(at)) > 0;) {
         const char *option = at;
         at = skip_option(text, at, words,
@@ -203,9 +208,14 @@ static glint_status read_map(const glint_mesh_text *text, const char *at, map_ki
                                                                              : NULL);
         if (glint_mesh_is_word(option, "-clamp"))
             place->clamp = strncmp(glint_skip_blanks(option + 6), "on", 2) == 0;
+        if (kind == MAP_BUMP && glint_mesh_is_word(option, "-bm")) {
+            copy_name(to->bm, glint_skip_blanks(option + 3));
+            to->bm[strcspn(to->bm, " \t")] = 0;
+        }
     }
     if (!*at)
         return glint_mesh_refuse(text, "the name of a picture", at);
+    to->bm_last = kind == MAP_BUMP ? strstr(at, " -bm ") != NULL : to->bm_last;
     free(to->map[kind]);
     to->map[kind] = glint_mesh_beside(text->path, at);
     return to->map[kind] ? GLINT_OK : glint_fail_nomem(text->error);
@@ -382,7 +392,7 @@ static void dissolve(entry *e)
 static bool has_height(glint_mesh_library *library, const entry *e)
 {
     if (e->height == 0 && library->flat++ == 0)
-        memcpy(library->first_flat, e->desc.name, sizeof library->first_flat);
+        library->first_flat = *e;
     return e->height != 0;
 }
 
@@ -491,10 +501,19 @@ static const char *spell_more(size_t count, char out[32])
 static void tell_flat(const glint_mesh_library *library, const glint_mesh_reader *reader)
 {
     char more[32];
-    if (library->flat)
+    const entry *e = &library->first_flat;
+    if (!library->flat)
+        return;
+    spell_more(library->flat, more);
+    if (e->bm[0])
         glint_mesh_warn(reader->desc, reader->text.path,
-                        "material '%s'%s: no relief: map_Bump has no -bm, which says how high it is, in world units",
-                        library->first_flat, spell_more(library->flat, more));
+                        "material '%s'%s: no relief: -bm of map_Bump: a height in world units other than 0 expected, "
+                        "got '%s'",
+                        e->desc.name, more, e->bm);
+    else
+        glint_mesh_warn(reader->desc, reader->text.path, "material '%s'%s: no relief: map_Bump has %s", e->desc.name, more,
+                        e->bm_last ? "its -bm after the picture's name; options come before it"
+                                   : "no -bm, which says how high it is, in world units");
 }
 
 /// Once, and not where a file that was not read is the reason.

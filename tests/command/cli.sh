@@ -353,6 +353,11 @@ paint "rde"'
     exits 0 "the script's, said by the file" reproduce plain_0001.png ten.lua
     exits 0 "a colour map, and no pass to show" ten.lua --size 20x12 -f 1 -o map.png --colormap viridis
     check "is told of" grep -q 'colormap: it shows the passes depth and d:NAME, and none of them is written' err
+    exits 0 "a colour map, and a file of numbers" ten.lua --size 20x12 -f 1,2 -o map.pfm --passes depth --colormap viridis
+    check "is told of once" test "$(grep -c 'colormap has no effect on .pfm, .npy and .exr' err)" -eq 1
+    exits 0 "no colour map, and a file of numbers" ten.lua --size 20x12 -f 1 -o map.pfm --passes depth
+    check "is told nothing" test "$(grep -c colormap err)" -eq 0
+    rm map_000?.*
     for map in none viridis magma; do
         exits 0 "depth in $map" ten.lua --size 20x12 -f 1 -o map.png --passes depth --colormap $map --json
         prints "is another file" '"status":"rendered"'

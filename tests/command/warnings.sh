@@ -286,6 +286,12 @@ mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nKd 1 0 0\nanything else\n'
 silent "materials that are there"
 mesh 'mtllib m.mtl\nusemtl b\n' 'newmtl a\nbump b.png\nnewmtl b\nmap_bump -bm 0.1 b.png\nmap_Bump -bm none b.png\n'
 warns "reliefs without a height" "m.obj: material 'a' and 1 more: no relief: map_Bump has no -bm, which says how high it is, in world units$"
+for height in x nan 1e400 0; do
+    mesh 'mtllib m.mtl\nusemtl a\n' "newmtl a\nmap_Bump -bm $height b.png\n"
+    warns "$height for a height" "m.obj: material 'a': no relief: -bm of map_Bump: a height in world units other than 0 expected, got '$height'$"
+done
+mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nmap_Bump b.png -bm 0.1\n'
+warns "a height after the picture" "m.obj: material 'a': no relief: map_Bump has its -bm after the picture's name; options come before it$"
 mesh 'mtllib m.mtl\nusemtl a\n' 'newmtl a\nbump -bm 0.1 b.png\n'
 warns "a relief without coordinates" "m.obj: material 'a' has no relief in place of its map_Bump: faces of it have no coordinates (vt)$"
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nmtllib m.mtl\nusemtl a\nf 1/1 2/2 3/3\n' >m.obj
