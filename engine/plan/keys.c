@@ -139,6 +139,16 @@ static glint_key cut_outs_key(const glint_plan *plan, glint_key key)
     return programs_key(plan, 1u << GLINT_FIELD_OPACITY, key);
 }
 
+/// All programs of a material; with them goes the ambient light, which is multiplied by what they give and not by its table.
+static glint_key own_programs_key(const glint_plan *plan, uint32_t i, glint_key key)
+{
+    if (!plan->patterns)
+        return key;
+    if (plan->patterns->of[i].any)
+        ADD(key, plan->ambient);
+    return glint_pattern_key(plan->patterns, i, UINT32_MAX, key);
+}
+
 static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     const glint_shade_material *m = &plan->materials[i];
@@ -148,7 +158,7 @@ static glint_key material_key(const glint_plan *plan, uint32_t i, glint_key key)
     ADD(key, m->ambient);
     ADD(key, m->grazing);
     ADD(key, exponent);
-    return plan->patterns ? glint_pattern_key(plan->patterns, i, UINT32_MAX, key) : key;
+    return own_programs_key(plan, i, key);
 }
 
 /// What of a material is read where it has no highlight.
@@ -156,7 +166,7 @@ static glint_key matte_key(const glint_plan *plan, uint32_t i, glint_key key)
 {
     ADD(key, plan->materials[i].diffuse);
     ADD(key, plan->materials[i].ambient);
-    return plan->patterns ? glint_pattern_key(plan->patterns, i, UINT32_MAX, key) : key;
+    return own_programs_key(plan, i, key);
 }
 
 static glint_key transparent_shadow_key(const glint_bounce_material *m, glint_key key)

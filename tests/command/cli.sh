@@ -561,6 +561,14 @@ whole() {
     check "--force renders" grep -q '"status":"rendered"' out
     run ten.lua -f 1 --json --transfer linear
     check "another transfer is rendered" grep -q '"status":"rendered"' out
+    echo 'local glint = require "glint"
+    local P = glint.params { light = { 0.1 } }
+    local paint = glint.material { diffuse = glint.pattern(function(p) return glint.fract(p.x) end) }
+    return glint.scene { camera = glint.camera { eye = { 0, 2, 9 }, at = { 0, 0, 0 } }, ambient = P.light,
+      glint.sphere { center = { 0, 0, 0 }, radius = 1, material = paint } }' >painted.lua
+    run painted.lua -o painted.png
+    run painted.lua -o painted.png --json --set light=0.8
+    check "another ambient light on a pattern is rendered" grep -q '"status":"rendered"' out
     run ten.lua -f 1 --passes depth
     run ten.lua -f 1 --passes depth --json
     check "passes are kept" grep -q '"status":"kept"' out

@@ -240,6 +240,28 @@ function tests.a_bump_of_a_slope_tilts_the_normal()
   tally.near(lit({ diffuse = 0.8, bump = glint.pattern(function() return 3 end) }, -l), 0.8 * l.y, 1e-6, "a height without slope")
 end
 
+-- What ambient light leaves of a pattern is in no table of numbers: frames that keep the rest must not keep that.
+function tests.ambient_light_changes_what_patterns_show()
+  local wave = glint.pattern(function(p) return 0.25 + glint.fract(p.x) / 2 end)
+  local shader = glint.shader(function(s) return s.kd end)
+  local kinds = { { diffuse = wave }, { diffuse = 0.5, ambient = wave }, { diffuse = wave, ambient = 0.3 }, { diffuse = wave, model = shader } }
+  for i, fields in ipairs(kinds) do
+    for _, occluded in ipairs { false, true } do
+      local scene = glint.scene { camera = glint.camera { eye = { 0, 2, 9 }, at = { 0, 0.8, 0 } }, ambient = 0.1,
+        glint.sphere { center = { 0, 1, 0 }, radius = 2, material = glint.material(fields) } }
+      scene.ambient_occlusion = occluded and glint.ambient_occlusion { samples = 1 } or nil
+      local first
+      for frame = 1, 5 do
+        scene.ambient = frame < 4 and 0.1 or 0.4
+        local here = scene:render { width = 16, height = 12 }:pixel(8, 6)
+        first = first or here
+        tally.near(here, (frame < 4 and 1 or 4) * first, 1e-6, ("kind %d, frame %d"):format(i, frame))
+      end
+      check(first > 0)
+    end
+  end
+end
+
 function tests.textures_are_looked_up()
   local name = os.tmpname() .. ".png"
   local source = glint.scene { camera = glint.camera { eye = { 0, 0, 5 }, at = { 0, 0, 0 } }, background = { 0.25, 0.5, 1 },
