@@ -152,7 +152,7 @@ static inline void R(find_first)(const glint_cast_args *args, const R(ray_group)
         R(load_float_rays)(rays, i, &lanes);
         const vi leaving = args->leaving ? i_load(args->leaving + at + i) : i_set(GLINT_MISS);
         for (int n = 0; n < count; n++) {
-            vf own;
+            vf own = f_set(HUGE_VALF);
             if (list[n] == common || !fm_bits(R(way_to_ball)(&lanes, &args->geometry->prims[list[n]], &own)))
                 continue;
             own = f_select(i_eq(leaving, i_set(list[n])), f_set(HUGE_VALF), own);

@@ -70,7 +70,7 @@ static inline void resolve_whole(const samples_frame *frame, const glint_shade_m
     for (int c = 0; c < 3; c++)
         ambient[c] = mean_of_equal(frame, material->ambient[c]);
     for (int i = 0; i < GLINT_GROUP; i += VF) {
-        vf diffuse[3], highlight[3];
+        vf diffuse[3], highlight[3] = { f_set(0), f_set(0), f_set(0) };
         mean_shares(frame, &factors, material, 0, i, diffuse);
         if (specular && factors.shiny)
             mean_shares(frame, &factors, material, 1, i, highlight);
