@@ -1,5 +1,4 @@
 // Pictures of glint watch: as PNG bytes, and made small for a terminal.
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,19 +42,6 @@ void watch_picture_release(watch_picture *picture)
 
 // ---- Small pictures ----
 
-// sRGB transfer function, IEC 61966-2-1:1999. For a terminal only: files have the engine's, the same on every machine.
-static unsigned char code_of(double linear)
-{
-    double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-    return (unsigned char)(v * 255 + 0.5);
-}
-
-static double light_of(int code)
-{
-    double v = code / 255.0;
-    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
-}
-
 // The pixels from *from up to *to belong to place `i` of `places`; at least one.
 static void span(int i, int places, int pixels, int *from, int *to)
 {
@@ -88,7 +74,8 @@ static void shrink_row(shrinking *s, int y)
         }
     }
     for (int i = 0; i < 3 * width; i++)
-        s->to->rgb[(size_t)y * (size_t)width * 3 + (size_t)i] = code_of(s->sums[i] / (y1 - y0));
+        s->to->rgb[(size_t)y * (size_t)width * 3 + (size_t)i] =
+            (unsigned char)(glint_srgb_encode(s->sums[i] / (y1 - y0)) * 255 + 0.5);
 }
 
 bool watch_small_create(const watch_picture *from, int width, int height, watch_small *out)
@@ -103,7 +90,7 @@ bool watch_small_create(const watch_picture *from, int width, int height, watch_
         out->rgb && s.sums && s.row && glint_picture_from_bytes(from->bytes, from->size, &picture, &error) == GLINT_OK;
     s.from = picture;
     for (int code = 0; code < 256; code++)
-        s.light[code] = light_of(code);
+        s.light[code] = glint_srgb_decode(code / 255.0);
     for (int y = 0; y < height && good; y++)
         shrink_row(&s, y);
     glint_picture_destroy(picture);
