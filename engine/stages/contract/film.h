@@ -128,8 +128,9 @@ typedef struct glint_shade_args {
 // What a light adds to a term is float; terms are added up in double:
 // background where active and not hit, ambient where hit, then each light in order. The arithmetic: ref/shade.h; GGX and Beckmann
 // with Smith's masking, whose Beckmann form is that of B. Walter et al., EGSR 2007. The samples of joined lights are added up
-// first, in order, in float from 0. Of materials of GLINT_PLANE_SHADED lights are not read. Products of colours, and what planes say, are made in double; a highlight is 0 below
-// 2^-40. Where a sum is NULL the totals start at 0 and each is rounded to float: film, and
+// first, in order, in float from 0. Products of colours, and what planes say, are made in double; a highlight is 0 below
+// 2^-40. Of materials of GLINT_PLANE_SHADED no light is read. Where a sum is NULL the totals start at 0 and each is rounded to
+// float: film, and
 // beauty = ((background + ambient) + diffuse) + specular in float.
 
 // ---- resolve: the mean of several samples ----
