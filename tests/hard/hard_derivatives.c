@@ -1,13 +1,11 @@
 /// Derivatives of pictures against central differences of the formulas in 113 bits: every field that has one, of every model and
 /// kind of light.
-#include "tests/hard/oracle/drive.h"
-#include "tests/hard/oracle/quad.h"
+#include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
 
 #define WIDTH 48
 #define HEIGHT 36
-#define STEP 1e-12 ///< of the differences, which are off by its square
 #define PI_Q ((quad)0x1.921fb54442d18p+1 + (quad)0x1.1a62633145c07p-53) ///< to 106 bits
 
 /// How sphere and floor are described: as they are, as parts of combined solids, under a transform.
@@ -347,27 +345,6 @@ static bool is_read(const world *w, const number *n)
     return strcmp(n->field, "direction") != 0 || directional || spot;
 }
 
-static glint_image *render(const glint_scene *scene, const glint_derivative *derivative)
-{
-    glint_render_desc desc = glint_render_desc_default();
-    glint_renderer_desc r = glint_renderer_desc_default();
-    glint_renderer *renderer;
-    glint_plan *plan;
-    glint_image *image;
-    glint_error error;
-    desc.width = WIDTH;
-    desc.height = HEIGHT;
-    desc.derivatives = derivative;
-    desc.derivative_count = 1;
-    r.threads = 1;
-    must(glint_renderer_create(&r, &renderer, &error), &error);
-    must(glint_plan_create(scene, &desc, &plan, &error), &error);
-    must(glint_render(renderer, plan, &image, NULL, &error), &error);
-    glint_plan_destroy(plan);
-    glint_renderer_destroy(renderer);
-    return image;
-}
-
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
 /// The picture's derivative along `slope`, by the formulas.
@@ -387,13 +364,14 @@ static void true_slopes(const world *w, const number *n, const double slope[3], 
     }
 }
 
-/// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
 static void compare(const world *w, const number *n, const glint_scene *scene, glint_material *material,
                     glint_light *light, glint_shape *const shapes[2])
 {
     static double want[WIDTH * HEIGHT][3];
-    double slope[3] = { 0 }, most = 0, worst = 0;
-    glint_error error;
+    double slope[3] = { 0 }, most;
+    glint_render_desc desc = glint_render_desc_default();
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
     for (int c = 0; c < n->components; c++)
         slope[c] = uniform(-1, 1);
     glint_slope s = { .field = n->field, .slope = { slope[0], slope[1], slope[2] } };
@@ -406,28 +384,14 @@ static void compare(const world *w, const number *n, const glint_scene *scene, g
     else if (s.shape && w->dress == TURNED)
         s.slope[0] /= 2;
     const glint_derivative derivative = { "number", &s, 1 };
-    glint_image *image = render(scene, &derivative);
+    glint_image *image = slope_picture(scene, desc, &derivative);
     true_slopes(w, n, slope, want);
-    for (int i = 0; i < WIDTH * HEIGHT; i++)
-        for (int c = 0; c < 3; c++)
-            most = fmax(most, fabs(want[i][c]));
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        float got[3];
-        must(glint_image_pixel(image, GLINT_PASS_DERIVATIVE, i % WIDTH, i / WIDTH, got, &error), &error);
-        for (int c = 0; c < 3; c++)
-            worst = fmax(worst, fabs(got[c] - want[i][c]) / (0x1p-23 * fabs(want[i][c]) + 0x1p-40 * most));
-    }
+    const double worst = slope_distance(image, WIDTH, HEIGHT, want, &most);
     hard_check(most > 0 && worst <= 1, "%s.%s, model %d, light %d, dress %d: %.2f of the bound, steepest pixel %g", n->object,
                n->field, (int)w->model, (int)w->kind, (int)w->dress, worst, most);
     if (hard_table)
         printf("| %s.%s | %d | %d | %.3g | %.2f |\n", n->object, n->field, (int)w->model, (int)w->kind, most, worst);
     glint_image_release(image);
-}
-
-static void fill(quad out[3], double low, double high)
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = uniform(low, high);
 }
 
 static world random_world(int turn)

@@ -1,14 +1,12 @@
 /// Derivatives of what mirrors and glass show against central differences of the formulas in 113 bits: by what surfaces send on, by
 /// what moves, and by what rays find.
-#include "tests/hard/oracle/drive.h"
-#include "tests/hard/oracle/quad.h"
+#include "tests/hard/oracle/slopes.h"
 
 #include <string.h>
 
 #define WIDTH 40
 #define HEIGHT 30
 #define DEPTH 3
-#define STEP 1e-12 ///< of the differences, which are off by its square
 #define NEAR ((quad)1e-18) ///< a ray that starts on a surface is no nearer to another one
 
 /// What the first ball is made of.
@@ -298,28 +296,6 @@ static bool is_read(const world *w, const number *n)
     return !(moves && absorbed_shadows);
 }
 
-static glint_image *render(const glint_scene *scene, const glint_derivative *derivative)
-{
-    glint_render_desc desc = glint_render_desc_default();
-    glint_renderer_desc r = glint_renderer_desc_default();
-    glint_renderer *renderer;
-    glint_plan *plan;
-    glint_image *image;
-    glint_error error;
-    desc.width = WIDTH;
-    desc.height = HEIGHT;
-    desc.max_depth = DEPTH;
-    desc.derivatives = derivative;
-    desc.derivative_count = 1;
-    r.threads = 1;
-    must(glint_renderer_create(&r, &renderer, &error), &error);
-    must(glint_plan_create(scene, &desc, &plan, &error), &error);
-    must(glint_render(renderer, plan, &image, NULL, &error), &error);
-    glint_plan_destroy(plan);
-    glint_renderer_destroy(renderer);
-    return image;
-}
-
 // ---- The comparison -----------------------------------------------------------------------------------------------
 
 /// The picture's derivative along `slope`, by the formulas.
@@ -336,12 +312,14 @@ static void true_slopes(const world *w, const number *n, const double slope[3], 
                                  (2 * (quad)STEP));
 }
 
-/// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
 static void compare(const world *w, const number *n, const made *m)
 {
     static double want[WIDTH * HEIGHT][3];
-    double slope[3] = { 0 }, most = 0, worst = 0;
-    glint_error error;
+    double slope[3] = { 0 }, most;
+    glint_render_desc desc = glint_render_desc_default();
+    desc.width = WIDTH;
+    desc.height = HEIGHT;
+    desc.max_depth = DEPTH;
     for (int c = 0; c < n->components; c++)
         slope[c] = uniform(-1, 1);
     glint_slope s = { .field = n->field, .slope = { slope[0], slope[1], slope[2] } };
@@ -353,28 +331,14 @@ static void compare(const world *w, const number *n, const made *m)
                                             : NULL;
     s.camera = !strcmp(n->object, "camera") ? glint_scene_get(m->scene)->camera : NULL;
     const glint_derivative derivative = { "number", &s, 1 };
-    glint_image *image = render(m->scene, &derivative);
+    glint_image *image = slope_picture(m->scene, desc, &derivative);
     true_slopes(w, n, slope, want);
-    for (int i = 0; i < WIDTH * HEIGHT; i++)
-        for (int c = 0; c < 3; c++)
-            most = fmax(most, fabs(want[i][c]));
-    for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        float got[3];
-        must(glint_image_pixel(image, GLINT_PASS_DERIVATIVE, i % WIDTH, i / WIDTH, got, &error), &error);
-        for (int c = 0; c < 3; c++)
-            worst = fmax(worst, fabs(got[c] - want[i][c]) / (0x1p-23 * fabs(want[i][c]) + 0x1p-40 * most));
-    }
+    const double worst = slope_distance(image, WIDTH, HEIGHT, want, &most);
     hard_check(most > 0 && worst <= 1, "%s %s, stuff %d, shadows %d: %.2f of the bound, steepest pixel %g", n->object,
                n->field, (int)w->stuff, (int)w->shadows, worst, most);
     if (hard_table)
         printf("| %s %s | %d | %d | %.3g | %.2f |\n", n->object, n->field, (int)w->stuff, (int)w->shadows, most, worst);
     glint_image_release(image);
-}
-
-static void fill(quad out[3], double low, double high)
-{
-    for (int c = 0; c < 3; c++)
-        out[c] = uniform(low, high);
 }
 
 static world random_world(int turn)

@@ -1,0 +1,54 @@
+/// What the tests of derivatives have in common: a picture with one, and how far it is from the truth.
+#ifndef GLINT_HARD_SLOPES_H
+#define GLINT_HARD_SLOPES_H
+
+#include "tests/hard/oracle/drive.h"
+#include "tests/hard/oracle/quad.h"
+
+#define STEP 1e-12 ///< of central differences, which are off by its square
+
+static inline void fill(quad out[3], double low, double high)
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = uniform(low, high);
+}
+
+/// `desc`: the size, and what else differs from the defaults. The caller releases the image.
+static inline glint_image *slope_picture(const glint_scene *scene, glint_render_desc desc, const glint_derivative *derivative)
+{
+    glint_renderer_desc r = glint_renderer_desc_default();
+    glint_renderer *renderer;
+    glint_plan *plan;
+    glint_image *image;
+    glint_error error;
+    desc.derivatives = derivative;
+    desc.derivative_count = 1;
+    r.threads = 1;
+    must(glint_renderer_create(&r, &renderer, &error), &error);
+    must(glint_plan_create(scene, &desc, &plan, &error), &error);
+    must(glint_render(renderer, plan, &image, NULL, &error), &error);
+    glint_plan_destroy(plan);
+    glint_renderer_destroy(renderer);
+    return image;
+}
+
+/// The largest distance from `want`, of width * height pixels, in parts of what is promised. *most: the steepest pixel.
+/// Pixels are rounded to float; before, what is left of sums in double is within 2^-40 of the steepest pixel.
+static inline double slope_distance(const glint_image *image, int width, int height, double (*want)[3], double *most)
+{
+    double worst = 0;
+    glint_error error;
+    *most = 0;
+    for (int i = 0; i < width * height; i++)
+        for (int c = 0; c < 3; c++)
+            *most = fmax(*most, fabs(want[i][c]));
+    for (int i = 0; i < width * height; i++) {
+        float got[3];
+        must(glint_image_pixel(image, GLINT_PASS_DERIVATIVE, i % width, i / width, got, &error), &error);
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, fabs(got[c] - want[i][c]) / (0x1p-23 * fabs(want[i][c]) + 0x1p-40 * *most));
+    }
+    return worst;
+}
+
+#endif
