@@ -1,5 +1,6 @@
 #include "engine/frame/grids.h"
 
+#include <math.h>
 #include <string.h>
 
 #define FEWEST 4096 ///< primitives; among fewer the walk of the index is as quick
@@ -64,10 +65,43 @@ static glint_status add(glint_grids *grids, const glint_plan_light *light, const
     return glint_light_grid_create(table, light->directional, light->position, &grids->of[i].grid, error);
 }
 
-glint_status glint_grids_begin(glint_grids *grids, const glint_plan *plan, const glint_geometry_table *table,
-                               double samples, int threads, glint_error *error)
+/// Whether a tile is run with shadows that are not there from an earlier frame.
+static bool lacks_shadows(const glint_tile_frame *frame, size_t index)
 {
-    const bool at_once = samples >= SAMPLES_AT_ONCE * table->prim_count * threads;
+    const glint_plan *plan = frame->plan;
+    const glint_reuse *reuse = frame->reuse;
+    const glint_cached_tile *tile = &reuse->tiles[index];
+    const glint_key film = glint_reuse_film_key(reuse, tile, plan), none = { 0 };
+    if (frame->last && frame->last->film && !glint_key_equal(film, none) &&
+        glint_key_equal(film, frame->last->film[index].key))
+        return false;
+    if (glint_key_equal(tile->seen, plan->keys[GLINT_STAGE_SURFACE]) && tile->shown_count == 0)
+        return false;
+    for (uint32_t i = 0; i < reuse->light_count; i++)
+        if (plan->lights[i].shadows && !glint_key_equal(tile->lights[i].occlude, plan->lights[i].key))
+            return true;
+    return plan->light_count > reuse->light_count;
+}
+
+/// How many of the frame's samples lights have to be looked for from.
+static double count_shadowed(const glint_tile_frame *frame, const glint_extent *extent)
+{
+    const glint_plan *plan = frame->plan;
+    const double all = (double)extent->width * extent->height * plan->desc.samples;
+    size_t lacking = 0;
+    if (!frame->reuse->tile_count || plan->runs[GLINT_STAGE_BOUNCE] || plan->runs[GLINT_STAGE_INDIRECT])
+        return all;
+    for (size_t i = 0; i < frame->reuse->tile_count; i++)
+        lacking += lacks_shadows(frame, i);
+    return fmin(all, (double)lacking * GLINT_TILE_SAMPLES * plan->desc.samples);
+}
+
+/// Notes or makes those that pay.
+static glint_status find(glint_grids *grids, const glint_tile_frame *frame, const glint_extent *extent, int threads,
+                         glint_error *error)
+{
+    const glint_plan *plan = frame->plan;
+    const glint_geometry_table *table = &frame->geometry;
     glint_status status = GLINT_OK;
     if (!glint_key_equal(grids->where, plan->where) || grids->nodes != table->nodes ||
         grids->plain != plan->geometry->index->plain)
@@ -76,11 +110,24 @@ glint_status glint_grids_begin(glint_grids *grids, const glint_plan *plan, const
     grids->nodes = table->nodes;
     grids->plain = plan->geometry->index->plain;
     keep_used(grids, plan);
-    if (!table->nodes || table->prim_count < FEWEST || plan->desc.precision == GLINT_FLOAT ||
-        samples < SAMPLES_A_PRIMITIVE * table->prim_count)
+    if (!table->nodes || table->prim_count < FEWEST || plan->desc.precision == GLINT_FLOAT)
         return GLINT_OK;
+    const double samples = count_shadowed(frame, extent);
+    if (samples < SAMPLES_A_PRIMITIVE * table->prim_count)
+        return GLINT_OK;
+    const bool at_once = samples >= SAMPLES_AT_ONCE * table->prim_count * threads;
     for (uint32_t k = 0; k < plan->light_count && grids->count < GLINT_TILE_GRIDS && !status; k++)
         if (has_grid(&plan->lights[k]))
             status = add(grids, &plan->lights[k], table, at_once, error);
+    return status;
+}
+
+glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
+                               glint_error *error)
+{
+    const glint_status status = frame->base ? GLINT_OK : find(grids, frame, extent, threads, error);
+    for (uint32_t i = 0; i < grids->count; i++)
+        frame->grids[i] = grids->of[i].grid;
+    frame->grid_count = grids->count;
     return status;
 }

@@ -19,10 +19,10 @@ typedef struct glint_grids {
     } of[GLINT_TILE_GRIDS];
 } glint_grids;
 
-/// Makes the grids of a plan's lights without samples that throw shadows, where a frame of so many samples or the next ones pay
-/// for them, and drops others. Zeroed memory is a beginning.
-glint_status glint_grids_begin(glint_grids *grids, const glint_plan *plan, const glint_geometry_table *table,
-                               double samples, int threads, glint_error *error);
+/// Makes the grids of a frame's lights without samples that throw shadows, where the tiles that it runs, or those of the next frames,
+/// pay for them, drops others, and names them in `frame`. A refined frame has those of its base. Zeroed memory is a beginning.
+glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
+                               glint_error *error);
 void glint_grids_clear(glint_grids *grids);
 
 #endif

@@ -333,13 +333,8 @@ static glint_status run(glint_renderer *renderer, const glint_plan *plan, glint_
     glint_status status = prepare(renderer, plan, &f.shared, tiles, error);
     if (image->film && (base || !renderer->reuse.tile_count)) // what is put there is not signed
         memset(image->film, 0, tiles * sizeof *image->film);
-    if (!status && !base) // which made them, for the same lights
-        status = glint_grids_begin(renderer->grids, plan, &f.shared.geometry,
-                                   (double)f.extent.width * f.extent.height * plan->desc.samples,
-                                   glint_pool_threads(renderer->pool), error);
-    for (uint32_t i = 0; i < renderer->grids->count; i++)
-        f.shared.grids[i] = renderer->grids->of[i].grid;
-    f.shared.grid_count = renderer->grids->count;
+    if (!status)
+        status = glint_grids_begin(renderer->grids, &f.shared, &f.extent, glint_pool_threads(renderer->pool), error);
     if (!status)
         status = glint_shading_points_begin(&renderer->shading_points, plan, &renderer->reuse, error);
     if (status)

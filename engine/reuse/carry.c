@@ -2,6 +2,7 @@
 /// shows, before or after, has the hits it had, and a light whose way to the tile's points none of them crosses reaches what
 /// it reached. Such results are given the new plan's keys before the frame begins.
 #include "engine/base/vec.h"
+#include "engine/reuse/between.h"
 #include "engine/reuse/reuse.h"
 
 #include <math.h>
@@ -13,18 +14,11 @@
 #define CARRY_CHANGES 64 ///< a frame that has changed more keeps nothing
 #define CARRY_PAUSE_MAX 16 ///< frames
 
-/// Room around every ball: far above all rounding of the kernels, of these tests and of the balls themselves.
-static double loosened(double radius, double distance) { return radius * (1 + 1e-6) + 1e-6 * distance; }
-
-typedef struct ball {
-    double center[3], radius;
-} ball;
-
 typedef struct carry {
     glint_reuse *reuse;
     const glint_plan *plan;
     const glint_plan *before; ///< the same plan with the places of the last frame: its keys
-    ball balls[2 * CARRY_CHANGES]; ///< around all that has changed, as it was and as it is
+    glint_ball balls[2 * CARRY_CHANGES]; ///< around all that has changed, as it was and as it is
     uint32_t ball_count;
     const uint32_t *moved_to; ///< the place of each primitive of the last frame; NULL: all are where they were
     glint_image *const *images;
@@ -67,7 +61,7 @@ static bool add_ball(carry *c, const glint_cached_place *place)
         return true;
     if (!(place->radius < HUGE_VAL) || c->ball_count == 2 * CARRY_CHANGES)
         return false;
-    ball *b = &c->balls[c->ball_count++];
+    glint_ball *b = &c->balls[c->ball_count++];
     vec_copy(b->center, place->center);
     b->radius = place->radius;
     return true;
@@ -84,103 +78,6 @@ static bool find_changes(carry *c, const glint_cached_place *was, const glint_ca
             return false;
     }
     return true;
-}
-
-// ---- What it may have touched ----
-
-/// The planes around a tile's rays: inwards[k] . (place - eye) >= -offset[k] inside; length[k]: of inwards[k].
-typedef struct sides {
-    double inwards[4][3], length[4], offset[4];
-} sides;
-
-/// A pyramid, or with parallel rays a bar.
-static void find_sides(const carry *c, uint32_t column, uint32_t row, sides *out)
-{
-    const glint_plan_camera *camera = &c->plan->camera;
-    const double width = c->plan->desc.width, height = c->plan->desc.height;
-    const double x[2] = { 2.0 * column * GLINT_TILE_WIDTH - width,
-                          2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - width };
-    const double y[2] = { height - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height),
-                          height - 2.0 * row * GLINT_TILE_HEIGHT };
-    for (int side = 0; side < 4; side++) {
-        const double *across = side < 2 ? camera->right : camera->up, *along = side < 2 ? camera->up : camera->right;
-        const double at = side < 2 ? x[side] : y[side - 2];
-        double edge[3], normal[3];
-        for (int k = 0; k < 3; k++)
-            edge[k] = camera->forward[k] + (camera->orthographic ? 0 : at * across[k]);
-        vec_cross(normal, edge, along);
-        const double sign = (vec_dot(normal, across) < 0) == (side % 2 == 0) ? -1 : 1;
-        for (int k = 0; k < 3; k++)
-            out->inwards[side][k] = sign * normal[k];
-        out->length[side] = sqrt(vec_dot(normal, normal));
-        out->offset[side] = camera->orthographic ? -at * sign * vec_dot(normal, across) : 0;
-    }
-}
-
-/// How far beside the pinhole's the rays of a lens may be where they pass a ball, whose middle is `along` the view.
-static double beside(const glint_plan *plan, double along, double radius)
-{
-    const glint_plan_camera *camera = &plan->camera;
-    if (!plan->lens)
-        return 0;
-    const double near = fabs(1 - (along - radius) / camera->focus), far = fabs(1 - (along + radius) / camera->focus);
-    return camera->aperture * (fmax(near, far) * (1 + 1e-9) + 1e-9);
-}
-
-/// Whether a change may show in a tile: one that is not for certain outside its rays.
-static bool shows(const carry *c, uint32_t column, uint32_t row)
-{
-    const glint_plan_camera *camera = &c->plan->camera;
-    sides s;
-    find_sides(c, column, row, &s);
-    for (uint32_t i = 0; i < c->ball_count; i++) {
-        double way[3];
-        vec_sub(way, c->balls[i].center, camera->eye);
-        const double own = loosened(c->balls[i].radius, sqrt(vec_dot(way, way)));
-        const double radius = own + beside(c->plan, vec_dot(way, camera->forward), own);
-        bool outside = false;
-        for (int side = 0; side < 4; side++)
-            outside = outside || vec_dot(s.inwards[side], way) + s.offset[side] < -radius * s.length[side];
-        if (!outside)
-            return true;
-    }
-    return false;
-}
-
-/// A ball around all that the light shines from; directional: *to is the way there.
-static double light_ball(const glint_plan_light *light, double to[3])
-{
-    const glint_light_sample *light_sample = light->cap ? light->cap : light->light_samples;
-    vec_copy(to, light_sample ? light_sample->center : light->position);
-    return light_sample ? light_sample->radius : 0;
-}
-
-/// Whether a change may lie between a light and what a tile shows: nearer to the line between their middles than all three
-/// are wide.
-static bool shades(const carry *c, const glint_plan_light *light, const glint_point_box *box)
-{
-    double from[3], half[3], to[3], line[3];
-    for (int k = 0; k < 3; k++) {
-        from[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
-        half[k] = 0.5 * box->upper[k] - 0.5 * box->lower[k];
-    }
-    const double wide = fmax(light_ball(light, to), sqrt(vec_dot(half, half)));
-    vec_copy(line, to);
-    if (!light->directional)
-        vec_sub(line, to, from);
-    const double length2 = vec_dot(line, line);
-    for (uint32_t i = 0; i < c->ball_count; i++) {
-        double way[3], across[3];
-        vec_sub(way, c->balls[i].center, from);
-        double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
-        along = light->directional ? along : fmin(along, 1);
-        for (int k = 0; k < 3; k++)
-            across[k] = way[k] - along * line[k];
-        const double far = sqrt(vec_dot(way, way)) + sqrt(length2) + sqrt(vec_dot(from, from));
-        if (!(sqrt(vec_dot(across, across)) > loosened(c->balls[i].radius + wide, far)))
-            return true;
-    }
-    return false;
 }
 
 // ---- New keys ----
@@ -215,7 +112,7 @@ static void carry_hits(const carry *c, glint_cached_tile *tile)
 }
 
 /// Returns whether all lights reach what they reached.
-static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed)
+static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed, uint32_t column, uint32_t row)
 {
     bool all = true;
     for (uint32_t i = 0; i < c->reuse->light_count; i++) {
@@ -223,7 +120,8 @@ static bool carry_lights(const carry *c, glint_cached_tile *tile, bool boxed)
         glint_cached_light *light = &tile->lights[i];
         const bool ordered =
             is->cap && c->moved_to; // shares are multiplied in the order of the primitives, and rounded
-        const bool open = !is->shadows || (boxed && !ordered && !shades(c, is, &tile->box));
+        const bool clear = boxed && !ordered && !glint_may_shade(c->plan, is, &tile->box, c->balls, c->ball_count, column, row);
+        const bool open = !is->shadows || clear;
         renew(&light->light, was->key, is->key);
         if (open) {
             renew(&light->occlude, was->key, is->key);
@@ -239,12 +137,13 @@ static void carry_tile(const carry *c, size_t index, uint32_t column, uint32_t r
     glint_cached_tile *tile = &c->reuse->tiles[index];
     const glint_key surface = c->before->keys[GLINT_STAGE_SURFACE];
     const bool seen = glint_key_equal(tile->seen, surface), boxed = glint_key_equal(tile->boxed, surface);
-    if ((!seen && !glint_key_equal(tile->cast, c->before->keys[GLINT_STAGE_CAST])) || shows(c, column, row))
+    if ((!seen && !glint_key_equal(tile->cast, c->before->keys[GLINT_STAGE_CAST])) ||
+        glint_may_show(c->plan, c->balls, c->ball_count, column, row))
         return;
     const glint_key film = glint_reuse_film_key(c->reuse, tile, c->before);
     const bool more = tile->shown_count > 0 && glint_reuse_shows_more(tile, c->plan);
     carry_hits(c, tile);
-    const bool lit = carry_lights(c, tile, boxed);
+    const bool lit = carry_lights(c, tile, boxed, column, row);
     if (!seen || more || (!lit && tile->shown_count > 0))
         return;
     const glint_key now = glint_reuse_film_key(c->reuse, tile, c->plan), none = { 0 };

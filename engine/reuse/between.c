@@ -1,0 +1,242 @@
+#include "engine/reuse/between.h"
+#include "engine/base/vec.h"
+
+#include <math.h>
+
+/// Room around every ball: far above all rounding.
+static double loosened(double radius, double distance) { return radius * (1 + 1e-6) + 1e-6 * distance; }
+
+static double length_of(const double v[3]) { return sqrt(vec_dot(v, v)); }
+
+/// The sides of a tile in pixels' halves from the picture's middle, to the right and up.
+static void find_edges(const glint_plan *plan, uint32_t column, uint32_t row, double x[2], double y[2])
+{
+    const double width = plan->desc.width, height = plan->desc.height;
+    x[0] = 2.0 * column * GLINT_TILE_WIDTH - width;
+    x[1] = 2.0 * fmin((column + 1.0) * GLINT_TILE_WIDTH, width) - width;
+    y[0] = height - 2 * fmin((row + 1.0) * GLINT_TILE_HEIGHT, height);
+    y[1] = height - 2.0 * row * GLINT_TILE_HEIGHT;
+}
+
+// ---- What a tile shows ----
+
+/// The planes around a tile's rays: inwards[k] . (place - eye) >= -offset[k] inside; length[k]: of inwards[k].
+typedef struct sides {
+    double inwards[4][3], length[4], offset[4];
+} sides;
+
+/// A pyramid, or with parallel rays a bar.
+static void find_sides(const glint_plan *plan, uint32_t column, uint32_t row, sides *out)
+{
+    const glint_plan_camera *camera = &plan->camera;
+    double x[2], y[2];
+    find_edges(plan, column, row, x, y);
+    for (int side = 0; side < 4; side++) {
+        const double *across = side < 2 ? camera->right : camera->up, *along = side < 2 ? camera->up : camera->right;
+        const double at = side < 2 ? x[side] : y[side - 2];
+        double edge[3], normal[3];
+        for (int k = 0; k < 3; k++)
+            edge[k] = camera->forward[k] + (camera->orthographic ? 0 : at * across[k]);
+        vec_cross(normal, edge, along);
+        const double sign = (vec_dot(normal, across) < 0) == (side % 2 == 0) ? -1 : 1;
+        for (int k = 0; k < 3; k++)
+            out->inwards[side][k] = sign * normal[k];
+        out->length[side] = length_of(normal);
+        out->offset[side] = camera->orthographic ? -at * sign * vec_dot(normal, across) : 0;
+    }
+}
+
+/// How far beside the pinhole's the rays of a lens may be where they pass a ball, whose middle is `along` the view.
+static double beside(const glint_plan *plan, double along, double radius)
+{
+    const glint_plan_camera *camera = &plan->camera;
+    if (!plan->lens)
+        return 0;
+    const double near = fabs(1 - (along - radius) / camera->focus), far = fabs(1 - (along + radius) / camera->focus);
+    return camera->aperture * (fmax(near, far) * (1 + 1e-9) + 1e-9);
+}
+
+bool glint_may_show(const glint_plan *plan, const glint_ball *balls, uint32_t count, uint32_t column, uint32_t row)
+{
+    const glint_plan_camera *camera = &plan->camera;
+    sides s;
+    find_sides(plan, column, row, &s);
+    for (uint32_t i = 0; i < count; i++) {
+        double way[3];
+        vec_sub(way, balls[i].center, camera->eye);
+        const double own = loosened(balls[i].radius, length_of(way));
+        const double radius = own + beside(plan, vec_dot(way, camera->forward), own);
+        bool outside = false;
+        for (int side = 0; side < 4; side++)
+            outside = outside || vec_dot(s.inwards[side], way) + s.offset[side] < -radius * s.length[side];
+        if (!outside)
+            return true;
+    }
+    return false;
+}
+
+// ---- What is on the way to a light ----
+
+/// All that a light shines from.
+typedef struct source {
+    bool directional;
+    double to[3]; ///< the middle; directional: the way there
+    double radius; ///< of a ball around it
+} source;
+
+static source source_of(const glint_plan_light *light)
+{
+    const glint_light_sample *light_sample = light->cap ? light->cap : light->light_samples;
+    source s = { .directional = light->directional, .radius = light_sample ? light_sample->radius : 0 };
+    vec_copy(s.to, light_sample ? light_sample->center : light->position);
+    return s;
+}
+
+/// Whether a ball is further from the line between the middles of the light and of the box than all three are wide.
+static bool is_far_off(const source *light, const glint_point_box *box, const glint_ball *ball)
+{
+    double from[3], half[3], line[3], way[3], across[3];
+    for (int k = 0; k < 3; k++) {
+        from[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+        half[k] = 0.5 * box->upper[k] - 0.5 * box->lower[k];
+    }
+    const double wide = fmax(light->radius, length_of(half));
+    vec_copy(line, light->to);
+    if (!light->directional)
+        vec_sub(line, light->to, from);
+    const double length2 = vec_dot(line, line);
+    vec_sub(way, ball->center, from);
+    double along = length2 > 0 ? fmax(vec_dot(way, line) / length2, 0) : 0;
+    along = light->directional ? along : fmin(along, 1);
+    for (int k = 0; k < 3; k++)
+        across[k] = way[k] - along * line[k];
+    const double far = length_of(way) + sqrt(length2) + length_of(from);
+    return length_of(across) > loosened(ball->radius + wide, far);
+}
+
+/// Around ways to a light that begin in a body of eight corners: along each of these normals, all of them are between two heights.
+typedef struct slabs {
+    int count;
+    double origin[3]; ///< heights are from here: the light's middle, or with parallel light a corner
+    double size; ///< how far from the origin the corners are, and that from the world's
+    double normal[18][3], length[18], low[18], high[18];
+} slabs;
+
+/// Where both corners of an edge are: their numbers differ in one bit.
+static int edge_begin(int edge) { return edge / 4 == 0 ? 2 * (edge % 4) : edge / 4 == 1 ? edge % 2 + edge % 4 / 2 * 4 : edge % 4; }
+static int edge_end(int edge) { return edge_begin(edge) + (1 << edge / 4); }
+
+/// corner: from the origin. away: parallel light and a normal that is not made square to it; its ways go on and on.
+static void add_slab(slabs *s, double (*corner)[3], const source *light, const double normal[3], bool away)
+{
+    const double length = length_of(normal), ahead = away ? vec_dot(normal, light->to) : 0;
+    double low = light->directional ? HUGE_VAL : -light->radius * length;
+    double high = -low;
+    for (int k = 0; k < 8; k++) {
+        low = fmin(low, vec_dot(normal, corner[k]));
+        high = fmax(high, vec_dot(normal, corner[k]));
+    }
+    vec_copy(s->normal[s->count], normal);
+    s->length[s->count] = length;
+    s->low[s->count] = ahead < 0 ? -HUGE_VAL : low;
+    s->high[s->count++] = ahead > 0 ? HUGE_VAL : high;
+}
+
+/// The slabs are those of the body's edges with the light and of its faces.
+static void find_slabs(slabs *s, double (*corner)[3], const source *light)
+{
+    s->count = 0;
+    vec_copy(s->origin, light->directional ? corner[0] : light->to);
+    s->size = 0;
+    for (int k = 0; k < 8; k++) {
+        vec_sub(corner[k], corner[k], s->origin);
+        s->size = fmax(s->size, length_of(corner[k]));
+    }
+    s->size += length_of(s->origin);
+    for (int edge = 0; edge < 12; edge++) {
+        const double *from = corner[edge_begin(edge)];
+        double along[3], normal[3];
+        vec_sub(along, corner[edge_end(edge)], from);
+        vec_cross(normal, along, light->directional ? light->to : from);
+        add_slab(s, corner, light, normal, false);
+    }
+    for (int face = 0; face < 6; face++) {
+        const int bit = face / 2, first = (face % 2) << bit;
+        double a[3], b[3], normal[3];
+        vec_sub(a, corner[first + (1 << (bit + 1) % 3)], corner[first]);
+        vec_sub(b, corner[first + (1 << (bit + 2) % 3)], corner[first]);
+        vec_cross(normal, a, b);
+        add_slab(s, corner, light, normal, light->directional);
+    }
+}
+
+/// Whether a ball is clear of all the ways: it may be outside of every slab's heights, of a normal of no length of none.
+static bool is_clear_of(const slabs *s, const glint_ball *ball)
+{
+    double way[3];
+    vec_sub(way, ball->center, s->origin);
+    const double radius = loosened(ball->radius, length_of(way) + s->size);
+    for (int i = 0; i < s->count; i++) {
+        const double height = vec_dot(s->normal[i], way), reach = radius * s->length[i];
+        if (height - reach > s->high[i] || height + reach < s->low[i])
+            return true;
+    }
+    return false;
+}
+
+static void find_box_corners(const glint_point_box *box, double corner[8][3])
+{
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++)
+            corner[k][c] = (k >> c & 1 ? box->upper : box->lower)[c];
+}
+
+/// Of the part of a tile's pyramid or bar that is as far along the view as the box: where that is deep and askew, it is much smaller.
+static void find_beam_corners(const glint_plan *plan, const glint_point_box *box, uint32_t column, uint32_t row,
+                              double corner[8][3])
+{
+    const glint_plan_camera *camera = &plan->camera;
+    double x[2], y[2], depth[2] = { 0, 0 };
+    find_edges(plan, column, row, x, y);
+    for (int c = 0; c < 3; c++) {
+        const double a = camera->forward[c] * (box->lower[c] - camera->eye[c]);
+        const double b = camera->forward[c] * (box->upper[c] - camera->eye[c]);
+        depth[0] += fmin(a, b);
+        depth[1] += fmax(a, b);
+    }
+    for (int k = 0; k < 8; k++) {
+        const double along = camera->orthographic ? depth[k >> 2] : fmax(depth[k >> 2], 0);
+        const double wide = camera->orthographic ? 1 : along;
+        for (int c = 0; c < 3; c++)
+            corner[k][c] = camera->eye[c] + along * camera->forward[c] +
+                           wide * (x[k & 1] * camera->right[c] + y[k >> 1 & 1] * camera->up[c]);
+    }
+}
+
+bool glint_may_shade(const glint_plan *plan, const glint_plan_light *light, const glint_point_box *box,
+                     const glint_ball *balls, uint32_t count, uint32_t column, uint32_t row)
+{
+    const source from = source_of(light);
+    const bool has_points = box->lower[0] <= box->upper[0] && box->lower[1] <= box->upper[1] && box->lower[2] <= box->upper[2];
+    const int bodies = plan->lens || (from.directional && from.radius > 0) ? 1 : 2;
+    slabs around[2];
+    bool found = false;
+    for (uint32_t i = 0; i < count; i++) {
+        bool clear = is_far_off(&from, box, &balls[i]);
+        if (!clear && has_points && !found) {
+            double corner[8][3];
+            find_box_corners(box, corner);
+            find_slabs(&around[0], corner, &from);
+            if (bodies > 1)
+                find_beam_corners(plan, box, column, row, corner);
+            if (bodies > 1)
+                find_slabs(&around[1], corner, &from);
+            found = true;
+        }
+        for (int k = 0; k < bodies && found && !clear; k++)
+            clear = is_clear_of(&around[k], &balls[i]);
+        if (!clear)
+            return true;
+    }
+    return false;
+}
