@@ -728,7 +728,8 @@ typedef struct glint_overlay glint_overlay;
 typedef enum glint_overlay_kind {
     GLINT_OVERLAY_LABEL, ///< `text`
     GLINT_OVERLAY_COLORBAR, ///< the colours of a map with numbers beside them; `text` is its title
-    GLINT_OVERLAY_AXES ///< directions x, y and z of the world as the camera has them, each with its name
+    GLINT_OVERLAY_AXES ///< directions x, y and z of the world as the camera has them, each with its name; or, with a `box`, three
+                       ///< edges of it where the camera has them, with numbers along them
 } glint_overlay_kind;
 
 /// A table of 256 colours, from the lowest number to the highest.
@@ -778,6 +779,13 @@ typedef struct glint_overlay_desc {
     double ticks[GLINT_OVERLAY_TICKS_MAX]; ///< colour bar: numbers written beside it, from low to high
     size_t tick_count; ///< 0: round numbers, about five
     char names[3][GLINT_AXIS_NAME_SIZE]; ///< axes: of x, y and z
+    /// Axes: true: at edges of `box`, those that bound what the camera sees of it, in place of `at`; the upright one at the left,
+    /// the others below. A direction that the eye looks along has no such edge, and no axis; seen from within the box none has.
+    /// Then has_position, has_margin, has_length and has_background must be false
+    bool has_box;
+    double box[2][3]; ///< its lowest and highest corner in the world; finite; a side may be 0, which has no axis, not all three
+    bool has_values; ///< false: the numbers are places in the world
+    double values[2][3]; ///< what the two corners stand for; finite, not the same where the box has a side; may fall
     char name[GLINT_NAME_SIZE]; ///< for messages; "": none
 } glint_overlay_desc;
 

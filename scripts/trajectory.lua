@@ -1,4 +1,4 @@
--- A trajectory, frame by frame: particles in the cell they repeat in, coloured by a column of the file.
+-- A trajectory, frame by frame: particles in the cell they repeat in, with axes along it, coloured by a column.
 --     glint scripts/trajectory.lua -o film.mp4                             a wave runs through a crystal
 --     glint scripts/trajectory.lua --set file=melt.dump --set column=c_pe --set map=magma --set low=-7 --set high=-5
 --     glint scripts/trajectory.lua --set file=run.xyz -f 90                one frame; those before are read over once
@@ -45,7 +45,7 @@ local guard = setmetatable({}, { __gc = function() return is_own and os.remove(f
 
 local scene = glint.scene { ambient = 0.3, background = "white",
   glint.directional_light { direction = { 1, 2, -2.4 }, intensity = 0.72 } }
-local shown = { guard = guard }
+local shown, axes = { guard = guard }, nil
 
 local function show(_, n)
   for i = #shown, 1, -1 do scene:remove(table.remove(shown, i)) end
@@ -54,12 +54,19 @@ local function show(_, n)
     color_by = { column = P.column, map = P.map, low = P.low, high = P.high } }
   set:add_frame(frame)
   shown[1] = set:spheres()
-  if frame.box or frame.cell then shown[2] = boxes.edges(frame.box or frame.cell) end
+  local cell = frame.box or frame.cell
+  if cell then
+    local corners = boxes.corners(cell)
+    shown[2] = boxes.edges(cell)
+    axes = axes or scene:add(glint.axes { box = corners, color = "black" })
+    axes.box = corners
+  end
   for _, shape in ipairs(shown) do scene:add(shape) end
   return set
 end
 
 local frames = film:length()
-scene.camera = show(0, 1):camera { from = { -0.75, -1.5, 1.05 }, up = { 0, 0, 1 } } -- of the first frame
+scene.camera = show(0, 1):camera { from = { -0.75, -1.5, 1.05 }, up = { 0, 0, 1 },
+  margin = 1.15 } -- of the first frame; around it room for numbers
 return glint.animation { scene = scene, frames = frames, cyclic = is_own, fps = 24, width = 800, height = 600,
   samples = 4, frame = show }

@@ -154,6 +154,42 @@ static void push_names(lua_State *L, const void *desc)
     glintL_freeze(L, "labels");
 }
 
+// {{x, y, z}, {x, y, z}}: what is at the lowest and at the highest corner of a box.
+static void read_corners(lua_State *L, int index, const char *path, double out[2][3])
+{
+    if (!lua_istable(L, index) || lua_rawlen(L, index) != 2)
+        glintL_refuse(L, index, path, "two corners {{x, y, z}, {x, y, z}}");
+    glintL_check_list(L, index, path, false);
+    luaL_checkstack(L, 2, "corners");
+    for (int i = 0; i < 2; i++) {
+        lua_rawgeti(L, index, i + 1);
+        const char *corner = lua_pushfstring(L, "%s[%d]", path, i + 1);
+        glintL_read_three(L, lua_gettop(L) - 1, corner, "{x, y, z}", out[i]);
+        lua_pop(L, 2);
+    }
+}
+
+static void push_corners(lua_State *L, const double corners[2][3], const char *name)
+{
+    lua_createtable(L, 2, 0);
+    for (int i = 0; i < 2; i++) {
+        glintL_push_vector(L, corners[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    glintL_freeze(L, name);
+}
+
+static void read_box(lua_State *L, int index, const char *path, void *desc) { read_corners(L, index, path, ((desc_type *)desc)->box); }
+
+static void push_box(lua_State *L, const void *desc) { push_corners(L, ((const desc_type *)desc)->box, "box"); }
+
+static void read_values(lua_State *L, int index, const char *path, void *desc)
+{
+    read_corners(L, index, path, ((desc_type *)desc)->values);
+}
+
+static void push_values(lua_State *L, const void *desc) { push_corners(L, ((const desc_type *)desc)->values, "values"); }
+
 // ---- The objects ----
 
 static const char *const ORIENTATIONS[] = { "vertical", "horizontal", NULL };
@@ -192,6 +228,8 @@ static const glintL_field COLORBAR_FIELDS[] = {
 
 static const glintL_field AXES_FIELDS[] = {
     { .name = "labels", .kind = GLINTL_CUSTOM, .read = read_names, .push = push_names },
+    { .name = "box", .kind = GLINTL_CUSTOM, .set_offset = AT(has_box), .read = read_box, .push = push_box },
+    { .name = "values", .kind = GLINTL_CUSTOM, .set_offset = AT(has_values), .read = read_values, .push = push_values },
     LENGTH,
     EVERY_OVERLAY,
     { .name = NULL },
@@ -245,6 +283,8 @@ static int new_overlay(lua_State *L, glint_overlay_kind kind)
     lua_pushliteral(L, "at");
     if (lua_rawget(L, 1) != LUA_TNIL && desc.has_position)
         return glintL_error(L, "%s: at or position expected, got both", VARIANTS[kind].name);
+    if (!lua_isnil(L, -1) && desc.has_box)
+        return glintL_error(L, "axes: at or box expected, got both");
     lua_pop(L, 1);
     glintL_check_status(L, VARIANTS[kind].name, &error, glint_overlay_create(&desc, &overlay, &error));
     box->object = overlay;

@@ -637,8 +637,11 @@ function glint.colorbar(fields) end
 ---@class glint.axes_fields: glint.overlay_fields
 ---@field labels? string[]  names of x, y and z, at most 15 bytes each. Default {"x", "y", "z"}
 ---@field length? number  of an axis that lies in the picture, points. Default nil: 2.5 times `size`
+---@field box? glint.vec3[]  {lowest corner, highest corner} in the world: axes with numbers along edges of it, in place of `at`, `position`, `margin`, `length` and `background`. Default nil
+---@field values? glint.vec3[]  what the numbers are at those two corners. Default nil: places in the world
 
---- The directions x (red), y (green) and z (blue) as the camera has them.
+--- The directions x (red), y (green) and z (blue) as the camera has them. With a `box` three edges of it, those that bound what
+--- is seen of it, with marks, round numbers and their names; a direction that the eye looks along has none.
 ---@class glint.axes: glint.axes_fields
 local axes = {}
 

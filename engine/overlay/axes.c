@@ -45,32 +45,6 @@ static int reach(const glint_layout *layout)
 
 void glint_axes_measure(glint_layout *layout) { layout->width = layout->height = 2 * reach(layout) + 1; }
 
-/// How far a point is from the line from 0 to `end`.
-static double distance_to(const double end[2], double x, double y)
-{
-    const double square = end[0] * end[0] + end[1] * end[1];
-    const double along = square > 0 ? fmin(fmax((x * end[0] + y * end[1]) / square, 0), 1) : 0;
-    const double dx = x - along * end[0], dy = y - along * end[1];
-    return sqrt(dx * dx + dy * dy);
-}
-
-static void draw_line(const glint_layout *layout, const double middle[2], const axis *a, const double color[3])
-{
-    const double half = fmax(THICK * layout->em / 2, 0.75);
-    const int x0 = (int)floor(middle[0] + fmin(0, a->end[0]) - half - 1), y0 = (int)floor(middle[1] + fmin(0, a->end[1]) - half - 1);
-    const int x1 = (int)ceil(middle[0] + fmax(0, a->end[0]) + half + 1), y1 = (int)ceil(middle[1] + fmax(0, a->end[1]) + half + 1);
-    glint_stamp stamp;
-    if (!glint_layout_mask(layout, x0, y0, x1 - x0, y1 - y0, &stamp))
-        return;
-    for (int y = 0; y < stamp.height; y++)
-        for (int x = 0; x < stamp.width; x++) {
-            const double d = distance_to(a->end, stamp.x + x + 0.5 - middle[0], stamp.y + y + 0.5 - middle[1]);
-            const double covered = fmin(fmax(half + 0.5 - d, 0), 1);
-            stamp.coverage[(size_t)y * (size_t)stamp.width + (size_t)x] = (uint8_t)(covered * 255 + 0.5);
-        }
-    glint_stamps_add(layout->stamps, stamp, color);
-}
-
 void glint_axes_draw(const glint_layout *layout, int x, int y)
 {
     const int half = reach(layout);
@@ -90,7 +64,7 @@ void glint_axes_draw(const glint_layout *layout, int x, int y)
         const axis *a = &axes[order[i]];
         const char *name = layout->desc->names[order[i]];
         const int wide = glint_typeface_width(&layout->typeface, name, strlen(name));
-        draw_line(layout, middle, a, colors[order[i]]);
+        glint_layout_line(layout, middle, a->end, fmax(THICK * layout->em / 2, 0.75), colors[order[i]]);
         glint_layout_text(layout, name, (int)floor(middle[0] + a->name[0] - wide / 2.0 + 0.5),
                           (int)floor(middle[1] + a->name[1] - layout->typeface.height / 2.0 + 0.5), wide, 0,
                           layout->desc->color);

@@ -8,6 +8,7 @@
 
 #define LEAST_SIZE 10.0 ///< pixels of letters whose size is not said
 #define SIZE_SHARE 36.0 ///< of the picture's height that they otherwise are
+#define PIECE 64 ///< pixels of a line that are drawn at once
 #define PADDING 0.35 ///< between what is drawn and the border of what lies behind, in sizes
 
 int glint_layout_measure(const glint_layout *layout, const char *text, int *lines)
@@ -64,6 +65,52 @@ void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int 
         glint_stamps_add(layout->stamps, stamp, color);
 }
 
+/// How far a point is from the line from 0 to `end`.
+static double distance_to(const double end[2], double x, double y)
+{
+    const double square = end[0] * end[0] + end[1] * end[1];
+    const double along = square > 0 ? fmin(fmax((x * end[0] + y * end[1]) / square, 0), 1) : 0;
+    const double dx = x - along * end[0], dy = y - along * end[1];
+    return sqrt(dx * dx + dy * dy);
+}
+
+/// The part of a line within a rectangle.
+static void draw_piece(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3],
+                       const int corner[2], const int size[2])
+{
+    glint_stamp stamp;
+    if (!glint_layout_mask(layout, corner[0], corner[1], size[0], size[1], &stamp))
+        return;
+    for (int y = 0; y < stamp.height; y++)
+        for (int x = 0; x < stamp.width; x++) {
+            const double d = distance_to(way, stamp.x + x + 0.5 - from[0], stamp.y + y + 0.5 - from[1]);
+            const double covered = fmin(fmax(half + 0.5 - d, 0), 1);
+            stamp.coverage[(size_t)y * (size_t)stamp.width + (size_t)x] = (uint8_t)(covered * 255 + 0.5);
+        }
+    glint_stamps_add(layout->stamps, stamp, color);
+}
+
+void glint_layout_line(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3])
+{
+    const int sides[2] = { layout->overlays->width, layout->overlays->height };
+    const int along = fabs(way[0]) < fabs(way[1]), across = !along;
+    const double slope = way[along] != 0 ? way[across] / way[along] : 0, wide = 1.5 * half + 2; // of a line at 45 degrees
+    const double first = fmin(from[along], from[along] + way[along]) - half - 1;
+    const double last = fmax(from[along], from[along] + way[along]) + half + 1;
+    const int begin = (int)fmin(fmax(first, 0), sides[along]), end = (int)ceil(fmax(fmin(last, sides[along]), 0));
+    for (int k = begin; k < end; k += PIECE) { // pieces, since a slanting line fills little of its rectangle
+        const int length = end - k < PIECE ? end - k : PIECE;
+        const double a = from[across] + (k - from[along]) * slope, b = a + length * slope;
+        const double low = fmin(fmax(fmin(a, b) - wide, 0), sides[across]), high = fmin(fmax(fmax(a, b) + wide, 0), sides[across]);
+        int corner[2], size[2];
+        corner[along] = k;
+        corner[across] = (int)floor(low);
+        size[along] = length;
+        size[across] = (int)ceil(high) - corner[across];
+        draw_piece(layout, from, way, half, color, corner, size);
+    }
+}
+
 static void measure_label(glint_layout *layout)
 {
     int lines;
@@ -102,6 +149,10 @@ static void draw(glint_layout *layout, double dpi)
     const int padding = desc->has_background ? (int)ceil(PADDING * layout->em) : 0;
     const int sides[2] = { layout->overlays->width, layout->overlays->height };
     int corner[2];
+    if (desc->kind == GLINT_OVERLAY_AXES && desc->has_box) {
+        glint_box_axes_draw(layout);
+        return;
+    }
     measures[desc->kind](layout);
     const int size[2] = { layout->width + 2 * padding, layout->height + 2 * padding };
     for (int i = 0; i < 2; i++)

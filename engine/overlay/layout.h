@@ -27,9 +27,17 @@ void glint_layout_fill(const glint_layout *layout, int x, int y, int width, int 
 /// there is no memory.
 bool glint_layout_mask(const glint_layout *layout, int x, int y, int width, int height, glint_stamp *stamp);
 
+/// A line with round ends, its edges smoothed, cut off at the picture's borders.
+/// from   pixels from the picture's upper left corner.
+/// way    to its other end; pixels.
+/// half   of its thickness; pixels.
+void glint_layout_line(const glint_layout *layout, const double from[2], const double way[2], double half, const double color[3]);
+
 void glint_colorbar_measure(glint_layout *layout);
 void glint_colorbar_draw(const glint_layout *layout, int x, int y);
 void glint_axes_measure(glint_layout *layout);
 void glint_axes_draw(const glint_layout *layout, int x, int y);
+/// Axes at a box: where they lie is not the layout's to say.
+void glint_box_axes_draw(const glint_layout *layout);
 
 #endif

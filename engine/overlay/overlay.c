@@ -72,6 +72,49 @@ static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error
     return status;
 }
 
+/// What axes at a box do not have: they lie where the box does.
+static glint_status check_unplaced(const glint_overlay_desc *desc, glint_error *error)
+{
+    const struct {
+        const char *name;
+        bool is_set;
+    } fields[] = { { "position", desc->has_position },
+                   { "margin", desc->has_margin },
+                   { "length", desc->has_length },
+                   { "background", desc->has_background } };
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+        if (fields[i].is_set)
+            return glint_fail(error, GLINT_ERR_INVALID, "%s: of axes without a box; with one they lie at its edges", fields[i].name);
+    return GLINT_OK;
+}
+
+static glint_status check_box(const glint_overlay_desc *desc, glint_error *error)
+{
+    const double *low = desc->box[0], *high = desc->box[1];
+    glint_status status = check_unplaced(desc, error);
+    bool has_side = false;
+    if (!status)
+        status = glint_check_vector("box[1]", low, error);
+    if (!status)
+        status = glint_check_vector("box[2]", high, error);
+    for (int i = 0; i < 3 && !status; i++) {
+        const bool is_side = high[i] > low[i];
+        has_side = has_side || is_side;
+        if (high[i] < low[i] || !isfinite(high[i] - low[i]))
+            status = glint_fail(error, GLINT_ERR_INVALID, "box: its lowest and its highest corner expected, got %.15g to %.15g along %c",
+                                low[i], high[i], 'x' + i);
+        else if (desc->has_values && !isfinite(desc->values[1][i] - desc->values[0][i]))
+            status = glint_fail(error, GLINT_ERR_INVALID, "values: finite numbers expected, got %.15g to %.15g along %c",
+                                desc->values[0][i], desc->values[1][i], 'x' + i);
+        else if (desc->has_values && is_side && desc->values[0][i] == desc->values[1][i])
+            status = glint_fail(error, GLINT_ERR_INVALID, "values: two numbers for the ends of %c expected, got %.15g twice", 'x' + i,
+                                desc->values[0][i]);
+    }
+    if (!status && !has_side)
+        status = glint_fail(error, GLINT_ERR_INVALID, "box: two corners expected, got one point");
+    return status;
+}
+
 static glint_status check(const glint_overlay_desc *desc, glint_error *error)
 {
     if ((unsigned)desc->kind > GLINT_OVERLAY_AXES)
@@ -91,6 +134,10 @@ static glint_status check(const glint_overlay_desc *desc, glint_error *error)
         status = glint_check_range("opacity", desc->opacity, 0, 1, "number 0 .. 1", error);
     if (!status && desc->kind == GLINT_OVERLAY_COLORBAR)
         status = check_bar(desc, error);
+    if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_values && !desc->has_box)
+        status = glint_fail(error, GLINT_ERR_INVALID, "values: a box expected, whose corners they are of");
+    if (!status && desc->kind == GLINT_OVERLAY_AXES && desc->has_box)
+        status = check_box(desc, error);
     return status;
 }
 

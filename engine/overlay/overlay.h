@@ -2,7 +2,8 @@
 ///
 ///     overlay.c    the described objects, checked
 ///     overlays.c   all of one frame, as a plan and its image hold them; their key
-///     layout.c     where each one lies, in stamps; colorbar.c, axes.c: what they are made of
+///     layout.c     where each one lies, in stamps; colorbar.c, axes.c, box_axes.c: what they are made of
+///     marks.c      the round numbers beside colour bars and axes
 ///     stamp.c      stamps on rows of codes
 #ifndef GLINT_OVERLAY_H
 #define GLINT_OVERLAY_H
@@ -12,19 +13,28 @@
 
 #include <stdatomic.h>
 
+/// The camera of one frame: a sample at sx, sy, from -width to width and from -height to height, sees
+/// eye + t (view[2] + sx view[0] + sy view[1]), or where it is orthographic eye + sx view[0] + sy view[1] + t view[2].
+typedef struct glint_overlays_camera {
+    bool orthographic;
+    double eye[3];
+    double view[3][3]; ///< to the right and up, half a pixel; away from the eye, unit
+    double pixel_offset; ///< where in a pixel its sample lies, 0 .. 1
+} glint_overlays_camera;
+
 /// The overlays of one frame. Immutable, reference counted; any thread.
 typedef struct glint_overlays {
     atomic_int references;
     int width, height; ///< of the whole picture, pixels
     double view[3][3]; ///< unit: to the right, up and away from the eye
+    glint_overlays_camera camera;
     glint_key letters; ///< see glint_letters_key
     size_t count;
     glint_overlay_desc of[]; ///< in the order in which they are drawn
 } glint_overlays;
 
 /// A copy of the scene's overlays; NULL where there are none, or nothing to be seen of them.
-/// view  to the right, up and away from the eye; need not be unit.
-glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const double view[3][3],
+glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,
                                  glint_overlays **out, glint_error *error);
 glint_overlays *glint_overlays_retain(glint_overlays *overlays); ///< NULL: nothing
 void glint_overlays_release(glint_overlays *overlays); ///< NULL: nothing

@@ -9,7 +9,7 @@
 /// A label without text shows nothing.
 static bool shows(const glint_overlay_desc *desc) { return desc->kind != GLINT_OVERLAY_LABEL || desc->text[0]; }
 
-glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const double view[3][3],
+glint_status glint_overlays_take(const glint_scene *scene, int width, int height, const glint_overlays_camera *camera,
                                  glint_overlays **out, glint_error *error)
 {
     const size_t count = glint_scene_overlay_count(scene);
@@ -34,7 +34,8 @@ glint_status glint_overlays_take(const glint_scene *scene, int width, int height
     overlays->letters = font;
     overlays->count = 0;
     for (int i = 0; i < 3; i++)
-        vec_normalize(overlays->view[i], view[i]);
+        vec_normalize(overlays->view[i], camera->view[i]);
+    overlays->camera = *camera;
     for (size_t i = 0; i < count; i++) {
         const glint_overlay_desc *desc = glint_overlay_get(glint_scene_overlay_at(scene, i));
         if (shows(desc))
@@ -69,6 +70,17 @@ static glint_key place_key(const glint_overlay_desc *d, glint_key key)
     return glint_key_add_string(key, d->text);
 }
 
+/// Of axes at a box: where the camera has it, and their numbers.
+static glint_key box_key(const glint_overlays *overlays, const glint_overlay_desc *d, glint_key key)
+{
+    const glint_overlays_camera *c = &overlays->camera;
+    const double seen[] = { c->orthographic, c->eye[0], c->eye[1], c->eye[2], c->pixel_offset };
+    ADD(key, seen);
+    ADD(key, c->view);
+    ADD(key, d->box);
+    return d->has_values ? ADD(key, d->values) : key;
+}
+
 glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
 {
     ADD(key, overlays->letters);
@@ -83,6 +95,8 @@ glint_key glint_overlays_key(const glint_overlays *overlays, glint_key key)
         ADD(key, overlays->view);
         for (int k = 0; k < 3; k++)
             key = glint_key_add_string(key, d->names[k]);
+        if (d->has_box)
+            key = box_key(overlays, d, key);
     }
     return key;
 }

@@ -1,6 +1,7 @@
 #include "engine/plan/raster.h"
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
+#include "engine/base/vec.h"
 #include "engine/film/tone.h"
 
 #include <math.h>
@@ -217,9 +218,12 @@ static glint_status create(const glint_scene *scene, const glint_render_desc *de
     status = fill(plan, scene, desc, times, error);
     if (!status) {
         const glint_plan_camera *c = &plan->camera;
-        const double view[3][3] = { { c->right[0], c->right[1], c->right[2] }, { c->up[0], c->up[1], c->up[2] },
-                                    { c->forward[0], c->forward[1], c->forward[2] } };
-        status = glint_overlays_take(scene, (int)desc->width, (int)desc->height, view, &plan->overlays, error);
+        glint_overlays_camera camera = { .orthographic = c->orthographic, .pixel_offset = c->pixel_offset };
+        vec_copy(camera.eye, c->eye);
+        vec_copy(camera.view[0], c->right);
+        vec_copy(camera.view[1], c->up);
+        vec_copy(camera.view[2], c->forward);
+        status = glint_overlays_take(scene, (int)desc->width, (int)desc->height, &camera, &plan->overlays, error);
     }
     if (!status && plan->runs[GLINT_STAGE_REFINE]) {
         glint_render_desc base = glint_plan_base(&plan->desc);

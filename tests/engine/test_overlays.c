@@ -216,6 +216,127 @@ static void test_axes(void **state)
     drop_world(&w);
 }
 
+/// From straight ahead the lowest edge is the axis of x and the leftmost that of y, at the pixels that they project to, with marks
+/// at round numbers; z, which points at the eye, has none. `values` moves the marks, and nothing else has colour.
+static void test_box_axes(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
+    desc.has_box = desc.has_size = true;
+    desc.size = 8; // room for a number every 19 pixels
+    const double box[2][3] = { { -4, -3, 0 }, { 4, 3, 2 } };
+    memcpy(desc.box, box, sizeof box);
+    for (int named = 0; named < 2; named++) {
+        desc.has_values = named;
+        const double values[2][3] = { { 0, 0, 0 }, { 10, 1, 1 } };
+        memcpy(desc.values, values, sizeof values);
+        world w = make_world(&desc, 0);
+        glint_camera_desc view = glint_camera_desc_default();
+        view.projection = GLINT_ORTHOGRAPHIC;
+        view.height = 12; // a unit is 10 pixels
+        assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
+        glint_picture *picture = show(&w, "box.png", NULL);
+        for (int x = 42; x < 118; x++) // the edge is at y = 90, half of a line of 1 to each side
+            assert_true(grey(picture, x, 89) > 100 && grey(picture, x, 90) > 100);
+        for (int y = 32; y < 88; y++)
+            assert_true(grey(picture, 39, y) > 100 && grey(picture, 40, y) > 100);
+        for (int y = 0; y < 89; y++)
+            for (int x = 41; x < WIDTH; x++)
+                assert_int_equal(grey(picture, x, y), 0); // nothing within, above or at the right
+        int marks = 0;
+        for (int x = 42; x < 118; x++)
+            marks += grey(picture, x, 92) > 100 && grey(picture, x - 1, 92) <= 100;
+        const int at[2][2] = { { 60, 100 }, { 56, 104 } }; // -2 and 2; of 0 .. 10, 2 and 8
+        for (int i = 0; i < 2; i++)
+            assert_true(grey(picture, at[named][i], 92) > 100 && grey(picture, at[named][i] - 3, 92) == 0);
+        assert_int_equal(marks, named ? 4 : 3); // 2, 4, 6 and 8; -2, 0 and 2: those at the ends are not among these columns
+        glint_picture_destroy(picture);
+        drop_world(&w);
+    }
+}
+
+/// Whether a point is within one of the triangles of three of eight points, and so within what bounds all of them.
+static bool is_within(double at[8][2], double x, double y)
+{
+    for (int a = 0; a < 8; a++)
+        for (int b = a + 1; b < 8; b++)
+            for (int c = b + 1; c < 8; c++) {
+                const double u = (at[b][0] - at[a][0]) * (y - at[a][1]) - (at[b][1] - at[a][1]) * (x - at[a][0]);
+                const double v = (at[c][0] - at[b][0]) * (y - at[b][1]) - (at[c][1] - at[b][1]) * (x - at[b][0]);
+                const double t = (at[a][0] - at[c][0]) * (y - at[c][1]) - (at[a][1] - at[c][1]) * (x - at[c][0]);
+                if ((u > 0 && v > 0 && t > 0) || (u < 0 && v < 0 && t < 0))
+                    return true;
+            }
+    return false;
+}
+
+/// Corners of `box` in the picture of a camera at `eye` that looks at 0, y up.
+static void project_box(const glint_overlay_desc *desc, const glint_camera_desc *view, double at[8][2])
+{
+    double forward[3], length = 0;
+    for (int c = 0; c < 3; c++)
+        length += view->eye[c] * view->eye[c];
+    for (int c = 0; c < 3; c++)
+        forward[c] = -view->eye[c] / sqrt(length);
+    const double flat = sqrt(forward[0] * forward[0] + forward[2] * forward[2]);
+    const double right[3] = { -forward[2] / flat, 0, forward[0] / flat };
+    const double up[3] = { right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2],
+                           right[0] * forward[1] - right[1] * forward[0] };
+    const bool parallel = view->projection == GLINT_ORTHOGRAPHIC;
+    for (int i = 0; i < 8; i++) {
+        double x = 0, y = 0, z = 0;
+        for (int c = 0; c < 3; c++) {
+            const double d = desc->box[i >> c & 1][c] - view->eye[c];
+            x += d * right[c], y += d * up[c], z += d * forward[c];
+        }
+        const double scale = HEIGHT / 2.0 / (parallel ? view->height / 2 : z * tan(view->fov_y_rad / 2));
+        at[i][0] = WIDTH / 2.0 + x * scale;
+        at[i][1] = HEIGHT / 2.0 - y * scale;
+    }
+}
+
+/// Wherever the eye is, outside of the box, no axis, mark, number or name lies over what is seen of the box; and some lie around it.
+static void test_box_outside(void **state)
+{
+    (void)state;
+    glint_overlay_desc desc = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
+    desc.has_box = true;
+    const double box[2][3] = { { -2, -1, -1.5 }, { 1, 1.2, 3 } };
+    memcpy(desc.box, box, sizeof box);
+    world w = make_world(&desc, 0);
+    for (int i = 0; i < 60; i++) {
+        glint_camera_desc view = glint_camera_desc_default();
+        const double turn = 2.399963 * i, lift = -1.5 + 3.0 * (i + 0.5) / 60, far = 5 + i % 7;
+        double at[8][2];
+        view.projection = i % 2 ? GLINT_ORTHOGRAPHIC : GLINT_PERSPECTIVE;
+        view.eye[0] = far * cos(lift) * sin(turn);
+        view.eye[1] = far * sin(lift);
+        view.eye[2] = far * cos(lift) * cos(turn);
+        view.fov_y_rad = 1.2;
+        assert_int_equal(glint_camera_set(glint_scene_get(w.scene)->camera, &view, NULL), GLINT_OK);
+        glint_picture *picture = show(&w, "outside.png", NULL);
+        project_box(&desc, &view, at);
+        double middle[2] = { 0, 0 };
+        int lit = 0;
+        for (int k = 0; k < 16; k++)
+            middle[k % 2] += at[k / 2][k % 2] / 8;
+        for (int y = 0; y < HEIGHT; y++) {
+            uint8_t row[3 * WIDTH];
+            glint_picture_row(picture, y, 0, row);
+            for (int x = 0; x < WIDTH; x++) {
+                const double dx = x + 0.5 - middle[0], dy = y + 0.5 - middle[1], away = sqrt(dx * dx + dy * dy) + 1e-9;
+                const double farther = 1 + 3 / away; // where a line's own thickness has an end
+                if (row[3 * x] > 0 && is_within(at, middle[0] + dx * farther, middle[1] + dy * farther))
+                    fail_msg("view %d: a pixel at %d, %d lies over the box", i, x, y);
+                lit += row[3 * x] > 0;
+            }
+        }
+        assert_true(lit > 60);
+        glint_picture_destroy(picture);
+    }
+    drop_world(&w);
+}
+
 /// A region shows what the whole picture has there.
 static void test_region(void **state)
 {
@@ -322,8 +443,8 @@ static void test_key(void **state)
 {
     (void)state;
     glint_overlay_desc bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR), axes = glint_overlay_desc_default(GLINT_OVERLAY_AXES);
-    glint_overlay_desc changed[18];
-    for (size_t i = 0; i < 18; i++)
+    glint_overlay_desc changed[22];
+    for (size_t i = 0; i < 22; i++)
         changed[i] = bar;
     changed[1].text[0] = 'x';
     changed[2].at[0] = 0.3;
@@ -342,8 +463,12 @@ static void test_key(void **state)
     changed[15].tick_count = 1, changed[15].ticks[0] = 0.5;
     changed[16] = axes;
     changed[17] = axes, changed[17].names[1][0] = 'b';
-    char keys[18][33];
-    for (size_t i = 0; i < 18; i++) {
+    changed[18] = axes, changed[18].has_box = true, changed[18].box[1][0] = 2;
+    changed[19] = changed[18], changed[19].box[1][0] = 3;
+    changed[20] = changed[18], changed[20].has_values = true, changed[20].values[1][0] = 2;
+    changed[21] = changed[20], changed[21].values[1][0] = 3;
+    char keys[22][33];
+    for (size_t i = 0; i < 22; i++) {
         world w = make_world(&changed[i], 0);
         glint_plan *plan = NULL;
         assert_int_equal(glint_plan_create(w.scene, &w.render, &plan, NULL), GLINT_OK);
@@ -361,7 +486,8 @@ int main(void)
     setenv("GLINT_FONT", "bitmap", 1); // the same pixels everywhere
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_letters), cmocka_unit_test(test_background), cmocka_unit_test(test_colors),
-        cmocka_unit_test(test_axes),    cmocka_unit_test(test_region),     cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_axes),    cmocka_unit_test(test_box_axes), cmocka_unit_test(test_box_outside),
+        cmocka_unit_test(test_region),     cmocka_unit_test(test_reuse),
         cmocka_unit_test(test_writer),  cmocka_unit_test(test_key),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -71,7 +71,7 @@ local FIELDS = {
   ambient_occlusion = { "distance" },
   label = { "text", "at", "position", "size", "margin", "color", "background", "opacity" },
   colorbar = { "map", "low", "high", "title", "ticks", "orientation", "length", "at", "size", "background" },
-  axes = { "labels", "length", "at", "position", "size" },
+  axes = { "labels", "length", "at", "position", "size", "box", "values" },
 }
 local NAMES = {}
 for name in pairs(FIELDS) do NAMES[#NAMES + 1] = name end

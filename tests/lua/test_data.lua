@@ -286,6 +286,10 @@ function tests.edges()
   near(hit.point.z, 8.25, 1e-9, "the top of the upper edge along b")
   local cell = boxes.edges { origin = { 0, 0, 0 }, a = { 0, 4, 0 }, b = { 4, 0, 0 }, c = { 0, 0, 4 } }
   near(glint.scene { cell }:cast({ 2, 9, 0 }, { 0, -1, 0 }).t, 5 - math.sqrt(48) / 250, 1e-9, "a cell; the radius is 1/250")
+  local corners = boxes.corners { size = { 4, 5, 6 }, low = { -1, 0, 2 }, xy = -1, yz = 0.5 }
+  check(table.concat(corners[1], " ") == "-2 0 2" and table.concat(corners[2], " ") == "3 5.5 8", "the upright box around a tilted one, got %s, %s",
+    table.concat(corners[1], " "), table.concat(corners[2], " "))
+  check(select(2, pcall(boxes.corners, { size = { 1, 1 } })):find("box.size: three finite numbers expected", 1, true), "no box, no corners")
   check(select(2, pcall(boxes.edges, { size = { 1, 1 } })):find("box.size: three finite numbers expected", 1, true), "no box")
   check(select(2, pcall(boxes.edges, { size = { 1, 1, 1 } }, { raduis = 1 })):find("box.raduis: no such option", 1, true), "options")
 end
@@ -429,6 +433,10 @@ function tests.camera()
   local center, radius = set:extent()
   near(center[1], 1, 1e-12, "centre")
   near(radius, math.sqrt(4.1 ^ 2 + 8.1 ^ 2 + 0.1 ^ 2), 1e-12, "radius")
+  check(select(2, pcall(set.camera, set, { from = { 0, 0, 2 }, distance = 2 })):find("particles.camera.distance: no such option", 1, true),
+    "a camera's options")
+  check(select(2, pcall(set.camera, set, {})):find("particles.camera.from: three numbers {x, y, z} expected", 1, true), "from where")
+  check(select(2, pcall(set.camera, set, { from = { 0, 0, 0 } })):find("particles.camera.from: a direction that is not zero expected", 1, true), "no direction")
   local camera = set:camera { from = { 0, 0, 2 }, fov = 60, up = { 1, 0, 0 } }
   near(camera.eye.z - 1, 2 * radius, 1e-9, "distance for 60 degrees")
   check(camera.fov == 60 and camera.up.x == 1 and camera.at.x == center[1], "camera")

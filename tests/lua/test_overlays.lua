@@ -58,6 +58,15 @@ function tests.fields()
   check(a.labels[3] == "z" and a.at == "bottom left" and a.length == nil, "of axes")
   a.labels = { "a", "b", "c" }
   check(table.concat({ a.labels[1], a.labels[2], a.labels[3] }) == "abc", "names")
+  check(a.box == nil and a.values == nil, "no box")
+  a.box = { { 0, 0, 0 }, { 4, 0, 6 } }
+  a.values = { { 1, 0, 0 }, { -1, 0, 2 } }
+  check(a.box[2].z == 6 and a.values[1][1] == 1 and #a.box == 2, "a box, flat in one direction, and numbers that fall")
+  raises("box: assign a whole table; its fields are only read", function() a.box[1] = 0 end)
+  raises("values: a box expected", function() a.box = nil end)
+  a.values = nil
+  a.box = nil
+  check(a.box == nil and a.at == "bottom left", "and back")
 end
 
 function tests.errors()
@@ -86,6 +95,21 @@ function tests.errors()
   raises("colorbar.orientation: \"vertical\" or \"horizontal\" expected", bar, { orientation = "up" })
   raises("axes.labels: list of three strings expected", glint.axes, { labels = { "a", "b" } })
   raises("axes.labels: at most 15 bytes expected, got 16", glint.axes, { labels = { ("a"):rep(16), "b", "c" } })
+  local unit = { { 0, 0, 0 }, { 1, 1, 1 } }
+  raises("axes.box: two corners {{x, y, z}, {x, y, z}} expected, got 3", glint.axes, { box = 3 })
+  raises("axes.box: two corners {{x, y, z}, {x, y, z}} expected", glint.axes, { box = { { 0, 0, 0 } } })
+  raises("axes.box[2][3]: number expected, got nil", glint.axes, { box = { { 0, 0, 0 }, { 1, 1 } } })
+  raises("axes.box[1][1]: finite number expected, got -inf", glint.axes, { box = { { -math.huge, 0, 0 }, { 1, 1, 1 } } })
+  raises("axes.box: its lowest and its highest corner expected, got 2 to 1 along y", glint.axes, { box = { { 0, 2, 0 }, { 1, 1, 1 } } })
+  raises("axes.box: its lowest and its highest corner expected, got -1e+308 to 1e+308 along z", glint.axes, { box = { { 0, 0, -1e308 }, { 1, 1, 1e308 } } })
+  raises("axes.box: two corners expected, got one point", glint.axes, { box = { { 1, 2, 3 }, { 1, 2, 3 } } })
+  raises("axes.values: a box expected, whose corners they are of", glint.axes, { values = unit })
+  raises("axes.values: two numbers for the ends of z expected, got 5 twice", glint.axes, { box = unit, values = { { 0, 0, 5 }, { 1, 1, 5 } } })
+  raises("axes.position: of axes without a box; with one they lie at its edges", glint.axes, { box = unit, position = { 1, 1 } })
+  raises("axes.length: of axes without a box", glint.axes, { box = unit, length = 10 })
+  raises("axes: at or box expected, got both", glint.axes, { box = unit, at = "top" })
+  raises("axes.bxo: no such field; did you mean 'box'?", glint.axes, { bxo = unit })
+  raises("label.box: no such field", glint.label, { text = "a", box = unit })
   local l = glint.label { text = "a" }
   raises("label.size: finite number expected, got inf", function() l.size = math.huge end)
   check(l.size == nil, "it is as it was")
@@ -134,6 +158,12 @@ function tests.extremes()
   end
   for _, range in ipairs { { -1e308, 1e307 }, { 0, 5e-324 }, { 1, 1 + 2 ^ -52 }, { 5, -5 }, { 1e300, 2e300 }, { -1e-300, 1e-300 } } do
     made[#made + 1] = bar { low = range[1], high = range[2] }
+  end
+  for _, box in ipairs { { { -1, -1, -1 }, { 1, 1, 1 } }, { { -20, -20, -20 }, { 20, 20, 20 } }, { { -2, 0, -30 }, { 2, 0, 30 } },
+    { { 0, 0, 0 }, { 1e300, 1e-300, 1 } }, { { -1e300, -1e300, -1e300 }, { 1e300, 1e300, 0 } }, { { 0, 0, 20 }, { 1, 1, 30 } },
+    { { 0, 0, 0 }, { 5e-324, 0, 0 } }, { { 0, 0, 8.99 }, { 1, 1, 9 } } } do
+    made[#made + 1] = glint.axes { box = box }
+    made[#made + 1] = glint.axes { box = box, size = 3, labels = { "", "long name", "x\ny" }, values = { { 1, 1e307, 0 }, { 0, -1e307, 1e-300 } } }
   end
   for _, object in ipairs(made) do
     scene:add(object)

@@ -1,6 +1,7 @@
 -- The box of a simulation: { low, size, periodic, xy, xz, yz } as glint.lammps gives it; its sides are {size x, 0, 0},
 -- {xy, size y, 0} and {xz, yz, size z}. By hand { size = { 10, 10, 10 } } is enough: from 0, upright, periodic.
 --     scene:add(box.edges(frame.box))                 -- drawn as thin cylinders; of frame.cell of glint.xyz, too
+--     scene:add(glint.axes { box = box.corners(frame.box) })      -- with numbers along three of its edges
 local glint = require "glint"
 
 local box = {}
@@ -85,6 +86,20 @@ function box.edges(given, options)
     end
   end
   return glint.group(parts)
+end
+
+--- The lowest and the highest corner of the upright box around a box or cell: what glint.axes { box = ... } takes.
+---@param given table
+---@return number[][]
+function box.corners(given)
+  local low, sides = sides_of(given, "box")
+  local first, last = { table.unpack(low) }, { table.unpack(low) }
+  for _, side in ipairs(sides) do
+    for i = 1, 3 do
+      first[i], last[i] = first[i] + math.min(side[i], 0), last[i] + math.max(side[i], 0)
+    end
+  end
+  return { first, last }
 end
 
 --- A point from its shares of the box.

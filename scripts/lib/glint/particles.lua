@@ -267,10 +267,33 @@ function set:extent()
   return center, math.sqrt(squares)
 end
 
+local CAMERA = { from = true, margin = true, fov = true, up = true, name = true }
+
+local function check_camera(fields)
+  if type(fields) ~= "table" then
+    error(("particles.camera: { from = {x, y, z} } expected, got %s"):format(tostring(fields)), 3)
+  end
+  for name in pairs(fields) do
+    if not CAMERA[name] then
+      error(("particles.camera.%s: no such option; from, margin, fov, up, name are"):format(name), 3)
+    end
+  end
+  local from, square = fields.from, 0
+  for i = 1, 3 do
+    local v = type(from) == "table" and tonumber(from[i])
+    if not v then error("particles.camera.from: three numbers {x, y, z} expected", 3) end
+    square = square + v * v
+  end
+  if not (square > 0 and square < math.huge) then
+    error("particles.camera.from: a direction that is not zero expected", 3)
+  end
+end
+
 --- A camera that has all spheres in view in a picture at least as wide as high.
 ---@param fields table  from: the direction from the centre to the eye, {x, y, z}; margin: distance in place of the one
 --- that fits, as a factor (default 1); and a camera's fov (default 30), up, name
 function set:camera(fields)
+  check_camera(fields)
   local center, radius = self:extent()
   local from, fov = fields.from, fields.fov or 30
   local length = math.sqrt(from[1] ^ 2 + from[2] ^ 2 + from[3] ^ 2)

@@ -1,0 +1,250 @@
+/// Axes at a box: of each direction one edge, with a mark, a number and so on where the camera has them, and its name.
+///
+/// An overlay has no depth, so an edge is chosen that bounds what is seen of the box: one between a face turned to the eye and
+/// one turned away. Nothing within the box is seen beyond it, so the axis hides nothing, and its numbers stand outside.
+#include "engine/overlay/layout.h"
+#include "engine/overlay/marks.h"
+
+#include "engine/base/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LINE 0.08 ///< thickness, in sizes of letters
+#define TICK 0.35 ///< how long a mark is, likewise
+#define ROOM 0.35 ///< between a mark and its number, and between numbers and the name, likewise
+#define SHORTEST 1.5 ///< axis with numbers, likewise
+#define WANTED 5 ///< steps between round numbers, at least where there is room
+#define NEAREST 1e-6 ///< depth of what is drawn, in those of the box's farther corners
+#define TEXTS_MAX (3 * (GLINT_OVERLAY_TICKS_MAX + 1))
+
+typedef struct rect {
+    double low[2], high[2];
+} rect;
+
+typedef struct edge {
+    double ends[2][3]; ///< in the world, of the box
+    double shares[2]; ///< of the way between them: what is before the eye
+    double at[2][2]; ///< that part's ends in the picture, pixels
+    double out[2]; ///< unit: across it in the picture, away from the box
+} edge;
+
+typedef struct box_axes {
+    const glint_layout *layout;
+    double nearest; ///< depth of what is drawn
+    rect texts[TEXTS_MAX]; ///< where there are some
+    int count;
+} box_axes;
+
+static double depth_of(const box_axes *axes, const double p[3])
+{
+    double d[3];
+    vec_sub(d, p, axes->layout->overlays->camera.eye);
+    return vec_dot(d, axes->layout->overlays->camera.view[2]);
+}
+
+/// Where the camera has a point; false: nowhere.
+static bool project(const box_axes *axes, const double p[3], double out[2])
+{
+    const glint_overlays *o = axes->layout->overlays;
+    const double(*view)[3] = o->camera.view, depth = depth_of(axes, p), shift = 0.5 - o->camera.pixel_offset;
+    double d[3], s[2];
+    vec_sub(d, p, o->camera.eye);
+    for (int i = 0; i < 2; i++)
+        s[i] = vec_dot(d, view[i]) / vec_dot(view[i], view[i]) / (o->camera.orthographic ? 1 : depth);
+    out[0] = (o->width + s[0]) / 2 + shift;
+    out[1] = (o->height - s[1]) / 2 + shift;
+    return depth >= axes->nearest && isfinite(out[0]) && isfinite(out[1]);
+}
+
+static void point_at(const edge *e, double share, double out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = e->ends[0][c] + share * (e->ends[1][c] - e->ends[0][c]);
+}
+
+/// Whether the face of the box at its low (0) or high (1) end of a direction is turned to the eye.
+static bool is_seen(const box_axes *axes, int direction, int end)
+{
+    const glint_overlays_camera *c = &axes->layout->overlays->camera;
+    const double out = end ? 1 : -1, place = axes->layout->desc->box[end][direction];
+    return c->orthographic ? out * c->view[2][direction] < -1e-9 : out * (c->eye[direction] - place) > 0;
+}
+
+/// Keeps what lies before the eye of an edge; false: nothing does.
+static bool cut(const box_axes *axes, edge *e)
+{
+    const double a = depth_of(axes, e->ends[0]), b = depth_of(axes, e->ends[1]), least = axes->nearest * (1 + 1e-9);
+    e->shares[0] = a < least ? (least - a) / (b - a) : 0;
+    e->shares[1] = b < least ? (least - a) / (b - a) : 1;
+    bool there = a >= least || b >= least;
+    for (int i = 0; i < 2 && there; i++) {
+        double p[3];
+        point_at(e, e->shares[i], p);
+        there = project(axes, p, e->at[i]);
+    }
+    return there;
+}
+
+/// How far an edge lies where axes of its direction do: of the upright one to the left, of the others down; of two alike the other way
+/// decides.
+static double reach_of(const box_axes *axes, const edge *e, int direction)
+{
+    const double *up = axes->layout->overlays->view[1];
+    const double left = -(e->at[0][0] + e->at[1][0]), down = e->at[0][1] + e->at[1][1];
+    return fabs(up[direction]) >= vec_max_abs(up) ? left + 1e-3 * down : down + 1e-3 * left;
+}
+
+static edge edge_of(const box_axes *axes, int direction, int at_u, int at_v)
+{
+    const double(*box)[3] = axes->layout->desc->box;
+    const int u = (direction + 1) % 3, v = (direction + 2) % 3;
+    edge e = { 0 };
+    for (int k = 0; k < 2; k++) {
+        e.ends[k][direction] = box[k][direction];
+        e.ends[k][u] = box[at_u][u];
+        e.ends[k][v] = box[at_v][v];
+    }
+    return e;
+}
+
+/// The edge of a direction that is its axis; false: none bounds what is seen of the box.
+static bool find_edge(const box_axes *axes, int direction, edge *out)
+{
+    const double(*box)[3] = axes->layout->desc->box;
+    bool found = false;
+    for (int i = 0; i < 4 && box[1][direction] > box[0][direction]; i++) {
+        const int at_u = i & 1, at_v = i >> 1;
+        edge e = edge_of(axes, direction, at_u, at_v);
+        if (is_seen(axes, (direction + 1) % 3, at_u) == is_seen(axes, (direction + 2) % 3, at_v) || !cut(axes, &e))
+            continue;
+        if (!found || reach_of(axes, &e, direction) > reach_of(axes, out, direction))
+            *out = e;
+        found = true;
+    }
+    return found;
+}
+
+/// Which side of the edge in the picture is away from the box. False: it is too short to have one.
+static bool find_side(const box_axes *axes, edge *e)
+{
+    const glint_overlays *o = axes->layout->overlays;
+    const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
+    const double length = sqrt(way[0] * way[0] + way[1] * way[1]);
+    double middle[3], at[2];
+    for (int c = 0; c < 3; c++)
+        middle[c] = axes->layout->desc->box[0][c] / 2 + axes->layout->desc->box[1][c] / 2;
+    if (!project(axes, middle, at)) {
+        at[0] = o->width / 2.0;
+        at[1] = o->height / 2.0;
+    }
+    e->out[0] = way[1] / length;
+    e->out[1] = -way[0] / length;
+    if (e->out[0] * (at[0] - e->at[0][0]) + e->out[1] * (at[1] - e->at[0][1]) > 0) {
+        e->out[0] = -e->out[0];
+        e->out[1] = -e->out[1];
+    }
+    return isfinite(length) && length >= SHORTEST * axes->layout->em;
+}
+
+/// Where a text stands that begins `away` pixels outside of a point of the edge.
+static rect place_text(const box_axes *axes, const edge *e, const double at[2], double away, int width)
+{
+    const double size[2] = { width, axes->layout->typeface.height };
+    const double far = away + (fabs(e->out[0]) * size[0] + fabs(e->out[1]) * size[1]) / 2;
+    rect r;
+    for (int i = 0; i < 2; i++) {
+        r.low[i] = at[i] + e->out[i] * far - size[i] / 2;
+        r.high[i] = r.low[i] + size[i];
+    }
+    return r;
+}
+
+static bool overlap(const rect *a, const rect *b, double room)
+{
+    return a->low[0] < b->high[0] + room && b->low[0] < a->high[0] + room && a->low[1] < b->high[1] && b->low[1] < a->high[1];
+}
+
+/// Draws a text unless it would lie over another or outside of what pixels there are.
+static void draw_text(box_axes *axes, const char *text, rect r)
+{
+    const glint_layout *layout = axes->layout;
+    const double room = ROOM * layout->em;
+    bool fits = r.high[0] > 0 && r.high[1] > 0 && r.low[0] < layout->overlays->width && r.low[1] < layout->overlays->height;
+    for (int i = 0; i < axes->count && fits; i++)
+        fits = !overlap(&r, &axes->texts[i], room);
+    if (!fits)
+        return;
+    axes->texts[axes->count++] = r;
+    glint_layout_text(layout, text, (int)floor(r.low[0] + 0.5), (int)floor(r.low[1] + 0.5), 0, 0, layout->desc->color);
+}
+
+/// The places of an edge's numbers in the picture; false: some lie over their neighbours. A mark behind the eye has a NaN.
+static bool place_marks(const box_axes *axes, const edge *e, const glint_marks *marks, double at[][2])
+{
+    const double room = ROOM * axes->layout->em;
+    bool clear = true;
+    int before = -1;
+    for (int i = 0; i < marks->count; i++) {
+        double p[3];
+        point_at(e, marks->of[i].share, p);
+        if (!project(axes, p, at[i])) {
+            at[i][0] = NAN;
+            continue;
+        }
+        if (before >= 0) {
+            const rect a = place_text(axes, e, at[before], 0, marks->of[before].width);
+            const rect b = place_text(axes, e, at[i], 0, marks->of[i].width);
+            clear = clear && !overlap(&a, &b, room);
+        }
+        before = i;
+    }
+    return clear;
+}
+
+static void draw_axis(box_axes *axes, int direction, const edge *e)
+{
+    const glint_layout *layout = axes->layout;
+    const glint_overlay_desc *desc = layout->desc;
+    const double(*values)[3] = desc->has_values ? desc->values : desc->box;
+    const double half = fmax(LINE * layout->em / 2, 0.5), tick = TICK * layout->em, room = ROOM * layout->em;
+    const double way[2] = { e->at[1][0] - e->at[0][0], e->at[1][1] - e->at[0][1] };
+    double at[GLINT_OVERLAY_TICKS_MAX][2], steps = WANTED;
+    glint_marks marks = { .count = 0 };
+    do {
+        glint_marks_round(&marks, &layout->typeface, values[0][direction], values[1][direction], steps);
+        steps *= 0.8;
+    } while (!place_marks(axes, e, &marks, at) && steps > 0.5);
+    glint_layout_line(layout, e->at[0], way, half, desc->color);
+    double reach = tick + room; // from the edge to beyond its numbers
+    for (int i = 0; i < marks.count; i++) {
+        const double mark[2] = { e->out[0] * tick, e->out[1] * tick };
+        if (isnan(at[i][0]))
+            continue;
+        glint_layout_line(layout, at[i], mark, half, desc->color);
+        draw_text(axes, marks.of[i].text, place_text(axes, e, at[i], tick + room, marks.of[i].width));
+        reach = fmax(reach, tick + 2 * room + fabs(e->out[0]) * marks.of[i].width + fabs(e->out[1]) * layout->typeface.height);
+    }
+    const char *name = desc->names[direction];
+    const double middle[2] = { (e->at[0][0] + e->at[1][0]) / 2, (e->at[0][1] + e->at[1][1]) / 2 };
+    draw_text(axes, name, place_text(axes, e, middle, reach, glint_typeface_width(&layout->typeface, name, strlen(name))));
+}
+
+void glint_box_axes_draw(const glint_layout *layout)
+{
+    box_axes axes = { .layout = layout };
+    double farthest = 0;
+    for (int i = 0; i < 8; i++) {
+        double corner[3];
+        for (int c = 0; c < 3; c++)
+            corner[c] = layout->desc->box[i >> c & 1][c];
+        farthest = fmax(farthest, depth_of(&axes, corner));
+    }
+    if (!layout->overlays->camera.orthographic)
+        axes.nearest = NEAREST * farthest;
+    for (int direction = 0; direction < 3 && farthest > 0; direction++) {
+        edge e;
+        if (find_edge(&axes, direction, &e) && find_side(&axes, &e))
+            draw_axis(&axes, direction, &e);
+    }
+}
