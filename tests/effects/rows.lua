@@ -4,6 +4,9 @@
 ---   stage, rays    its counter: the stage's name or the kind of ray in the events of --json; nil: it has none
 ---   functions  Lua patterns of the names of its functions; with the effect at least one is called. {}: what it does is
 ---              compiled into functions of all
+---   file       what the frame is written as, where the effect is of writing: functions of the whole program count, and the frame
+---              without it is a .png; nil: nothing is written, and functions within tiles count
+---   library    without which the effect is left out; as `glint --version --verbose` has it
 ---   call       makes the scene call for it: gets glint, the scene's parts, and the scene
 return {
   { name = "shadows", part = "SHADOW", stage = "occlude", rays = "shadow", functions = { "^occlude" },
@@ -85,4 +88,15 @@ return {
   { name = "lens", part = "LENS", functions = { "camera_lens", "through_lens" },
     call = function(_, _, scene) scene.camera.aperture = 0.5 end },
   { name = "samples", part = "SAMPLES", stage = "resolve", functions = { "^resolve" }, options = "--samples 4" },
+  { name = "label", file = "png", functions = { "^glint_overlays_draw$", "^glint_stamps_row$", "^glint_letters_open$" },
+    call = function(glint, _, scene) scene:add(glint.label { text = "t = 0" }) end },
+  { name = "colorbar", file = "png", functions = { "^glint_colorbar_", "^glint_marks_" },
+    call = function(glint, _, scene) scene:add(glint.colorbar { map = "magma", low = 0, high = 1 }) end },
+  { name = "axes", file = "png", functions = { "^glint_axes_draw$", "^glint_layout_line$" },
+    call = function(glint, _, scene) scene:add(glint.axes {}) end },
+  { name = "axes_of_a_box", file = "png", functions = { "^glint_box_axes_draw$", "^glint_layout_line$" },
+    call = function(glint, _, scene) scene:add(glint.axes { box = { { -8, -2, -3 }, { 7, 4, 4 } } }) end },
+  { name = "colormap", file = "png", functions = { "^glint_colormap_table$" }, options = "--passes depth --colormap viridis" },
+  { name = "npy", file = "npy", functions = { "^glint_npy_" } },
+  { name = "exr", file = "exr", library = "OpenEXR", functions = { "^glint_exr_" } },
 }

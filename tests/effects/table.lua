@@ -14,9 +14,10 @@ local function output(command)
   return text, pipe:close()
 end
 
-local function arguments(row, more)
-  return ("%sscene.lua -D effect=%s -o none -t 1 --size 320x180 %s %s"):format(here, row and row.name or "none",
-    row and row.options or "", more)
+--- file: where the picture goes, or nil.
+local function arguments(row, more, file)
+  return ("%sscene.lua -D effect=%s -o %s -t 1 --size 320x180 %s %s"):format(here, row and row.name or "none",
+    file or "none", row and row.options or "", more)
 end
 
 --- The counter of an effect in the events of a frame with `called` (a row, or nil) called for.
@@ -27,14 +28,16 @@ local function counted(row, called)
   return row.rays and tonumber(text:match(('"%s":(%%d+)'):format(row.rays))) + found or found
 end
 
---- Instructions within tiles, by function, and all together. Of a copy without notes for debuggers: valgrind does not read all
---- that clang writes there, and the symbols have the names.
-local function traced(folder, row)
+--- Instructions within tiles, or of all where a picture of that ending is written, by function, and all together. Of a copy
+--- without notes for debuggers: valgrind does not read all that clang writes there, and the symbols have the names.
+local function traced(folder, row, ending)
   local file, bare = os.tmpname(), os.tmpname()
+  local picture = ending and ("%s.%s"):format(file, ending)
   local log, ok = output(("strip --strip-debug -o %s %s/glint && GLINT_ISA=avx2 valgrind --tool=callgrind "
-    .. "--callgrind-out-file=%s --compress-strings=no --toggle-collect=glint_tile_render %s %s"):format(bare, folder, file, bare,
-    arguments(row, "--quiet")))
+    .. "--callgrind-out-file=%s --compress-strings=no %s %s %s"):format(bare, folder, file,
+    ending and "" or "--toggle-collect=glint_tile_render", bare, arguments(row, "--quiet", picture)))
   os.remove(bare)
+  if picture then output(("rm -f %s*.%s"):format(file, ending)) end
   assert(ok, log)
   local functions, total, name, skip = {}, 0, nil, false
   for line in io.lines(file) do
@@ -79,6 +82,8 @@ if mode == "parts" then
 end
 
 local functions, total = traced(build, nil)
+local written = traced(build, nil, "png")
+local libraries = output(("%s/glint --version --verbose"):format(build))
 local without = {}
 for _, part in ipairs(mode == "bench" and parts() or {}) do
   local _, less = traced(build .. "/without/" .. part, nil)
@@ -87,14 +92,16 @@ end
 local passed, failed = 0, 0
 print(("# %-12s %8s %8s %10s %10s %14s"):format("effect", "counter", "with it", "functions", "with it", "instructions"))
 for _, row in ipairs(rows) do
+  if row.library and not libraries:find(row.library, 1, true) then goto next end
   local none, some = counted(row, nil), counted(row, row)
-  local called, called_with = calls(row, functions), calls(row, (traced(build, row)))
+  local called, called_with = calls(row, row.file and written or functions), calls(row, (traced(build, row, row.file)))
   local more = row.part and without[row.part]
   local good = none == 0 and called == 0 and (some > 0 or not (row.stage or row.rays)) and
     (called_with > 0 or #row.functions == 0) and (not more or more <= LIMIT)
   if good then passed = passed + 1 else failed = failed + 1 end
   print(("%s %-12s %8d %8d %10d %10d %14s"):format(good and "ok" or "not ok", row.name, none, some, called, called_with,
     more and ("%+.3f %%"):format(100 * more) or "-"))
+  ::next::
 end
 print(("%d passed, %d failed, 0 skipped"):format(passed, failed))
 os.exit(failed == 0)
