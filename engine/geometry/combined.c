@@ -87,6 +87,40 @@ void glint_combined_box(const glint_geometry *geometry, const glint_combined *co
     }
 }
 
+/// What a set of parts needs to be something, and which of them can be it alone.
+typedef struct roles {
+    uint64_t needs, alone;
+} roles;
+
+static roles combine_roles(uint8_t operation, roles a, roles b)
+{
+    if (operation == GLINT_COMBINE_UNION)
+        return (roles) { a.needs & b.needs, a.alone | b.alone };
+    return operation == GLINT_COMBINE_INTERSECTION ? (roles) { a.needs | b.needs, 0 } : a;
+}
+
+void glint_combined_roles(glint_combined *combined)
+{
+    roles stack[GLINT_PARTS_MAX] = { { 0 } };
+    int top = 0;
+    bool whole = combined->count > 0;
+    for (uint32_t k = 0; k < combined->length; k++) {
+        const uint8_t p = combined->program[k];
+        if (p < GLINT_PARTS_MAX) {
+            stack[top++] = (roles) { (uint64_t)1 << p, (uint64_t)1 << p };
+        } else if (p == GLINT_COMBINE_NOTHING) {
+            stack[top++] = (roles) { ~(uint64_t)0, 0 };
+            whole = false;
+        } else {
+            top--;
+            stack[top - 1] = combine_roles(p, stack[top - 1], stack[top]);
+        }
+    }
+    combined->all = whole ? ~(uint64_t)0 >> (GLINT_PARTS_MAX - combined->count) : 0;
+    combined->needs = stack[0].needs;
+    combined->alone = stack[0].alone;
+}
+
 /// Along any way as good as along another; this one is along no face or edge that is likely.
 static bool hull_holds(const glint_geometry *geometry, const glint_prim *part, const double place[3])
 {

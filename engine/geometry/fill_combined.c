@@ -194,8 +194,10 @@ glint_status glint_fill_combined(glint_filler *f, glint_shape *shape, const glin
         status = glint_check_part(name, shape->children.items[i], f->error);
     if (!status)
         status = add_to_whole(f, &m, shape, around, dress, false);
-    if (!status)
+    if (!status) {
+        glint_combined_roles(m.combined);
         glint_combined_box(geometry, m.combined, prim->corner);
+    }
     f->object_count++;
     return status;
 }

@@ -128,6 +128,8 @@ static inline bool glint_prim_has_corners(const glint_prim *prim)
 /// geometry/combined.c: the box of a combined solid whose program and members are there: the middle, the lower and the upper corner; -inf
 /// and inf where it has no end.
 void glint_combined_box(const glint_geometry *geometry, const glint_combined *combined, double box[3][3]);
+/// Sets of parts that its program makes known: all, needs, alone.
+void glint_combined_roles(glint_combined *combined);
 /// Whether a place is inside the combined solid.
 bool glint_combined_holds(const glint_geometry *geometry, const glint_combined *combined, const double place[3]);
 

@@ -9,8 +9,9 @@ typedef struct R(stretches) {
     uint32_t triangle[2][GLINT_PARTS_MAX][VR]; ///< of meshes: by which they come in and go out
     vr known; ///< up to where all this is told: a mesh may have more
     uint64_t live; ///< parts that have some, and are of the program
-    uint32_t length;
-    uint8_t program[2 * GLINT_PARTS_MAX]; ///< the whole's for these rays
+    uint32_t length; ///< of the program; 0: these rays meet nothing
+    const uint8_t *program; ///< the whole's, or what these rays leave of it, in `own`
+    uint8_t own[2 * GLINT_PARTS_MAX];
 } R(stretches);
 
 /// The half-space behind a plane.
@@ -88,7 +89,7 @@ static inline unsigned R(vector_lanes)(const uint32_t *list, uint32_t wanted)
 }
 
 /// Makes the program of a vector of rays: that of the whole without what none of them is in. That leaves little of many parts.
-static void R(make_program)(const glint_combined *whole, uint64_t live, R(stretches) * s)
+static void R(leave_parts)(const glint_combined *whole, uint64_t live, R(stretches) * s)
 {
     uint32_t begin[GLINT_PARTS_MAX]; // of the code of each set so far; such that has none is empty
     uint32_t top = 0, n = 0;
@@ -97,21 +98,40 @@ static void R(make_program)(const glint_combined *whole, uint64_t live, R(stretc
         if (p < GLINT_PARTS_MAX || p == GLINT_COMBINE_NOTHING) {
             begin[top++] = n;
             if (p < GLINT_PARTS_MAX && live >> p & 1)
-                s->program[n++] = p;
+                s->own[n++] = p;
             continue;
         }
         const uint32_t second = begin[--top], first = begin[top - 1];
         const bool any_first = first < second, any_second = second < n;
         if (any_first && any_second)
-            s->program[n++] = p;
+            s->own[n++] = p;
         else if (p == GLINT_COMBINE_INTERSECTION || (p == GLINT_COMBINE_DIFFERENCE && !any_first))
             n = first;
     }
     s->length = n;
     s->live = 0;
     for (uint32_t k = 0; k < n; k++)
-        if (s->program[k] < GLINT_PARTS_MAX)
-            s->live |= (uint64_t)1 << s->program[k];
+        if (s->own[k] < GLINT_PARTS_MAX)
+            s->live |= (uint64_t)1 << s->own[k];
+}
+
+/// The same, where it is known at once: of all parts, and of one.
+static inline void R(make_program)(const glint_combined *whole, uint64_t live, R(stretches) * s)
+{
+    if (live && live == whole->all) {
+        s->program = whole->program;
+        s->length = whole->length;
+        s->live = live;
+        return;
+    }
+    s->program = s->own;
+    if (live & (live - 1)) {
+        R(leave_parts)(whole, live, s);
+        return;
+    }
+    s->live = live & whole->alone;
+    s->length = s->live != 0;
+    s->own[0] = (uint8_t)(live ? __builtin_ctzll(live) : 0);
 }
 
 /// A vector of rays before a combined solid.
@@ -139,41 +159,63 @@ static uint64_t R(stretches_of_hull)(const glint_geometry_table *table, const gl
     return (uint64_t)R(hull_stretches)(&rays, lanes, into, first, t, triangle, &s->known) << j;
 }
 
+/// Whether rays start on parts of it.
+static inline bool R(starts_on)(const uint32_t *on, uint32_t first, uint32_t count)
+{
+    bool starts = false;
+    for (int i = 0; on && i < VR; i++)
+        starts = starts || on[i] - first < count;
+    return starts;
+}
+
+/// Of a part that has more than one stretch, or where rays start on some part: those are `starts`; of the others `lanes` are wanted.
+/// Returns whether any ray is in it.
+static __attribute__((noinline)) bool R(stretch_of_part)(const glint_geometry_table *table, const glint_prim *part, uint32_t index,
+                                                         const R(whole_rays) * w, unsigned lanes, bool starts, vr t[2])
+{
+    const unsigned all = (1u << VR) - 1;
+    const unsigned into = part->turned ? ~w->inward : w->inward;
+    unsigned own = starts ? R(vector_lanes)(w->on, index) : 0;
+    if (part->kind == GLINT_PRIM_SOLID && part->face) {
+        own |= starts ? R(vector_lanes)(w->on, part->face == 1 ? index + 1 : index - 1) : 0;
+        return R(stretch_of_torus)(table, part, w->o, w->d, own, into, t) || own;
+    }
+    t[0] = r_set(HUGE_VAL);
+    t[1] = r_set(-HUGE_VAL);
+    const bool any = ((own | ~lanes) & all) != all && R(stretch_within)(table, part, w->o, w->d, t);
+    if (own)
+        R(stretch_from)(table, part, w->o, w->d, own, into, t);
+    return any || (own & into);
+}
+
 /// lanes: those of w->lanes that are not done with; from: see above.
 static void R(find_stretches)(const glint_geometry_table *table, const glint_combined *whole, const R(whole_rays) * w,
                               unsigned lanes, vr from, R(stretches) * s)
 {
-    const uint32_t first = table->prim_count + whole->first, *on = w->on;
-    const vr o[3] = { w->o[0], w->o[1], w->o[2] }, d[3] = { w->d[0], w->d[1], w->d[2] };
-    const unsigned inward = w->inward;
-    bool starts = false;
+    const uint32_t first = table->prim_count + whole->first;
+    const bool starts = R(starts_on)(w->on, first, whole->count);
     s->known = r_set(HUGE_VAL);
-    for (int i = 0; on && i < VR; i++)
-        starts = starts || on[i] - first < whole->count;
     uint64_t live = 0;
     for (uint32_t j = 0; j < whole->count; j++) {
         const glint_prim *part = &table->prims[first + j];
-        const unsigned into = part->turned ? ~inward : inward;
-        unsigned own = starts ? R(vector_lanes)(on, first + j) : 0;
-        vr t[2] = { r_set(HUGE_VAL), r_set(-HUGE_VAL) };
-        bool any;
+        vr t[2];
         if (part->kind == GLINT_PRIM_HULL) {
             if (part->face == 1)
                 live |= R(stretches_of_hull)(table, part, j, w, lanes, from, s);
             continue;
         }
-        if (part->kind == GLINT_PRIM_SOLID && part->face) {
-            own |= starts ? R(vector_lanes)(on, part->face == 1 ? first + j + 1 : first + j - 1) : 0;
-            any = R(stretch_of_torus)(table, part, o, d, own, into, t);
-        } else {
-            any = R(stretch_within)(table, part, o, d, t);
-            if (own)
-                R(stretch_from)(table, part, o, d, own, into, t);
-        }
-        if (any || own)
+        const bool several = part->kind == GLINT_PRIM_SOLID && part->face;
+        if (several || starts ? R(stretch_of_part)(table, part, first + j, w, lanes, starts, t)
+                              : R(stretch_within)(table, part, w->o, w->d, t)) {
             live |= (uint64_t)1 << j;
-        s->t[0][j] = t[0];
-        s->t[1][j] = t[1];
+            s->t[0][j] = t[0];
+            s->t[1][j] = t[1];
+        } else if (whole->needs >> j & 1) {
+            s->known = r_set(HUGE_VAL);
+            s->live = 0;
+            s->length = 0;
+            return;
+        }
     }
     R(make_program)(whole, live, s);
 }
@@ -226,8 +268,52 @@ INNER R(change) R(change_at)(const R(stretches) * s, vr t, const bool parts)
     return stack[0];
 }
 
-/// Where the whole changes first beyond `from`; inf: nowhere.
-static vr R(first_change)(const R(stretches) * s, vr from)
+/// Where one part alone does, which rays are in from `in` to `out`.
+INNER vr R(first_end)(vr in, vr out, vr from)
+{
+    const vr none = r_set(HUGE_VAL), end = r_select(r_lt(from, in), in, r_select(r_lt(from, out), out, none));
+    return r_select(r_lt(in, out), end, none);
+}
+
+/// Rays that are in a stretch right before t, and right after it.
+INNER rm R(in_before)(const vr stretch[2], vr t) { return rm_and(r_lt(stretch[0], t), r_le(t, stretch[1])); }
+
+INNER rm R(in_after)(const vr stretch[2], vr t) { return rm_and(r_le(stretch[0], t), r_lt(t, stretch[1])); }
+
+/// The nearer of *best and an end of a stretch beyond `from` where `mask` is as `is` says.
+INNER void R(nearer_end)(vr t, vr from, rm ends, rm mask, const bool is, vr *best)
+{
+    const rm ahead = rm_and(r_lt(from, t), ends);
+    *best = r_min(r_select(is ? rm_and(ahead, mask) : rm_andnot(ahead, mask), t, r_set(HUGE_VAL)), *best);
+}
+
+/// Where a combination of two parts does; operation: a constant. Where a stretch begins or ends, the whole does by whether rays are in
+/// the other.
+INNER vr R(first_of_two)(const uint8_t operation, const vr a[2], const vr b[2], vr from)
+{
+    const bool both = operation == GLINT_COMBINE_INTERSECTION, less = operation == GLINT_COMBINE_DIFFERENCE;
+    const rm a_ends = r_lt(a[0], a[1]), b_ends = r_lt(b[0], b[1]);
+    const bool late = both || less;
+    vr best = r_set(HUGE_VAL);
+    R(nearer_end)(a[0], from, a_ends, late ? R(in_after)(b, a[0]) : R(in_before)(b, a[0]), both, &best);
+    R(nearer_end)(a[1], from, a_ends, late ? R(in_before)(b, a[1]) : R(in_after)(b, a[1]), both, &best);
+    R(nearer_end)(b[0], from, b_ends, both ? R(in_after)(a, b[0]) : R(in_before)(a, b[0]), late, &best);
+    R(nearer_end)(b[1], from, b_ends, both ? R(in_before)(a, b[1]) : R(in_after)(a, b[1]), late, &best);
+    return best;
+}
+
+/// Whether a change at t of a combination of two is the second's: the first does not change as their combination does.
+static inline rm R(is_of_second)(const R(stretches) * s, vr t)
+{
+    const uint8_t *p = s->program;
+    const vr a[2] = { s->t[0][p[0]], s->t[1][p[0]] }, b[2] = { s->t[0][p[1]], s->t[1][p[1]] };
+    const rm before = R(in_before)(a, t), after = R(in_after)(a, t);
+    return rm_or(R(unlike)(before, R(combine_masks)(p[2], before, R(in_before)(b, t))),
+                 R(unlike)(after, R(combine_masks)(p[2], after, R(in_after)(b, t))));
+}
+
+/// Where a program of more does.
+static vr R(first_of_many)(const R(stretches) * s, vr from)
 {
     vr best = r_set(HUGE_VAL);
     for (uint64_t left = s->live; left; left &= left - 1)
@@ -240,6 +326,23 @@ static vr R(first_change)(const R(stretches) * s, vr from)
             best = r_select(rm_and(ahead, R(unlike)(change.before, change.after)), t, best);
         }
     return best;
+}
+
+/// Where the whole changes first beyond `from`; inf: nowhere.
+static inline vr R(first_change)(const R(stretches) * s, vr from)
+{
+    const uint8_t *p = s->program;
+    if (s->length == 0)
+        return r_set(HUGE_VAL);
+    if (s->length == 1)
+        return R(first_end)(s->t[0][p[0]], s->t[1][p[0]], from);
+    if (s->length > 3)
+        return R(first_of_many)(s, from);
+    const vr a[2] = { s->t[0][p[0]], s->t[1][p[0]] }, b[2] = { s->t[0][p[1]], s->t[1][p[1]] };
+    if (p[2] == GLINT_COMBINE_UNION)
+        return R(first_of_two)(GLINT_COMBINE_UNION, a, b, from);
+    return p[2] == GLINT_COMBINE_INTERSECTION ? R(first_of_two)(GLINT_COMBINE_INTERSECTION, a, b, from)
+                                              : R(first_of_two)(GLINT_COMBINE_DIFFERENCE, a, b, from);
 }
 
 /// Where the whole changes first for the rays of `lanes`, and which of these it does for; `s` is told of there. Call it again for
@@ -259,6 +362,8 @@ static unsigned R(next_change)(const glint_geometry_table *table, const glint_co
 static void R(keep_part)(const glint_cast_args *args, const glint_combined *whole, const R(stretches) * s, uint32_t j,
                          size_t at, rm mine, vr t)
 {
+    if (!rm_bits(mine))
+        return;
     const uint32_t index = args->geometry->prim_count + whole->first + j;
     if (args->geometry->prims[index].kind != GLINT_PRIM_HULL) {
         R(keep_nearest)(args, at, index, mine, t);
@@ -284,12 +389,20 @@ static bool R(cast_combined)(const glint_cast_args *args, const glint_prim *prim
         any |= hit;
         if (!hit)
             continue;
+        if (s.length == 1) {
+            R(keep_part)(args, whole, &s, s.program[0], at, rm_from_bits(hit), t);
+            continue;
+        }
+        if (s.length == 3) {
+            const rm second = R(is_of_second)(&s, t), kept = rm_from_bits(hit);
+            R(keep_part)(args, whole, &s, s.program[0], at, rm_andnot(kept, second), t);
+            R(keep_part)(args, whole, &s, s.program[1], at, rm_and(kept, second), t);
+            continue;
+        }
         const vr part = R(change_at)(&s, t, true).part;
         for (uint64_t live = s.live; live; live &= live - 1) {
             const uint32_t j = (uint32_t)__builtin_ctzll(live);
-            const rm mine = rm_and(rm_from_bits(hit), r_eq(part, r_set(j)));
-            if (rm_bits(mine))
-                R(keep_part)(args, whole, &s, j, at, mine, t);
+            R(keep_part)(args, whole, &s, j, at, rm_and(rm_from_bits(hit), r_eq(part, r_set(j))), t);
         }
     }
     return any != 0;

@@ -67,9 +67,9 @@ static void R(start_at_eye)(const glint_solid *solid, const glint_prim *prim, co
 INNER void R(cut_by_slab)(R(span) * span, const glint_solid *solid, const R(solid_start) * start, const vr d[3], int slab,
                           int axis, const bool flats, const bool faces)
 {
-    vr height[2];
-    const vr zero = r_set(0),
-             rise = R(over_slab)(solid->faces + 2 * slab, start->height ? NULL : start->place, d, height), fall = -rise;
+    const vr zero = r_set(0);
+    vr height[2] = { zero, zero };
+    const vr rise = R(over_slab)(solid->faces + 2 * slab, start->height ? NULL : start->place, d, height), fall = -rise;
     const vr below = start->height ? r_set(start->height[2 * slab]) : height[0],
              above = start->height ? r_set(start->height[2 * slab + 1]) : height[1];
     const rm rising = r_lt(zero, rise), parallel = r_eq(rise, zero);
@@ -332,6 +332,8 @@ static void R(solid_surface)(const glint_solid *solid, const glint_prim *prim, c
         k[c] = start->f[c] + t * e[c];
     if (solid->form == GLINT_FORM_TORUS) {
         R(onto_torus)(solid->tube, k, g);
+    } else if (solid->form == GLINT_FORM_BALL) {
+        R(onto_side)(solid->form, k, g);
     } else {
         const R(span) span = R(span_of)(solid, start, d, e, true, true);
         const rm entering = r_eq(t, span.t[0]);

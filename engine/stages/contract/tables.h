@@ -167,6 +167,10 @@ typedef struct glint_combined {
     uint32_t first; ///< prims[prim_count + first] is part 0
     uint32_t count; ///< of parts
     uint32_t length; ///< of the program
+    // sets of parts, a bit each:
+    uint64_t all; ///< every part, where the program has no empty set; else 0
+    uint64_t needs; ///< those without any of which the whole is nothing
+    uint64_t alone; ///< those that are the whole where all others are nothing
     uint8_t program[2 * GLINT_PARTS_MAX];
 } glint_combined;
 

@@ -229,9 +229,10 @@ static inline void R(block_samples)(const R(shadow_tile) * tile, int k, unsigned
         return;
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
+        const unsigned wanted = R(stay_in_combined)(args, prim, at, near);
         for (uint32_t s = 0; s < args->sample_count; s++)
             light->open[s] &= ~R(blocked_by_combined)(args, prim, light->light_samples.light_sample[s].position, at,
-                                                      near & light->open[s]);
+                                                      wanted & light->open[s]);
         return;
     }
     for (uint32_t s = 0; back && s < args->sample_count; s++)

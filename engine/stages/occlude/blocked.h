@@ -275,6 +275,20 @@ static unsigned R(blocked_by_solid)(const glint_occlude_args *args, const glint_
     return blocked;
 }
 
+/// Without the lanes of `wanted` whose segments leave a combined solid: those that go out of a part that all of it is in.
+static unsigned R(stay_in_combined)(const glint_occlude_args *args, const glint_prim *prim, size_t at, unsigned wanted)
+{
+    const glint_combined *whole = &args->geometry->combined[prim->item];
+    const uint32_t first = args->geometry->prim_count + whole->first;
+    const unsigned back = args->back[at / GLINT_GROUP];
+    for (uint64_t left = whole->all & whole->needs; left && wanted; left &= left - 1) {
+        const uint32_t index = first + (uint32_t)__builtin_ctzll(left);
+        const unsigned into = args->geometry->prims[index].turned ? ~back : back;
+        wanted &= ~lanes_equal(args->prim + at, index) | into;
+    }
+    return wanted;
+}
+
 /// The lanes of `wanted` that a combined solid blocks: a segment from one of its parts begins within where that is seen from
 /// behind, else outside.
 static unsigned R(blocked_by_combined)(const glint_occlude_args *args, const glint_prim *prim,
@@ -343,6 +357,9 @@ INNER unsigned R(blocked_by)(const R(shadow_tile) * tile, R(occluder) occluder, 
         return R(blocked_by_solid)(args, prim, tile->position, group->at, own, wanted, occluder.sides.outside);
     }
     if (prim->kind == GLINT_PRIM_COMBINED) {
+        wanted = R(stay_in_combined)(args, prim, group->at, wanted);
+        if (!wanted)
+            return 0;
         if (!group->made)
             R(make_shadow_rays)(tile, group);
         wanted &= R(near_rays)(&group->rays, prim);
