@@ -1067,8 +1067,8 @@ glint_render_desc glint_shutter_desc(const glint_render_desc *frame);
 /// Plans a frame that is seen while a shutter is open: light, alpha and albedo are the mean of `times`, `count` plans of the scene
 /// as it was then, by glint_shutter_desc(desc); 1 .. GLINT_SHUTTER_TIMES_MAX. All else is of `scene` as it is now: what the
 /// plan says, and depth, normal, object_id, outline and refined. Where lights alone differ, each that does becomes one light for each
-/// time, with its share of the strength.
-///
+/// time, with its share of the strength. A derivative of the frame is the mean of those by its name that the times' own descriptions
+/// have; of a time without it, on which nothing depends then, 0.
 /// Takes over the plans and the list, which is from malloc, also when it fails.
 glint_status glint_plan_create_exposed(const glint_scene *scene, const glint_render_desc *desc, glint_plan **times,
                                        size_t count, glint_plan **out, glint_error *error);

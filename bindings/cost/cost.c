@@ -19,9 +19,12 @@
 
 // ---- The scene ----
 
-static bool read_scene(cli_options *options, glintL_run *run)
+static bool read_scene(cli_options *options, glintL_run *run, cost_moments **moments)
 {
     cli_script script;
+    *moments = cost_moments_open(&run->moments);
+    if (!*moments)
+        return glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
     run->mode = GLINTL_MODE_EXPLAIN;
     run->explain_frame = options->frame;
     run->keeps_scene = true;
@@ -200,6 +203,7 @@ static void close_study(cost_study *study)
         free(study->cases[i].picture);
         free(study->cases[i].difference);
     }
+    cost_moments_close(study->moments);
     for (int i = 0; i < study->left_out_count; i++)
         free(study->left_out[i]);
     free(study->left_out);
@@ -212,16 +216,28 @@ static void close_study(cost_study *study)
     free(study);
 }
 
-static cost_study *open_study(cli_options *options, cli_output *output, glintL_run *run)
+// What a frame is measured as whose times are not known.
+static bool tell_of_instant(cost_study *study)
+{
+    const char *lack = cost_moments_lack(study->moments);
+    return !lack || cost_leave_out(study, "the open shutter: %s; the frame is measured as seen in an instant", lack);
+}
+
+// Takes the moments over, also when it fails.
+static cost_study *open_study(cli_options *options, cli_output *output, glintL_run *run, cost_moments *moments)
 {
     cost_study *study = calloc(1, sizeof *study);
+    double times[COST_VALUES_MAX];
     if (!study) {
+        cost_moments_close(moments);
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
         return NULL;
     }
     study->output = output;
     study->run = run;
     study->options = options;
+    study->moments = moments;
+    study->shutter_times = cost_moments_counts(moments, times) > 0 ? (int)times[0] : 0;
     study->own = &run->kept_render;
     study->runs = options->quick ? RUNS_QUICK : RUNS;
     study->most_runs = MORE_RUNS * study->runs < COST_RUNS_MAX ? MORE_RUNS * study->runs : COST_RUNS_MAX;
@@ -231,12 +247,13 @@ static cost_study *open_study(cli_options *options, cli_output *output, glintL_r
     cost_subject subject = { .plan = run->explain_plan,
                              .render = study->own,
                              .scene = &study->scene,
+                             .moments = moments,
                              .has_neighbour = run->kept_neighbour != NULL,
                              .is_pfm = glintL_name_is_linear(study->own->output) };
     if (!cost_scene_open(&study->scene, run->kept_scene))
         glintL_run_fail(run, GLINTL_EXIT_FAILED, 0, "out of memory");
-    else
-        cost_list_cases(study, &subject);
+    else if (cost_list_cases(study, &subject))
+        tell_of_instant(study);
     return study;
 }
 
@@ -273,7 +290,12 @@ static bool check_options(const cli_options *options, glintL_run *run)
 
 int cli_cost(cli_options *options, cli_output *output, glintL_run *run)
 {
-    cost_study *study = check_options(options, run) && read_scene(options, run) ? open_study(options, output, run) : NULL;
+    cost_moments *moments = NULL;
+    cost_study *study = NULL;
+    if (check_options(options, run) && read_scene(options, run, &moments))
+        study = open_study(options, output, run, moments);
+    else
+        cost_moments_close(moments);
     if (study && !run->exit_code) {
         say_frame(study);
         if (!output->quiet)

@@ -6,6 +6,7 @@
 ///   cost/knobs.c    the table of knobs: a setting that trades accuracy for time is a row of it
 ///   cost/scene.c    a scene whose materials and lights a knob edits, and gets back as they were
 ///   cost/shapes.c   the same for meshes: shading, and spheres of other segments
+///   cost/moments.c  the same at the times of an open shutter
 ///   cost/cases.c    the settings to be measured, and the rows of the table that show them
 ///   cost/measure.c  one setting in the engine: its plan, and its picture in time
 ///   cost/errors.c   how far it is from the truth: the reference, decisions pixel by pixel
@@ -87,6 +88,21 @@ glint_status cost_scene_set_segments(cost_scene *scene, double segments, glint_e
 void cost_scene_restore_meshes(cost_scene *scene);
 void cost_scene_close_meshes(cost_scene *scene);
 
+// ---- cost/moments.c ----
+
+/// The scene at the times of shutters that look more and less often; of a frame seen in an instant, none.
+typedef struct cost_moments cost_moments;
+
+/// Has the run tell it of them: before the script runs. NULL: out of memory.
+cost_moments *cost_moments_open(glintL_moments *out);
+void cost_moments_close(cost_moments *moments); ///< NULL: nothing
+/// Why there are none though the shutter is open; NULL: there are, or it is not.
+const char *cost_moments_lack(const cost_moments *moments);
+/// How often the shutters look whose moments there are, the camera's own first; returns how many.
+int cost_moments_counts(const cost_moments *moments, double out[COST_VALUES_MAX]);
+/// Sets the scene's objects to time k of `times`; times and k 0: to the frame's own instant.
+glint_status cost_moments_enter(const cost_moments *moments, glint_scene *scene, int times, int k, glint_error *error);
+
 // ---- cost/knobs.c ----
 
 typedef struct cost_value {
@@ -99,6 +115,7 @@ typedef struct cost_subject {
     const glint_plan *plan; ///< of the frame as the script has it
     const glintL_render *render;
     const cost_scene *scene;
+    const cost_moments *moments;
     bool has_neighbour; ///< the script has another frame beside this one
     bool is_pfm; ///< the file has no codes
 } cost_subject;
@@ -116,6 +133,7 @@ typedef struct cost_values {
 typedef struct cost_draft {
     cost_scene *scene;
     glintL_render render;
+    int shutter_times; ///< 0: it is seen in an instant
     bool reuses; ///< measured after the neighbouring frame, keeping what that leaves
 } cost_draft;
 
@@ -207,6 +225,8 @@ typedef struct cost_study {
     glintL_run *run;
     const cli_options *options;
     cost_scene scene;
+    cost_moments *moments; ///< owned
+    int shutter_times; ///< the script's own, where there are moments; 0: the frame is of an instant
     const glintL_render *own;
     cost_values values[COST_KNOBS_MAX]; ///< of each knob; count 0: not selected, or the scene does not respond
     glint_renderer *renderers[2][2]; ///< [keeps stages][counts work]; owned, but for the one that is the run's

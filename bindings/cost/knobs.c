@@ -58,6 +58,27 @@ static glint_status apply_adaptive(cost_draft *draft, cost_value value, glint_er
     return GLINT_OK;
 }
 
+// ---- shutter_times: how often an open shutter looks ----
+
+// The truth is the most: what the others lack is light of the times between.
+static void list_shutter_times(const cost_subject *subject, cost_values *out)
+{
+    double counts[COST_VALUES_MAX];
+    const int count = cost_moments_counts(subject->moments, counts);
+    if (count == 0)
+        return;
+    cost_list_numbers(counts + 1, count - 1, counts[0], out);
+    out->has_truth = true;
+    out->truth = out->count - 1;
+}
+
+static glint_status apply_shutter_times(cost_draft *draft, cost_value value, glint_error *error)
+{
+    (void)error;
+    draft->shutter_times = (int)value.number;
+    return GLINT_OK;
+}
+
 // ---- shadows ----
 
 static bool is_soft(const glint_light_desc *light)
@@ -409,6 +430,8 @@ static glint_status apply_reuse(cost_draft *draft, cost_value value, glint_error
 const cost_knob cost_knobs[] = {
     { "samples", SURFACES, COST_ERROR_FILM, true, false, list_samples, apply_samples },
     { "adaptive", "several samples a pixel", COST_ERROR_FILM, true, false, list_adaptive, apply_adaptive },
+    { "shutter_times", "an animation whose camera has an open shutter", COST_ERROR_FILM, true, false, list_shutter_times,
+      apply_shutter_times },
     { "shadows", "a light that casts shadows", COST_ERROR_FILM, true, false, list_shadows, apply_shadows },
     { "light_samples", "a light with a surface and soft shadows", COST_ERROR_FILM, true, false, list_light_samples,
       apply_light_samples },

@@ -54,11 +54,15 @@ static glint_status apply_knobs(cost_study *study, const cost_case *c, cost_draf
     return status;
 }
 
-// The scene is as the script left it afterwards. `draft` says how the case is rendered and written.
-static glint_status plan_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft,
-                              glint_plan **out, glint_error *error)
+static glint_status out_of_memory(glint_error *error)
 {
-    *draft = (cost_draft) { .scene = &study->scene, .render = *study->own };
+    *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
+    return GLINT_ERR_NOMEM;
+}
+
+// What of a case the scene is planned with; a shot may have its own.
+static glint_status apply_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft, glint_error *error)
+{
     glint_render_desc *desc = &draft->render.desc;
     glint_status status = apply_knobs(study, c, draft, error);
     desc->passes = how->passes;
@@ -67,10 +71,73 @@ static glint_status plan_case(cost_study *study, const cost_case *c, const cost_
     desc->seed = how->seed >= 0 ? how->seed : desc->seed;
     desc->adaptive = how->is_exact ? 0 : desc->adaptive;
     desc->precision = how->is_exact ? GLINT_DOUBLE : desc->precision;
+    return status;
+}
+
+// Plans the scene at one time of an open shutter, with what the case makes of it then.
+static glint_status plan_time(cost_study *study, const cost_case *c, const cost_shot *how, int times, int k, glint_plan **out,
+                              glint_error *error)
+{
+    cost_scene scene;
+    cost_draft *draft = malloc(sizeof *draft);
+    glint_status status = cost_moments_enter(study->moments, study->scene.original, times, k, error);
+    bool good = draft && !status && cost_scene_open(&scene, study->scene.original);
+    if (!status && !good)
+        status = out_of_memory(error);
+    if (good) {
+        *draft = (cost_draft) { .scene = &scene, .render = *study->own };
+        status = apply_case(study, c, how, draft, error);
+        const glint_render_desc desc = glint_shutter_desc(&draft->render.desc);
+        if (!status)
+            status = glint_plan_create(scene.scene, &desc, out, error);
+        cost_scene_restore(&scene);
+        cost_scene_close(&scene);
+    }
+    free(draft);
+    return status;
+}
+
+// The same of all times; the scene is at the frame's own instant afterwards. On success the caller owns the list.
+static glint_status plan_times(cost_study *study, const cost_case *c, const cost_shot *how, int count, glint_plan ***out,
+                               glint_error *error)
+{
+    glint_plan **times = calloc((size_t)count, sizeof *times);
+    glint_status status = times ? GLINT_OK : out_of_memory(error);
+    for (int k = 0; k < count && !status; k++)
+        status = plan_time(study, c, how, count, k, &times[k], error);
+    glint_error ignored;
+    const glint_status back = cost_moments_enter(study->moments, study->scene.original, 0, 0, status ? &ignored : error);
+    status = status ? status : back;
+    for (int k = 0; times && status && k < count; k++)
+        glint_plan_destroy(times[k]);
+    if (status)
+        free(times);
+    else
+        *out = times;
+    return status;
+}
+
+// The scene is as the script left it afterwards. `draft` says how the case is rendered and written.
+static glint_status plan_case(cost_study *study, const cost_case *c, const cost_shot *how, cost_draft *draft,
+                              glint_plan **out, glint_error *error)
+{
+    const cost_draft own = { .scene = &study->scene, .render = *study->own, .shutter_times = study->shutter_times };
+    glint_plan **times = NULL;
+    *draft = own;
+    glint_status status = apply_case(study, c, how, draft, error);
+    const int count = how->is_painted ? 0 : draft->shutter_times; // what is seen and lit is decided in the frame's own instant
+    if (!status && count > 0) {
+        cost_scene_restore(&study->scene);
+        status = plan_times(study, c, how, count, &times, error);
+        *draft = own;
+        status = status ? status : apply_case(study, c, how, draft, error);
+    }
     if (!status && how->is_painted)
         status = cost_scene_show_light(&study->scene, how->light, error);
-    if (!status)
-        status = glint_plan_create(study->scene.scene, desc, out, error);
+    if (!status && times)
+        status = glint_plan_create_exposed(study->scene.scene, &draft->render.desc, times, (size_t)count, out, error);
+    else if (!status)
+        status = glint_plan_create(study->scene.scene, &draft->render.desc, out, error);
     cost_scene_restore(&study->scene);
     return status;
 }
@@ -226,10 +293,8 @@ glint_status cost_take(cost_study *study, const cost_case *c, const cost_shot *h
 {
     glint_plan *plan = NULL;
     cost_draft *draft = malloc(sizeof *draft);
-    if (!draft) {
-        *error = (glint_error) { GLINT_ERR_NOMEM, "out of memory" };
-        return GLINT_ERR_NOMEM;
-    }
+    if (!draft)
+        return out_of_memory(error);
     glint_status status = plan_case(study, c, how, draft, &plan, error);
     // A renderer keeps from the second frame on: the work counted is that of a third, amid frames that do.
     for (int frames = stats && draft->reuses ? 2 : 1; frames > 0 && !status; frames--) {

@@ -290,23 +290,49 @@ static glint_scene *open_scene(job_walk *walk, int64_t number)
 
 // ---- While the shutter is open ----
 
+// Finds the slopes of the job's scene as it has just been built.
+static int derive(lua_State *L)
+{
+    job_walk *walk = lua_touserdata(L, 3);
+    lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
+    const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
+    if (scene)
+        glintL_find_derivatives(L, scene, &walk->render);
+    return 0;
+}
+
+// Derivatives of a time: those that anything depends on then.
+static void take_derivatives(const glint_render_desc *from, glint_derivative of[GLINT_DERIVATIVES_MAX], glint_render_desc *to)
+{
+    to->derivatives = of;
+    to->derivative_count = 0;
+    for (size_t i = 0; i < from->derivative_count; i++)
+        if (from->derivatives[i].slope_count > 0)
+            of[to->derivative_count++] = from->derivatives[i];
+}
+
 // Plans frame n at each time that the shutter looks. False: the run has failed; what is planned is in the list.
-static bool plan_times(job_walk *walk, const glintL_work *work, int64_t n, const glint_camera_desc *camera,
+static bool plan_times(job_walk *walk, glintL_work *work, int64_t n, const glint_camera_desc *camera,
                        glint_plan **plans)
 {
     glint_error error;
     glint_render_desc desc = glint_shutter_desc(&work->render.desc);
+    glint_derivative derivatives[GLINT_DERIVATIVES_MAX];
     double share = camera->shutter;
     int times = (int)camera->shutter_times;
     for (int k = 0; k < times; k++) {
         walk->time = glintL_job_shutter_time(walk->job, n, share, k, times);
         const glint_scene *scene = call(walk, build, n, work->index) ? open_scene(walk, work->index) : NULL;
-        if (!scene)
+        if (!scene || !call(walk, derive, n, work->index))
             return false;
+        take_derivatives(&walk->render.desc, derivatives, &desc);
         if (glint_plan_create(scene, &desc, &plans[k], &error))
             return fail_at(walk, work->index, &error);
     }
-    return build_frame(walk, n, work->index) && open_scene(walk, work->index);
+    if (!build_frame(walk, n, work->index) || !open_scene(walk, work->index) || !call(walk, derive, n, work->index))
+        return false;
+    work->render.desc.derivatives = walk->render.desc.derivatives;
+    return true;
 }
 
 // Whether the job's scene is another at another time: an animation with a frame function.
@@ -473,6 +499,37 @@ bool glintL_jobs_run(lua_State *L, int index, glintL_run *run)
     return good;
 }
 
+// Shows the scene at the times of a shutter that looks so often. False: the run has failed.
+static bool show_times(job_walk *walk, int64_t n, double share, int times)
+{
+    glintL_run *run = walk->run;
+    for (int k = 0; k < times; k++) {
+        walk->time = glintL_job_shutter_time(walk->job, n, share, k, times);
+        glint_scene *scene = call(walk, build, n, run->explain_frame) ? open_scene(walk, run->explain_frame) : NULL;
+        if (!scene)
+            return false;
+        if (!run->moments.see(run->moments.data, scene, times, k))
+            return glintL_run_fail(run, GLINTL_EXIT_FAILED, run->explain_frame, "out of memory");
+    }
+    return true;
+}
+
+// The same of each shutter that the run is to see, where it is open. False: the run has failed.
+static bool show_moments(job_walk *walk, int64_t n)
+{
+    glintL_run *run = walk->run;
+    const glint_camera_desc camera = *glint_camera_get(glint_scene_get(scene_of(walk))->camera);
+    if (!run->moments.see || camera.shutter == 0 || !moves(walk))
+        return true;
+    bool good = show_times(walk, n, camera.shutter, (int)camera.shutter_times);
+    for (size_t i = 0; i < run->moments.count && good; i++)
+        good = run->moments.counts[i] == (int)camera.shutter_times || show_times(walk, n, camera.shutter, run->moments.counts[i]);
+    if (!good || !build_frame(walk, n, run->explain_frame) || !open_scene(walk, run->explain_frame))
+        return false;
+    return run->moments.see(run->moments.data, scene_of(walk), 0, 0) ||
+           glintL_run_fail(run, GLINTL_EXIT_FAILED, run->explain_frame, "out of memory");
+}
+
 // Plans frame n of the job at hand, and keeps its scene and the plan of a frame next to it when the run is to.
 static void explain_frame(job_walk *walk, int64_t n)
 {
@@ -480,7 +537,7 @@ static void explain_frame(job_walk *walk, int64_t n)
     const bool keeps = run->keeps_scene && walk->job->frames > 1;
     glintL_work *next = keeps ? plan_frame(walk, n > 1 ? n - 1 : 2, run->explain_frame) : NULL;
     glintL_work *work = keeps && !next ? NULL : plan_frame(walk, n, run->explain_frame);
-    if (work) {
+    if (work && show_moments(walk, n)) {
         run->explain_plan = work->plan;
         work->plan = NULL;
         glintL_run_keep_scene(run, scene_of(walk), &walk->render);

@@ -214,6 +214,15 @@ typedef struct glintL_reporter {
     void (*reads)(void *context, const char *path);
 } glintL_reporter;
 
+/// Shown a frame's scene while its shutter is open: as often as the camera has it, then as often as each of `counts`, and last in
+/// its own instant, which is of 0 times.
+typedef struct glintL_moments {
+    const int *counts;
+    size_t count;
+    bool (*see)(void *data, glint_scene *scene, int times, int k); ///< false: out of memory
+    void *data;
+} glintL_moments;
+
 struct glintL_run {
     bool times_stages, counts_work;
     bool keeps_images; ///< every picture has its linear beauty pass
@@ -228,6 +237,7 @@ struct glintL_run {
     glint_scene *kept_scene; ///< owned; as it is in that frame
     glintL_render kept_render;
     glint_plan *kept_neighbour; ///< owned; the frame before it, or after the first; NULL: none
+    glintL_moments moments; ///< who is shown its scene at the times of open shutters, if `see` is not NULL
     char script[256]; ///< base name
     char source[33]; ///< of glintL_find_source; "": not looked for yet
     glintL_request request;

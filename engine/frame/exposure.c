@@ -15,7 +15,8 @@ typedef struct mean {
     int pass, channel;
 } mean;
 
-#define MEANS_MAX (3 * GLINT_PASS_COUNT)
+#define MEANS_MAX (3 * (GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX))
+#define DERIVATIVE_PASSES (((1u << GLINT_DERIVATIVES_MAX) - 1) << GLINT_PASS_DERIVATIVE)
 
 typedef struct exposure {
     const glint_plan *plan;
@@ -37,6 +38,18 @@ static size_t row_at(const exposure *e, size_t index)
     return ((size_t)e->extent.y + index) * (size_t)e->image->width;
 }
 
+/// What a time has of a mean; NULL: nothing depends on the derivative then.
+static const float *plane_of(const exposure *e, const mean *m)
+{
+    if (m->pass < GLINT_PASS_DERIVATIVE)
+        return e->part->plane[m->pass][m->channel];
+    const char *name = e->image->derivative[m->pass - GLINT_PASS_DERIVATIVE];
+    for (int i = 0; i < GLINT_DERIVATIVES_MAX; i++)
+        if (strcmp(e->part->derivative[i], name) == 0)
+            return e->part->plane[GLINT_PASS_DERIVATIVE + i][m->channel];
+    return NULL;
+}
+
 static void add_row(void *context, size_t index, int worker)
 {
     const exposure *e = context;
@@ -44,9 +57,9 @@ static void add_row(void *context, size_t index, int worker)
     (void)worker;
     for (size_t m = 0; m < e->mean_count; m++) {
         double *sum = e->means[m].sum + row;
-        const float *from = e->part->plane[e->means[m].pass][e->means[m].channel] + row;
-        for (int x = e->extent.x; x < e->extent.x + e->extent.width; x++)
-            sum[x] += from[x];
+        const float *from = plane_of(e, &e->means[m]);
+        for (int x = e->extent.x; from && x < e->extent.x + e->extent.width; x++)
+            sum[x] += from[row + (size_t)x];
     }
 }
 
@@ -107,7 +120,7 @@ static glint_status take_instant(exposure *e, glint_renderer *renderer, glint_fr
 {
     glint_image *instant = NULL;
     const size_t bytes = (size_t)e->image->width * (size_t)e->image->height * sizeof(float);
-    if (!(e->plan->desc.passes & ~GLINT_LIGHT_PASSES))
+    if (!(e->plan->desc.passes & ~(GLINT_LIGHT_PASSES | DERIVATIVE_PASSES)))
         return GLINT_OK;
     glint_status status = glint_render_instant(renderer, e->plan, &instant, stats, error);
     for (int pass = 0; pass < GLINT_PASS_COUNT && !status; pass++)
@@ -123,8 +136,8 @@ static glint_status make_means(exposure *e, glint_error *error)
 {
     const size_t pixels = (size_t)e->image->width * (size_t)e->image->height;
     const uint32_t passes = (e->plan->desc.passes & GLINT_LIGHT_PASSES) | 1u << GLINT_PASS_BEAUTY |
-                            (uint32_t)e->plan->desc.alpha << GLINT_PASS_ALPHA;
-    for (int pass = 0; pass < GLINT_PASS_COUNT; pass++)
+                            (uint32_t)e->plan->desc.alpha << GLINT_PASS_ALPHA | (e->plan->desc.passes & DERIVATIVE_PASSES);
+    for (int pass = 0; pass < GLINT_PASS_COUNT + GLINT_DERIVATIVES_MAX; pass++)
         for (int c = 0; c < glint_pass_channels((glint_pass)pass) && passes >> pass & 1; c++)
             e->means[e->mean_count++] = (mean) { .out = e->image->plane[pass][c], .pass = pass, .channel = c };
     e->sums = glint_alloc(e->mean_count * pixels, sizeof *e->sums);
@@ -151,6 +164,7 @@ static glint_status render_all(exposure *e, glint_renderer *renderer, glint_fram
     const size_t rows = (size_t)e->extent.height;
     glint_pool *pool = glint_renderer_pool(renderer);
     glint_frame_stats one = { 0 };
+    uint64_t shifted = 0;
     glint_status status = take_instant(e, renderer, stats, error);
     for (uint32_t k = 0; k < e->plan->shutter_times && !status; k++) {
         glint_image *part = NULL;
@@ -164,11 +178,13 @@ static glint_status render_all(exposure *e, glint_renderer *renderer, glint_fram
             *stats = one;
         else
             glint_frame_stats_add(stats, &one, 1 / (k + 1.0));
+        shifted = one.shifted > shifted ? one.shifted : shifted;
     }
     if (status)
         return status;
     glint_pool_run(pool, rows, finish_row, e);
     stats->clipped = stats->nonfinite = 0;
+    stats->shifted = shifted;
     for (size_t row = 0; row < rows; row++) {
         stats->clipped += e->counts[row][0];
         stats->nonfinite += e->counts[row][1];
@@ -182,6 +198,8 @@ glint_status glint_render_times(glint_renderer *renderer, const glint_plan *plan
     exposure e = { .plan = plan, .extent = glint_plan_extent(&plan->desc) };
     glint_frame_stats counted = { 0 };
     glint_status status = glint_image_create_for(&plan->desc, &e.image, error);
+    for (size_t i = 0; !status && plan->derivatives && i < plan->derivatives->count; i++)
+        memcpy(e.image->derivative[i], plan->derivatives->of[i].name, sizeof e.image->derivative[i]);
     if (!status)
         status = make_means(&e, error);
     if (!status)

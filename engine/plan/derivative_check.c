@@ -32,8 +32,6 @@ static const char *find_obstacle(const glint_plan *plan)
         return "material.model: a shader has no derivative; the built-in models have";
     if (plan->runs[GLINT_STAGE_DEPTH_CUE])
         return "scene.depth_cue: light that fades has no derivative; leave `depth_cue` and glass around the eye out";
-    if (plan->shutter_times > 0)
-        return "camera.shutter: an open shutter has no derivative; shutter = 0 has";
     return NULL;
 }
 

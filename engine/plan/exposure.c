@@ -2,7 +2,7 @@
 ///
 /// Light adds up. Where lights alone differ from time to time, the frame is one plan, in which a light that changes is there once
 /// for each time with its share of the strength; nothing else is done twice. Where surfaces, materials or the camera differ, each
-/// time is rendered, and frame/exposure.c takes the mean.
+/// time is rendered, and frame/exposure.c takes the mean; so are frames with derivatives, of which it takes the mean, too.
 #include "engine/base/alloc.h"
 #include "engine/base/status.h"
 #include "engine/base/vec.h"
@@ -48,7 +48,7 @@ static bool differ_in_lights(const glint_plan *a, const glint_plan *b)
 
 bool glint_plan_adds_up(const glint_plan *plan, glint_plan *const *times, size_t count)
 {
-    bool adds_up = plan->base == NULL && !plan->runs[GLINT_STAGE_SHADER];
+    bool adds_up = plan->base == NULL && !plan->runs[GLINT_STAGE_SHADER] && !plan->derivatives;
     for (size_t k = 0; k < count && adds_up; k++)
         adds_up = differ_in_lights(plan, times[k]) && times[k]->caps == plan->caps;
     return adds_up;

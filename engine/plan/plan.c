@@ -246,6 +246,19 @@ glint_status glint_plan_create(const glint_scene *scene, const glint_render_desc
     return create(scene, desc, NULL, 0, out, error);
 }
 
+/// Whether a time has derivatives that the frame has not.
+static bool derives_more(const glint_plan *time, const glint_render_desc *frame)
+{
+    bool more = false;
+    for (size_t i = 0; time->derivatives && i < time->derivatives->count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < frame->derivative_count; k++)
+            found = found || strcmp(time->derivatives->of[i].name, frame->derivatives[k].name) == 0;
+        more = more || !found;
+    }
+    return more;
+}
+
 static glint_status check_times(glint_plan *const *times, size_t count, const glint_render_desc *desc,
                                 glint_error *error)
 {
@@ -257,6 +270,8 @@ static glint_status check_times(glint_plan *const *times, size_t count, const gl
         if (d->width != expected.width || d->height != expected.height || d->codes ||
             (d->passes & expected.passes) != expected.passes || memcmp(d->region, expected.region, sizeof d->region))
             return glint_fail(error, GLINT_ERR_INVALID, "times: a plan by glint_shutter_desc of the frame expected");
+        if (derives_more(times[k], desc))
+            return glint_fail(error, GLINT_ERR_INVALID, "times: derivatives of the frame expected, and no others");
     }
     return GLINT_OK;
 }
@@ -383,7 +398,7 @@ glint_key glint_plan_picture_key(const glint_plan *plan, glint_stage_id stage)
 {
     glint_key key = plan->keys[stage];
     for (uint32_t k = 0; plan->times && k < plan->shutter_times; k++)
-        key = glint_key_add(key, &plan->times[k]->keys[GLINT_STAGE_OUTLINE], sizeof key);
+        key = glint_key_add(key, &plan->times[k]->keys[plan->derivatives ? GLINT_STAGE_DERIVATIVE : GLINT_STAGE_OUTLINE], sizeof key);
     return key;
 }
 

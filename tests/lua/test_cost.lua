@@ -289,6 +289,34 @@ check(find(lens, "samples", 1).rmse > 3 * find(lens, "samples", 16).rmse
   and find(lens, "samples", 16).rmse > 1.5 * find(lens, "samples", 64).rmse, "a lens converges: %g, %g, %g",
   find(lens, "samples", 1).rmse, find(lens, "samples", 16).rmse, find(lens, "samples", 64).rmse)
 
+-- A shutter: times that the frame function is called for, with everything that it moves; also under another knob.
+local exposed = [[local glint = require "glint"
+local lamp = glint.point_light { position = { 0, 4, 4 } }
+local ball = glint.sphere { center = { 0, 1, 0 }, radius = 1, material = glint.material { specular = 0.5 } }
+local camera = glint.camera { eye = { 0, 1, 6 }, at = { 0, 1, 0 }, shutter = 1, shutter_times = TIMES }
+local scene = glint.scene { camera = camera, ambient = 0.1, lamp, glint.group { ball },
+  glint.plane { point = { 0, 0, 0 }, normal = { 0, 1, 0 } } }
+return glint.animation { scene = scene, frames = 3, width = 64, height = 48, output = "none", frame = function(t)
+  ball.center, lamp.position, ball.material.diffuse = { 4 * t - 2, 1, 0 }, { 4 * t, 4, 4 }, { t, 0.5, 0.5 }
+end }]]
+local shutter, shutter_advice = study("shutter", write("shutter.lua", (exposed:gsub("TIMES", "8"))) .. " --frame 2 --knobs shutter_times,samples")
+check_rows("shutter", shutter, shutter_advice.reference)
+check(knobs_of(shutter) == "samples shutter_times" and find(shutter, "shutter_times", 8).default, "a shutter: %s", knobs_of(shutter))
+local worse = math.huge
+for _, times in ipairs { 1, 2, 4, 8, 16, 32 } do
+  local row = find(shutter, "shutter_times", times)
+  check(row.rmse < worse and row.counters.primary == 64 * 48 * times, "%d times: %g off, before %g; %d rays", times, row.rmse,
+    worse, row.counters.primary)
+  worse = row.rmse
+end
+check(find(shutter, "samples", 16).counters.primary == 64 * 48 * 16 * 8, "16 samples at each of 8 times")
+local nine = study("nine", write("nine.lua", (exposed:gsub("TIMES", "9"))) .. " --frame 2 --knobs shutter_times")
+check(find(nine, "shutter_times", 9).default and find(nine, "shutter_times", 16), "the script's own among them")
+local _, anew = study("anew", write("anew.lua", (exposed:gsub("TIMES", "8"):gsub("frame = function%(t%)",
+  "%0 scene.camera = glint.camera { eye = { t, 1, 6 }, at = { 0, 1, 0 }, shutter = 1 }"))) .. " --knobs samples")
+check(table.concat(anew.left_out):find("the open shutter: the frame function makes objects anew", 1, true), "said of an instant: %s",
+  table.concat(anew.left_out))
+
 -- Lights with a surface, in their units and in radiance, of which a knob must leave everything as it was; and a cone.
 local soft = study("soft", still("soft.lua", matt .. [[glint.polygon_light { vertices = { { -1, 5, -1 }, { 1, 5, -1 }, { 1, 5, 1 }, { -1, 5, 1 } },
   radiance = 4, samples = 4 }, glint.sphere_light { position = { 3, 6, 4 }, radius = 0.5, intensity = 0.4, samples = 4 },
@@ -427,7 +455,7 @@ refuses("nothing", write("nothing.lua", "local x = 1"), "rendered nothing")
 refuses("an empty list", write("empty.lua", "return {}"), "renders nothing")
 refuses("a frame beyond the end", film .. " --frame 4", "1 .. 3, expected, got '4'")
 refuses("no such knob", film .. " --knobs sample", "did you mean 'samples'")
-refuses("no knob", film .. " --knobs ''", "samples, adaptive, shadows, light_samples, precision")
+refuses("no knob", film .. " --knobs ''", "samples, adaptive, shutter_times, shadows, light_samples, precision")
 refuses("no knob that the scene has", still("bare.lua", "") .. " --knobs shadows,model",
   "responds to %(bits, encode%) expected, got 'shadows,model'")
 refuses("a file for a folder", film .. " --report " .. film .. "/x", "a folder to write to expected")

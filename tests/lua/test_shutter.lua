@@ -34,7 +34,7 @@ local function expose(scene, frame, options)
   glint.animation(fields):run {}
   passes.beauty = read_pfm(folder .. "/shutter_0002.pfm")
   for name in (fields.passes or ""):gmatch "[^,]+" do
-    passes[name] = read_pfm(folder .. "/shutter_0002." .. name .. ".pfm")
+    passes[name] = read_pfm(folder .. "/shutter_0002." .. name:gsub(":", "_") .. ".pfm")
   end
   return passes
 end
@@ -208,6 +208,45 @@ do
   for _, pass in ipairs { "depth", "normal", "object_id" } do
     local _, differ = worst_of(got[pass], instant[pass])
     check(differ == 0, "%s is of the frame's own instant: %d values differ", pass, differ)
+  end
+end
+
+-- ---- Derivatives: of the mean, the mean of the times' ----
+
+do
+  local v = glint.variable("v", 1.25)
+  local light = glint.point_light { position = { 5, 6, 5 } }
+  local parts = room(light)
+  local function is_gone(t) return t > 0.1 and t < 0.4 end
+  local frames = { -- of the lights alone, which add up otherwise; of a ball; of what nothing depends on at one of the times
+    light = function(t) light.position = { 6 * v * (t + 0.1), 6, 5 } end,
+    ball = function(t) parts.ball.center = { v * (t + 0.1), 1, 0 } end,
+    gone = function(t) light.intensity = is_gone(t) and 1 or v * (t + 0.1) end,
+  }
+  for name, frame in pairs(frames) do
+    local got = expose(parts.scene, frame, { passes = "d:v" })["d:v"]
+    local sum, most = {}, 0
+    local share, times = parts.camera.shutter, times_of(parts.camera)
+    parts.camera.shutter = 0
+    for _, t in ipairs(times) do
+      frame(t)
+      if name ~= "gone" or not is_gone(t) then
+        local image = parts.scene:render { width = WIDTH, height = HEIGHT, passes = "d:v", output = "none" }
+        for y = 0, HEIGHT - 1 do
+          for x = 0, WIDTH - 1 do
+            for c, value in ipairs { image:pixel(x, y, "d:v") } do
+              local i = 3 * ((HEIGHT - 1 - y) * WIDTH + x) + c
+              sum[i] = (sum[i] or 0) + value
+            end
+          end
+        end
+      end
+    end
+    parts.camera.shutter = share
+    for i, value in ipairs(sum) do sum[i], most = float(value / #times), math.max(most, math.abs(value)) end
+    local _, differ = worst_of(got, sum)
+    check(differ == 0 and most > 0.1, "%s: %d slopes differ from the mean of the times', %g at most", name, differ, most)
+    light.position, light.intensity, parts.ball.center = { 5, 6, 5 }, 1, { 0, 1, 0 }
   end
 end
 
