@@ -181,14 +181,22 @@ static int build(lua_State *L)
     return 0;
 }
 
-// Looks at the job's scene, which frame n has just been built in.
-static int observe(lua_State *L)
+// Finds the slopes of the job's scene as it has just been built, and leaves it on the stack.
+static int derive(lua_State *L)
 {
     job_walk *walk = lua_touserdata(L, 3);
     lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
     const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
     if (scene)
         glintL_find_derivatives(L, scene, &walk->render);
+    return 0;
+}
+
+// Looks at the job's scene, which frame n has just been built in.
+static int observe(lua_State *L)
+{
+    job_walk *walk = lua_touserdata(L, 3);
+    derive(L);
     glintL_observe_frame(L, walk->run, -1, &walk->render.desc, lua_tointeger(L, 2));
     return 0;
 }
@@ -289,17 +297,6 @@ static glint_scene *open_scene(job_walk *walk, int64_t number)
 }
 
 // ---- While the shutter is open ----
-
-// Finds the slopes of the job's scene as it has just been built.
-static int derive(lua_State *L)
-{
-    job_walk *walk = lua_touserdata(L, 3);
-    lua_getiuservalue(L, 1, GLINTL_JOB_SCENE);
-    const glint_scene *scene = glintL_test_object(L, -1, GLINTL_SCENE);
-    if (scene)
-        glintL_find_derivatives(L, scene, &walk->render);
-    return 0;
-}
 
 // Derivatives of a time: those that anything depends on then.
 static void take_derivatives(const glint_render_desc *from, glint_derivative of[GLINT_DERIVATIVES_MAX], glint_render_desc *to)
