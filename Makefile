@@ -27,10 +27,13 @@ UNWANTED := -march=% -mcpu=% -mavx% -msse% -mfma -Of% -ffast% -funsafe% -ffp-con
 WARN := -Wall -Wextra -Wpedantic
 WARN += -Wshadow
 WARN += -Wstrict-prototypes
-STRICT := -std=c11 -D_GNU_SOURCE $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
+TARGET := $(shell $(CC) -dumpmachine)
+# Of Linux all; with PORTABLE=1 what POSIX has had since 2008 alone (and anonymous pages, which it has since 2024): what else is
+# used does not compile.
+FEATURES := $(if $(and $(PORTABLE),$(findstring linux,$(TARGET))),-D_XOPEN_SOURCE=700 -DMAP_ANONYMOUS=0x20,-D_GNU_SOURCE)
+STRICT := -std=c11 $(FEATURES) $(WARN) -fPIC -fvisibility=hidden -ffp-contract=off -fno-math-errno
 
 # What linkers call by other names: ELF's here, Apple's there (these were never tried).
-TARGET := $(shell $(CC) -dumpmachine)
 MACOS  := $(findstring darwin,$(TARGET))
 LINK_NEEDED  := $(if $(MACOS),-Wl$(comma)-dead_strip_dylibs,-Wl$(comma)--as-needed)
 LINK_COMMAND := $(if $(MACOS),,-Wl$(comma)-E)
@@ -62,7 +65,7 @@ ifeq ($(call have,'OpenEXR >= 3.1'),yes)
   EXR_LIBS := $(filter -lOpenEXRCore%,$(shell pkg-config --libs OpenEXR))
   DEFINES += -DGLINT_HAVE_OPENEXR $(patsubst -I%,-isystem %,$(filter -I%OpenEXR,$(shell pkg-config --cflags-only-I OpenEXR)))
 endif
-ifeq ($(call have,libseccomp),yes)
+ifeq ($(if $(PORTABLE),,$(call have,libseccomp)),yes)
   COMMAND_LIBS := $(shell pkg-config --libs libseccomp)
   DEFINES += -DGLINT_HAVE_SECCOMP
 endif
@@ -78,7 +81,8 @@ endif
 # WITHOUT=MESH leaves a part of the kernels out, see engine/stages/contract/with.h.
 DEFINES += $(WITHOUT:%=-DGLINT_WITH_%=0) $(if $(WITHOUT),-Wno-type-limits)
 
-# PORTABLE=1 takes here, too, what other machines have: generic kernels, and POSIX in place of inotify, eventfd and the like.
+# PORTABLE=1 takes here, too, what other machines have: generic kernels, POSIX in place of inotify, eventfd and the like, and no
+# --untrusted.
 DEFINES += $(if $(PORTABLE),-DGLINT_PORTABLE)
 
 # SANITIZE=address,undefined ... is set by `make asan` and `make tsan`.
@@ -212,11 +216,12 @@ $(BUILD)/tests/command/walls: tests/command/walls.c $(BUILD)/bindings/command/wa
 	$(call say,CC)
 	$(Q)$(CC) $(COMPILE) $(LUA_CFLAGS) -MMD -MP $< $(BUILD)/bindings/command/walls.o $(LINK) $(LIBS) $(COMMAND_LIBS) -o $@
 
+$(HARD_OBJ): OWN := -D_GNU_SOURCE # arithmetic in _Float128
 # The hard cases: each hard_*.c is a program, the others are what they share. They use the public API alone.
 $(HARD_BIN): $(BUILD)/%: %.c $(HARD_OBJ) $(BUILD)/libglint.a $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(COMPILE) -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
+	$(Q)$(CC) $(COMPILE) -D_GNU_SOURCE -MMD -MP $< $(LINK) $(HARD_OBJ) $(BUILD)/libglint.a $(TEST_LIBS) $(LIBS) -o $@
 
 tests: all $(TEST_BIN) $(TEST_TOOLS) $(HARD_BIN)
 
@@ -264,6 +269,33 @@ check-watch: all ## the page of glint watch in headless Chromium, where that is 
 check-rock: ## the rock of make dist into a folder of its own; installs luarocks and zip through apt
 	@tests/deps.sh build rock
 	@TEST_LIMIT_S=1200 $(RUNNER) tests/command/rock.sh
+
+# The least that glint is made of: POSIX, generic kernels, no optional library, no optimization (of kernels a
+# little: patience).
+PORTABLE_MAKE  := $(MAKE) --no-print-directory BUILD=build-portable PORTABLE=1 have= CFLAGS="-O0 -Werror" KERNEL_CFLAGS="-O1 -Werror"
+PORTABLE_TESTS := $(addprefix $(BUILD)/tests/engine/test_,bands carry_turns deflate files image open picture reuse_turns) \
+                    $(addprefix tests/lua/test_,$(addsuffix .lua,api data mesh_files)) \
+                    $(addprefix tests/command/,$(addsuffix .sh,cli completion films golden inputs install kills parts watch))
+
+CLANG_MAKE  := $(MAKE) --no-print-directory BUILD=build-clang CC=clang CFLAGS="-O2 -g -Werror"
+CLANG_TESTS := $(filter $(BUILD)/tests/engine/test_stages_%,$(TEST_BIN)) \
+                 $(addprefix $(BUILD)/tests/engine/test_,caps files lattice leaf math program program_math reuse tone) \
+                 $(addprefix tests/command/,$(addsuffix .sh,cli golden))
+
+.PHONY: check-portable check-portable-run check-clang check-clang-run
+check-portable: ## PORTABLE=1 at -O0 without any optional library: files, folders, watch, runs, installation
+	@tests/deps.sh build test
+	+@$(PORTABLE_MAKE) check-portable-run
+
+check-portable-run: all $(filter $(BUILD)/%,$(PORTABLE_TESTS))
+	@T="$(T)" $(RUNNER) $(PORTABLE_TESTS)
+
+check-clang: ## clang's build without a warning: kernels, goldens, the command; installs clang through apt
+	@tests/deps.sh build test fuzz
+	+@$(CLANG_MAKE) check-clang-run
+
+check-clang-run: all $(filter $(BUILD)/%,$(CLANG_TESTS))
+	@T="$(T)" GLINT_CASE_STEP=5 $(RUNNER) $(CLANG_TESTS)
 
 .PHONY: check-package
 check-package: ## the Debian source package of .github/debian, and what lintian says of it; installs what that takes through apt
@@ -556,8 +588,8 @@ uninstall: ## removes what install has put there, with the same PREFIX and DESTD
 deps: ## installs what the build and the tests need, through apt
 	@tests/deps.sh build test
 
-clean: ## removes build/, build-asan/, build-tsan/, build-arm64/, build-musl/, build-fuzz/
-	rm -rf $(BUILD) build-asan build-tsan $(ARM64) $(MUSL) $(FUZZ)
+clean: ## removes build/ and the folders of the checks, build-asan/, build-clang/ and so on
+	rm -rf $(BUILD) build-asan build-tsan build-clang build-portable $(ARM64) $(MUSL) $(FUZZ)
 
 help: ## this list
 	@awk -F':.*## ' '/^[a-z-]+:.*## /{printf "  %-14s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))

@@ -53,6 +53,7 @@ typedef struct cli_sweep { ///< --sweep name=from:to:count
 typedef struct cli_options {
     cli_command command;
     bool json, quiet, help, version, verbose;
+    const char *program; ///< what the command was started as
     const char *script; ///< NULL: none given
     char **arguments; ///< words of a command that takes files; after `--` those of the script
     int argument_count;

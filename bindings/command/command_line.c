@@ -293,6 +293,7 @@ bool cli_read_options(int argc, char **argv, cli_options *options, char message[
     bool used[CLI_OPTION_COUNT] = { false };
     memset(options, 0, sizeof *options);
     options->command = CLI_RENDER;
+    options->program = argc > 0 ? argv[0] : "";
     options->request.repeat = 1;
     options->frame = 1;
     options->http_port = -1;

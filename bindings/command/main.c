@@ -1,5 +1,4 @@
 // The glint command.
-#include <locale.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,6 +6,7 @@
 
 #include "bindings/command/cli.h"
 #include "bindings/run/film.h"
+#include "bindings/run/system.h"
 #include "bindings/command/untrusted.h"
 
 static int run_command(cli_options *options, cli_output *output, glintL_run *run)
@@ -125,10 +125,7 @@ int main(int argc, char **argv)
     cli_output output;
     char message[GLINTL_MESSAGE_SIZE];
     int code = GLINTL_EXIT_USAGE, signal_number = 0;
-    // A script may call os.setlocale; numbers keep their points all the same.
-    locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
-    if (numbers)
-        uselocale(numbers);
+    glintL_keep_points(); // a script may call os.setlocale
     bool good = cli_read_options(argc, argv, &options, message);
     if (!cli_output_open(&output, &options))
         return GLINTL_EXIT_FAILED;

@@ -49,28 +49,22 @@ static void add_path(lua_State *L, const char *folder, const char *templates, bo
 
 // The modules that were installed with this command lie beside it: PREFIX/bin and PREFIX/share. Another version's, elsewhere,
 // come after them; what the user's LUA_PATH has, before.
-static void add_own_modules(lua_State *L)
+static void add_own_modules(lua_State *L, const char *program)
 {
-    char path[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (length <= 0)
+    char folder[GLINTL_PATH_SIZE], probe[GLINTL_PATH_SIZE + 64];
+    if (!glintL_program_folder(program, folder, sizeof folder))
         return;
-    path[length] = '\0';
-    char *slash = strrchr(path, '/');
-    if (!slash)
-        return;
-    slash[1] = '\0';
-    snprintf(probe, sizeof probe, "%s../share/lua/5.4/glint/particles.lua", path);
+    snprintf(probe, sizeof probe, "%s../share/lua/5.4/glint/particles.lua", folder);
     if (access(probe, R_OK) == 0)
-        add_path(L, path, "@../share/lua/5.4/?.lua", !getenv("LUA_PATH_5_4") && !getenv("LUA_PATH"));
+        add_path(L, folder, "@../share/lua/5.4/?.lua", !getenv("LUA_PATH_5_4") && !getenv("LUA_PATH"));
 }
 
 // The script's folder and its lib/ come first.
-static void set_path(lua_State *L, const char *script)
+static void set_path(lua_State *L, const cli_options *options)
 {
-    const char *base = cli_base_name(script);
+    const char *script = options->script, *base = cli_base_name(script);
     lua_getglobal(L, "package");
-    add_own_modules(L);
+    add_own_modules(L, options->program);
     lua_pushlstring(L, script, (size_t)(base - script));
     add_path(L, base > script ? lua_tostring(L, -1) : "./", "@?.lua;@lib/?.lua", true);
     lua_settop(L, 0);
@@ -90,7 +84,7 @@ static void open_libraries(lua_State *L, const task *work)
     lua_setfield(L, -2, "glint");
     lua_settop(L, 0);
     set_arguments(L, work->options);
-    set_path(L, work->options->script);
+    set_path(L, work->options);
     cli_carry_dialect(L);
 }
 

@@ -2,14 +2,19 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/utsname.h>
 #include <unistd.h>
+#ifdef __APPLE__
+#include <xlocale.h> // locale_t is there
+#endif
 
 #if defined(__linux__) && !defined(GLINT_PORTABLE)
 #define HAS_LINUX 1
@@ -168,6 +173,50 @@ bool glintL_random(void *bytes, size_t size)
         fclose(file);
     return good;
 #endif
+}
+
+void glintL_keep_points(void)
+{
+#ifndef __NetBSD__
+    const locale_t numbers = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    if (numbers)
+        uselocale(numbers);
+#endif
+}
+
+#if !HAS_LINUX
+// As a shell finds it: a path that has a folder as it is, any other word in the folders of PATH. To be freed; NULL: not found.
+static char *find_program(const char *started_as)
+{
+    char word[4096];
+    if (strchr(started_as, '/'))
+        return realpath(started_as, NULL);
+    for (const char *at = getenv("PATH"); at && *at; at += *at == ':') {
+        const int length = (int)strcspn(at, ":");
+        snprintf(word, sizeof word, "%.*s/%s", length ? length : 1, length ? at : ".", started_as);
+        if (access(word, X_OK) == 0)
+            return realpath(word, NULL);
+        at += length;
+    }
+    return NULL;
+}
+#endif
+
+bool glintL_program_folder(const char *started_as, char *folder, size_t size)
+{
+#if HAS_LINUX
+    (void)started_as;
+    const ssize_t length = readlink("/proc/self/exe", folder, size - 1);
+    folder[length > 0 ? length : 0] = '\0';
+#else
+    char *path = find_program(started_as);
+    snprintf(folder, size, "%s", path && strlen(path) < size ? path : "");
+    free(path);
+#endif
+    char *slash = strrchr(folder, '/');
+    if (slash)
+        slash[1] = '\0';
+    return slash != NULL;
 }
 
 // "model name : ..." of /proc/cpuinfo; not all processors have one.

@@ -42,6 +42,12 @@ void glintL_cond_init(pthread_cond_t *cond);
 /// Bytes that cannot be guessed. False: there are none to be had.
 bool glintL_random(void *bytes, size_t size);
 
+/// Numbers of this thread keep their points, whatever locale is set later (not on NetBSD, which has locales of processes alone).
+void glintL_keep_points(void);
+
+/// The folder of the program that runs, "/usr/bin/", links followed; `started_as` is its argv[0]. False: it cannot be told.
+bool glintL_program_folder(const char *started_as, char *folder, size_t size);
+
 /// What a path leads to that is not a file to be read from beginning to end: "device", "pipe", "socket" or "folder". NULL: it
 /// is one, or nothing is there. Does not wait for the other end of a pipe, which opening it would.
 const char *glintL_other_kind(const char *path);

@@ -6,6 +6,10 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#ifndef MAP_ANONYMOUS // of POSIX since 2024, and elsewhere by this name
+#define MAP_ANONYMOUS MAP_ANON
+#endif
+
 #define LARGE_PAGE ((size_t)2 << 20)
 
 /// Bytes of count * size, at least one, rounded up to whole units of `alignment`; 0: too many.

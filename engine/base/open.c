@@ -23,7 +23,7 @@ glint_status glint_file_fail(glint_error *error, const char *path, int code)
                           : code == ENOMEM                 ? GLINT_ERR_NOMEM
                                                            : GLINT_ERR_IO;
     char text[128];
-#ifdef __GLIBC__
+#if defined(__GLIBC__) && defined(_GNU_SOURCE)
     const char *reason = strerror_r(code, text, sizeof text); // perhaps not in `text`
 #else
     const char *reason = strerror_r(code, text, sizeof text) == 0 ? text : "unknown error";

@@ -162,7 +162,7 @@ glint_status glint_mesh_number(const glint_mesh_text *text, const char **at, dou
 {
     char *end;
     *at = glint_skip_blanks(*at);
-    *out = strtod_l(*at, &end, text->c_locale);
+    *out = glint_read_double(*at, &end, text->c_locale);
     if (end == *at || !glint_ends_word(*end))
         return glint_mesh_refuse(text, "a number", *at);
     if (!isfinite(*out))

@@ -3,10 +3,10 @@
 #ifndef GLINT_MESH_FILE_H
 #define GLINT_MESH_FILE_H
 
-#include <locale.h>
 #include <stdio.h>
 
 #include "engine/base/hash.h"
+#include "engine/base/number.h"
 #include "engine/glint.h"
 
 /// An array that grows.

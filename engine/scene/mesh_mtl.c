@@ -179,7 +179,7 @@ static const char *skip_option(const glint_mesh_text *text, const char *at, int 
     for (int i = 0; i < words; i++) {
         char *end;
         const char *word = glint_skip_blanks(at);
-        const double number = strtod_l(word, &end, text->c_locale);
+        const double number = glint_read_double(word, &end, text->c_locale);
         const bool is_number = end != word && glint_ends_word(*end);
         if (words == 3 && i > 0 && !is_number)
             break;

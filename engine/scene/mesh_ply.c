@@ -331,7 +331,7 @@ static glint_status read_word(body *b, double *out)
 {
     char *end, shown[48];
     b->at = glint_skip_blanks(b->at);
-    *out = strtod_l(b->at, &end, b->reader->text.c_locale);
+    *out = glint_read_double(b->at, &end, b->reader->text.c_locale);
     if (end != b->at && glint_ends_word(*end)) {
         b->at = end;
         return GLINT_OK;

@@ -23,6 +23,15 @@ own() { # the module that the command finds lies beside it: PREFIX, whether or n
 check "the command finds its own modules" own "$prefix"
 cp -r "$prefix" "$work/else where"
 check "from any place" own "$work/else where"
+found_by() { # PROGRAM: started by a name of another kind, it still lies in $prefix/bin
+    env -C "$prefix/bin" -u LUA_PATH -u LUA_PATH_5_4 "$1" "$work/own.lua" 2>&1 | head -n 1 |
+        grep -Fq "$prefix/bin/../share/lua/5.4/glint/particles.lua"
+}
+ln -s "$prefix/bin/glint" "$work/link"
+check "found by PATH" env PATH="/nowhere:$prefix/bin:$PATH" bash -c "$(declare -f found_by); prefix='$prefix' work='$work' found_by glint"
+check "found by an empty folder of PATH" env PATH=":$PATH" bash -c "$(declare -f found_by); prefix='$prefix' work='$work' found_by glint"
+check "found by a path from here" found_by ./glint
+check "found by a link" found_by "$work/link"
 # Another version beside the first, whose engine and modules are of no use to it: each has its own.
 cp -r "$prefix" "$work/second"
 echo 'error "a module of the second"' | tee "$work/second/share/lua/5.4/glint/"{particles,xyz}.lua >/dev/null

@@ -15,8 +15,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_CHECK(text, "out of memory");
     memcpy(text, data, size);
     text[size] = 0;
-    for (char *rest = text, *word; count <= WORDS_MAX && (word = strsep(&rest, "\n"));)
-        words[count++] = word;
+    for (char *at = text; at && count <= WORDS_MAX;) {
+        words[count++] = at;
+        at = strchr(at, '\n');
+        if (at)
+            *at++ = 0;
+    }
     optind = 0; // a new line for getopt
     if (!cli_read_options(count, words, &options, message)) {
         FUZZ_CHECK(*message && memchr(message, 0, sizeof message), "a message");
