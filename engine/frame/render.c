@@ -290,21 +290,29 @@ static bool has_format(const glint_image *image, const glint_render_desc *desc)
            (!desc->codes || glint_tone_same(&image->code_tone, &desc->tone));
 }
 
-/// Whether what is kept from a pixel's samples is not what is kept from those of the one beside it.
-static bool is_shifted(const uint32_t *shadows, int x, int y, int width, const glint_extent *e)
+/// Pixels of a row from whose samples other things are kept than from those of one beside them, or not from all the same. `up` and
+/// `down`: the rows beside it; at an edge itself.
+static uint64_t count_row(const uint32_t *at, const uint32_t *up, const uint32_t *down, int width)
 {
-    const uint32_t *at = shadows + (size_t)y * (size_t)width + (size_t)x;
-    return !*at || (x > e->x && at[-1] != *at) || (x + 1 < e->x + e->width && at[1] != *at) ||
-           (y > e->y && at[-width] != *at) || (y + 1 < e->y + e->height && at[width] != *at);
+    uint64_t count = 0;
+    uint32_t before = 0, own = at[0]; // before: what parts this pixel from the one before it
+    for (int x = 0; x < width; x++) {
+        const uint32_t next = x + 1 < width ? at[x + 1] : own, after = own ^ next;
+        count += own == 0 || (before | after | (own ^ up[x]) | (own ^ down[x])) != 0;
+        before = after;
+        own = next;
+    }
+    return count;
 }
 
 /// Pixels at the edges of shadows that a derivative's parameter moves.
-static uint64_t count_shifted(const glint_image *image, const glint_extent *extent)
+static uint64_t count_shifted(const glint_image *image, const glint_extent *e)
 {
     uint64_t count = 0;
-    for (int y = extent->y; y < extent->y + extent->height; y++)
-        for (int x = extent->x; x < extent->x + extent->width; x++)
-            count += is_shifted(image->shadows, x, y, image->width, extent);
+    for (int y = e->y; y < e->y + e->height; y++) {
+        const uint32_t *row = image->shadows + (size_t)y * (size_t)image->width + (size_t)e->x;
+        count += count_row(row, y > e->y ? row - image->width : row, y + 1 < e->y + e->height ? row + image->width : row, e->width);
+    }
     return count;
 }
 

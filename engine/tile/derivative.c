@@ -36,14 +36,43 @@ static void gather_directions(const glint_tile *tile, glint_precision precision,
     }
 }
 
+/// The lanes of group g, among those that are left, that show the material of the first of them.
+static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
+{
+    const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
+    unsigned lanes = 0;
+    *material = of[__builtin_ctz(left)];
+    if (glint_all_are(of, *material)) // the common case
+        return left;
+    for (unsigned rest = left; rest; rest &= rest - 1)
+        lanes |= of[__builtin_ctz(rest)] == *material ? rest & -rest : 0;
+    return lanes;
+}
+
+/// Whether the derivatives of a group read from where it is seen: for highlights, for what turns with the view, for rays that go on.
+static bool reads_eyes(const glint_tile *tile, const glint_plan *plan, uint32_t g)
+{
+    const glint_plan_derivatives *all = plan->derivatives;
+    bool reads = all->bends || plan->runs[GLINT_STAGE_BOUNCE];
+    for (unsigned left = tile->at.hits[g], lanes; left && !reads; left &= ~lanes) {
+        uint32_t material;
+        lanes = lanes_alike(tile, g, left, &material);
+        for (size_t k = 0; k < all->count; k++)
+            reads = reads || all->of[k].materials[material].highlight != GLINT_HIGHLIGHT_NONE;
+    }
+    return reads;
+}
+
 static void gather_points(glint_tile *tile, const glint_tile_frame *frame, uint32_t g)
 {
     glint_derivative_work *work = tile->derivative;
     const glint_precision precision = frame->plan->desc.precision;
     const size_t at = (size_t)g * GLINT_GROUP;
-    _Alignas(64) double d[3][GLINT_GROUP];
-    gather_directions(tile, precision, g, d);
-    glint_derive_eyes(d, (double *const[3]) { work->eye[0] + at, work->eye[1] + at, work->eye[2] + at });
+    if (reads_eyes(tile, frame->plan, g)) {
+        _Alignas(64) double d[3][GLINT_GROUP];
+        gather_directions(tile, precision, g, d);
+        glint_derive_eyes(d, (double *const[3]) { work->eye[0] + at, work->eye[1] + at, work->eye[2] + at });
+    }
     for (int c = 0; c < 3 && precision == GLINT_FLOAT; c++) {
         glint_reals_of(tile->surface.point[c], precision, g, work->point[c] + at);
         glint_reals_of(tile->surface.normal[c], precision, g, work->normal[c] + at);
@@ -102,19 +131,6 @@ static void take_cone(glint_tile *tile, const glint_tile_frame *frame, const gli
     for (int c = 0; c < 3; c++)
         out->position[c] = work->position[c];
     out->weight = work->weight;
-}
-
-/// The lanes of group g, among those that are left, that show the material of the first of them.
-static unsigned lanes_alike(const glint_tile *tile, uint32_t g, unsigned left, uint32_t *material)
-{
-    const uint32_t *of = tile->surface.material + (size_t)g * GLINT_GROUP;
-    unsigned lanes = 0;
-    *material = of[__builtin_ctz(left)];
-    if (glint_all_are(of, *material)) // the common case
-        return left;
-    for (unsigned rest = left; rest; rest &= rest - 1)
-        lanes |= of[__builtin_ctz(rest)] == *material ? rest & -rest : 0;
-    return lanes;
 }
 
 // ---- What programs give -------------------------------------------------------------------------------------------

@@ -241,6 +241,7 @@ INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const 
                          double *const sum[3], double *const whole[3])
 {
     const vd zero = d_set(0);
+    const bool weighs = source->weight || source->radiant || light->attenuated || light->is_spot; // else the weight is 1
     lanes kd[3], ks[3], kg[3];
     for (int c = 0; c < 3; c++) {
         kd[c] = mul(of(material->diffuse[c]), of(light->diffuse[c]));
@@ -263,14 +264,18 @@ INLINE void derive_lanes(bool bends, const glint_derivative_light *light, const 
             specular = find_power(bends, material, take_plane(planes, GLINT_DERIVED_SHININESS, i, of(material->shininess)),
                                   &s, normal, eye);
         for (int c = 0; c < 3; c++) {
-            const lanes one = number(1), diffuse = mul(kd[c], s.cosine);
-            lanes shiny = add(mul(ks[c], specular), mul(kg[c], grazing));
-            lanes light_left = add(diffuse, shiny);
-            if (planes) {
-                shiny = mul(shiny, take_plane(planes, GLINT_DERIVED_SPECULAR + c, i, one));
-                light_left = add(mul(diffuse, take_plane(planes, GLINT_DERIVED_DIFFUSE + c, i, one)), shiny);
+            const lanes one = number(1);
+            lanes light_left = mul(kd[c], s.cosine);
+            if (planes)
+                light_left = mul(light_left, take_plane(planes, GLINT_DERIVED_DIFFUSE + c, i, one));
+            if (material->highlight != GLINT_HIGHLIGHT_NONE) {
+                lanes shiny = mul(ks[c], specular);
+                if (material->highlight == GLINT_HIGHLIGHT_FACETS)
+                    shiny = add(shiny, mul(kg[c], grazing));
+                light_left = add(light_left, planes ? mul(shiny, take_plane(planes, GLINT_DERIVED_SPECULAR + c, i, one)) : shiny);
             }
-            light_left = mul(light_left, s.weight);
+            if (weighs)
+                light_left = mul(light_left, s.weight);
             if (source->tint[0])
                 light_left = mul(light_left, make(d_load(source->tint[c] + i), d_load(source->tint_slope[c] + i)));
             d_store(sum[c] + i, d_load(sum[c] + i) + d_select(reached, light_left.d, zero));
