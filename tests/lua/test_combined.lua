@@ -291,5 +291,59 @@ function tests.errors()
   refused("union 'many': at most 64 parts expected", down, glint.scene { many }, 0, 0)
 end
 
+-- Random parts: a set with itself or with an empty one is that set, however many of its parts a ray is in. By shadows, mirrors and
+-- glass, so that rays start on parts, too; every number of every pixel.
+function tests.the_same_set_said_otherwise()
+  local state = 12345
+  local function random(low, high)
+    state = (state * 1103515245 + 12345) % 0x80000000
+    return low + (high - low) * state / 0x80000000
+  end
+  local function at(reach) return { random(-reach, reach), random(-reach, reach), random(-reach, reach) } end
+  local function part()
+    local kind = random(0, 5) // 1
+    if kind == 0 then return glint.sphere { center = at(0.8), radius = random(0.4, 1.2) } end
+    if kind == 1 then return glint.box { min = { random(-1.2, 0), random(-1.2, 0), -1 }, max = { random(0.1, 1), 0.8, 1 } } end
+    if kind == 2 then return glint.cylinder { base = at(1), top = { 0, 1.5, 0 }, radius = random(0.2, 0.7) } end
+    if kind == 3 then return glint.torus { center = at(0.4), axis = at(1), major = 0.8, minor = random(0.1, 0.5) } end
+    return glint.plane { point = at(0.5), normal = at(1) }
+  end
+  local operations = { glint.union, glint.difference, glint.intersection }
+  local function picture(shape, material)
+    local scene = glint.scene { camera = glint.camera { eye = { 3, 2.5, 5 }, at = { 0, 0, 0 }, fov = 34 }, ambient = 0.1,
+      background = { 0.2, 0.3, 0.4 }, glint.point_light { position = { 4, 6, 3 } },
+      glint.sphere_light { position = { -4, 5, 4 }, radius = 0.5, samples = 3, intensity = 0.4 },
+      glint.plane { point = { 0, -1.6, 0 }, normal = { 0, 1, 0 } }, shape }
+    shape.material = material
+    return scene:render { width = 48, height = 40, output = "none", passes = "depth,normal" }
+  end
+  local looks = { glint.material { diffuse = 0.7, specular = 0.3 }, glint.material { diffuse = 0.2, mirror = 0.6 },
+    glint.material { diffuse = 0.1, transmission = 0.8, ior = 1.3 } }
+  for round = 1, 24 do
+    local first, second = operations[random(1, 4) // 1 | 0], operations[random(1, 4) // 1 | 0]
+    local a, b, c = glint.intersection { part(), glint.sphere { center = { 0, 0, 0 }, radius = 1.5 } }, part(), part()
+    local function whole() return round % 2 == 0 and first { a, b } or second { first { a, b }, c } end
+    local bounded = function(shape) return glint.intersection { shape, glint.sphere { center = { 0, 0, 0 }, radius = 1.6 } } end
+    local plain = picture(bounded(whole()), looks[1 + round % 3])
+    for name, other in pairs {
+      twice = glint.union { whole(), whole() }, both = glint.intersection { whole(), whole() },
+      with_nothing = glint.union { whole(), glint.group {} }, less_nothing = glint.difference { whole(), glint.group {} },
+      from_nothing = glint.union { glint.difference { glint.group {}, b }, whole() },
+      far = glint.union { whole(), glint.intersection { a, glint.sphere { center = { 50, 0, 0 }, radius = 1 } } },
+    } do
+      local got, differ = picture(bounded(other), looks[1 + round % 3]), 0
+      for y = 0, 39 do
+        for x = 0, 47 do
+          for _, pass in ipairs { "beauty", "depth", "normal" } do
+            local p, q = { plain:pixel(x, y, pass) }, { got:pixel(x, y, pass) }
+            for k, value in ipairs(p) do differ = differ + (value == q[k] and 0 or 1) end
+          end
+        end
+      end
+      check(differ == 0, "round %d, %s: %d numbers differ", round, name, differ)
+    end
+  end
+end
+
 tally.run(tests)
 tally.finish()
