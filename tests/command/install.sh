@@ -93,7 +93,7 @@ check "and nothing else" eval 'test "$(wc -l <"$work/exported")" -gt 100 &&
 for file in bin/glint lib/libglint.so lib/lua/5.4/glint.so; do
     check "$file is stripped and hardened" eval \
         '! readelf -SW "$prefix/$file" | grep -q debug_info && readelf -dW "$prefix/$file" | grep -qE "BIND_NOW|NOW" &&
-         readelf -lW "$prefix/$file" | grep -q GNU_RELRO'
+         readelf -lW "$prefix/$file" | grep -q GNU_RELRO && nm -D "$prefix/$file" | grep -q __stack_chk_fail'
 done
 cat >"$work/same.lua" <<'END'
 local glint = require "glint"
@@ -122,5 +122,8 @@ done
 check "make uninstall" quiet_make uninstall PREFIX="$prefix"
 check "nothing is left" test -z "$(find "$prefix" -type f -o -type l)" -a ! -e "$prefix/share/glint" -a ! -e "$prefix/share/lua/5.4/glint" -a ! -e "$prefix/share/doc/glint"
 check "DESTDIR goes before PREFIX" quiet_make install PREFIX=/opt/glint DESTDIR="$work/root"
-check "and not into the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
+multiarch=$(${CC:-cc} -print-multiarch 2>/dev/null)
+check "as a system's own package" quiet_make install PREFIX=/usr DESTDIR="$work/system"
+check "with the libraries of this architecture" test -s "$work/system/usr/lib${multiarch:+/$multiarch}/libglint.so"
+check "into the root's folder, not the files" grep -qx 'prefix=/opt/glint' "$work/root/opt/glint/lib/pkgconfig/glint.pc"
 totals
