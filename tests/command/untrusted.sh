@@ -117,7 +117,8 @@ for line in 'string.rep("a", 40):find(string.rep("a-", 40) .. "b")' 'string.rep(
     stopped "$line" -o a.png
 done
 seconds=20
-script "table.concat($endless)"
+script 'local kilobyte = ("x"):rep(1000)' \
+    'table.concat(setmetatable({}, { __len = function() return 1 << 31 end, __index = function() return kilobyte end }))'
 refused "table.concat of what has no end" "not enough memory" -o a.png
 script "require 'glint'.mesh { vertices = $endless, faces = $endless }"
 refused "a mesh of what has no end" "mesh.vertices: .* expected, got 0" -o a.png
