@@ -453,7 +453,7 @@ $(addprefix $(BUILD)/tests/bench/,hand embree peers plain embree_lone): $(BENCH_
 	$(Q)$(CC) $(FAST) $(filter %.c,$^) -Wl,--as-needed $(if $(filter %/embree %/embree_lone,$@),-lembree3) -lpng -lz -lm -o $@
 
 .PHONY: bench-run bench-programs
-bench: ## glint beside a hand-written program, Embree, POV-Ray and Tachyon: one table; BENCH=frame,jobs picks parts, RUNS=7
+bench: ## glint beside a hand-written program, Embree, POV-Ray and Tachyon: one table; BENCH=frame,jobs picks parts, readme the README's table, RUNS=7
 	@tests/deps.sh build bench
 	@$(MAKE) --no-print-directory bench-run
 

@@ -44,7 +44,7 @@ static void keep_used(glint_grids *grids, const glint_plan *plan)
 
 /// Notes a light, or makes its grid: at once, or where it was noted by a frame before this one.
 static glint_status add(glint_grids *grids, const glint_plan_light *light, const glint_geometry_table *table,
-                        bool at_once, glint_error *error)
+                        bool at_once, size_t room, glint_error *error)
 {
     uint32_t i = 0;
     while (i < grids->count && !is_of(grids, i, light))
@@ -62,7 +62,7 @@ static glint_status add(glint_grids *grids, const glint_plan_light *light, const
     if (!noted && !at_once)
         return GLINT_OK;
     grids->of[i].made = true;
-    return glint_light_grid_create(table, light->directional, light->position, &grids->of[i].grid, error);
+    return glint_light_grid_create(table, light->directional, light->position, room, &grids->of[i].grid, error);
 }
 
 /// Whether a tile is run with shadows that are not there from an earlier frame.
@@ -118,7 +118,7 @@ static glint_status find(glint_grids *grids, const glint_tile_frame *frame, cons
     const bool at_once = samples >= SAMPLES_AT_ONCE * table->prim_count * threads;
     for (uint32_t k = 0; k < plan->light_count && grids->count < GLINT_TILE_GRIDS && !status; k++)
         if (has_grid(&plan->lights[k]))
-            status = add(grids, &plan->lights[k], table, at_once, error);
+            status = add(grids, &plan->lights[k], table, at_once, frame->reuse->budget / GLINT_TILE_GRIDS, error);
     return status;
 }
 

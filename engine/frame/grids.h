@@ -20,7 +20,7 @@ typedef struct glint_grids {
 } glint_grids;
 
 /// Makes the grids of a frame's lights without samples that throw shadows, where the tiles that it runs, or those of the next frames,
-/// pay for them, drops others, and names them in `frame`. A refined frame has those of its base. Zeroed memory is a beginning.
+/// pay for them and they are within what may be kept, drops others, and names them in `frame`. A refined frame has those of its base. Zeroed memory is a beginning.
 glint_status glint_grids_begin(glint_grids *grids, glint_tile_frame *frame, const glint_extent *extent, int threads,
                                glint_error *error);
 void glint_grids_clear(glint_grids *grids);

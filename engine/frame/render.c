@@ -55,6 +55,23 @@ typedef struct frame {
     glint_extent extent;
 } frame;
 
+/// What the environment says, where the choice is left open.
+static glint_status choose_hits(glint_hits_choice *hits, glint_error *error)
+{
+    static const char *const words[] = { "measured", "kept", "anew" };
+    const char *word = getenv("GLINT_HITS");
+    if ((unsigned)*hits > GLINT_HITS_ANEW)
+        return glint_fail(error, GLINT_ERR_INVALID, "hits: one of glint_hits_choice expected, got %d", (int)*hits);
+    if (*hits != GLINT_HITS_MEASURED || !word || !*word)
+        return GLINT_OK;
+    for (int i = 0; i < 3; i++)
+        if (strcmp(word, words[i]) == 0) {
+            *hits = (glint_hits_choice)i;
+            return GLINT_OK;
+        }
+    return glint_fail(error, GLINT_ERR_INVALID, "GLINT_HITS: measured, kept or anew expected, got '%.40s'", word);
+}
+
 glint_renderer_desc glint_renderer_desc_default(void) { return (glint_renderer_desc) { 0 }; }
 
 glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_renderer **out, glint_error *error)
@@ -67,8 +84,11 @@ glint_status glint_renderer_create(const glint_renderer_desc *desc, glint_render
     renderer->grids = &renderer->own_grids;
     renderer->time_stages = desc->time_stages;
     renderer->count_work = desc->count_work;
-    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory);
-    glint_status status = glint_choose_isa(desc->isa, &renderer->stages, error);
+    glint_hits_choice hits = desc->hits;
+    glint_status status = choose_hits(&hits, error);
+    glint_reuse_init(&renderer->reuse, !desc->no_reuse, desc->reuse_memory, hits);
+    if (!status)
+        status = glint_choose_isa(desc->isa, &renderer->stages, error);
     const int threads = desc->threads ? desc->threads : glint_pool_processors();
     if (!status)
         status = glint_pool_create(threads, &renderer->pool, error);
@@ -156,7 +176,7 @@ static void stamp_rows(glint_image *image, uint32_t across)
         bool known = true;
         for (size_t x = 0; x < across; x++) {
             known = known && film[x].codes;
-            key = glint_key_add(key, &film[x].codes, sizeof film[x].codes);
+            key = glint_key_mix(key, (glint_key) { film[x].codes, film[x].codes });
         }
         image->row_stamp[row] = known ? key.low : 0;
     }
@@ -189,6 +209,11 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, cons
         sum.indirect += part->indirect;
         sum.clipped += part->clipped;
         sum.nonfinite += part->nonfinite;
+        sum.compared += part->compared;
+        for (int way = 0; way < 2; way++) {
+            sum.ways[way] += part->ways[way];
+            sum.way_ns[way] += part->way_ns[way];
+        }
     }
     sum.reuses[GLINT_STAGE_VERTEX] += renderer->shading_points.ready;
     sum.ns[GLINT_STAGE_CAST] += (uint64_t)(renderer->raster.ms * 1e6) * (uint64_t)glint_pool_threads(renderer->pool);
@@ -203,6 +228,10 @@ static void collect_stats(glint_renderer *renderer, const glint_plan *plan, cons
                                        .refraction = sum.refraction,
                                        .indirect = sum.indirect };
     stats->work = sum.work;
+    stats->hits_kept = sum.ways[0];
+    stats->hits_anew = sum.ways[1];
+    stats->hits_kept_us = sum.compared ? sum.way_ns[0] * 1e-3 / (double)sum.compared : 0;
+    stats->hits_anew_us = sum.compared ? sum.way_ns[1] * 1e-3 / (double)sum.compared : 0;
     stats->pixels = (uint64_t)extent->width * (uint64_t)extent->height;
     stats->clipped = sum.clipped;
     stats->nonfinite = sum.nonfinite;
@@ -459,7 +488,7 @@ static glint_status open_base(glint_renderer *renderer, glint_error *error)
     base->grids = renderer->grids;
     base->time_stages = renderer->time_stages;
     base->count_work = renderer->count_work;
-    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1);
+    glint_reuse_init(&base->reuse, renderer->reuse.on, renderer->reuse.budget / 2 + 1, renderer->reuse.hits);
     renderer->base = base;
     return GLINT_OK;
 }

@@ -84,9 +84,9 @@ glint_status glint_geometry_others(glint_geometry *geometry, glint_pool *pool, g
                                    glint_error *error);
 
 /// geometry/light_grid.c: makes the grid of a light without samples over an arranged table with its index. position:
-/// directional: the unit vector towards the light. *out NULL: there is none, since too little is small spheres that the light is
-/// outside of and sees to one side.
-glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+/// directional: the unit vector towards the light. room: bytes that it may take. *out NULL: there is none, since too little is small
+/// spheres that the light is outside of and sees to one side, or it would take more.
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3], size_t room,
                                      glint_light_grid **out, glint_error *error);
 void glint_light_grid_destroy(glint_light_grid *grid);
 

@@ -13,6 +13,8 @@
 #define CELLS_A_RADIUS 3.0 ///< a cell's side, in mean radii
 #define COVERED_MAX 4.0 ///< a sphere's radius in cells; larger ones are tested one by one
 #define ENTRIES_MAX 6 ///< of each sphere, in the mean
+#define ENTRIES_LEAST 2 ///< cells so wide that there are fewer have too many spheres
+#define ENTRY_BYTES (4 * sizeof(float) + 2 * sizeof(uint32_t)) ///< of an entry and of a cell, of which there are no more
 #define COUNT_MAX 32767 ///< columns, rows
 #define SORTED_FROM 24 ///< entries of a cell, in the mean, from which their order pays
 #define SLICES 1024 ///< of depth, by which they are sorted
@@ -32,6 +34,7 @@ typedef struct grid_maker {
     uint32_t count; ///< of these
     float least[2], most[2]; ///< places that they reach
     float near, far; ///< least and largest `near`
+    size_t room; ///< bytes that entries and cells may take
 } grid_maker;
 
 // ---- The light's view ----
@@ -220,12 +223,13 @@ static uint64_t count_entries(grid_maker *maker, float side, uint64_t limit)
 /// Chooses the least cells that are large enough, and returns their entries; 0: none are.
 static uint64_t choose_cells(grid_maker *maker)
 {
-    const uint64_t limit = (uint64_t)ENTRIES_MAX * maker->count + 1024;
+    const uint64_t most = (uint64_t)ENTRIES_MAX * maker->count + 1024, fit = maker->room / ENTRY_BYTES;
+    const uint64_t limit = fit < most ? fit : most;
     float side = (float)CELLS_A_RADIUS * mean_reach(maker);
     int tries = 0;
     while (!take_large(maker, (float)COVERED_MAX * side) && tries++ < 32)
         side *= 2;
-    if (tries > 32 || maker->count < SMALLEST_COUNT)
+    if (tries > 32 || maker->count < SMALLEST_COUNT || limit < (uint64_t)ENTRIES_LEAST * maker->count)
         return 0;
     bound_places(maker);
     for (; tries++ < 64; side *= 1.5F) {
@@ -336,10 +340,10 @@ static bool fill(grid_maker *maker, uint64_t count)
     return true;
 }
 
-glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3],
+glint_status glint_light_grid_create(const glint_geometry_table *table, bool directional, const double position[3], size_t room,
                                      glint_light_grid **out, glint_error *error)
 {
-    grid_maker maker = { .table = table };
+    grid_maker maker = { .table = table, .room = room };
     bool enough = true;
     *out = NULL;
     if (!table->nodes || table->prim_count < SMALLEST_COUNT)

@@ -10,11 +10,12 @@
 #define CHUNK_BYTES ((size_t)4 << 20)
 #define BLOCK_ALIGN 64
 
-void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget)
+void glint_reuse_init(glint_reuse *reuse, bool on, size_t budget, glint_hits_choice hits)
 {
     memset(reuse, 0, sizeof *reuse);
     pthread_mutex_init(&reuse->lock, NULL);
     reuse->on = on;
+    reuse->hits = hits;
     reuse->budget = budget ? budget : (size_t)sysconf(_SC_PHYS_PAGES) / 4 * (size_t)sysconf(_SC_PAGESIZE);
 }
 
@@ -119,37 +120,42 @@ static bool shines(const glint_reuse *reuse, const glint_cached_tile *tile, cons
     return false;
 }
 
+/// The materials that the tile shows.
+static glint_key materials_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan, glint_key key)
+{
+    if (tile->shown_count > GLINT_SHOWN_MAX)
+        return glint_key_mix(key, plan->all_materials_key);
+    for (uint32_t i = 0; i < tile->shown_count; i++) {
+        const uint32_t shown = tile->shown[i];
+        key = glint_key_mix(key, (shines(reuse, tile, plan, shown) ? plan->material_keys : plan->matte_keys)[shown]);
+    }
+    return key;
+}
+
 glint_key glint_reuse_film_key(const glint_reuse *reuse, const glint_cached_tile *tile, const glint_plan *plan)
 {
-    glint_key parts[GLINT_SHOWN_MAX + GLINT_CACHED_LIGHTS + 4];
-    size_t count = 0;
     if (!glint_key_equal(tile->seen, plan->keys[GLINT_STAGE_SURFACE]))
         return (glint_key) { 0 };
-    parts[count++] = plan->keys[GLINT_STAGE_SURFACE];
-    parts[count++] = plan->output_key;
+    glint_key key = glint_key_mix(plan->keys[GLINT_STAGE_SURFACE], plan->output_key);
     if (tile->background)
-        parts[count++] = plan->background_key;
+        key = glint_key_mix(key, plan->background_key);
     if (tile->shown_count == 0)
-        return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
+        return key;
     if (glint_reuse_shows_more(tile, plan)) {
-        const glint_key all[] = { plan->all_materials_key, plan->all_lights_key, plan->background_key };
-        return glint_key_add(glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts), all, sizeof all);
+        key = glint_key_mix(glint_key_mix(key, plan->all_materials_key), plan->all_lights_key);
+        return glint_key_mix(key, plan->background_key);
     }
-    if (tile->shown_count > GLINT_SHOWN_MAX)
-        parts[count++] = plan->all_materials_key;
-    for (uint32_t i = 0; i < tile->shown_count && tile->shown_count <= GLINT_SHOWN_MAX; i++)
-        parts[count++] =
-            (shines(reuse, tile, plan, tile->shown[i]) ? plan->material_keys : plan->matte_keys)[tile->shown[i]];
+    key = materials_key(reuse, tile, plan, key);
     for (uint32_t i = 0; i < reuse->light_count; i++) {
         const glint_cached_light *light = &tile->lights[i];
         if (!glint_key_equal(light->place, plan->lights[i].place_key))
             return (glint_key) { 0 };
         if (light->reaches)
-            parts[count++] = plan->lights[i].look_key;
+            key = glint_key_mix(key, plan->lights[i].look_key);
     }
     if (plan->light_count > reuse->light_count)
-        parts[count++] = plan->all_lights_key;
-    return glint_key_add((glint_key) { 0 }, parts, count * sizeof *parts);
+        key = glint_key_mix(key, plan->all_lights_key);
+    return key;
 }
 
 bool glint_reuse_reserve(glint_reuse *reuse, size_t bytes)

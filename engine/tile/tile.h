@@ -27,6 +27,9 @@ typedef struct glint_tile_counts {
     glint_work work;
     glint_odd_pattern odd;
     uint64_t runs[GLINT_STAGE_COUNT], reuses[GLINT_STAGE_COUNT]; ///< calls made, and results taken from the last frame
+    uint64_t ways[2]; ///< tiles whose points are needed and hits known: that read them; that find them anew
+    uint64_t compared; ///< of these, the ones that have gone both ways, and what they took at the least:
+    double way_ns[2];
 } glint_tile_counts;
 
 #define GLINT_TILE_GRIDS 4 ///< lights that have a grid, at most
@@ -137,6 +140,9 @@ typedef struct glint_tile {
     glint_tile_sample at;
     size_t index; ///< of the tile in the picture
     glint_cached_tile *cached; ///< NULL: nothing is kept for this tile
+    bool anew; ///< its hits are found, though they are kept
+    bool timed; ///< this frame's time tells whether that is quicker
+    uint64_t begun; ///< of such a frame
 
     uint32_t x0, y0, width, height; ///< of the part of the tile inside the image
     uint32_t group_count, groups_across;
@@ -220,7 +226,11 @@ typedef struct glint_film_counts {
 /// Writes down what the tile shows now.
 void glint_tile_sign_film(glint_tile *tile, const glint_tile_frame *frame, glint_film_counts before);
 
-/// tile/cached.c: prefetches what the tile has kept of its first sample and will read.
+/// tile/cached.c: of a tile that is to run and whose hits are known, chooses whether to read them or to find them anew, by what its
+/// frames took; afterwards notes what this one took.
+void glint_tile_choose_way(glint_tile *tile, const glint_tile_frame *frame);
+void glint_tile_note_way(const glint_tile *tile);
+/// Prefetches what the tile has kept of its first sample and will read.
 void glint_tile_prefetch(const glint_tile *tile, const glint_tile_frame *frame);
 
 /// Each calls one stage for the current sample, and books it.

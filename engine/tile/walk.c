@@ -383,6 +383,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     const glint_film_counts before = { .clipped = tile->counts.clipped,
                                        .nonfinite = tile->counts.nonfinite,
                                        .lights = tile->counts.runs[GLINT_STAGE_LIGHT] };
+    glint_tile_choose_way(tile, frame);
     if (tile->cached) {
         frame->image->film[tile->index] = (glint_film_stamp) { 0 };
         glint_tile_prefetch(tile, frame);
@@ -419,6 +420,7 @@ static void run_stages(glint_tile *tile, const glint_tile_frame *frame)
     }
     tile->counts.ns[GLINT_STAGE_TONE] += clock_of(tile, frame) - rendered;
     glint_tile_sign_film(tile, frame, before);
+    glint_tile_note_way(tile);
 }
 
 void glint_tile_render(glint_tile *tile, const glint_tile_frame *frame, uint32_t column, uint32_t row)

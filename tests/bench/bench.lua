@@ -1,13 +1,14 @@
 -- make bench: all sides in turn, one table, one CSV.   lua5.4 tests/bench/bench.lua BUILD COMPILER [PART,PART...|all] [RUNS]
 --
 -- Parts: frame reuse jobs many lamps ways solids programs encode stages peers, and slow (minutes), which runs only when named. At least 7
--- runs of everything but the slow renderers, in an order shuffled anew for each round; medians, with quartiles.
+-- runs of everything but the slow renderers, in an order shuffled anew for each round; medians, with quartiles. The part `readme`, which
+-- the default has, prints the README's table.
 package.path = "tests/bench/?.lua;" .. package.path
 local cases, measure = require "cases", require "measure"
 
 local build, compiler, selection = arg[1], arg[2], arg[3] or ""
 local runs = math.tointeger(tonumber(arg[4] ~= "" and arg[4] or "7"))
-local default_parts = "frame,reuse,jobs,many,lamps,ways,solids,programs,encode,stages,peers"
+local default_parts = "frame,reuse,jobs,many,lamps,ways,solids,programs,encode,stages,peers,readme"
 local labels = {
   glint = "glint", hand = "hand-written", plain = "plain C", embree = "Embree", embree_lone = "Embree, lone",
   povray = "POV-Ray", tachyon = "Tachyon", lua = "plain Lua"
@@ -22,7 +23,7 @@ if not runs or runs < 1 or runs > 1000 then die(("RUNS: whole number, 1 .. 1000,
 
 local function parts_of(text)
   local known, parts = {}, {}
-  known.stages = true
+  known.stages, known.readme = true, true
   for _, row in ipairs(cases.rows) do known[row[1]] = #row > 1 or nil end
   for part in (text == "" and default_parts or text):gmatch "[^,%s]+" do
     if not known[part] then die(("BENCH: no part '%s'; there are %s, slow"):format(part, default_parts)) end
@@ -40,6 +41,11 @@ local function wanted_by(parts)
     end
   end
   for _, id in ipairs(cases.stage_sides) do wanted[id] = parts.stages end
+  for _, row in ipairs(parts.readme and cases.readme or {}) do
+    for column = 2, 5 do
+      if row[column] then wanted[row[column]:match "^[^:]+"] = true end
+    end
+  end
   return wanted
 end
 
@@ -161,6 +167,19 @@ local function print_stages()
   end
 end
 
+-- Rows of Markdown, milliseconds.
+local function print_readme()
+  print "\n| scene | glint, double | hand-written, float | Embree, float | POV-Ray |\n| --- | --- | --- | --- | --- |"
+  for _, row in ipairs(cases.readme) do
+    local cells = { row[1] }
+    for column = 2, 5 do
+      local samples = row[column] and samples_of(row[column])
+      cells[column] = samples and " " .. number(median(samples) * (samples.unit == "s" and 1000 or 1)) or ""
+    end
+    print("| " .. table.concat(cells, " |") .. " |")
+  end
+end
+
 local function write_csv(folder, file_name)
   os.execute(("mkdir -p '%s'"):format(folder))
   local path = folder .. "/" .. file_name
@@ -191,8 +210,9 @@ os.execute(("rm -rf '%s'"):format(pictures))
 print(("%s, %s processors; glint in %s; %s"):format(model, output_of "nproc", isa, compiler))
 print(("1920x1080; %d runs where not told, all sides in every round, in random order; files in %s\n"):format(runs,
   pictures:match "^(.*)/"))
-print_rows(parts)
+if selection ~= "readme" then print_rows(parts) end
 if parts.stages then print_stages() end
+if parts.readme then print_readme() end
 
 local file = ("%s-%s.csv"):format(model:lower():gsub("%W+", "-"):gsub("^-+", ""):gsub("-+$", ""), isa)
 print("\nCSV: " .. write_csv(selection == "" and "tests/bench/results" or build .. "/tests/bench", file))

@@ -271,4 +271,18 @@ local rows = {
 -- Stages by instruction set: one row for each that the engine names, found as they come.
 local stage_sides = { "g.ref", "g.sse2", "g.avx2", "g.avx512" }
 
-return { measurements = measurements, rows = rows, stage_sides = stage_sides }
+-- The README's table, by the processor's time of one thread: what it is, then glint, hand-written, Embree, POV-Ray, where they have one.
+local readme = {
+  { "workshop: 5 spheres, one lamp", "g.frame:cpu", "h.frame:cpu", "e.frame:cpu", "p.frame:cpu" },
+  { "the same, only the lamp moved", "g.moved:kept_cpu" },
+  { "the same, only a sphere moved", "g.ball:kept_cpu" },
+  { "the same, only the shininess changed", "g.shiny:kept_cpu" },
+  { "the same, a lamp of 16 samples", "g.area:cpu", "h.area:cpu", "e.area:cpu", "p.area:cpu" },
+  { "1,000 spheres", "g.1k:cpu", false, "e.1k:cpu", "p.1k:cpu" },
+  { "1,000,000 spheres", "g.1M:cpu", false, "e.1M:cpu", "p.1M:cpu" },
+  { "500,000 triangles, a mesh", "g.mesh:cpu", false, "e.mesh:cpu" },
+  { "60 PNGs of a moving lamp, two threads", "g.light.2:cpu", "h.light.2:cpu", false, "p.light:cpu" },
+  { "60 PNGs of a changing shininess, two threads", "g.shininess.2:cpu", "h.shininess.2:cpu", false, "p.shininess:cpu" },
+}
+
+return { measurements = measurements, rows = rows, stage_sides = stage_sides, readme = readme }

@@ -233,7 +233,7 @@ int main(int argc, char **argv)
     scene.side = &e;
     if (strcmp(options.mode, "frame") == 0) {
         bench_say("build", "ms", bench_median(time_build, &e));
-        bench_say("render", "ms", bench_median(time_render, &scene));
+        bench_say_render(time_render, &scene);
     } else if (strcmp(options.mode, "picture") == 0 && options.out) {
         time_build(&e);
         write_picture(&scene);

@@ -15,11 +15,16 @@ typedef struct frame_state {
     int frames;
 } frame_state;
 
-static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats)
+/// processor_ms: the processor's time, without the share that the codes take of the whole; NULL: it is not wanted.
+static double render(glint_renderer *renderer, const glint_plan *plan, glint_frame_stats *stats, double *processor_ms)
 {
     glint_error error;
     glint_image *image;
+    const double start = bench_processor_ms();
     side_must(glint_render(renderer, plan, &image, stats, &error), &error);
+    const double whole = stats->build_ms + stats->render_ms + stats->tone_ms;
+    if (processor_ms)
+        *processor_ms = (bench_processor_ms() - start) * stats->render_ms / whole;
     glint_image_release(image);
     return stats->render_ms;
 }
@@ -27,15 +32,15 @@ static double render(glint_renderer *renderer, const glint_plan *plan, glint_fra
 static double time_render(void *state)
 {
     frame_state *f = state;
-    const double start = bench_processor_ms(), ms = render(f->renderer, f->plan, &f->stats);
-    f->processor_ms[f->frames++ % LAST] = bench_processor_ms() - start;
+    const double ms = render(f->renderer, f->plan, &f->stats, &f->processor_ms[f->frames % LAST]);
+    f->frames++;
     return ms;
 }
 
 static double time_codes(void *state)
 {
     frame_state *f = state;
-    return render(f->renderer, f->plan, &f->stats) + f->stats.tone_ms;
+    return render(f->renderer, f->plan, &f->stats, NULL) + f->stats.tone_ms;
 }
 
 static glint_renderer *renderer_or_exit(const bench_options *options)
@@ -71,7 +76,7 @@ void side_run_frame(const bench_options *options)
     double ms = bench_median(time_render, &f);
     double rays = (double)(f.stats.rays.primary + f.stats.rays.shadow);
     bench_say("render", "ms", ms);
-    bench_say("cpu", "ms", bench_median_of(f.processor_ms, f.frames < LAST ? f.frames : LAST)); // the film's codes with it
+    bench_say("cpu", "ms", bench_median_of(f.processor_ms, f.frames < LAST ? f.frames : LAST));
     bench_say("codes", "ms", bench_median(time_codes, &f));
     bench_say("rays", "M/s", rays / ms / 1e3);
     bench_say("shadow_rays", "rays", (double)f.stats.rays.shadow);
@@ -93,7 +98,7 @@ static double build_once(const bench_options *options, double *ready_ms)
     glint_frame_stats stats;
     double start = bench_now_ms();
     side_must(glint_plan_create(scene.scene, &d, &plan, &error), &error);
-    render(renderer, plan, &stats);
+    render(renderer, plan, &stats, NULL);
     *ready_ms = bench_now_ms() - start;
     glint_plan_destroy(plan);
     glint_renderer_destroy(renderer);
@@ -125,7 +130,7 @@ void side_run_stages(const bench_options *options)
     static double ms[GLINT_STAGE_MAX][ROUNDS];
     static double tone[ROUNDS];
     for (int round = -1; round < ROUNDS; round++) {
-        render(f.renderer, f.plan, &f.stats);
+        render(f.renderer, f.plan, &f.stats, NULL);
         for (int k = 0; k < f.stats.stage_count && round >= 0; k++)
             ms[k][round] = f.stats.stage_ms[k];
         if (round >= 0)
@@ -149,25 +154,29 @@ void side_run_reuse(const bench_options *options)
     fresh_options.no_reuse = true;
     side_scene scene = side_scene_create(options);
     glint_renderer *fresh = renderer_or_exit(&fresh_options), *keeping = renderer_or_exit(options);
-    double fresh_ms[ROUNDS], kept_ms[ROUNDS];
+    double fresh_ms[ROUNDS], kept_ms[ROUNDS], fresh_cpu[ROUNDS], kept_cpu[ROUNDS];
     for (int round = -2; round < ROUNDS; round++) {
         glint_frame_stats stats;
         side_scene_set_frame(&scene, options->change, round + 2);
         glint_plan *plan = side_plan_create(&scene, options);
-        double f = render(fresh, plan, &stats);
+        double processor[2], f = render(fresh, plan, &stats, &processor[0]);
         if (options->times) {
             glint_plan_destroy(plan);
             plan = side_plan_create_exposed(&scene, options, round + 2);
         }
-        double k = render(keeping, plan, &stats);
+        double k = render(keeping, plan, &stats, &processor[1]);
         if (round >= 0) {
             fresh_ms[round] = f;
             kept_ms[round] = k;
+            fresh_cpu[round] = processor[0];
+            kept_cpu[round] = processor[1];
         }
         glint_plan_destroy(plan);
     }
     bench_say("fresh", "ms", bench_median_of(fresh_ms, ROUNDS));
     bench_say("kept", "ms", bench_median_of(kept_ms, ROUNDS));
+    bench_say("fresh_cpu", "ms", bench_median_of(fresh_cpu, ROUNDS));
+    bench_say("kept_cpu", "ms", bench_median_of(kept_cpu, ROUNDS));
     glint_renderer_destroy(fresh);
     glint_renderer_destroy(keeping);
     side_scene_free(&scene);

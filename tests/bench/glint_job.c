@@ -85,6 +85,7 @@ void side_run_job(const bench_options *options)
         if (result.status != GLINT_OK)
             bench_fail("glint", result.message);
     bench_say("job", "s", (bench_now_ms() - start) / 1e3);
+    bench_say("cpu", "s", bench_processor_ms() / 1e3);
     glint_writer_destroy(writer);
     glint_renderer_destroy(renderer);
     side_scene_free(&scene);

@@ -207,6 +207,7 @@ static void run_job(const packet_scene *s)
     for (int i = 1; i < s->options.threads; i++)
         pthread_join(threads[i], NULL);
     bench_say("job", "s", (bench_now_ms() - start) / 1e3);
+    bench_say("cpu", "s", bench_processor_ms() / 1e3);
 }
 
 int main(int argc, char **argv)
@@ -217,7 +218,7 @@ int main(int argc, char **argv)
     init(&scene, &spheres, &options);
     writer = picture_writer_create();
     if (strcmp(options.mode, "frame") == 0) {
-        bench_say("render", "ms", bench_median(time_render, &scene));
+        bench_say_render(time_render, &scene);
         bench_say("codes", "ms", bench_median(time_codes, &scene));
     } else if (strcmp(options.mode, "encode") == 0) {
         run_encode(&scene);

@@ -101,13 +101,30 @@ double bench_median_of(double *values, int count)
 
 enum { COUNT_MAX = 31, WARM_MS = 100, MEASURE_MS = 300 };
 
-double bench_median(double (*measure)(void *state), void *state)
+/// Returns how many calls there were.
+static int run(double (*measure)(void *state), void *state, double values[COUNT_MAX], double processor[COUNT_MAX])
 {
-    double values[COUNT_MAX];
     int count = 0;
     for (double start = bench_now_ms(); bench_now_ms() - start < WARM_MS;)
         measure(state);
-    for (double start = bench_now_ms(); !count || (count < COUNT_MAX && bench_now_ms() - start < MEASURE_MS);)
-        values[count++] = measure(state);
-    return bench_median_of(values, count);
+    for (double start = bench_now_ms(); !count || (count < COUNT_MAX && bench_now_ms() - start < MEASURE_MS); count++) {
+        const double before = bench_processor_ms();
+        values[count] = measure(state);
+        processor[count] = bench_processor_ms() - before;
+    }
+    return count;
+}
+
+double bench_median(double (*measure)(void *state), void *state)
+{
+    double values[COUNT_MAX], processor[COUNT_MAX];
+    return bench_median_of(values, run(measure, state, values, processor));
+}
+
+void bench_say_render(double (*measure)(void *state), void *state)
+{
+    double values[COUNT_MAX], processor[COUNT_MAX];
+    const int count = run(measure, state, values, processor);
+    bench_say("render", "ms", bench_median_of(values, count));
+    bench_say("cpu", "ms", bench_median_of(processor, count));
 }

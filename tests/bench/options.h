@@ -42,6 +42,9 @@ void bench_say(const char *name, const char *unit, double value);
 /// Returns the median.
 double bench_median(double (*measure)(void *state), void *state);
 
+/// The same, printed as "render", and as "cpu" the median of the processor's times of the calls.
+void bench_say_render(double (*measure)(void *state), void *state);
+
 /// Median of `values`, which are sorted.
 double bench_median_of(double *values, int count);
 

@@ -273,12 +273,18 @@ static uint32_t gridded; ///< cases in which the light had a grid
 /// The grid of a light without samples, where it can have one.
 static glint_light_grid *make_grid(const shadow_case *c)
 {
+    static uint32_t calls;
     glint_light_grid *grid = NULL;
     glint_error error;
+    const size_t room = calls++ % 3 ? SIZE_MAX : (size_t)c->scene->table.prim_count * 64; // then cells are wider, or there is none
     if (!c->soft)
         assert_int_equal(
-            glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, &grid, &error), GLINT_OK);
+            glint_light_grid_create(&c->scene->table, c->args.directional, c->args.position, room, &grid, &error), GLINT_OK);
     gridded += grid != NULL;
+    if (grid) {
+        const size_t cells = (size_t)grid->count[0] * grid->count[1];
+        assert_true(cells * sizeof(uint32_t) + grid->begin[cells] * (4 * sizeof(float) + sizeof(uint32_t)) <= room);
+    }
     return grid;
 }
 
