@@ -1422,6 +1422,9 @@ typedef struct glint_sheet_desc {
     double size; ///< of labels, points of dpi / 72 pixels, 0 .. 10000; 0: 13 pixels, below pictures of 900 across and more 26
     double dpi; ///< pixels an inch where it is printed, 0 .. 1e6; 0: not said, and a point is a pixel
     bool transparent; ///< the paper is; pictures are as on white
+    /// A colour bar of all pictures, at their right, or below them where it is horizontal; NULL: none. It has its kind's own fields,
+    /// with `length` in points (default: as the pictures together, at most 20 times `size`), and the sheet's text and ink
+    const glint_overlay_desc *colorbar;
 } glint_sheet_desc;
 
 /// Draws finished pictures in rows, with labels, as one PNG: dark text on white, pixels of 8 bits. A picture that is

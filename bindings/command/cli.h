@@ -59,7 +59,7 @@ typedef struct cli_options {
     int argument_count;
     const char *file; ///< of reproduce
     const char *output; ///< -o as it was given; NULL: not given
-    const char *label, *title; ///< of sheet; NULL: not given
+    const char *label, *title, *colorbar; ///< of sheet; NULL: not given
     int64_t columns, difference; ///< of sheet; 0: not given
     double gain, label_size; ///< of sheet; 0: not given
     bool transparent; ///< of sheet
@@ -104,7 +104,7 @@ struct cli_option {
     bool repeats; ///< it may be given several times
     const char *group; ///< heading in --help of this and the options after it
 };
-#define CLI_OPTION_COUNT 64
+#define CLI_OPTION_COUNT 65
 extern const cli_option cli_option_list[CLI_OPTION_COUNT];
 #define CLI_VALUE_SIZE 64
 /// What stands for the option's text, its words where it takes words; "": it takes no text.

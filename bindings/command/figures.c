@@ -20,13 +20,45 @@ static double dpi_of(const cli_options *options)
     return text ? strtod(text, NULL) : 0; // which was checked when it was read
 }
 
+// A number and the comma or the end after it; NULL: it is none.
+static const char *read_end(const char *text, double *out)
+{
+    char *end;
+    *out = strtod(text, &end);
+    return end > text && (*end == ',' || *end == '\0') ? end : NULL;
+}
+
+// MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE. False: it is neither.
+static bool read_colorbar(const char *text, glint_overlay_desc *bar)
+{
+    const size_t size = strcspn(text, ",");
+    int map = 0;
+    *bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
+    while (map < GLINT_COLORMAP_COUNT &&
+           (strncmp(glint_colormap_name((glint_colormap)map), text, size) != 0 || glint_colormap_name((glint_colormap)map)[size]))
+        map++;
+    if (map == GLINT_COLORMAP_COUNT || text[size] != ',')
+        return false;
+    bar->map = (glint_colormap)map;
+    const char *low = read_end(text + size + 1, &bar->low);
+    const char *high = low && *low ? read_end(low + 1, &bar->high) : NULL;
+    if (!high || strlen(high) > GLINT_OVERLAY_TEXT_SIZE)
+        return false;
+    snprintf(bar->text, sizeof bar->text, "%s", *high ? high + 1 : "");
+    return true;
+}
+
 int cli_sheet(const cli_options *options, cli_output *output)
 {
     char message[GLINTL_MESSAGE_SIZE];
     cli_file_list list;
+    glint_overlay_desc bar;
     int code = GLINTL_EXIT_USAGE;
     if (!options->output)
         return refuse(output, code, "sheet", "-o NAME.png or -o NAME.html expected");
+    if (options->colorbar && !read_colorbar(options->colorbar, &bar))
+        return refuse(output, code, "sheet",
+                      "--colorbar: MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE expected, MAP being viridis, magma, cividis, turbo or coolwarm");
     if (cli_list_files(options, &options->request.selection, &list, message)) {
         glintL_sheet sheet = { .path = options->output, .files = list.files, .count = list.count };
         sheet.label = options->label;
@@ -36,6 +68,7 @@ int cli_sheet(const cli_options *options, cli_output *output)
         sheet.gain = options->gain;
         sheet.size = options->label_size;
         sheet.transparent = options->transparent;
+        sheet.colorbar = options->colorbar ? &bar : NULL;
         sheet.dpi = dpi_of(options);
         sheet.mixes = options->request.force;
         code = glintL_sheet_make(&sheet, message);

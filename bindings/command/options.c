@@ -269,6 +269,8 @@ const cli_option cli_option_list[CLI_OPTION_COUNT] = {
       .expected = "number 0.001 .. 1000000" },
     { "label-size", 0, "POINTS", CLI_SHEET, read_real, .help = "of the sheet's text, 1/72 inch", AT(label_size),
       WITHIN(1, 10000), .expected = "points 1 .. 10000" },
+    { "colorbar", 0, "BAR", CLI_SHEET, read_text, .help = "MAP,LOW,HIGH,TITLE: a colour bar of all pictures",
+      AT(colorbar) },
     { "transparent", 0, NULL, CLI_SHEET, read_flag, .help = "the sheet has no paper", AT(transparent) },
     { "set", 'D', "NAME=VALUE", SHOWN, read_set, .help = "a parameter of the script", .repeats = true,
       .group = "picture" },

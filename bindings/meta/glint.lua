@@ -870,6 +870,7 @@ function glint.animation(fields) end
 ---@field size? number  of its text, points, 1 .. 10000. Default: 13 pixels, and 26 of pictures of 900 across and more
 ---@field dpi? number  pixels an inch, of the .png; a point is dpi / 72 pixels, or 1. Default: that of its pictures
 ---@field transparent? boolean  no paper: what is neither picture nor text shows through. Default false
+---@field colorbar? glint.colorbar  of all pictures, of a .png: at their right, or below them where it is horizontal; with the sheet's text and ink. Default none
 ---@field output? string  file name, .png or .html. Default: beside the frames, sheet.png or NAME_sheet.png, with the number of the first frame when that is not 1
 
 ---@class glint.sweep_fields: glint.render

@@ -34,8 +34,9 @@ bool glintL_sheet_check(const glintL_sheet *sheet, char message[GLINTL_MESSAGE_S
         snprintf(message, GLINTL_MESSAGE_SIZE, "gain: it means nothing without a difference");
     else if (sheet->columns && ends_in(sheet->path, ".html"))
         snprintf(message, GLINTL_MESSAGE_SIZE, "columns: a page has those of its first axis instead");
-    else if ((sheet->size > 0 || sheet->transparent) && ends_in(sheet->path, ".html"))
-        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it means nothing to a page", sheet->transparent ? "transparent" : "size");
+    else if ((sheet->size > 0 || sheet->transparent || sheet->colorbar) && ends_in(sheet->path, ".html"))
+        snprintf(message, GLINTL_MESSAGE_SIZE, "%s: it means nothing to a page",
+                 sheet->colorbar ? "colorbar" : sheet->transparent ? "transparent" : "size");
     else
         return true;
     return false;
@@ -201,6 +202,7 @@ static int draw_picture(const glintL_sheet *sheet, const glintL_axes *axes, char
     desc.size = sheet->size;
     desc.dpi = sheet->dpi;
     desc.transparent = sheet->transparent;
+    desc.colorbar = sheet->colorbar;
     set_titles(axes, &desc, down);
     glint_status status = glint_sheet_write(&desc, sheet->path, &error);
     free(cells);

@@ -22,6 +22,7 @@ typedef struct glintL_sheet {
     double gain; ///< 0: the default
     double size, dpi; ///< of its text, points; pixels an inch: 0: not said
     bool transparent; ///< without paper
+    const glint_overlay_desc *colorbar; ///< of all pictures; NULL: none
     bool mixes; ///< files of different makings are welcome
 } glintL_sheet;
 

@@ -1,6 +1,6 @@
 // sweep.sheet: the contact sheet of a sweep, drawn when its frames are written.
 //
-//     sheet = { label = true, columns = 4, difference = 1, gain = 8, title = "...", output = "sheet.png" }
+//     sheet = { label = true, columns = 4, difference = 1, gain = 8, title = "...", colorbar = bar, output = "sheet.png" }
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +46,10 @@ static void check_field(lua_State *L, int index, const char *name)
     } else if (strcmp(name, "transparent") == 0) {
         if (!lua_isboolean(L, index))
             glintL_refuse(L, index, path, "boolean");
+    } else if (strcmp(name, "colorbar") == 0) {
+        const glint_overlay *bar = glintL_test_object(L, index, GLINTL_OVERLAY);
+        if (!bar || glint_overlay_get(bar)->kind != GLINT_OVERLAY_COLORBAR)
+            glintL_refuse(L, index, path, "glint.colorbar");
     } else {
         check_text(L, index, path, name[0] == 't' ? "text" : "file name");
         glintL_sheet as_output = { .path = lua_tostring(L, index), .count = 1 };
@@ -57,7 +61,7 @@ static void check_field(lua_State *L, int index, const char *name)
 static const glintL_field FIELDS[] = {
     { .name = "label" }, { .name = "columns" }, { .name = "difference" }, { .name = "gain" },
     { .name = "title" }, { .name = "output" },  { .name = "size" },       { .name = "dpi" },
-    { .name = "transparent" }, { .name = NULL },
+    { .name = "transparent" }, { .name = "colorbar" }, { .name = NULL },
 };
 
 void glintL_list_sheet(lua_State *L)
@@ -119,9 +123,12 @@ static glintL_sheet read_sheet(lua_State *L, int sheet, const lists *l, int64_t 
     out.dpi = lua_tonumber(L, -1);
     lua_getfield(L, sheet, "transparent");
     out.transparent = lua_toboolean(L, -1);
+    lua_getfield(L, sheet, "colorbar"); // which the table keeps
+    const glint_overlay *bar = glintL_test_object(L, -1, GLINTL_OVERLAY);
+    out.colorbar = bar ? glint_overlay_get(bar) : NULL;
     if (lua_getfield(L, sheet, "label") == LUA_TBOOLEAN && !lua_toboolean(L, -1))
         out.label = "none";
-    lua_pop(L, 5);
+    lua_pop(L, 6);
     return out;
 }
 

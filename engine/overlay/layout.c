@@ -127,11 +127,10 @@ static void draw_label(const glint_layout *layout, int x, int y)
 /// Pixels of a length in points, no more than a side of a picture.
 static double pixels_of(double points, double dpi) { return fmin(points * (dpi > 0 ? dpi / 72 : 1), GLINT_SIDE_MAX); }
 
-static glint_layout begin(const glint_overlays *overlays, size_t i, double dpi, glint_letters *letters,
+static glint_layout begin(const glint_overlays *overlays, const glint_overlay_desc *desc, double dpi, glint_letters *letters,
                           glint_stamps *stamps)
 {
     static const double lengths[] = { [GLINT_OVERLAY_COLORBAR] = 10, [GLINT_OVERLAY_AXES] = 2.5 };
-    const glint_overlay_desc *desc = &overlays->of[i];
     glint_layout layout = { .overlays = overlays, .desc = desc, .stamps = stamps };
     layout.em = desc->has_size ? pixels_of(desc->size, dpi) : fmax(overlays->height / SIZE_SHARE, LEAST_SIZE);
     layout.typeface = glint_typeface_open(letters, layout.em);
@@ -172,7 +171,7 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
     if (status)
         return status;
     for (size_t i = 0; i < overlays->count; i++) {
-        glint_layout layout = begin(overlays, i, dpi, letters, out);
+        glint_layout layout = begin(overlays, &overlays->of[i], dpi, letters, out);
         draw(&layout, dpi);
     }
     out->lost = out->lost || glint_letters_lost(letters);
@@ -181,4 +180,16 @@ glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, gli
         return GLINT_OK;
     glint_stamps_free(out);
     return glint_fail_nomem(error);
+}
+
+void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
+                          glint_stamps *stamps, int size[2])
+{
+    const glint_overlays overlays = { .width = sides[0], .height = sides[1] };
+    glint_layout layout = begin(&overlays, desc, 0, letters, stamps);
+    glint_colorbar_measure(&layout);
+    size[0] = layout.width;
+    size[1] = layout.height;
+    if (stamps)
+        glint_colorbar_draw(&layout, x, y);
 }

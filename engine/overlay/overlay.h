@@ -10,6 +10,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/glint.h"
+#include "engine/text/letters.h"
 
 #include <stdatomic.h>
 
@@ -61,6 +62,12 @@ typedef struct glint_stamps {
 /// dpi  pixels an inch; 0: not said.
 glint_status glint_overlays_draw(const glint_overlays *overlays, double dpi, glint_transfer transfer, int bits,
                                  glint_stamps *out, glint_error *error);
+/// A colour bar by itself, on a sheet of `sides` pixels; its lengths are pixels.
+/// x, y    its upper left corner.
+/// stamps  out, added to: what it is drawn of; NULL: it is measured alone.
+/// size    out: across and down.
+void glint_colorbar_alone(const glint_overlay_desc *desc, glint_letters *letters, const int sides[2], int x, int y,
+                          glint_stamps *stamps, int size[2]);
 void glint_stamps_free(glint_stamps *stamps);
 /// Adds a stamp of a linear colour; its coverage is freed with the others, or at once where there is no memory.
 void glint_stamps_add(glint_stamps *stamps, glint_stamp stamp, const double color[3]);

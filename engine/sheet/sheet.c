@@ -6,12 +6,16 @@
 ///     o      label       label
 ///     w    [difference][difference]    on request
 ///     n      label       label
+///
+/// A colour bar of all is at their right, or below them.
 #include "engine/base/status.h"
+#include "engine/overlay/overlay.h"
 #include "engine/sheet/canvas.h"
 #include "engine/file/file.h"
 #include "engine/file/png.h"
 #include "engine/file/write.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +28,7 @@
 #define PART_GAP 2 // letters between parts of a label on one line
 #define LETTER 8 // its width in 13ths of its size
 #define SIZE 13 // of labels, pixels, unless the sheet has its own
+#define BAR_MOST 20 // length of a colour bar that has none of its own, in sizes of labels, at most
 
 /// The sheet's measures, in pixels.
 typedef struct layout {
@@ -40,6 +45,8 @@ typedef struct layout {
     int gap;
     int note_lines; ///< at the bottom
     char note[160]; ///< what a row of differences shows, in parts
+    glint_overlay_desc bar; ///< the colour bar as the sheet has it, its lengths in pixels
+    int bar_size[2];
     int64_t sheet_width, sheet_height;
 } layout;
 
@@ -103,6 +110,32 @@ static int set_label(layout *l, const char *label, int room, glint_canvas *canva
 
 // ---- Measuring ----------------------------------------------------------------------------------------------------
 
+/// Width or height of the grid of pictures.
+static int64_t grid_size(const layout *l, bool across)
+{
+    return across ? (int64_t)l->desc->columns * (l->column + l->gap) - l->gap : (int64_t)l->rows * l->band - l->gap;
+}
+
+/// The colour bar, and the room that it takes beside the grid, which has been measured.
+static void measure_bar(layout *l)
+{
+    static const int sides[2] = { GLINT_SIDE_MAX, GLINT_SIDE_MAX };
+    const double size = SIZE * l->unit, dpi = l->desc->dpi;
+    const bool across = l->desc->colorbar->orientation == GLINT_HORIZONTAL;
+    l->bar = *l->desc->colorbar;
+    l->bar.length = l->bar.has_length ? l->bar.length * (dpi > 0 ? dpi / 72 : 1) : fmin((double)grid_size(l, across), BAR_MOST * size);
+    l->bar.size = size;
+    l->bar.has_length = l->bar.has_size = true;
+    for (int c = 0; c < 3; c++)
+        l->bar.color[c] = glint_srgb_decode((INK >> (16 - 8 * c) & 255) / 255.0);
+    glint_colorbar_alone(&l->bar, l->letters, sides, 0, 0, NULL, l->bar_size);
+    const int64_t least[2] = { l->left + (int64_t)l->bar_size[0] + l->gap, l->top + (int64_t)l->bar_size[1] + l->gap };
+    l->sheet_width += across ? 0 : l->bar_size[0] + l->gap;
+    l->sheet_height += across ? l->bar_size[1] + l->gap : 0;
+    l->sheet_width = least[0] > l->sheet_width ? least[0] : l->sheet_width;
+    l->sheet_height = least[1] > l->sheet_height ? least[1] : l->sheet_height;
+}
+
 /// The whole sheet: the grid, or what stands above and below it.
 static void measure_sheet(layout *l)
 {
@@ -110,6 +143,8 @@ static void measure_sheet(layout *l)
     int64_t least[2] = { 0, 0 };
     l->sheet_width = (int64_t)l->left + (int64_t)desc->columns * (l->column + l->gap);
     l->sheet_height = (int64_t)l->top + (int64_t)l->rows * l->band;
+    if (desc->colorbar)
+        measure_bar(l);
     if (desc->title)
         least[0] = l->left + (int64_t)glint_typeface_width(&l->title, desc->title, SIZE_MAX) + l->gap;
     if (desc->difference) {
@@ -216,6 +251,22 @@ static void draw_differences(layout *l, glint_canvas *canvas)
     set_label(l, l->note, (int)l->sheet_width - l->left - l->gap, canvas, l->left, y);
 }
 
+/// At the middle of the grid's right side, or below it.
+static void draw_bar(layout *l, glint_canvas *canvas)
+{
+    const int sides[2] = { canvas->width, canvas->height };
+    const bool across = l->bar.orientation == GLINT_HORIZONTAL;
+    const int room = (int)grid_size(l, across) - l->bar_size[across ? 0 : 1], shift = room > 0 ? room / 2 : 0;
+    const int beyond = (int)grid_size(l, !across) + l->gap;
+    glint_stamps stamps = { .transfer = GLINT_TRANSFER_SRGB, .bits = 8 };
+    glint_colorbar_alone(&l->bar, l->letters, sides, l->left + (across ? shift : beyond), l->top + (across ? beyond : shift), &stamps,
+                         l->bar_size);
+    for (int y = 0; y < canvas->height; y++)
+        glint_stamps_row(&stamps, 0, y, canvas->width, canvas->channels, row_at(canvas, 0, y));
+    l->lost = l->lost || stamps.lost;
+    glint_stamps_free(&stamps);
+}
+
 /// "name ->" above the columns or beside the rows, in their middle.
 static void draw_titles(layout *l, glint_canvas *canvas)
 {
@@ -224,13 +275,13 @@ static void draw_titles(layout *l, glint_canvas *canvas)
     if (desc->title)
         write_text(l, canvas, &l->title, l->left, l->gap, desc->title, SIZE_MAX, INK);
     if (desc->across) {
-        int grid = desc->columns * (l->column + l->gap) - l->gap;
+        int grid = (int)grid_size(l, true);
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->across);
         write_text(l, canvas, &l->typeface, l->left + (grid - text_width(l, text, SIZE_MAX)) / 2,
                    l->top - line_height(l) - l->gap / 2, text, SIZE_MAX, FAINT_INK);
     }
     if (desc->down) {
-        int grid = l->rows * l->band - l->gap;
+        int grid = (int)grid_size(l, false);
         snprintf(text, sizeof text, "%.240s \xe2\x86\x92", desc->down);
         int y = l->top + (grid - text_width(l, text, SIZE_MAX)) / 2;
         l->lost = !glint_canvas_text_down(canvas, &l->typeface, l->gap + l->typeface.height, y > 0 ? y : 0, text,
@@ -307,12 +358,25 @@ static glint_status draw_sheet(layout *l, const char *path, glint_error *error)
     if (!status && l->desc->difference)
         draw_differences(l, &canvas);
     draw_titles(l, &canvas);
+    if (l->desc->colorbar)
+        draw_bar(l, &canvas);
     if (!status && (l->lost || glint_letters_lost(l->letters)))
         status = glint_fail_nomem(error);
     if (!status)
         status = write_canvas(&canvas, l->desc->dpi, path, error);
     free(canvas.pixels);
     return status;
+}
+
+static glint_status check_bar(const glint_overlay_desc *desc, glint_error *error)
+{
+    glint_overlay *bar = NULL;
+    glint_error wrong;
+    if (desc->kind != GLINT_OVERLAY_COLORBAR)
+        return glint_fail(error, GLINT_ERR_INVALID, "colorbar: an overlay of that kind expected");
+    const glint_status status = glint_overlay_create(desc, &bar, &wrong);
+    glint_overlay_release(bar);
+    return status ? glint_fail(error, status, "colorbar.%.400s", wrong.message) : GLINT_OK;
 }
 
 static glint_status check_desc(const glint_sheet_desc *desc, const char *path, glint_error *error)
@@ -333,7 +397,7 @@ static glint_status check_desc(const glint_sheet_desc *desc, const char *path, g
         status = glint_check_range("dpi", desc->dpi, 0, 1e6, "number 0 .. 1000000", error);
     if (!status)
         status = glint_check_range("size", desc->size, 0, 10000, "points 0 .. 10000", error);
-    return status;
+    return status || !desc->colorbar ? status : check_bar(desc->colorbar, error);
 }
 
 static glint_status check_sides(const layout *l, glint_error *error)

@@ -117,6 +117,16 @@ exits 2 "text of no size" sheet grid/000*.png -o wrong.png --label-size 0
 says "is refused" 'label-size: points 1 .. 10000 expected'
 exits 2 "a page without paper" sheet grid/000*.png -o wrong.html --transparent
 says "has none to leave out" 'transparent: it means nothing to a page'
+exits 0 "a colour bar of all pictures" sheet grid/000*.png -o bar.png --colorbar 'viridis,0,2.5,T / K'
+exits 3 "at the right of the others" compare bar.png again.png
+exits 2 "of no map" sheet grid/000*.png -o wrong.png --colorbar jet,0,1
+says "is refused" 'colorbar: MAP,LOW,HIGH or MAP,LOW,HIGH,TITLE expected, MAP being viridis'
+exits 2 "without its last number" sheet grid/000*.png -o wrong.png --colorbar magma,0
+says "is refused" 'colorbar: MAP,LOW,HIGH or'
+exits 2 "of one number" sheet grid/000*.png -o wrong.png --colorbar magma,1,1
+says "is refused" 'colorbar.high: another number than low'
+exits 2 "on a page" sheet grid/000*.png -o wrong.html --colorbar magma,0,1
+says "is refused" 'colorbar: it means nothing to a page'
 exits 2 "of a cell that is not there" sheet grid/000*.png -o wrong.png --difference 7
 says "is refused by number" 'difference: .*1 \.\. 6'
 exits 2 "no output" sheet grid/0001.png
@@ -146,7 +156,7 @@ for wrong in '{ lable = true }:did you mean .label' '{ columns = 0 }:columns: wh
     '{ output = "x.jpg" }:output: .*\.html' '{ difference = 1.5 }:difference' \
     '{ difference = 7 }:difference: a picture 1 .. 6 expected, got 7' '{ gain = 2 }:gain: it means nothing without' \
     '{ output = "x.html", columns = 2 }:columns: a page has those of its first axis' '{ label = "n {shine}" }:label: .shine.: the name of an axis' '{ title = 5 }:title: text' '{ size = 0 }:size: points' \
-    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it means' '5:sheet: table'; do
+    '{ dpi = -1 }:dpi: number 0' '{ transparent = 1 }:transparent: boolean' '{ transparent = true, output = "x.html" }:transparent: it means' '{ colorbar = 5 }:colorbar: glint.colorbar expected' '5:sheet: table'; do
     SHEET=${wrong%%:*} exits 2 "sheet = ${wrong%%:*}" grid.lua
     says "sheet = ${wrong%%:*}" "${wrong#*:}"
 done

@@ -267,6 +267,49 @@ static void test_sheet(void **state)
     free(png.codes);
 }
 
+/// A colour bar of 256 pixels has the table's colours one by one, from the bottom up at the right of the pictures, or from left to
+/// right below them; the pictures are where they are without it.
+static void test_sheet_bar(void **state)
+{
+    (void)state;
+    const glint_sheet_cell cells[] = { { write_plain("a.png", 20, 300, 1), NULL }, { write_plain("b.png", 20, 300, 0), NULL } };
+    glint_overlay_desc bar = glint_overlay_desc_default(GLINT_OVERLAY_COLORBAR);
+    const glint_sheet_desc desc = { .cells = cells, .cell_count = 2, .columns = 2, .gain = 1, .colorbar = &bar };
+    const uint32_t *table = glint_colormap_table(GLINT_COLORMAP_TURBO);
+    bar.map = GLINT_COLORMAP_TURBO;
+    bar.has_length = true;
+    bar.length = 256;
+    for (int across = 0; across < 2; across++) {
+        bar.orientation = across ? GLINT_HORIZONTAL : GLINT_VERTICAL;
+        assert_int_equal(glint_sheet_write(&desc, in_folder("sheet.png"), NULL), GLINT_OK);
+        const glint_png png = decode_ok(in_folder("sheet.png"));
+        const uint8_t *codes = png.codes;
+        int found = 0;
+        assert_int_equal(code_at(&png, 12, 12), 255);
+        assert_int_equal(code_at(&png, 12 + 32, 12), 0);
+        for (int y = 0; y < png.height; y++)
+            for (int x = 0; x < png.width; x++) {
+                int i = 0;
+                while (i < 256 && (across ? x + i < png.width : y + i < png.height)) {
+                    const uint8_t *c = codes + 3 * ((size_t)(across ? y : y + i) * (size_t)png.width + (size_t)(across ? x + i : x));
+                    if (((uint32_t)c[0] << 16 | (uint32_t)c[1] << 8 | c[2]) != table[across ? i : 255 - i])
+                        break;
+                    i++;
+                }
+                found += i == 256;
+                assert_true(i < 256 || (across ? y > 12 + 300 : x > 12 + 52));
+            }
+        assert_int_equal(found, 12); // 0.9 of 13 pixels, rounded up
+        free(png.codes);
+    }
+    glint_error error = { 0 };
+    bar.high = bar.low;
+    assert_int_equal(glint_sheet_write(&desc, in_folder("none.png"), &error), GLINT_ERR_INVALID);
+    assert_non_null(strstr(error.message, "colorbar.high: another number than low"));
+    bar = glint_overlay_desc_default(GLINT_OVERLAY_LABEL);
+    assert_int_equal(glint_sheet_write(&desc, in_folder("none.png"), &error), GLINT_ERR_INVALID);
+}
+
 static void test_sheet_refuses(void **state)
 {
     (void)state;
@@ -534,7 +577,8 @@ int main(void)
         WITH_FOLDER(test_draft),          WITH_FOLDER(test_picture_alpha), WITH_FOLDER(test_picture_linear),
         WITH_FOLDER(test_picture_broken), cmocka_unit_test(test_claims),
         cmocka_unit_test(test_font),      cmocka_unit_test(test_canvas),
-        WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_refuses), WITH_FOLDER(test_apng),
+        WITH_FOLDER(test_sheet),          WITH_FOLDER(test_sheet_bar),     WITH_FOLDER(test_sheet_refuses),
+        WITH_FOLDER(test_apng),
         WITH_FOLDER(test_apng_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
